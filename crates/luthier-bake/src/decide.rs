@@ -2,14 +2,14 @@
 
 use luthier_layers::lobes::LOBES;
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
-use luthier_manifest::{Budget, CandidateForm, Decision, Search};
-use luthier_material::Material;
+use luthier_manifest::{Budget, CandidateForm, Decision, MeasuredError, Search};
+use luthier_material::{Material, Severity};
 
 use crate::assemble::check;
 use crate::graph::{JobKind, Observer, Results};
-use crate::kinds::lobes;
+use crate::kinds::{self, lobes};
 use crate::plan::{ImageReader, Plan, TileList};
-use crate::search::{self, Found};
+use crate::search::{self, Found, Refusal};
 use crate::settings::{Settings, Shape};
 use crate::tile::apron;
 use crate::{BakeError, DEFAULT_BUDGET, Options, Store, limits};
@@ -93,9 +93,13 @@ impl Fixed {
 fn found(fixed: &Fixed, results: &Results, store: &dyn Store) -> Vec<Found> {
     let (budget, is_asked) = fixed.budget();
     let (plan, colors) = (&fixed.plan, budget.delta_e.is_some());
-    let mut found = search::kept(plan, is_asked, colors, store, &|| {
-        if is_asked { search::candidates(plan, results, colors) } else { search::by_default(plan) }
-    });
+    let kinds: &[TableKind] = if is_asked { &TableKind::ALL } else { &search::SEARCHED_BY_DEFAULT };
+    let of = |&kind: &TableKind| {
+        search::kept(plan, kind, is_asked, colors, store, &|| {
+            if is_asked { search::candidates(plan, kind, results, colors) } else { search::by_default(plan, kind) }
+        })
+    };
+    let mut found: Vec<Found> = kinds.iter().filter_map(of).collect();
     found.iter_mut().for_each(|found| fitting(found, plan));
     found.retain(|found| !found.candidates.is_empty());
     found
@@ -117,7 +121,11 @@ pub(crate) fn plan(
     if let Some(fits) = lobes::fits(&fixed.plan.graph).filter(|_| options.fits) {
         results = fits.run(observer, store, results);
         let limits = fixed.asked.of_lobes();
-        searches.extend(lobes::decide(&mut fixed.settings, &fixed.plan, &results, &limits, options.locked)?);
+        let decided = lobes::decide(&mut fixed.settings, &fixed.plan, materials, &results, &limits, options.locked);
+        searches.extend(decided.map_err(|(refusal, errors)| {
+            let worst = worst_of(&errors, &limits).map(|material| (material, None));
+            refused(refusal, TableKind::Lobes, worst, materials, options)
+        })?);
         fixed.plan = Plan::new(materials, fixed.settings.clone(), read_image)?;
     }
     let fixed_layouts = layouts(&fixed.plan)?;
@@ -153,6 +161,15 @@ pub(crate) fn plan(
     // One plan at a time: of many materials it is large.
     let mut last = Some(plan);
     let (mut chosen, mut refusal) = (Vec::new(), None);
+    let refuse = |refusal: Refusal, plan: &Plan, results: &Results, found: &[Found]| {
+        let Refusal::Error { nearest: (number, candidate), .. } = refusal else {
+            return refused(refusal, TableKind::Lobes, None, materials, options);
+        };
+        let Found { kind, candidates, .. } = &found[number];
+        let errors = kinds::of(*kind).errors(plan, results, &candidates[candidate].form);
+        let worst = worst_of(&errors, &budget).and_then(|tile| plan.reader(*kind, tile as u32));
+        refused(refusal, *kind, worst, materials, options)
+    };
     for _ in 0..ROUNDS {
         // What a refusal says would do is confirmed too, before it is said.
         refusal = None;
@@ -165,7 +182,10 @@ pub(crate) fn plan(
                 Ok(chosen) => chosen,
                 Err(error) => {
                     let unlimited = Budget { max_bytes: None, max_cost: None, ..budget };
-                    let Ok(would) = search::choose(&found, &unlimited, fixed_bytes) else { return Err(error) };
+                    let Ok(would) = search::choose(&found, &unlimited, fixed_bytes) else {
+                        let plan = last.unwrap_or_else(|| unreachable!("there is a plan before each round"));
+                        return Err(refuse(error, &plan, &results, &found));
+                    };
                     refusal = Some(error);
                     would
                 }
@@ -187,12 +207,70 @@ pub(crate) fn plan(
             break;
         }
     }
+    let plan = last.unwrap_or_else(|| unreachable!("there is a plan after each round"));
     if let Some(error) = refusal {
-        return Err(error);
+        return Err(refuse(error, &plan, &results, &found));
     }
     searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)));
-    let plan = last.unwrap_or_else(|| unreachable!("there is a plan after each round"));
     Ok(Planned { plan, results, searches })
+}
+
+/// The number with the error that exceeds a budget most.
+fn worst_of(errors: &[(usize, MeasuredError)], budget: &Budget) -> Option<usize> {
+    let excess = |(_, error): &(usize, MeasuredError)| budget.excess(error);
+    errors.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))).map(|(number, _)| *number)
+}
+
+/// The refusal of a budget: what no tables of a kind are good enough for, a layer of a material or all of it, and the material that states the limit.
+fn refused(
+    refusal: Refusal,
+    kind: TableKind,
+    worst: Option<(usize, Option<usize>)>,
+    materials: &[Material],
+    options: &Options<'_>,
+) -> BakeError {
+    let limit = |budget: &Budget, name: &str| budget.limits().into_iter().find(|(limit, _)| *limit == name)?.1;
+    // The tightest limit of files counts, unless an option replaces it.
+    let stated = |name: &str| {
+        let all = materials.iter().enumerate().filter_map(|(number, m)| Some((number, limit(&m.budget, name)?)));
+        let tightest = all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(number, _)| number);
+        tightest.filter(|_| limit(&options.budget, name).is_none())
+    };
+    let key = |name: &str| format!("budget.{name}");
+    let of = |name: &str| {
+        let stating = stated(name).map(|number| &materials[number]);
+        let value = limit(stating.map_or(&options.budget, |material| &material.budget), name).unwrap_or_default();
+        let place = stating.map_or(String::new(), |material| format!(" of {}", material.place(&key(name))));
+        let value = if value >= 1.0 { format!("{value}") } else { format!("{value:e}") };
+        format!("{name} = {value}{place}")
+    };
+    let (reason, hint, place) = match refusal {
+        Refusal::Error { limits, words, hint, .. } => {
+            let layer = |layer: Option<usize>| layer.map_or("name".to_owned(), |layer| format!("layer.{layer}"));
+            let whom = worst.map_or(String::new(), |(number, at)| {
+                let (material, which) = (&materials[number], at.map_or(String::new(), |at| format!("layer {at} of ")));
+                format!(" for {which}`{}` ({})", material.name, material.place(&layer(at)))
+            });
+            let under: Vec<String> = limits.iter().map(|name| of(name)).collect();
+            let own = |number: usize| limits.iter().find(|name| stated(name) == Some(number)).map(|name| key(name));
+            let reason = format!(
+                "no {} table is good enough{whom} under {}; nearest: {words}",
+                kind.name(),
+                under.join(" and ")
+            );
+            (reason, hint, worst.map(|(number, at)| (number, own(number).unwrap_or_else(|| layer(at)))))
+        }
+        Refusal::Whole { limit, reason, hint } => {
+            (format!("{reason} {}", of(limit)), hint, stated(limit).map(|number| (number, key(limit))))
+        }
+    };
+    let mut error = BakeError::Budget { reason, hint, diagnostics: Vec::new() };
+    let message = error.to_string();
+    if let (BakeError::Budget { diagnostics, hint, .. }, Some((number, key))) = (&mut error, place) {
+        let hint = Some(format!("write `{hint}`, or leave the limit out"));
+        diagnostics.push(materials[number].diagnostic(Severity::Error, &key, message, hint));
+    }
+    error
 }
 
 /// The jobs of the tiles of some kinds.
@@ -231,15 +309,8 @@ pub(crate) fn budget(materials: &[Material], given: &Budget) -> Result<Budget, B
         max_lobe_err: given.max_lobe_err.or(stated.max_lobe_err),
         max_albedo_err: given.max_albedo_err.or(stated.max_albedo_err),
     };
-    for (name, value, example) in [
-        ("max_abs", budget.max_abs, "1e-3"),
-        ("max_rel", budget.max_rel, "1e-2"),
-        ("delta_e", budget.delta_e, "0.5"),
-        ("max_bytes", budget.max_bytes.map(|bytes| bytes as f64), "65536"),
-        ("max_cost", budget.max_cost, "200"),
-        ("max_lobe_err", budget.max_lobe_err, "0.05"),
-        ("max_albedo_err", budget.max_albedo_err, "0.01"),
-    ] {
+    let examples = ["1e-3", "1e-2", "0.5", "65536", "200", "0.05", "0.01"];
+    for ((name, value), example) in budget.limits().into_iter().zip(examples) {
         if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(BakeError::BudgetValue { name, value, example });
         }

@@ -2,6 +2,7 @@
 
 use luthier_lut::{TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, SIDE_MAX};
+use luthier_material::Diagnostic;
 use thiserror::Error;
 
 /// Why a set of materials cannot be baked.
@@ -88,10 +89,12 @@ pub enum BakeError {
     /// A budget that no tables hold.
     #[error("the budget cannot be met: {reason}; `{hint}` would do")]
     Budget {
-        /// Words on the candidate that comes nearest.
+        /// Words on the material that breaks it, on the limit, and on the candidate that comes nearest.
         reason: String,
         /// The limit that would be met.
         hint: String,
+        /// The material that breaks it, or that states it: at the limit, or else at the layer. Empty where options alone have a limit on the whole bake.
+        diagnostics: Vec<Diagnostic>,
     },
     /// A limit that means nothing.
     #[error("a budget of {name} = {value} means nothing: write a positive number, such as `{name} = {example}`")]

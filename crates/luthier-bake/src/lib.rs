@@ -33,8 +33,8 @@ pub use assemble::{
     Baked, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with,
 };
 pub use error::BakeError;
-pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task, kept};
-pub use kinds::lobes::fitted;
+pub use graph::{Artefact, Function, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task, kept};
+pub use kinds::lobes::{VARIED_LAYERS_MAX, fitted, is_too_deep};
 pub use maps::{MapSource, MaterialMap, height_normals};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};

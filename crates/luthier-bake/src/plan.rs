@@ -109,6 +109,15 @@ impl Plan {
         Ok(plan)
     }
 
+    /// The first that reads a tile: numbers of the material and of the layer.
+    pub(crate) fn reader(&self, kind: TableKind, tile: u32) -> Option<(usize, Option<usize>)> {
+        self.records.iter().enumerate().find_map(|(number, PlannedLayers { layers, bare })| {
+            let layer = layers.iter().position(|layer| layer.tiles[kind] == Some(tile));
+            let is_bare = || bare.as_ref().is_some_and(|record| record.tiles[kind] == Some(tile));
+            layer.map(|layer| (number, Some(layer))).or_else(|| is_bare().then_some((number, Some(1))))
+        })
+    }
+
     /// Adds the plan of a material, and numbers its tiles.
     fn take(&mut self, part: Part) {
         let Part { graph, mut layers, mut bare, tiles } = part;

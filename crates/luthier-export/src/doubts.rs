@@ -1,5 +1,6 @@
 //! Doubts about the model that shades a material: parts that it leaves out, quantities outside its domain.
 
+use luthier_bake::{VARIED_LAYERS_MAX, is_too_deep};
 use luthier_layers::domain::{Outside, Quantity, outside};
 use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::{Diagnostic, LeftOut, Material, Severity, left_out};
@@ -22,7 +23,22 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
 /// Doubts about a material of a scene, whose model is chosen by what it leaves out: only quantities outside its domain.
 pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
-    outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect()
+    let mut found: Vec<Diagnostic> =
+        outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect();
+    let mut shaded = material.clone();
+    shaded.bake.model = Some(model);
+    found.extend(is_too_deep(&shaded).then(|| too_deep(material)));
+    found
+}
+
+/// Says that a stack has more layers than are fitted, at the first beyond these.
+fn too_deep(material: &Material) -> Diagnostic {
+    let (layers, most) = (material.stack.layers.len(), VARIED_LAYERS_MAX);
+    let message = format!(
+        "`lobes` fits stacks of at most {most} layers where a map, a film that varies, patina or tangents vary them, and this one has {layers}: its fits would take minutes"
+    );
+    let hint = "join layers, or write `[bake] model = \"elek\"`, which simulates nothing".to_owned();
+    material.diagnostic(Severity::Error, &format!("layer.{most}"), message, Some(hint))
 }
 
 /// Says that the default is another model, and why.

@@ -98,6 +98,16 @@ impl Bake<'_> {
     }
 }
 
+impl ExportError {
+    /// All that is known of the places in files that it is about.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match self {
+            Self::Refused { diagnostics, .. } | Self::Bake(BakeError::Budget { diagnostics, .. }) => diagnostics,
+            _ => &[],
+        }
+    }
+}
+
 /// Why no package came of materials.
 #[derive(Debug, Error)]
 #[non_exhaustive]

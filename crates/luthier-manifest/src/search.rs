@@ -33,6 +33,19 @@ impl Budget {
         *self == Self::default()
     }
 
+    /// The limits by the names of their keys.
+    pub fn limits(&self) -> [(&'static str, Option<f64>); 7] {
+        [
+            ("max_abs", self.max_abs),
+            ("max_rel", self.max_rel),
+            ("delta_e", self.delta_e),
+            ("max_bytes", self.max_bytes.map(|bytes| bytes as f64)),
+            ("max_cost", self.max_cost),
+            ("max_lobe_err", self.max_lobe_err),
+            ("max_albedo_err", self.max_albedo_err),
+        ]
+    }
+
     /// Whether errors are limited.
     pub fn limits_errors(&self) -> bool {
         self.max_abs.is_some() || self.max_rel.is_some() || self.delta_e.is_some() || self.limits_lobes()

@@ -10,20 +10,51 @@ use serde_json::Value;
 
 use super::{Artefact, Inputs, Job, JobKind, Key, Results, Store, Task, address};
 
-/// The value of a pure function that is no part of a bake: the store's, or one that is computed now and kept. `revision` changes whenever the same inputs
-/// give another value than before.
-pub fn kept<T>(kind: &'static str, revision: u32, inputs: &Value, store: &dyn Store, compute: impl FnOnce() -> T) -> T
+/// A pure function that is no part of a bake, whose values a store keeps by their inputs. `revision` changes whenever the same inputs give another value than before.
+#[derive(Debug, Clone, Copy)]
+pub struct Function {
+    /// Kind of its values in stores.
+    pub kind: &'static str,
+    /// Number of the version of the function.
+    pub revision: u32,
+}
+
+impl Function {
+    /// The value for some inputs that a store has.
+    pub fn recall<T>(self, inputs: &Value, store: &dyn Store) -> Option<T>
+    where
+        T: Any + Clone + Send + Sync + Serialize + DeserializeOwned,
+    {
+        store.get(&self.task::<T>(inputs)).and_then(|artefact| artefact.get::<T>().cloned())
+    }
+
+    /// Keeps the value for some inputs.
+    pub fn keep<T>(self, inputs: &Value, store: &dyn Store, value: T)
+    where
+        T: Any + Clone + Send + Sync + Serialize + DeserializeOwned,
+    {
+        store.put(&self.task::<T>(inputs), &Arc::new(Artefact::new(value)));
+    }
+
+    fn task<T>(self, inputs: &Value) -> Task<'static>
+    where
+        T: Any + Clone + Send + Sync + Serialize + DeserializeOwned,
+    {
+        let kind = JobKind::part(self.kind);
+        Task::new(kind, address(Key::of_inputs(kind, self.revision, inputs), iter::empty()), Artefact::decode::<T>)
+    }
+}
+
+/// The value of a function: the store's, or one that is computed now and kept.
+pub fn kept<T>(function: Function, inputs: &Value, store: &dyn Store, compute: impl FnOnce() -> T) -> T
 where
     T: Any + Clone + Send + Sync + Serialize + DeserializeOwned,
 {
-    let kind = JobKind::part(kind);
-    let task = Task::new(kind, address(Key::of_inputs(kind, revision, inputs), iter::empty()), Artefact::decode::<T>);
-    if let Some(value) = store.get(&task).and_then(|artefact| artefact.get::<T>().cloned()) {
-        return value;
-    }
-    let value = compute();
-    store.put(&task, &Arc::new(Artefact::new(value.clone())));
-    value
+    function.recall(inputs, store).unwrap_or_else(|| {
+        let value = compute();
+        function.keep(inputs, store, value.clone());
+        value
+    })
 }
 
 /// The result of a job that needs no other: the store's, or one that is made now and kept.
@@ -49,7 +80,7 @@ mod tests {
     fn values_are_computed_once_for_all_that_decides_them() {
         let (store, calls) = (MemoryStore::default(), Cell::new(0));
         let value = |kind, revision, input: f64| {
-            kept(kind, revision, &json!([input]), &store, || {
+            kept(Function { kind, revision }, &json!([input]), &store, || {
                 calls.set(calls.get() + 1);
                 (input, calls.get())
             })

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 pub use self::artefact::Artefact;
 pub(crate) use self::job::Job;
 pub use self::job::{JobKind, Key};
-pub use self::kept::kept;
 pub(crate) use self::kept::result_of;
+pub use self::kept::{Function, kept};
 pub use self::store::{MemoryStore, Store, Task};
 use crate::tile::TileData;
 
@@ -114,9 +114,9 @@ impl Graph {
         }
     }
 
-    /// The addresses of all jobs.
-    pub(crate) fn addresses(&self) -> impl Iterator<Item = Key> {
-        self.entries().map(|(_, entry)| entry.address)
+    /// The address of the result of a job.
+    pub(crate) fn address(&self, key: Key) -> Option<Key> {
+        self.jobs.values().find_map(|jobs| jobs.get(&key)).map(|entry| entry.address)
     }
 
     /// The graph of some of its jobs, with all that these need.

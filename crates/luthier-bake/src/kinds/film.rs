@@ -5,6 +5,7 @@ use std::sync::Arc;
 use luthier_lut::{
     Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, incident_cosine, measure_scan,
 };
+use luthier_manifest::{CandidateForm, MeasuredError};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::coated;
@@ -48,6 +49,10 @@ impl Kind for Table {
 
     fn candidates(&self, plan: &Plan, _: &Results, colors: bool) -> Option<Found> {
         grids::film(plan, colors)
+    }
+
+    fn errors(&self, plan: &Plan, _: &Results, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+        grids::film_errors(plan, form)
     }
 }
 

@@ -12,7 +12,7 @@ pub(crate) mod thickness;
 use std::sync::Arc;
 
 use luthier_lut::TableKind;
-use luthier_manifest::LayerRecord;
+use luthier_manifest::{CandidateForm, LayerRecord, MeasuredError};
 use luthier_material::{BakeSettings, LayerExtras, Material};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -78,6 +78,11 @@ pub(crate) trait Kind: Sync {
     /// The candidates for the tiles of a plan; none where nothing is left to choose. `results` has the intermediate ones.
     fn candidates(&self, _plan: &Plan, _results: &Results, _colors: bool) -> Option<Found> {
         None
+    }
+
+    /// The errors of the tiles of a plan, by their numbers, in tables of this form, as a search measures them. None of kinds whose tiles are of no single material.
+    fn errors(&self, _plan: &Plan, _results: &Results, _form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+        Vec::new()
     }
 
     /// The candidates where no budget is stated: only of kinds that shaders read for every interface and that need no costly truth.

@@ -3,9 +3,36 @@
 use std::cmp::Ordering;
 
 use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError};
+use thiserror::Error;
 
 use super::Found;
-use crate::BakeError;
+
+/// Why no candidates hold a budget.
+#[derive(Debug, Error)]
+pub(crate) enum Refusal {
+    /// Of one kind no candidate is good enough.
+    #[error("no table is good enough; nearest: {words}; `{hint}` would do")]
+    Error {
+        /// Place of the kind among those that were found, and of the candidate that comes nearest.
+        nearest: (usize, usize),
+        /// Names of the limits that it exceeds.
+        limits: Vec<&'static str>,
+        /// The candidate in words.
+        words: String,
+        /// Limits that would be met.
+        hint: String,
+    },
+    /// Candidates are good enough, but together too large or too slow.
+    #[error("{reason} {limit} allows; `{hint}` would do")]
+    Whole {
+        /// Name of the limit.
+        limit: &'static str,
+        /// What the least is, in words before the limit.
+        reason: String,
+        /// A limit that would be met.
+        hint: String,
+    },
+}
 
 /// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
 pub(crate) fn front(candidates: &[Candidate]) -> Vec<usize> {
@@ -33,8 +60,8 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
 /// Where errors are not limited, the least absolute error that bytes and cost allow is the limit.
 ///
 /// # Errors
-/// [`BakeError::Budget`] when none holds: what comes nearest, and what would do.
-pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, BakeError> {
+/// [`Refusal`] when none holds: what comes nearest, and what would do.
+pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, Refusal> {
     if budget.limits_errors() {
         let holds = |c: &Candidate| budget.excess(&c.error) <= 1.0;
         return match cheapest(found, budget, fixed_bytes, &holds) {
@@ -106,17 +133,19 @@ fn cheapest(
 }
 
 /// Why nothing holds, what comes nearest, and what would do.
-fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> BakeError {
+fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
     // A kind of which no candidate is good enough, whatever it weighs or costs.
-    for kind in found {
+    for (number, kind) in found.iter().enumerate() {
         let excess = |c: &Candidate| budget.excess(&c.error);
-        let best = kind.candidates.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)).then(cheaper(a, b)));
-        if let Some(best) = best.filter(|c| excess(c) > 1.0) {
-            let mut would = Vec::new();
+        let candidates = kind.candidates.iter().enumerate();
+        let best = candidates.min_by(|(_, a), (_, b)| excess(a).total_cmp(&excess(b)).then(cheaper(a, b)));
+        if let Some((choice, best)) = best.filter(|(_, c)| excess(c) > 1.0) {
+            let (mut limits, mut would) = (Vec::new(), Vec::new());
             let mut limit = |name, limit: Option<f64>, error: Option<f64>| {
                 if let (Some(limit), Some(error)) = (limit, error)
                     && error > limit
                 {
+                    limits.push(name);
                     would.push(format!("{name} = {}", above(error)));
                 }
             };
@@ -125,14 +154,11 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> BakeError {
             limit("delta_e", budget.delta_e, best.error.delta_e);
             limit("max_lobe_err", budget.max_lobe_err, best.error.lobe);
             limit("max_albedo_err", budget.max_albedo_err, best.error.albedo);
-            return BakeError::Budget {
-                reason: format!(
-                    "no {} table is good enough; nearest: {}, {} bytes, {}",
-                    kind.kind.name(),
-                    in_words(&best.form),
-                    best.bytes,
-                    errors_in_words(&best.error)
-                ),
+            let (form, errors) = (in_words(&best.form), errors_in_words(&best.error));
+            return Refusal::Error {
+                nearest: (number, choice),
+                limits,
+                words: format!("{form}, {} bytes, {errors}", best.bytes),
                 hint: would.join(" and "),
             };
         }
@@ -144,9 +170,10 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> BakeError {
         .iter()
         .map(|f| f.candidates.iter().filter(|c| holds(c)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
         .sum();
-    if let Some(max) = budget.max_cost.filter(|max| least_cost > *max) {
-        return BakeError::Budget {
-            reason: format!("look-ups cost at least {least_cost:.0}, more than {max:.0}"),
+    if budget.max_cost.is_some_and(|max| least_cost > max) {
+        return Refusal::Whole {
+            limit: "max_cost",
+            reason: format!("look-ups cost at least {least_cost:.0}, more than"),
             hint: format!("max_cost = {}", libm::ceil(least_cost)),
         };
     }
@@ -159,8 +186,9 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> BakeError {
     } else {
         String::new()
     };
-    BakeError::Budget {
-        reason: format!("tables take at least {least} bytes{kept}, more than {}", budget.max_bytes.unwrap_or_default()),
+    Refusal::Whole {
+        limit: "max_bytes",
+        reason: format!("tables take at least {least} bytes{kept}, more than"),
         hint: format!("max_bytes = {least}"),
     }
 }
@@ -220,7 +248,9 @@ mod tests {
         assert_eq!(choose(&found, &errors, 0).unwrap(), [0, 0]);
         assert_eq!(choose(&found, &Budget { max_cost: Some(10.0), ..errors }, 0).unwrap(), [1, 0]);
         assert_eq!(choose(&found, &Budget { max_cost: Some(2.0), ..errors }, 0).unwrap(), [1, 1]);
-        let message = |budget: &Budget, fixed| choose(&found, budget, fixed).unwrap_err().to_string();
+        let message = |budget: &Budget, fixed| match choose(&found, budget, fixed).unwrap_err() {
+            Refusal::Error { hint, .. } | Refusal::Whole { hint, .. } => hint,
+        };
         assert!(message(&Budget { max_cost: Some(1.0), ..errors }, 0).contains("max_cost = 2"));
         assert!(message(&Budget { max_bytes: Some(15), ..errors }, 4).contains("max_bytes = 24"));
         assert!(message(&Budget { max_abs: Some(0.03), ..errors }, 0).contains("max_abs = 1.0e-1"));

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use luthier_lut::TableKind;
 use luthier_manifest::{Budget, Candidate, CandidateForm, Decision, Search};
 
 use super::Found;
@@ -11,22 +12,31 @@ use crate::plan::Plan;
 use crate::{AIM, DEFAULT_BUDGET, Store};
 
 /// Changes whenever the same plan gives other candidates, or other errors of them, than before.
-const REVISION: u32 = 1;
+const REVISION: u32 = 2;
 
 /// The kind of searches in stores.
 const SEARCH: JobKind = JobKind::part("search");
 
-/// The candidates that a search finds for a plan, from the store where it has been made before. Its truths are those of the jobs of the plan.
+/// The candidates that a search finds for a kind of a plan, from the store where it has been made before. Its truths are those of the jobs of the tiles: what makes
+/// the tiles of other kinds does not decide it.
 pub(crate) fn kept(
     plan: &Plan,
+    kind: TableKind,
     is_asked: bool,
     colors: bool,
     store: &dyn Store,
-    search: &dyn Fn() -> Vec<Found>,
-) -> Vec<Found> {
+    search: &dyn Fn() -> Option<Found>,
+) -> Option<Found> {
+    let (settings, tiles) = (&plan.settings, &plan.tiles[kind as usize].tiles);
+    if tiles.is_empty() {
+        return None;
+    }
+    let (asked, fixed, formats) = (settings.asked(kind), settings.fixed(kind), settings.formats);
+    let (version, name) = (env!("CARGO_PKG_VERSION"), kind.name());
     let mut text =
-        format!("luthier-bake {} search {REVISION} {is_asked} {colors} {:?}", env!("CARGO_PKG_VERSION"), plan.settings);
-    plan.graph.addresses().for_each(|address| text.push_str(&address.to_string()));
+        format!("luthier-bake {version} search {REVISION} {name} {is_asked} {colors} {asked:?} {fixed:?} {formats:?}");
+    let addresses = tiles.iter().filter_map(|(_, key)| plan.graph.address(*key));
+    addresses.for_each(|address| text.push_str(&address.to_string()));
     // As text: the names of forms are part of the values.
     let task = Task::new(SEARCH, Key::of(text.as_bytes()), Artefact::decode::<String>);
     let read = |artefact: Arc<Artefact>| serde_json::from_str(artefact.get::<String>()?).ok();

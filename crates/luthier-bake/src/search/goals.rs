@@ -158,7 +158,7 @@ fn step(found: Option<&Found>, max_abs: f64) -> Step {
     let found: Vec<Found> = found.into_iter().cloned().collect();
     let chosen = match choose(&found, &budget, 0) {
         Ok(chosen) => Ok(found[0].candidates[chosen[0]].clone()),
-        Err(error) => Err(error.to_string()),
+        Err(refusal) => Err(refusal.to_string()),
     };
     Step { max_abs, chosen }
 }

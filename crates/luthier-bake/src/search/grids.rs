@@ -5,9 +5,9 @@ use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
 use super::{Found, WEIGHTS, cost, measured};
-use crate::graph::Results;
+use crate::graph::{Job, Results};
 use crate::grid::resampled;
-use crate::kinds::fgd::{FgdTruth, FgdTruthJob};
+use crate::kinds::fgd::{FgdJob, FgdTruth};
 use crate::kinds::film::FilmJob;
 use crate::plan::Plan;
 use crate::settings::axis;
@@ -43,13 +43,18 @@ struct Fine {
     slack: f64,
 }
 
-fn fgd_tiles<'a>(plan: &Plan, results: &Results, jobs: impl Iterator<Item = &'a FgdTruthJob>) -> Vec<Fine> {
-    let tile = |job: &FgdTruthJob| {
-        let FgdTruth { image, mut probes, kinks, slack, .. } = results.part::<FgdTruth>(job).clone();
+/// The jobs of the tiles of a kind, in the order of the tiles.
+fn jobs<J: Job>(plan: &Plan, kind: TableKind) -> impl Iterator<Item = &J> {
+    plan.tiles[kind as usize].tiles.iter().filter_map(|(_, key)| plan.graph.get(*key))
+}
+
+fn fgd_tiles(plan: &Plan, results: &Results) -> Vec<Fine> {
+    let tile = |job: &FgdJob| {
+        let FgdTruth { image, mut probes, kinks, slack, .. } = results.part::<FgdTruth>(&job.truth).clone();
         probes.extend(kinks);
         Fine { grid: plan.settings.fixed(TableKind::Fgd).axes(), image, probes, slack }
     };
-    jobs.map(tile).collect()
+    jobs(plan, TableKind::Fgd).map(tile).collect()
 }
 
 fn fgd_axes(plan: &Plan) -> Vec<[Axis; 2]> {
@@ -71,7 +76,7 @@ fn fgd_axes(plan: &Plan) -> Vec<[Axis; 2]> {
 
 pub(crate) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
     let (asked, fixed) = (plan.settings.asked(TableKind::Fgd), plan.settings.fixed(TableKind::Fgd));
-    let tiles = fgd_tiles(plan, results, plan.graph.of());
+    let tiles = fgd_tiles(plan, results);
     if tiles.is_empty() || asked.size && asked.format {
         return None;
     }
@@ -79,6 +84,45 @@ pub(crate) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found>
     let fixed_cost = price(&fixed.axes(), TexelFormat::Rgba16Float);
     let candidates = candidates(TableKind::Fgd, &tiles, fgd_axes(plan), &formats, 4, colors);
     Some(Found::new(TableKind::Fgd, fixed_cost, candidates))
+}
+
+/// The errors of albedo tiles in this form, in their order.
+pub(crate) fn fgd_errors(plan: &Plan, results: &Results, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+    of_form(TableKind::Fgd, &fgd_tiles(plan, results), form, 4)
+}
+
+/// The errors of film tiles in this form, in their order.
+pub(crate) fn film_errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+    of_form(TableKind::Film, &film_tiles(plan), form, 3)
+}
+
+fn of_form(kind: TableKind, tiles: &[Fine], form: &CandidateForm, channels: usize) -> Vec<(usize, MeasuredError)> {
+    let CandidateForm::Table { x, y: Some(y), format, .. } = form else { return Vec::new() };
+    let axes = [x.clone(), y.clone()];
+    tiles.iter().map(|tile| tile.error(kind, &tile.on(&axes), &axes, *format, channels, true)).enumerate().collect()
+}
+
+impl Fine {
+    /// The tile on other axes.
+    fn on(&self, axes: &[Axis; 2]) -> Image {
+        if *axes == self.grid { self.image.clone() } else { resampled(&self.image, &self.grid, axes) }
+    }
+
+    /// The error of the tile in a format, from its image on these axes.
+    fn error(
+        &self,
+        kind: TableKind,
+        image: &Image,
+        axes: &[Axis; 2],
+        format: TexelFormat,
+        channels: usize,
+        colors: bool,
+    ) -> MeasuredError {
+        let channels = channels.min(format.channels() as usize);
+        let atlas = lone_tile(kind, &[&axes[0], &axes[1]], format, image);
+        let points = self.probes.iter().map(|(at, value)| (at, *value));
+        measured(points, channels, colors, self.slack, |at| atlas.sample(0, at, WEIGHTS))
+    }
 }
 
 /// The finest film tiles that are tried.
@@ -91,15 +135,13 @@ fn finest(exponent: f64) -> [Axis; 2] {
 
 fn film_tiles(plan: &Plan) -> Vec<Fine> {
     let grid = finest(3.0);
-    plan.graph
-        .of::<FilmJob>()
-        .map(|job| Fine {
-            image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
-            grid: grid.clone(),
-            probes: job.probes(FILM_PROBES),
-            slack: 0.0,
-        })
-        .collect()
+    let tile = |job: &FilmJob| Fine {
+        image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
+        grid: grid.clone(),
+        probes: job.probes(FILM_PROBES),
+        slack: 0.0,
+    };
+    jobs(plan, TableKind::Film).map(tile).collect()
 }
 
 fn film_axes() -> Vec<[Axis; 2]> {
@@ -142,19 +184,12 @@ fn candidates(
     let measured: Vec<Vec<Candidate>> = axes
         .into_par_iter()
         .map(|axes| {
-            let images: Vec<Image> = tiles
-                .iter()
-                .map(|t| if axes == t.grid { t.image.clone() } else { resampled(&t.image, &t.grid, &axes) })
-                .collect();
+            let images: Vec<Image> = tiles.iter().map(|tile| tile.on(&axes)).collect();
             let is_whole =
                 |format: &&TexelFormat| axes.iter().all(|axis| axis.size.is_multiple_of(format.block_side()));
             let with = |&format: &TexelFormat| {
-                let channels = channels.min(format.channels() as usize);
-                let errors = tiles.iter().zip(&images).map(|(tile, image)| {
-                    let atlas = lone_tile(kind, &[&axes[0], &axes[1]], format, image);
-                    let points = tile.probes.iter().map(|(at, value)| (at, *value));
-                    measured(points, channels, colors, tile.slack, |at| atlas.sample(0, at, WEIGHTS))
-                });
+                let error = |(tile, image): (&Fine, &Image)| tile.error(kind, image, &axes, format, channels, colors);
+                let errors = tiles.iter().zip(&images).map(error);
                 let error = errors.reduce(|a, b| a.max(&b)).unwrap_or_default();
                 let [x, y] = axes.clone();
                 let form = CandidateForm::Table { x, y: Some(y), format, base: RowBase::Zero };

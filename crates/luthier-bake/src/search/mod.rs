@@ -17,7 +17,7 @@ use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOO
 use luthier_optics::color_difference::{ciede2000, lab};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use choice::{best_effort, choose, front};
+pub(crate) use choice::{Refusal, best_effort, choose, front};
 pub(crate) use decisions::{kept, kept_decisions, locked};
 
 use crate::graph::Results;
@@ -96,16 +96,14 @@ impl Found {
 /// The kinds that are searched where no budget is stated.
 pub(crate) const SEARCHED_BY_DEFAULT: [TableKind; 2] = [TableKind::Fresnel, TableKind::Distribution];
 
-/// The candidates that come near the default budget. A row that none serves does not count.
-pub(crate) fn by_default(plan: &Plan) -> Vec<Found> {
-    let found = SEARCHED_BY_DEFAULT.into_iter().filter_map(|kind| kinds::of(kind).candidates_by_default(plan));
-    found.filter(|f| f.comes_near(&DEFAULT_BUDGET)).collect()
+/// The candidates of a kind, if some come near the default budget. A row that none serves does not count.
+pub(crate) fn by_default(plan: &Plan, kind: TableKind) -> Option<Found> {
+    kinds::of(kind).candidates_by_default(plan).filter(|f| f.comes_near(&DEFAULT_BUDGET))
 }
 
-/// Measures the candidates of the kinds that a plan has. `results` has the intermediate ones of its graph.
-pub(crate) fn candidates(plan: &Plan, results: &Results, colors: bool) -> Vec<Found> {
-    let found = TableKind::ALL.into_iter().filter_map(|kind| kinds::of(kind).candidates(plan, results, colors));
-    found.filter(|f| !f.candidates.is_empty()).collect()
+/// Measures the candidates of a kind that a plan has. `results` has the intermediate ones of its graph.
+pub(crate) fn candidates(plan: &Plan, kind: TableKind, results: &Results, colors: bool) -> Option<Found> {
+    kinds::of(kind).candidates(plan, results, colors).filter(|f| !f.candidates.is_empty())
 }
 
 /// The report of a search.

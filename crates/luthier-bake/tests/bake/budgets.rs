@@ -216,3 +216,37 @@ fn rows_of_a_form_that_is_asked_for_are_not_searched() {
     let atlas = atlas(&bake, TableKind::Fresnel);
     assert_eq!((atlas.layout.base, atlas.format), asked);
 }
+
+/// The material whose table misses, and the file that states the limit. Oracle: each material alone under the same limit, of which the worse is the one.
+#[test]
+fn a_refusal_names_the_material_that_breaks_the_budget() {
+    let glass = |name: &str, limit: &str| material(name, &dielectric("1.5", 0.3), limit);
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.6\nthickness_nm = 900\n".to_owned();
+    let film = material("film", &(film + &conductor("\"au\"", 0.3)), FIXED_ALBEDO);
+    let limit = &format!("[budget]\nmax_abs = 1e-9\n{FIXED_ALBEDO}");
+    let refused = |set: &[Material], budget: Budget| match with(set, budget).unwrap_err() {
+        BakeError::Budget { reason, hint, diagnostics } => (reason, hint, diagnostics),
+        other => panic!("{other}"),
+    };
+    let needs = |hint: &str| hint.rsplit(' ').next().unwrap().parse::<f64>().unwrap();
+    let [of_glass, of_film] =
+        [&glass("glass", FIXED_ALBEDO), &film].map(|one| needs(&refused(std::slice::from_ref(one), max_abs(1e-9)).1));
+    assert!(of_film > of_glass, "{of_film} {of_glass}");
+    // The file before the film states the limit; the film breaks it.
+    let (reason, hint, told) =
+        refused(&[glass("first", limit), film.clone(), glass("last", FIXED_ALBEDO)], Budget::default());
+    assert!(reason.contains("no fresnel table is good enough for layer 0 of `film` (film.toml:"), "{reason}");
+    assert!(reason.contains("under max_abs = 1e-9 of first.toml:8;"), "{reason}");
+    assert_eq!(needs(&hint), of_film);
+    assert_eq!((told.len(), told[0].label.as_str()), (1, "film.toml"));
+    // A limit of the options has no place; the material has.
+    let (reason, _, told) = refused(&[glass("first", limit), film], max_abs(1e-8));
+    assert!(reason.contains("`film` (film.toml:") && reason.contains("under max_abs = 1e-8;"), "{reason}");
+    assert_eq!(told[0].label, "film.toml");
+    // Bytes are of all together: the file that states the limit is named.
+    let bytes = "[budget]\nmax_abs = 1e-3\nmax_bytes = 16\n";
+    let (reason, _, told) =
+        refused(&[glass("first", FIXED_ALBEDO), glass("small", &format!("{bytes}{FIXED_ALBEDO}"))], Budget::default());
+    assert!(reason.ends_with("more than max_bytes = 16 of small.toml:9"), "{reason}");
+    assert_eq!((told[0].label.as_str(), told[0].line), ("small.toml", 9));
+}

@@ -6,6 +6,7 @@ mod smooth;
 use std::sync::Arc;
 
 use luthier_lut::{Axis, Comparison, Image, Mapping, TableKind, TexelFormat, WeightBits, measure_at};
+use luthier_manifest::{CandidateForm, MeasuredError};
 use luthier_material::{BakeSettings, Material};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
@@ -92,6 +93,10 @@ impl Kind for Table {
 
     fn candidates(&self, plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
         grids::fgd(plan, results, colors)
+    }
+
+    fn errors(&self, plan: &Plan, results: &Results, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+        grids::fgd_errors(plan, results, form)
     }
 }
 

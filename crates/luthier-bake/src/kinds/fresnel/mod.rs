@@ -9,6 +9,7 @@ use luthier_lut::{
     Atlas, AtlasLayout, Axis, Comparison, Image, Mapping, RowBase, Scan, SchlickBase, TableKind, TexelFormat,
     WeightBits, balance, incident_cosine, measure_scan,
 };
+use luthier_manifest::{CandidateForm, MeasuredError};
 use luthier_material::{BakeSettings, FresnelMapping};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -67,6 +68,10 @@ impl Kind for Table {
 
     fn candidates(&self, plan: &Plan, _: &Results, colors: bool) -> Option<Found> {
         search::candidates(plan, colors)
+    }
+
+    fn errors(&self, plan: &Plan, _: &Results, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+        search::errors(plan, form)
     }
 
     fn candidates_by_default(&self, plan: &Plan) -> Option<Found> {

@@ -1,7 +1,7 @@
 //! Fresnel rows: plain or over Schlick's form, in every format, mapping and size.
 
 use luthier_lut::{Axis, Mapping, RowBase, SchlickBase, TableKind, TexelFormat};
-use luthier_manifest::{Candidate, MeasuredError};
+use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use luthier_optics::Rgb;
 use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;
@@ -147,6 +147,14 @@ pub(crate) fn price(shape: &RowShape) -> f64 {
 pub(crate) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     let rows = rows(plan);
     of_rows(plan, &truths(&rows).iter().collect::<Vec<_>>(), rows.len(), colors)
+}
+
+/// The errors of the hardest rows in this form, by the numbers of their tiles.
+pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+    let CandidateForm::Table { x, format, base, .. } = form else { return Vec::new() };
+    let shape = RowShape { axis: x.clone(), format: *format, base: *base };
+    let error = |(tile, job): &(usize, &FresnelJob)| (*tile, Truth::new(job).error(&shape, true));
+    rows(plan).par_iter().take(HARDEST).map(error).collect()
 }
 
 /// The affordable candidates for the rows that are served by some of them, and which rows are not.

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_manifest::{CandidateForm, MeasuredError};
 use luthier_material::BakeSettings;
 use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
@@ -48,6 +49,10 @@ impl Kind for Table {
 
     fn candidates(&self, plan: &Plan, _: &Results, _: bool) -> Option<Found> {
         search::candidates(plan)
+    }
+
+    fn errors(&self, plan: &Plan, _: &Results, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+        search::errors(plan, form)
     }
 }
 

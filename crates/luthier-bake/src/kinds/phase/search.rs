@@ -1,6 +1,6 @@
 //! Phase rows of films, and the cosines that they hold.
 
-use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
+use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
@@ -33,14 +33,23 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     }];
     candidates.par_extend(shapes.into_par_iter().map(|(size, format)| {
         let axis = axis("s", "", [0.0, 1.0], size, Mapping::Linear);
-        let error = jobs
-            .iter()
-            .map(|job| PhaseJob { axis: axis.clone(), format, ..(*job).clone() }.tile().error.max_abs_err)
-            .fold(0.0, f64::max);
+        let errors = jobs.iter().map(|job| error(job, &axis, format));
+        let error = errors.reduce(|a, b| a.max(&b)).unwrap_or_default();
         let form = row_form(axis, format, RowBase::Zero);
-        // A swing of 2 either way passes through 0: relative errors are those to its reach.
-        let error = MeasuredError { max_abs: error, max_rel: 0.5 * error, ..MeasuredError::default() };
         Candidate { bytes: form.bytes(jobs.len() as u32), cost: price(format), error, form }
     }));
     Some(Found::new(TableKind::Phase, price(TexelFormat::Rgba16Float), candidates))
+}
+
+/// The errors of rows in this form, by the numbers of their tiles.
+pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
+    let CandidateForm::Table { x, format, .. } = form else { return Vec::new() };
+    let tiles = plan.tiles[TableKind::Phase as usize].tiles.iter().enumerate();
+    tiles.filter_map(|(tile, (_, key))| Some((tile, error(plan.graph.get(*key)?, x, *format)))).collect()
+}
+
+fn error(job: &PhaseJob, axis: &Axis, format: TexelFormat) -> MeasuredError {
+    let error = PhaseJob { axis: axis.clone(), format, ..job.clone() }.tile().error.max_abs_err;
+    // A swing of 2 either way passes through 0: relative errors are those to its reach.
+    MeasuredError { max_abs: error, max_rel: 0.5 * error, ..MeasuredError::default() }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier_bake::{Options, kept};
+use luthier_bake::{Function, Options, kept};
 use luthier_export::{GENERATOR, Store, outline, sha256};
 use luthier_manifest::{Form, Manifest, ShadingModel};
 use luthier_material::Material;
@@ -23,8 +23,8 @@ use crate::store::store;
 /// First family of random numbers of the paths.
 const SEED: u64 = 1;
 
-/// Changes whenever a model, the paths, or what is measured of them gives other errors than before.
-const REVISION: u32 = 1;
+/// The errors of models. The revision changes whenever a model, the paths, or what is measured of them gives other errors than before.
+const REFERENCE: Function = Function { kind: "reference", revision: 1 };
 
 /// Contents of the files that the command line names.
 pub(super) struct Given {
@@ -118,7 +118,7 @@ fn against_reference(subject: &ModelSubject, settings: ModelSettings, store: &dy
         "paths": settings.samples,
         "seed": settings.seed,
     });
-    kept("reference", REVISION, &inputs, store, || judge_shading_models(subject, settings))
+    kept(REFERENCE, &inputs, store, || judge_shading_models(subject, settings))
 }
 
 /// Cost of the shader of a material, from the table that scenes choose by.

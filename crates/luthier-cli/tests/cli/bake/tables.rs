@@ -123,6 +123,29 @@ fn bytes_count_what_ships() {
     workshop.run(&[&limit[..], &["--tables", "fgd"]].concat()).fails(1, &["the budget cannot be met"]);
 }
 
+/// In words for people and in JSON.
+#[test]
+fn a_broken_budget_names_its_material() {
+    let workshop = set();
+    workshop.write("m/bare.toml", workshop.text("m/bare.toml") + "\n[budget]\nmax_abs = 1e-9\n");
+    let line = workshop.text("m/bare.toml").lines().position(|line| line.starts_with("max_abs")).unwrap() + 1;
+    let run = workshop.run(&["bake", "m/bare.toml", "m/coated.toml", "--no-fit", "--json", "--quiet"]).exits(1);
+    let error = run.json()["error"].clone();
+    let place = format!("under max_abs = 1e-9 of m/bare.toml:{line}");
+    let message = error["message"].as_str().unwrap();
+    assert!(
+        message.contains("the budget cannot be met: no fresnel table is good enough for layer 0 of `"),
+        "{message}"
+    );
+    assert!(message.contains(&place) && run.stderr.contains(message), "{message}\n{}", run.stderr);
+    let [diagnostic] = error["diagnostics"].as_array().unwrap().as_slice() else { panic!("{error}") };
+    assert!(message.contains(&format!("({}:", diagnostic["file"].as_str().unwrap())), "{error}");
+    // Alone it is both.
+    let run = workshop.run(&["bake", "m/bare.toml", "--no-fit", "--json", "--quiet"]).exits(1);
+    let diagnostic = &run.json()["error"]["diagnostics"][0];
+    assert_eq!((&diagnostic["file"], &diagnostic["line"]), (&"m/bare.toml".into(), &line.into()));
+}
+
 /// The papers make every kind but those of films that vary under a path, and of lobes, which the other materials have.
 #[test]
 fn the_shipped_materials_make_every_kind() {

@@ -285,3 +285,32 @@ fn parts_are_written_down() {
         assert!(!text.contains("luthier_normal_index") && !text.contains("luthier_lambda"), "{text}");
     }
 }
+
+/// Stacks whose fits would take minutes are refused by `check`, and by `bake` before any job; the limit is in the message.
+#[test]
+fn stacks_that_are_too_deep_to_be_fitted() {
+    let stack = |layers: usize, more: &str| {
+        let coat = |i: usize| {
+            let ior = if i % 2 == 0 { 1.5 } else { 1.3 };
+            format!("\n[[layer]]\ntype = \"dielectric\"\nior = {ior}\nalpha = 0.2\n{}", if i == 0 { more } else { "" })
+        };
+        let base = "\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+        format!("schema = 1\nname = \"deep\"\n{}{base}", (1..layers).map(|i| coat(i - 1)).collect::<String>())
+    };
+    let workshop = Workshop::new();
+    image::GrayImage::from_pixel(1, 1, image::Luma([128])).save(workshop.path("r.png")).unwrap();
+    let mapped = "maps = { roughness = \"r.png\" }\n";
+    for (layers, more, is_fitted) in [(16, mapped, true), (17, mapped, false), (50, mapped, false), (50, "", true)] {
+        workshop.write("deep.toml", stack(layers, more));
+        let check = workshop.run(&["check", "deep.toml"]).exits(i32::from(!is_fitted));
+        if is_fitted {
+            continue;
+        }
+        let words = ["at most 16 layers", &format!("this one has {layers}"), "[bake] model = \"elek\""];
+        check.says(&words);
+        workshop.run(&["bake", "deep.toml", "--cache", "store"]).exits(1).says(&words);
+        assert!(!workshop.path("store/objects").exists(), "nothing was computed");
+        workshop.write("deep.toml", stack(layers, more) + "\n[bake]\nmodel = \"elek\"\n");
+        workshop.run(&["check", "deep.toml"]).exits(0);
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use luthier_workshop::material_texts::{gold, lacquer};
+use luthier_workshop::material_texts::{fine_lacquer, gold, lacquer};
 
 use crate::workshop::Workshop;
 
@@ -99,4 +99,21 @@ fn a_small_store_stays_small() {
     let stats = workshop.run(&["cache", "stats", "--json", "--cache", "store", "--cache-size", "1"]).exits(0).json();
     assert_eq!(stats["limit"], 1 << 20);
     assert!(stats["bytes"].as_u64().unwrap() <= 1 << 20, "{stats}");
+}
+
+/// Oracle: the number of searches that the store has. A row does not depend on the roughness, and so its search is the one that was made.
+#[test]
+fn a_changed_roughness_makes_no_search_anew() {
+    let workshop = Workshop::with(&[("a/lacquer.toml", &fine_lacquer("lacquer")), ("a/gold.toml", &gold("gold"))]);
+    workshop.edit("a/gold.toml", |text| text.replace("fresnel = { size = 64 }\n", ""));
+    let searches = |workshop: &Workshop| {
+        workshop.run(&["bake", "a", "--cache", "store", "--quiet"]).exits(0);
+        kinds(workshop).into_iter().find(|(kind, _)| kind == "search").map_or(0, |(_, entries)| entries)
+    };
+    let before = searches(&workshop);
+    assert!(before > 0);
+    workshop.edit("a/lacquer.toml", |text| text.replace("roughness = 0.4", "roughness = 0.3"));
+    assert_eq!(searches(&workshop), before);
+    workshop.edit("a/lacquer.toml", |text| text.replace("ior = 1.5", "ior = 1.6"));
+    assert!(searches(&workshop) > before, "another index has another row");
 }
