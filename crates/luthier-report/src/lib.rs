@@ -47,6 +47,7 @@ pub use judge::evidence::{
 };
 pub use judge::exceptions::{Cause, Exception, Factor, Part};
 pub use judge::limits::{Asked, FileBudget, Limit, limits};
+pub use judge::memory::{Memory, contents};
 pub use judge::profile::{ANGLE_BINS, AngleProfile, Exceedance};
 pub use judge::report::{
     AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,

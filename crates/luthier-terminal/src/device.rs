@@ -1,5 +1,6 @@
 //! The graphics adapter as the judge sees it.
 
+use luthier_export::sha256;
 use luthier_gpu::{Gpu, Package, Scene};
 use luthier_report::{Device, Form, Pair};
 use serde_json::{Value, json};
@@ -10,6 +11,8 @@ use crate::Outcome;
 #[derive(Debug)]
 pub struct Shaders {
     name: String,
+    /// The adapter, and a hash of the texts of the shaders.
+    identity: String,
     baked: Scene,
     /// None where a model of the bake has no such form.
     full: Option<Scene>,
@@ -24,7 +27,9 @@ impl Shaders {
         let scene = |form| gpu.scene(package, form);
         let has_full = package.manifest.has(Form::Full);
         let full = has_full.then(|| scene(Form::Full)).transpose()?;
-        Ok(Self { name: adapter_label(gpu), baked: scene(Form::Baked)?, full })
+        let texts: Vec<u8> = package.shaders.iter().flat_map(|shader| shader.bytes.iter().copied()).collect();
+        let identity = format!("{} {}", adapter_label(gpu), sha256(&texts));
+        Ok(Self { name: adapter_label(gpu), identity, baked: scene(Form::Baked)?, full })
     }
 
     /// The pipelines of a form, if the bake has it.
@@ -39,6 +44,10 @@ impl Shaders {
 impl Device for Shaders {
     fn name(&self) -> String {
         self.name.clone()
+    }
+
+    fn identity(&self) -> String {
+        self.identity.clone()
     }
 
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {

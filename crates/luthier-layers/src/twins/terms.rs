@@ -112,6 +112,16 @@ impl Exact {
         self.lobes.get_or_init(|| Varied::of(&self.stack, &self.color, self.varying).nominal())
     }
 
+    /// Gives the stack the lobes that it would be fitted, unless it has some already.
+    pub fn take_lobes(&self, lobes: &dyn Fn() -> Lobes) {
+        self.lobes.get_or_init(lobes);
+    }
+
+    /// The stack, its colour, and what its lobes are over: all that decides their fit.
+    pub fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
+        (&self.stack, &self.color, &self.varying)
+    }
+
     fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {
         prepared.get_or_init(|| {
             let energy = ColorEnergy::new(&self.stack, self.color);

@@ -14,7 +14,7 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::judge::report::{Compared, MaterialReport};
+use crate::judge::report::{Compared, Comparison};
 use crate::measure::statistics::{brightest, relative_error};
 use crate::measure::table_terms::TableTerms;
 use crate::{DirectionSet, FLOOR, Pair, TARGET_MAX_REL_ERR, WorstPair};
@@ -261,12 +261,12 @@ pub(crate) struct Factors<'a> {
 
 /// The exception that a comparison is, if some pair misses.
 pub(crate) fn exception(
-    material: &MaterialReport,
-    compared: Compared,
+    material: &str,
+    comparison: &Comparison,
     misses: &[Miss],
     factors: &Factors<'_>,
 ) -> Option<Exception> {
-    let comparison = material.comparison(compared)?;
+    let compared = comparison.compared;
     let mut worst: Option<(DirectionSet, &WorstPair)> = None;
     for (set, statistics) in &comparison.sets {
         if let Some(pair) = &statistics.worst
@@ -290,7 +290,7 @@ pub(crate) fn exception(
     tally.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let statistics = || comparison.sets.iter().map(|(_, s)| s);
     Some(Exception {
-        material: material.name.clone(),
+        material: material.to_owned(),
         compared,
         samples: statistics().map(|s| 3 * s.pairs - s.not_finite).sum(),
         samples_above: statistics().map(|s| s.above_target).sum(),

@@ -4,6 +4,7 @@ pub(crate) mod ball;
 pub(crate) mod evidence;
 pub(crate) mod exceptions;
 pub(crate) mod limits;
+pub(crate) mod memory;
 pub(crate) mod profile;
 pub(crate) mod report;
 
@@ -22,8 +23,11 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
-use crate::judge::exceptions::{Factors, Miss, exception};
+use crate::judge::exceptions::{Exception, Factors, Miss, exception};
+use crate::judge::memory::{Memory, Remembered};
 use crate::judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
 use crate::measure::seen::SeenBy;
 use crate::measure::statistics::{brightest, relative_error};
@@ -41,6 +45,10 @@ const BAKER_MARGIN: f64 = 1.05;
 /// Standard errors by which an estimated table error has to exceed the baker's besides.
 pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
 
+/// The kinds of votes and of judgements of materials in memories.
+const VOTE: &str = "judge-vote";
+const JUDGED: &str = "judged";
+
 /// Settings of a judgement.
 #[derive(Clone)]
 pub struct Settings<'a> {
@@ -51,14 +59,16 @@ pub struct Settings<'a> {
     pub budget: Option<f64>,
     /// Facts that the caller knows about the run: shown and stored as given.
     pub provenance: Vec<(String, String)>,
+    /// Results of earlier judgements: what has not changed since is not judged again.
+    pub memory: Option<&'a dyn Memory>,
     /// Called after every part of the table scan and every set of every material.
     pub progress: Option<&'a dyn Fn(Progress<'_>)>,
 }
 
 impl Default for Settings<'_> {
-    /// 4096 pairs, no budget, no provenance, no progress.
+    /// 4096 pairs, no budget, no provenance, no memory, no progress.
     fn default() -> Self {
-        Self { pairs_per_set: 4096, budget: None, provenance: Vec::new(), progress: None }
+        Self { pairs_per_set: 4096, budget: None, provenance: Vec::new(), memory: None, progress: None }
     }
 }
 
@@ -106,7 +116,6 @@ pub fn judge(
         .zip(&subject.stacks)
         .map(|(material, stack)| References::new(stack, material))
         .collect::<Result<_, _>>()?;
-    let baked: Vec<Exact> = references.iter().map(|r| r.baked().clone()).collect();
     let total = u64::from(scan::STEPS) + (manifest.materials.len() * DirectionSet::ALL.len()) as u64;
     let mut done = 0;
     let mut step = |subject: &str| {
@@ -116,61 +125,44 @@ pub fn judge(
         }
     };
     let mut findings = Vec::new();
-    let tables = scan::scan(subject, &baked, settings.pairs_per_set, &mut || step("tables"), &mut findings)?;
+    let remembered = Remembered::new(settings.memory, subject);
+    let mut scanned = || step("tables");
+    let tables = scan::scan(subject, &references, &remembered, settings.pairs_per_set, &mut scanned, &mut findings)?;
 
+    let bench = Bench { subject, references: &references, remembered: &remembered, device, settings };
     let mut materials = Vec::with_capacity(manifest.materials.len());
     let mut weights = WeightsVote::default();
     for (index, (entry, references)) in manifest.materials.iter().zip(&references).enumerate() {
-        let eight_bit = TableTerms::new(subject, index, Weights::EightBit)?;
-        let exact_weights = TableTerms::new(subject, index, Weights::Exact)?;
-        let layers = &references.layers;
-        record_findings(&entry.name, layers, &entry.layers, &mut findings);
-        let mut gathered = Gathered::new(device.is_some());
-        for set in DirectionSet::ALL {
-            let pairs = set.pairs(settings.pairs_per_set, layers);
-            let baked_reference = &evaluate(&references.twin, references.baked(), &pairs);
-            let tables_8 = evaluate(&references.twin, &eight_bit, &pairs);
-            let tables_exact = evaluate(&references.twin, &exact_weights, &pairs);
-            gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
-            gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
-            // Without tables there is no other colour.
-            let three = entry.model.has(Form::Full).then(|| evaluate(&references.twin, &references.three, &pairs));
-            if let Some(three) = &three {
-                let spectral = match entry.color {
-                    ColorMode::Spectral => baked_reference,
-                    ColorMode::ThreeWavelengths => &evaluate(&references.twin, &references.spectral, &pairs),
-                };
-                gathered.add(Compared::ThreeWavelengths, set, &pairs, three, spectral);
-            }
-            if let Some(device) = device {
-                if let Some(three) = three.as_ref().filter(|_| manifest.has(Form::Full)) {
-                    let found = run(device, Form::Full, index as u32, &pairs)?;
-                    let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
-                    gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(three));
-                }
-                let found = run(device, Form::Baked, index as u32, &pairs)?;
-                gathered.add(Compared::BakedDevice, set, &pairs, &found, baked_reference);
-                weights.add(&found, &tables_8, &tables_exact);
-                gathered.device.push((set, pairs, found, [tables_8, tables_exact]));
-            }
-            step(&entry.name);
+        record_findings(&entry.name, &references.layers, &entry.layers, &mut findings);
+        let inputs = remembered.material(subject, index, device, settings.pairs_per_set);
+        let known: Option<WeightsVote> = remembered.recall(VOTE, &inputs);
+        let gathered = known.is_none().then(|| bench.gather(index)).transpose()?;
+        let vote = known.or_else(|| gathered.as_ref().map(|gathered| gathered.vote)).unwrap_or_default();
+        if gathered.is_some() {
+            remembered.keep(VOTE, &inputs, &vote);
         }
-        materials.push(gathered);
+        weights.merge(vote);
+        materials.push((inputs, gathered));
+        DirectionSet::ALL.iter().for_each(|_| step(&entry.name));
     }
 
     let device_weights = device.map(|_| weights.decide());
     let mut exceptions = Vec::new();
     let mut judged = Vec::with_capacity(materials.len());
-    for (index, mut gathered) in materials.into_iter().enumerate() {
+    for (index, (inputs, gathered)) in materials.into_iter().enumerate() {
         let entry = &manifest.materials[index];
-        if let Some(weights) = device_weights {
-            gathered.split_arithmetic(weights);
-        }
-        for (comparison, (_, seen)) in gathered.comparisons.iter_mut().zip(gathered.seen) {
-            comparison.seen = seen.finish();
-        }
-        gathered.comparisons.sort_by_key(|c| c.compared);
-        let material = MaterialReport {
+        let inputs = json!([inputs, device_weights]);
+        let Judged { comparisons, exceptions: own } = match remembered.recall(JUDGED, &inputs) {
+            Some(judged) => judged,
+            None => {
+                let gathered = gathered.map_or_else(|| bench.gather(index), Ok)?;
+                let judged = bench.judge(index, gathered, device_weights)?;
+                remembered.keep(JUDGED, &inputs, &judged);
+                judged
+            }
+        };
+        exceptions.extend(own);
+        judged.push(MaterialReport {
             name: entry.name.clone(),
             source: entry.source.clone(),
             source_hash: entry.source_hash.clone(),
@@ -178,25 +170,13 @@ pub fn judge(
             model: entry.model,
             color: entry.color,
             layers: entry.layers.iter().map(format::layer).collect(),
-            comparisons: gathered.comparisons,
+            comparisons,
             against_reference: Vec::new(),
             alone: Vec::new(),
             picture: None,
             shape_cost: None,
             choice: None,
-        };
-        let read = TableTerms::new(subject, index, device_weights.unwrap_or(Weights::EightBit))?;
-        for (compared, misses) in gathered.misses {
-            let reference = &references[index];
-            let factors = Factors {
-                twin: &reference.twin,
-                exact: reference.baked(),
-                tables: (compared != Compared::FullDevice).then_some(&read),
-                on_device: device.is_some(),
-            };
-            exceptions.extend(exception(&material, compared, &misses, &factors));
-        }
-        judged.push(material);
+        });
     }
     let materials = judged;
     table_findings(&tables, &mut findings);
@@ -222,6 +202,89 @@ pub fn judge(
         tables,
         materials,
     })
+}
+
+/// What is kept of a material: its comparisons, and what misses the target.
+#[derive(Serialize, Deserialize)]
+struct Judged {
+    comparisons: Vec<Comparison>,
+    exceptions: Vec<Exception>,
+}
+
+/// All that materials are judged with.
+struct Bench<'a> {
+    subject: &'a Subject<'a>,
+    references: &'a [References],
+    remembered: &'a Remembered<'a>,
+    device: Option<&'a dyn Device>,
+    settings: &'a Settings<'a>,
+}
+
+impl Bench<'_> {
+    /// Compares a material over all sets of directions.
+    fn gather(&self, index: usize) -> Result<Gathered, ReportError> {
+        let Self { subject, device, settings, .. } = *self;
+        let (manifest, references) = (subject.manifest, &self.references[index]);
+        let entry = &manifest.materials[index];
+        self.remembered.fit(references, entry);
+        let eight_bit = TableTerms::new(subject, index, Weights::EightBit)?;
+        let exact_weights = TableTerms::new(subject, index, Weights::Exact)?;
+        let mut gathered = Gathered::new(device.is_some());
+        for set in DirectionSet::ALL {
+            let pairs = set.pairs(settings.pairs_per_set, &references.layers);
+            let baked_reference = &evaluate(&references.twin, references.baked(), &pairs);
+            let tables_8 = evaluate(&references.twin, &eight_bit, &pairs);
+            let tables_exact = evaluate(&references.twin, &exact_weights, &pairs);
+            gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
+            gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
+            // Without tables there is no other colour.
+            let three = entry.model.has(Form::Full).then(|| evaluate(&references.twin, &references.three, &pairs));
+            if let Some(three) = &three {
+                let spectral = match entry.color {
+                    ColorMode::Spectral => baked_reference,
+                    ColorMode::ThreeWavelengths => &evaluate(&references.twin, &references.spectral, &pairs),
+                };
+                gathered.add(Compared::ThreeWavelengths, set, &pairs, three, spectral);
+            }
+            if let Some(device) = device {
+                if let Some(three) = three.as_ref().filter(|_| manifest.has(Form::Full)) {
+                    let found = run(device, Form::Full, index as u32, &pairs)?;
+                    let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
+                    gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(three));
+                }
+                let found = run(device, Form::Baked, index as u32, &pairs)?;
+                gathered.add(Compared::BakedDevice, set, &pairs, &found, baked_reference);
+                gathered.vote.add(&found, &tables_8, &tables_exact);
+                gathered.device.push((set, pairs, found, [tables_8, tables_exact]));
+            }
+        }
+        Ok(gathered)
+    }
+
+    /// Judges what was gathered, now that the weights of the device are known.
+    fn judge(&self, index: usize, mut gathered: Gathered, weights: Option<Weights>) -> Result<Judged, ReportError> {
+        if let Some(weights) = weights {
+            gathered.split_arithmetic(weights);
+        }
+        for (comparison, (_, seen)) in gathered.comparisons.iter_mut().zip(gathered.seen) {
+            comparison.seen = seen.finish();
+        }
+        gathered.comparisons.sort_by_key(|c| c.compared);
+        let (reference, name) = (&self.references[index], &self.subject.manifest.materials[index].name);
+        let read = TableTerms::new(self.subject, index, weights.unwrap_or(Weights::EightBit))?;
+        let mut exceptions = Vec::new();
+        for (compared, misses) in gathered.misses {
+            let factors = Factors {
+                twin: &reference.twin,
+                exact: reference.baked(),
+                tables: (compared != Compared::FullDevice).then_some(&read),
+                on_device: self.device.is_some(),
+            };
+            let comparison = gathered.comparisons.iter().find(|comparison| comparison.compared == compared);
+            exceptions.extend(comparison.and_then(|comparison| exception(name, comparison, &misses, &factors)));
+        }
+        Ok(Judged { comparisons: gathered.comparisons, exceptions })
+    }
 }
 
 /// Names of the models in use.
@@ -266,6 +329,11 @@ impl References {
             level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
             color: material.color,
         })
+    }
+
+    /// All that decides the fit of lobes.
+    pub(crate) fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
+        self.baked().fitted()
     }
 
     /// The exact terms of the form without tables.
@@ -323,11 +391,13 @@ struct Gathered {
     seen: Vec<(Compared, SeenBy)>,
     /// Pairs that miss the target, of the comparisons that are judged.
     misses: Vec<(Compared, Vec<Miss>)>,
+    vote: WeightsVote,
 }
 
 impl Gathered {
     fn new(with_device: bool) -> Self {
-        Self { with_device, comparisons: Vec::new(), device: Vec::new(), seen: Vec::new(), misses: Vec::new() }
+        let (seen, misses) = (Vec::new(), Vec::new());
+        Self { with_device, comparisons: Vec::new(), device: Vec::new(), seen, misses, vote: WeightsVote::default() }
     }
 
     fn add(&mut self, compared: Compared, set: DirectionSet, pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) {
@@ -369,7 +439,7 @@ impl Gathered {
 }
 
 /// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
-#[derive(Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct WeightsVote {
     eight_bit: f64,
     exact: f64,
@@ -386,6 +456,12 @@ impl WeightsVote {
         };
         self.eight_bit += sum(eight_bit);
         self.exact += sum(exact);
+    }
+
+    /// Adds the sums of another.
+    fn merge(&mut self, other: Self) {
+        self.eight_bit += other.eight_bit;
+        self.exact += other.exact;
     }
 
     pub(crate) fn decide(&self) -> Weights {

@@ -9,6 +9,9 @@ pub trait Device {
     /// Name of the adapter, as the report shows it.
     fn name(&self) -> String;
 
+    /// All that decides its values but the numbers and texels of a material: the adapter, its driver, the text of the shaders. Results are kept under it.
+    fn identity(&self) -> String;
+
     /// `f cos_theta_i`, linear RGB, of a material for pairs `(wi, wo)` of unit directions: one value per pair, in
     /// order.
     ///

@@ -231,6 +231,10 @@ impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S>
         "Fake & Sons <f64>".to_owned()
     }
 
+    fn identity(&self) -> String {
+        self.name()
+    }
+
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
         let stack = &self.subject.stacks[material as usize];
         let entry = &self.subject.manifest.materials[material as usize];

@@ -1,6 +1,7 @@
 //! `report`: a bake judged, as JSON, as Markdown and as a page.
 
 mod evidence;
+mod memory;
 #[cfg(feature = "gpu")]
 mod pictures;
 
@@ -15,6 +16,7 @@ use luthier_terminal::{Bar, Failure, Outcome, print};
 
 use crate::cli::ReportOptions;
 use crate::interrupt::whole;
+use crate::store::store;
 
 /// Judges a bake and writes the report beside it.
 pub(crate) fn run(options: &ReportOptions) -> Outcome {
@@ -30,7 +32,9 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let stacks = materials.iter().map(|m| m.reflecting_stack().into_owned()).collect();
     let subject = Subject { manifest, textures, stacks };
     let bar = Bar::new("judging");
+    let judgements = memory::Judgements(store()?);
     let settings = Settings {
+        memory: Some(&judgements),
         pairs_per_set: options.pairs,
         budget: options.max_error,
         provenance: provenance(&folder, options, &given),
@@ -41,7 +45,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     drop(bar);
 
     evidence::add(&mut report, &given, options, manifest, &materials)?;
-    let pictures = pictures(&mut report, device.as_ref(), options)?;
+    let pictures = pictures(&mut report, device.as_ref(), &subject, options)?;
     let budgets: Vec<FileBudget> =
         (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: m.budget }).collect();
     report.limits = limits(&report, &budgets, &asked(options));
@@ -175,6 +179,10 @@ impl Device for NoShaders {
         match *self {}
     }
 
+    fn identity(&self) -> String {
+        match *self {}
+    }
+
     fn evaluate(&self, _: luthier_report::Form, _: u32, _: &[luthier_report::Pair]) -> Result<Vec<[f32; 3]>, String> {
         match *self {}
     }
@@ -190,7 +198,12 @@ fn device(_: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn pictures(_: &mut Report, _: Option<&Runner>, _: &ReportOptions) -> Outcome<Vec<Vec<luthier_report::Exhibit>>> {
+fn pictures(
+    _: &mut Report,
+    _: Option<&Runner>,
+    _: &Subject<'_>,
+    _: &ReportOptions,
+) -> Outcome<Vec<Vec<luthier_report::Exhibit>>> {
     Ok(Vec::new())
 }
 

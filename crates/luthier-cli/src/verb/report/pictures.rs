@@ -1,14 +1,24 @@
 //! Pictures of every material with both shaders.
 
+use luthier_bake::Function;
 use luthier_gpu::{RenderSettings, Scene, Shape, ToneMapping};
 use luthier_lut::Image;
 use luthier_report::{
-    Exhibit, Form, PictureErrors, Report, brightened_difference, compare_pictures, picture_color_difference,
+    Exhibit, Form, MaterialReport, PictureErrors, Report, Subject, brightened_difference, compare_pictures, contents,
+    picture_color_difference,
 };
 use luthier_terminal::{Bar, Failure, Outcome, Shaders};
 use luthier_texture::png;
+use serde_json::json;
 
 use crate::cli::ReportOptions;
+use crate::store::store;
+
+/// The pictures of a material, kept. The revision changes whenever the renderer draws other ones.
+const PICTURES: Function = Function { kind: "picture", revision: 1 };
+
+/// The errors of the pictures, and the pictures with their captions.
+type Drawn = (Option<PictureErrors>, Vec<(String, Vec<u8>)>);
 
 /// Directions of the environment for each lobe and sample: the form without tables has no albedo to weigh blurred maps with.
 const ENVIRONMENT_SAMPLES: u32 = 16;
@@ -21,10 +31,12 @@ const SAMPLES: u32 = 2;
 pub(super) fn pictures(
     report: &mut Report,
     shaders: Option<&Shaders>,
+    subject: &Subject<'_>,
     options: &ReportOptions,
 ) -> Outcome<Vec<Vec<Exhibit>>> {
     let shaders = shaders.filter(|_| options.picture_size > 0);
     let Some(shaders) = shaders else { return Ok(Vec::new()) };
+    let (contents, store) = (contents(subject, shaders), store()?);
     let Some(baked) = shaders.scene(Form::Baked) else { return Ok(Vec::new()) };
     let full = shaders.scene(Form::Full);
     let settings = RenderSettings {
@@ -37,12 +49,23 @@ pub(super) fn pictures(
     let bar = Bar::new("pictures");
     let count = report.materials.len() as u64;
     let mut out = Vec::new();
-    for (number, material) in (0..).zip(&mut report.materials) {
+    for ((number, material), content) in (0_u32..).zip(&mut report.materials).zip(contents) {
+        bar.set(u64::from(number) + 1, count);
+        let inputs = json!({ "content": content, "maps": subject.manifest.materials[number as usize].maps, "size": settings.size });
+        if let Some((errors, pngs)) = PICTURES.recall::<Drawn>(&inputs, store) {
+            material.picture = errors;
+            out.push(pngs.into_iter().map(|(caption, png)| Exhibit { caption, png }).collect());
+            continue;
+        }
+        let mut keep = |material: &MaterialReport, exhibits: Vec<Exhibit>| {
+            let pngs = exhibits.iter().map(|exhibit| (exhibit.caption.clone(), exhibit.png.clone())).collect();
+            PICTURES.keep::<Drawn>(&inputs, store, (material.picture.clone(), pngs));
+            out.push(exhibits);
+        };
         let render = |scene: &Scene| scene.render(&[number], &settings);
         let baked = render(baked)?;
-        bar.set(u64::from(number) + 1, count);
         let Some(full) = full else {
-            out.push(vec![exhibit("baked", baked, tone)?]);
+            keep(material, vec![exhibit("baked", baked, tone)?]);
             continue;
         };
         let full = render(full)?;
@@ -59,12 +82,13 @@ pub(super) fn pictures(
             delta_e_max,
             gain,
         });
-        out.push(vec![
+        let exhibits = vec![
             exhibit("full", full, tone)?,
             exhibit("baked", baked, tone)?,
             exhibit(&format!("difference × {gain}"), apart, ToneMapping::None)?,
             exhibit(&format!("FLIP, mean {:.4}", compared.flip_mean), compared.flip, ToneMapping::None)?,
-        ]);
+        ];
+        keep(material, exhibits);
     }
     Ok(out)
 }

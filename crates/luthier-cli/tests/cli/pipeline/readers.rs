@@ -81,3 +81,39 @@ fn models_are_compared_with_their_reference_once() {
     printed(&workshop, &["report", "--no-device", "--pairs", "64", "--reference=17"]);
     assert_eq!(count(&workshop, "reference"), 2);
 }
+
+/// Oracle: the report that is made without a store; counted are the judgements that the store has.
+#[test]
+fn what_has_not_changed_is_not_judged_again() {
+    let workshop = Workshop::with(&[("a/gold.toml", &gold("gold")), ("a/lacquer.toml", &lacquer("lacquer"))]);
+    let report = |more: &[&str]| {
+        workshop.run(&[&["report", "--no-device"], more].concat()).exits(0);
+        workshop.text("out/report/report.json")
+    };
+    let bake = || workshop.run(&["bake", "a", "--cache", "store", "--quiet"]).exits(0);
+    let counts = || ["judged", "judge-tile"].map(|kind| count(&workshop, kind));
+    bake();
+    let alone = report(&["--pairs", "64", "--no-cache"]);
+    assert_eq!(report(&["--pairs", "64", "--cache", "store"]), alone);
+    let [materials, tiles] = counts();
+    assert_eq!(materials, 2);
+    assert_eq!(report(&["--pairs", "64", "--cache", "store"]), alone);
+    assert_eq!(counts(), [materials, tiles]);
+    // One material of two is another: its tile of albedos has the roughness on an axis, and stays but for its reader.
+    workshop.edit("a/gold.toml", |text| text.replace("roughness = 0.5", "roughness = 0.4"));
+    bake();
+    let changed = report(&["--pairs", "64", "--cache", "store"]);
+    let [more, more_tiles] = counts();
+    assert_eq!(more, materials + 1);
+    let read = |json: &str| -> u64 {
+        let report: serde_json::Value = serde_json::from_str(json).unwrap();
+        let tiles = report["tables"].as_array().unwrap().iter().flat_map(|table| table["tiles"].as_array().unwrap());
+        tiles.filter(|tile| tile["users"].as_array().unwrap().iter().any(|user| user == "gold/0")).count() as u64
+    };
+    assert_eq!(more_tiles, tiles + read(&changed));
+    assert_eq!(report(&["--pairs", "64", "--no-cache"]), changed);
+    // Other pairs are another judgement.
+    let settings = report(&["--pairs", "65", "--cache", "store"]);
+    assert_eq!(counts()[0], more + 2);
+    assert_ne!(settings, changed);
+}

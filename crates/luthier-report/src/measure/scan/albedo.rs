@@ -46,17 +46,18 @@ pub(crate) fn points(pairs_per_set: u32) -> u32 {
     (pairs_per_set / PAIRS_PER_POINT).clamp(POINTS_MIN, POINTS_MAX)
 }
 
-/// Every tile at points of its own domain against the directional albedo of the interfaces that read it, wavelength by
+/// Every tile that is wanted at points of its own domain against the directional albedo of the interfaces that read it, wavelength by
 /// wavelength: the first bounce by quadrature, later bounces and crossed light by walks with seeds of the judge's own.
 pub(super) fn scan(
     table: &Table<'_>,
     subject: &Subject<'_>,
+    is_wanted: &dyn Fn(u32) -> bool,
     count: u32,
     step: &mut dyn FnMut(),
 ) -> Result<Vec<Option<Measured>>, ReportError> {
     let angle = AngleAxis::of(table)?;
     let layout = &table.entry.layout;
-    let readers = readers(table, subject);
+    let readers = readers(table, subject, is_wanted);
     let mut measured: Vec<Option<Measured>> = (0..layout.tiles).map(|_| None).collect();
     for part in 0..STEPS {
         let points: Vec<u32> = (0..count).filter(|n| n * STEPS / count == part).collect();
@@ -127,9 +128,9 @@ struct Crossing {
     curve: ReflectanceCurves,
 }
 
-fn readers(table: &Table<'_>, subject: &Subject<'_>) -> Vec<Reader> {
+fn readers(table: &Table<'_>, subject: &Subject<'_>, is_wanted: &dyn Fn(u32) -> bool) -> Vec<Reader> {
     let mut readers: Vec<Reader> = Vec::new();
-    for tile in 0..table.entry.layout.tiles {
+    for tile in (0..table.entry.layout.tiles).filter(|tile| is_wanted(*tile)) {
         for (m, l) in users(subject, table.entry.kind, tile) {
             let stack = &subject.stacks[m];
             let (Some(layer), Some(interface)) = (stack.layers.get(l), Interface::of(stack, l)) else { continue };

@@ -23,7 +23,7 @@ pub(super) fn scan(
     tile: u32,
     users: &[User],
     subject: &Subject<'_>,
-    exact: &[Exact],
+    exact: &[&Exact],
 ) -> Result<Measured, ReportError> {
     let axis = &table.entry.layout.x;
     let angle = AngleAxis::of(table)?;

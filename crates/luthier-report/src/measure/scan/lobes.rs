@@ -18,7 +18,7 @@ pub(super) fn scan(
     tile: u32,
     users: &[User],
     subject: &Subject<'_>,
-    exact: &[Exact],
+    exact: &[&Exact],
 ) -> Option<Measured> {
     let x = &table.entry.layout.x;
     let mut scan = Scan::default();

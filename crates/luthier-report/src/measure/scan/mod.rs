@@ -14,29 +14,45 @@ use std::ops::Range;
 use luthier_layers::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
 use luthier_manifest::MaterialEntry;
+use serde::{Deserialize, Serialize};
 
+use crate::judge::References;
+use crate::judge::memory::Remembered;
 use crate::judge::report::{Curves, TableReport, TileReport};
 use crate::measure::statistics::summarise;
 use crate::{ReportError, Subject};
 
 pub(crate) use albedo::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, STEPS, points};
 
+/// The kind of scans in memories.
+const TILE: &str = "judge-tile";
+
 /// 1/phi and 1/phi^2 of the plastic number: steps of the two-dimensional additive recurrence (Roberts 2018).
 const R2: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_2];
 
-/// Reports every table of the subject; `exact[m]` are the exact terms that the tables of material `m` stand for. `step` is
-/// called [`STEPS`] times in all.
+/// Reports every table of the subject; `references[m]` has the exact terms that the tables of material `m` stand for. Tiles that were scanned before, for the same
+/// readers, are not scanned again. `step` is called [`STEPS`] times in all.
 pub(crate) fn scan(
     subject: &Subject<'_>,
-    exact: &[Exact],
+    references: &[References],
+    remembered: &Remembered<'_>,
     pairs_per_set: u32,
     step: &mut dyn FnMut(),
     findings: &mut Vec<String>,
 ) -> Result<Vec<TableReport>, ReportError> {
+    let exact: Vec<&Exact> = references.iter().map(References::baked).collect();
+    let exact = exact.as_slice();
+    let inputs = |kind, tile| remembered.tile(subject, kind, tile, pairs_per_set);
+    let mut known: Vec<Vec<Option<Found>>> = Vec::with_capacity(TableKind::ALL.len());
+    for kind in TableKind::ALL {
+        let tiles = subject.table(kind)?.map_or(0, |table| table.entry.layout.tiles);
+        known.push((0..tiles).map(|tile| remembered.recall(TILE, &inputs(kind, tile))).collect());
+    }
     let mut reports = Vec::new();
     let mut albedo = None;
     if let Some(table) = subject.table(TableKind::Fgd)? {
-        albedo = Some(albedo::scan(&table, subject, points(pairs_per_set), step)?);
+        let is_wanted = |tile: u32| known[TableKind::Fgd as usize][tile as usize].is_none();
+        albedo = Some(albedo::scan(&table, subject, &is_wanted, points(pairs_per_set), step)?);
     } else {
         (0..STEPS).for_each(|_| step());
     }
@@ -46,7 +62,16 @@ pub(crate) fn scan(
         let mut tiles = Vec::new();
         for (number, tile) in (0..entry.layout.tiles).zip(&entry.tiles) {
             let users = users(subject, kind, number);
+            let known = known[kind as usize][number as usize].take();
+            if known.is_none() && kind == TableKind::Lobes {
+                users.iter().for_each(|(m, _)| remembered.fit(&references[*m], &subject.manifest.materials[*m]));
+            }
             let measured = match kind {
+                TableKind::Thickness => {
+                    findings.extend(thickness::doubts(&table, number, &users, subject));
+                    None
+                }
+                _ if known.is_some() => None,
                 TableKind::Fresnel => Some(fresnel::scan(&table, number, &users, subject, exact)?),
                 TableKind::Distribution => distribution::scan(&table, number, &users, subject)?,
                 TableKind::Fgd => albedo.as_mut().and_then(|tiles| tiles[number as usize].take()),
@@ -54,21 +79,19 @@ pub(crate) fn scan(
                 TableKind::Escape => escape::scan(&table, number, &users, subject),
                 TableKind::Film => film::scan(&table, number, &users, subject),
                 TableKind::Lobes => lobes::scan(&table, number, &users, subject, exact),
-                TableKind::Thickness => {
-                    findings.extend(thickness::doubts(&table, number, &users, subject));
-                    None
-                }
             };
-            let Measured { scan, curves, uncertainty } = measured.unwrap_or_default();
-            let not_finite = scan.not_finite;
-            let judge = scan.stats();
+            let Found { judge, not_finite, curves, uncertainty } = known.unwrap_or_else(|| {
+                let found = Found::from(measured.unwrap_or_default());
+                remembered.keep(TILE, &inputs(kind, number), &found);
+                found
+            });
             tiles.push(TileReport {
                 name: tile.name.clone(),
                 model: tile.model.clone(),
                 users: names(subject, kind, number, &users),
                 baker: tile.error.clone(),
                 aim: tile.aim,
-                uncertainty: uncertainty.filter(|_| judge.is_some()),
+                uncertainty,
                 judge,
                 not_finite,
                 curves,
@@ -92,13 +115,13 @@ type User = (usize, usize);
 
 /// The tiles from its own on that the nominal surface of a layer reads: lobes of an anisotropic stack are over the azimuth, those under a film that
 /// varies have the nominal thickness in the middle.
-pub(super) fn run(material: &MaterialEntry, kind: TableKind) -> Range<u32> {
+pub(crate) fn run(material: &MaterialEntry, kind: TableKind) -> Range<u32> {
     let lobes = material.constants.lobes.filter(|_| kind == TableKind::Lobes);
     let nominal = lobes.and_then(|lobes| lobes.varying).map_or(0, |varying| varying.nominal() as u32);
     nominal..nominal + lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles)
 }
 
-fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
+pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
         let run = run(material, kind);
@@ -130,6 +153,23 @@ struct Measured {
     curves: Curves,
     /// Standard error of the reference at the worst point, when the reference is an estimate.
     uncertainty: Option<f64>,
+}
+
+/// The result of the scan of a tile, as it is reported and kept.
+#[derive(Serialize, Deserialize)]
+struct Found {
+    judge: Option<ErrorStats>,
+    not_finite: u64,
+    curves: Curves,
+    uncertainty: Option<f64>,
+}
+
+impl From<Measured> for Found {
+    fn from(Measured { scan, curves, uncertainty }: Measured) -> Self {
+        let not_finite = scan.not_finite;
+        let judge = scan.stats();
+        Self { uncertainty: uncertainty.filter(|_| judge.is_some()), judge, not_finite, curves }
+    }
 }
 
 #[derive(Default)]

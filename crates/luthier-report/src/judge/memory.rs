@@ -1,0 +1,179 @@
+//! Results of earlier judgements, by the content of what was judged: texels, records and stacks, whatever their names and numbers in a bake.
+
+use std::fmt::Write as _;
+
+use luthier_layers::lobes::{Lobes, Varied};
+use luthier_lut::TableKind;
+use luthier_manifest::{LayerRecord, MaterialEntry, Tiles};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use crate::judge::References;
+use crate::measure::scan::{run, users};
+use crate::{Device, Subject};
+
+/// Where the results of earlier judgements are. It may forget at any time.
+pub trait Memory: Sync {
+    /// The result of a kind for these inputs.
+    fn recall(&self, kind: &'static str, inputs: &Value) -> Option<String>;
+
+    /// Keeps a result.
+    fn keep(&self, kind: &'static str, inputs: &Value, result: String);
+}
+
+/// All that decides what a device shows of each material: its shaders, the record, the stack, and the texels of the tiles that it reads.
+pub fn contents(subject: &Subject<'_>, device: &dyn Device) -> Vec<Value> {
+    let hashed = Remembered { memory: None, tiles: hashes(subject) };
+    let materials = 0..subject.manifest.materials.len();
+    materials.map(|number| hashed.inputs(subject, number, Some(device), None)).collect()
+}
+
+/// Hashes of all tiles.
+fn hashes(subject: &Subject<'_>) -> Vec<(TableKind, Vec<String>)> {
+    let of = |kind| {
+        let table = subject.table(kind).ok().flatten()?;
+        let (layout, texels) = (&table.entry.layout, table.texels);
+        let axes =
+            json!([layout.x, layout.y, layout.apron, layout.base, table.entry.format, texels.channels]).to_string();
+        let hash = |tile: u32| {
+            let ([x, y], [width, height]) = (layout.origin(tile), layout.tile_size());
+            let mut hash = Sha256::new_with_prefix(&axes);
+            for (row, column) in (y..y + height).flat_map(|row| (x..x + width).map(move |column| (row, column))) {
+                texels.texel(column, row).iter().for_each(|value| hash.update(value.to_bits().to_le_bytes()));
+            }
+            hex(&hash.finalize())
+        };
+        Some((kind, (0..layout.tiles).map(hash).collect()))
+    };
+    subject.manifest.tables.iter().filter_map(|table| of(table.kind)).collect()
+}
+
+/// The memory of a judgement, with the hashes of all tiles.
+pub(crate) struct Remembered<'a> {
+    memory: Option<&'a dyn Memory>,
+    tiles: Vec<(TableKind, Vec<String>)>,
+}
+
+impl<'a> Remembered<'a> {
+    /// Tiles are hashed where there is a memory. The tables of the subject have been checked.
+    pub(crate) fn new(memory: Option<&'a dyn Memory>, subject: &Subject<'_>) -> Self {
+        Self { memory, tiles: memory.map(|_| hashes(subject)).unwrap_or_default() }
+    }
+
+    /// The value of a kind for these inputs.
+    pub(crate) fn recall<T: DeserializeOwned>(&self, kind: &'static str, inputs: &Value) -> Option<T> {
+        serde_json::from_str(&self.memory?.recall(kind, inputs)?).ok()
+    }
+
+    /// Keeps a value: what JSON has no word for, as numbers that are not finite, is judged again.
+    pub(crate) fn keep<T: Serialize>(&self, kind: &'static str, inputs: &Value, value: &T) {
+        if let (Some(memory), Ok(text)) = (self.memory, serde_json::to_string(value)) {
+            memory.keep(kind, inputs, text);
+        }
+    }
+
+    /// Gives exact terms their lobes, if the model has any: those that were fitted to this stack before, or such as are fitted now.
+    pub(crate) fn fit(&self, references: &References, entry: &MaterialEntry) {
+        if self.memory.is_none() || !entry.shows_lobes() {
+            return;
+        }
+        let (stack, color, varying) = references.fitted();
+        let inputs = json!({ "stack": stack, "color": format!("{color:?}"), "varying": format!("{varying:?}") });
+        references.baked().take_lobes(&|| {
+            self.recall("judge-fit", &inputs).unwrap_or_else(|| {
+                let lobes: Lobes = Varied::of(stack, color, *varying).nominal();
+                self.keep("judge-fit", &inputs, &lobes);
+                lobes
+            })
+        });
+    }
+
+    /// All that decides the comparisons of a material.
+    pub(crate) fn material(
+        &self,
+        subject: &Subject<'_>,
+        number: usize,
+        device: Option<&dyn Device>,
+        pairs_per_set: u32,
+    ) -> Value {
+        if self.memory.is_none() { Value::Null } else { self.inputs(subject, number, device, Some(pairs_per_set)) }
+    }
+
+    fn inputs(
+        &self,
+        subject: &Subject<'_>,
+        number: usize,
+        device: Option<&dyn Device>,
+        pairs_per_set: Option<u32>,
+    ) -> Value {
+        let entry = &subject.manifest.materials[number];
+        // Where tiles lie decides the last digits of a device, and of nothing else.
+        let on_device = device.map(|device| {
+            let layouts: Vec<_> = subject.manifest.tables.iter().map(|table| &table.layout).collect();
+            json!([device.identity(), layouts, entry.layers])
+        });
+        json!({
+            "subject": self.content(subject, number),
+            "pairs": pairs_per_set,
+            "device": on_device,
+        })
+    }
+
+    /// All that decides the scan of a tile: its texels, and the layers that read it.
+    pub(crate) fn tile(&self, subject: &Subject<'_>, kind: TableKind, tile: u32, pairs_per_set: u32) -> Value {
+        if self.memory.is_none() {
+            return Value::Null;
+        }
+        let user = |(number, layer): (usize, usize)| {
+            json!([nameless(&subject.manifest.materials[number]), subject.stacks[number], layer])
+        };
+        let users: Vec<Value> = users(subject, kind, tile).into_iter().map(user).collect();
+        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users, "pairs": pairs_per_set })
+    }
+
+    /// A material by its content: its record, its stack, and the texels of the tiles that it reads.
+    fn content(&self, subject: &Subject<'_>, number: usize) -> Value {
+        let entry = &subject.manifest.materials[number];
+        let varying = entry.constants.lobes.and_then(|lobes| lobes.varying);
+        let rows = run(entry, TableKind::Lobes).end.max(varying.map_or(1, |varying| varying.tiles));
+        let tiles = |record: &LayerRecord| {
+            let of = |kind: TableKind| {
+                let first = record.tiles[kind]?;
+                let count = if kind == TableKind::Lobes { rows } else { 1 };
+                Some((first..first + count).map(|tile| self.hash(kind, tile)).collect::<Vec<_>>())
+            };
+            TableKind::ALL.map(of)
+        };
+        json!({
+            "name": entry.name,
+            "entry": nameless(entry),
+            "stack": subject.stacks[number],
+            "tiles": entry.layers.iter().map(tiles).collect::<Vec<_>>(),
+        })
+    }
+
+    fn hash(&self, kind: TableKind, tile: u32) -> &str {
+        let tiles = self.tiles.iter().find(|(known, _)| *known == kind).map_or(&[][..], |(_, tiles)| tiles);
+        tiles.get(tile as usize).map_or("", String::as_str)
+    }
+}
+
+/// A record without its names and the numbers of its tiles.
+fn nameless(entry: &MaterialEntry) -> MaterialEntry {
+    let mut entry = entry.clone();
+    for text in [&mut entry.name, &mut entry.source, &mut entry.source_hash] {
+        text.clear();
+    }
+    let bare = entry.constants.patina.as_mut().map(|patina| &mut patina.bare);
+    entry.layers.iter_mut().chain(bare).for_each(|record| record.tiles = Tiles::default());
+    entry
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
