@@ -1,12 +1,12 @@
 //! The model's terms as a shader reads them: from texels.
 
 use glam::DVec3;
-use luthier_layers::lobes::{Axes, BaseLight, Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
-use luthier_manifest::{BaseRecord, LayerRecord, LobesRecord, MaterialEntry};
+use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
@@ -44,9 +44,9 @@ impl Table<'_> {
 
     /// A sampled row of lobes.
     pub(crate) fn row(&self, tile: u32, cos_theta: f64, weights: Weights) -> Row {
-        let parts = self.entry.layout.y.as_ref().map_or(1, |y| y.size);
-        let part = |part: u32| self.read(tile, [cos_theta, f64::from(part)], weights);
-        Row::of_parts(&(0..parts).map(part).collect::<Vec<_>>())
+        let (first, parts) = self.entry.layout.y.as_ref().map_or((0.0, 1), |y| (y.min, y.size));
+        let part = |part: u32| self.read(tile, [cos_theta, first + f64::from(part)], weights);
+        Row::of_parts(&(0..parts).map(part).collect::<Vec<_>>(), first < 0.0)
     }
 }
 
@@ -259,8 +259,9 @@ impl ShaderTerms for TableTerms<'_> {
         };
         let axis = ViewAxis::new(2, critical);
         let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
-        let base = lobes.base.map(|BaseRecord { albedo, share, internal }| BaseLight { albedo, share, internal });
-        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes, base };
+        let painted = |PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() };
+        let (wide, base) = (Wide::new(lobes.falloff, axis), lobes.painted.map(painted));
+        let frame = Frame { index: lobes.index, wide, axes, base };
         let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
         let row = match (axes, lobes.varying) {
             (Some(axes), _) => axes.row(wo, |number| row(tile + number as u32)),
