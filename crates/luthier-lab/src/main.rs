@@ -14,6 +14,7 @@ mod places;
 mod shapes;
 mod simulation;
 mod stability;
+mod textured;
 mod throughput;
 mod varying;
 
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Verb::Grammar(options) => grammar::run(options),
         Verb::Parity(options) => parity::run(options),
         Verb::Places(options) => places::run(options),
+        Verb::Textured(options) => textured::run(options),
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),

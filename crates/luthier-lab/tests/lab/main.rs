@@ -9,4 +9,5 @@ mod lobes;
 mod parity;
 mod simulation;
 mod stability;
+mod textured;
 mod workshop;
