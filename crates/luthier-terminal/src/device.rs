@@ -1,7 +1,7 @@
 //! The graphics adapter as the judge sees it.
 
-use luthier_gpu::{Gpu, Package, Scene};
-use luthier_report::{Device, Form, Pair};
+use luthier_gpu::{Gpu, Map, Package, PlaceValues, Scene};
+use luthier_report::{Device, Form, Pair, SurfaceMap};
 use serde_json::{Value, json};
 
 use crate::Outcome;
@@ -45,6 +45,19 @@ impl Device for Shaders {
         let scene = self.scene(form).ok_or_else(|| format!("the bake has no `{form}` shader"))?;
         scene.evaluate(material, pairs).map_err(|source| source.to_string())
     }
+
+    fn evaluate_at(&self, form: Form, material: u32, spots: &[(PlaceValues, Pair)]) -> Result<Vec<[f32; 3]>, String> {
+        let scene = self.scene(form).ok_or_else(|| format!("the bake has no `{form}` shader"))?;
+        let spots: Vec<_> = spots.iter().map(|(place, (wi, wo))| (place.clone(), *wi, *wo)).collect();
+        scene.evaluate_at(material, &spots).map_err(|source| source.to_string())
+    }
+}
+
+/// The maps of a package, for the judge.
+pub fn surface_maps(package: &Package) -> Vec<SurfaceMap> {
+    let map =
+        |map: &Map| SurfaceMap { material: map.material, slot: map.slot, layer: map.layer, image: map.image.clone() };
+    package.maps.iter().map(map).collect()
 }
 
 /// Name, interface and driver of an adapter, as pages have them.

@@ -549,6 +549,9 @@ Effects of the file count at the place of --uv and --distance: flakes and patina
 what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Of a surface file, the material at that place is evaluated, with the normal there. Maps of single layers, of albedo, base colour and metal count there, too; those of the whole surface (normal, roughness, thickness of the first slab) do not: the options on textures \
 say what they hold.
 
+The model lobes is fitted anew, to the stack at the place. --out FOLDER reads the tables that a bake ships instead, as the shader reads them at the place, of any \
+model that has a shader.
+
 Estimates come with their standard error. It is `not-settled`, in JSON null beside `settled` false, where rare paths carry the light and too \
 few of them were met to know it; more --samples settle it.
 
@@ -567,6 +570,7 @@ Examples:
   luthier eval materials/car-paint.toml --model elek --albedo
   luthier eval materials/car-paint.toml --model elek --albedo --angles 0,60 --normal 10,0
   luthier eval materials/copper-patina.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval materials/varnished-brass.toml --model lobes --out out --wi 30,0 --wo 45,180
   luthier eval materials/surfaces/sunstone.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
   luthier eval film.toml --polarised --angles 0,60 --wavelength 550
   luthier eval materials/car-paint.toml --model weidlich-wilkie --furnace
@@ -606,6 +610,10 @@ pub(crate) struct EvalOptions {
     /// under films
     #[arg(long, conflicts_with = "model")]
     pub(crate) polarised: bool,
+    /// Folder of a bake whose tables to read, as its shader reads them, in place of exact terms: the model is that of the material in the
+    /// bake, and colours are those of its tables
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["against_angle", "rgb", "wavelength", "three_wavelengths"])]
+    pub(crate) out: Option<PathBuf>,
     /// Angles from the normal instead of 0 to 85 degrees in steps of 5
     #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = angle, requires = "against_angle")]
     pub(crate) angles: Vec<f64>,

@@ -17,7 +17,7 @@ fn pages() -> Vec<(&'static str, String)> {
         value.map(|v| v * noise)
     });
     let provenance = vec![("commit".to_owned(), "<unknown> & \"quoted\"".to_owned())];
-    let settings = Settings { pairs_per_set: 1000, budget: Some(1e-3), provenance, progress: None };
+    let settings = Settings { pairs_per_set: 1000, budget: Some(1e-3), provenance, ..Settings::default() };
     let broken = bake.device(|_, _, n, value| if n == 3 { [f32::NAN; 3] } else { value });
     let run = |device, settings: &Settings<'_>| page(judge(&bake.subject(), device, settings).unwrap());
     vec![

@@ -118,7 +118,7 @@ fn reports_are_of_the_documented_shape() {
             pairs_per_set: 200,
             budget: device.map(|_| 1e-2),
             provenance: vec![("a".to_owned(), "b".to_owned())],
-            progress: None,
+            ..Settings::default()
         };
         let mut report = judge(&bake.subject(), device, &settings).unwrap();
         crate::page::filled(&mut report);
