@@ -9,4 +9,6 @@ mod pipes;
 mod schema;
 mod shared_store;
 mod sources;
+#[cfg(unix)]
+mod suite;
 mod table;
