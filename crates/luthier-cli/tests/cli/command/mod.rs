@@ -5,6 +5,8 @@ mod failures;
 mod help;
 mod kinds;
 mod manual;
+#[cfg(unix)]
+mod nightly;
 mod pipes;
 mod schema;
 mod shared_store;
