@@ -39,7 +39,7 @@ budgets() { luthier-lab budgets "${stacks[@]}" -o docs/pages/budgets.md; }
 scenes() { luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >docs/pages/scenes.md; }
 parity() { luthier-lab parity "${stacks[@]}" -o docs/pages/parity.md; }
 places() { luthier-lab places -o docs/pages/places.md; }
-textured() { luthier-lab textured materials -o docs/pages/textured.md; }
+textured() { luthier-lab textured "${stacks[@]}" -o docs/pages/textured.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md

@@ -32,7 +32,8 @@ fn shader_rows_and_simulation_agree_where_two_maps_vary() {
 #[test]
 fn what_is_the_same_everywhere_is_left_out() {
     let root = luthier_workshop::root();
-    let [plain, patina] = ["red-lacquer", "chromium-car-paint"].map(|name| root.join(format!("materials/{name}.toml")));
+    let [plain, patina] =
+        ["red-lacquer", "chromium-car-paint"].map(|name| root.join(format!("materials/papers/{name}.toml")));
     let files = [plain.to_str().unwrap(), patina.to_str().unwrap()];
     let workshop = Workshop::with(&[]);
     let rest = ["--no-generated", "--pairs", "64", "--places", "1", "--noise", "0.1", "--samples", "4096"];

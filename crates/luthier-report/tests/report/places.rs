@@ -148,7 +148,7 @@ fn lacquered() -> (Bake, Vec<SurfaceMap>) {
             factors: None,
         }),
         axes: None,
-        base: None,
+        painted: None,
         error: None,
     });
     let rows = lobes.axis.size() as u32;
@@ -196,8 +196,9 @@ fn rows_of_another_stack_break_the_budget() {
     assert!(good.views.len() == 8 && good.misses().count() == 0, "{good:?}");
     assert_eq!(report.is_within_budget(), Some(true), "{:?}", report.limits);
 
+    let layout = &bake.manifest.tables.last().unwrap().layout;
+    let row = 4 * layout.tile_size()[0] as usize;
     let texels = bake.texels(TableKind::Lobes);
-    let row = texels.len() / 8;
     let (nominal, others) = texels.split_at_mut(row);
     others.chunks_exact_mut(row).for_each(|tile| tile.copy_from_slice(nominal));
     let (wrong, report) = judged(&bake);
