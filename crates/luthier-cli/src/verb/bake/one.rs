@@ -81,7 +81,7 @@ impl<'a> Begun<'a> {
         }
         let forms = options.emission.forms();
         let mut sources = read_all(&found.materials)?;
-        refuse(&mut sources, |material| options.shading.doubts(material, &forms));
+        refuse(&mut sources, |material| options.shading.doubts_and_energy(material, &forms));
         let told = sources.iter().flat_map(Source::diagnostics).cloned().collect();
         refuse_surfaces(&mut found.surfaces, &sources);
         let surfaces = valid_surfaces(&found.surfaces)?;
