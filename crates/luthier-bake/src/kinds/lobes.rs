@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use luthier_layers::lobes::{
     Axes, Cover, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Painted, Row, Traced, Varied, Varying,
-    base_below, shown,
+    base_below, most_lobes, shown,
 };
 use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
@@ -280,7 +280,7 @@ impl Job for FitJob {
         json!({
             "stack": json::stack(&self.stack),
             "color": json::color(&self.color),
-            "lobes": LOBES,
+            "lobes": most_lobes(&self.stack),
             "excess": EXCESS,
             "rows": rows,
             "paths": paths,
@@ -294,12 +294,13 @@ impl Job for FitJob {
         let Self { stack, color, varying, is_searched } = self;
         let traced = Traced::new(stack, color, *varying, FitSettings::default());
         let judge = Judge::new(stack, color, *varying);
+        let most = most_lobes(stack);
         let fit = |(most, excess)| {
             let varied: Varied = traced.fit(most, excess);
             Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
         };
         let wanted: Vec<(usize, f64)> =
-            if *is_searched { (0..=LOBES).map(|most| (most, 0.0)).collect() } else { vec![(LOBES, EXCESS)] };
+            if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
         Artefact::new(Fits(wanted.into_iter().map(fit).collect()))
     }
 

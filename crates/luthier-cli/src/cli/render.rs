@@ -143,7 +143,7 @@ The noise of its samples is part of the RMSE; it is printed beside it.
 Examples:
   luthier compare materials/papers/car-paint.toml --a baked --b full -o comparison
   luthier compare materials/car-paint.toml --a elek --b microfacet/full -o comparison
-  luthier compare materials/papers/yamaguchi-brushed.toml --a yamaguchi --b simulated/512 -o comparison
+  luthier compare materials/papers/yamaguchi-brushed.toml --a yamaguchi --b simulated/512 -o seen
   luthier compare red-lacquer --b full -o comparison --json";
 
 #[derive(Debug, Args)]

@@ -5,7 +5,7 @@ use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
 use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
-use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, LOBES, Lobes, Row, ViewAxis, patina, shown};
+use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, Lobes, Row, ViewAxis, most_lobes, patina, shown};
 use crate::elek::ALPHA_MIN;
 
 /// The part of a stack that a texture decides.
@@ -159,7 +159,7 @@ impl Varied {
 
     /// [`Self::of`] with settings.
     pub fn with(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
-        Traced::new(stack, color, varying, settings).fit(LOBES, EXCESS)
+        Traced::new(stack, color, varying, settings).fit(most_lobes(stack), EXCESS)
     }
 
     /// Every so many of the rows, a divisor of the steps between them.
