@@ -107,7 +107,8 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
         // The command line asks for one or the other.
         (None, ..) => Vec::new(),
     };
-    values(&subject, Kind::asked(options, &subject).unwrap_or(Kind::Color(Color::Spectral)), &pairs, options.json)
+    let kind = Kind::asked(options, &subject).unwrap_or_else(|| Kind::Color(subject.material.color()));
+    values(&subject, kind, &pairs, options.json)
 }
 
 fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
