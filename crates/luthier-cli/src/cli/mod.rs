@@ -541,9 +541,10 @@ pub(crate) struct ModelsOptions {
 }
 
 const EVAL_EXAMPLES: &str = "\
-Prints f cos theta_i in linear Rec.709, spectral by default. Models with a shader (elek, weidlich-wilkie, granier-heidrich, belcour, \
+Prints f cos theta_i in linear Rec.709, in the colour of the file: spectral, or that of three wavelengths where [bake] says so. \
+Models with a shader (elek, weidlich-wilkie, granier-heidrich, belcour, \
 yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the directions of all channels, colours are those of \
-each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
+each term. The colour of the file stands for the `baked` form, --three-wavelengths for the `full` one.
 
 Effects of the file count at the place of --uv and --distance: flakes and patina for elek, weidlich-wilkie and lobes, glitter for all; JSON says \
 what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Of a surface file, the material at that place is evaluated, with the normal there. Maps of single layers, of albedo, base colour and metal count there, too; those of the whole surface (normal, roughness, thickness of the first slab) do not: the options on textures \
@@ -620,13 +621,13 @@ pub(crate) struct EvalOptions {
     /// Azimuth of the eye, in degrees, in output against angle
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true, requires = "against_angle")]
     pub(crate) azimuth: f64,
-    /// Spectral colour: the default for values; for output against angle, instead of one wavelength
+    /// Spectral colour, whatever the file has; in output against angle in place of one wavelength
     #[arg(long, conflicts_with_all = ["furnace", "environment"])]
     pub(crate) rgb: bool,
     /// One wavelength, 360 to 830 nm. Absorption, diffuse albedo and `f0` are those of the channel nearest to it (645, 525, 445 nm)
     #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with_all = ["rgb", "three_wavelengths"])]
     pub(crate) wavelength: Option<f64>,
-    /// The material's three wavelengths taken as R, G, B instead of spectral colour
+    /// The material's three wavelengths taken as R, G, B, whatever colour the file has
     #[arg(long, conflicts_with_all = ["rgb", "furnace", "environment"])]
     pub(crate) three_wavelengths: bool,
     /// Print as JSON

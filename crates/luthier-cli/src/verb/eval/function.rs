@@ -10,7 +10,7 @@ use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::{ColorMode, Reflectance, ShadingModel};
+use luthier_manifest::{Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -212,11 +212,7 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
             let wavelengths_nm = subject.material.bake.wavelengths_nm();
             // Phong's coefficients and curves of reflectances are in the material's colour, in both forms of its shader.
             let is_own = name == "phong" || reflectance.is_fitted();
-            let color = match subject.material.bake.color {
-                _ if !is_own => color,
-                Some(ColorMode::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
-                Some(ColorMode::Spectral) | None => Color::Spectral,
-            };
+            let color = if is_own { subject.material.color() } else { color };
             Some(How::Shader(Box::new(made(stack, wavelengths_nm, color)?), 0))
         }
     }

@@ -115,7 +115,8 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
         let what = "fitted to the stack at this place; `--out FOLDER` reads the rows that a bake ships";
         complain(&format!("note: lobes are {what}"));
     }
-    values(&subject, Kind::asked(options, &subject).unwrap_or(Kind::Color(Color::Spectral)), &pairs, options.json)
+    let kind = Kind::asked(options, &subject).unwrap_or_else(|| Kind::Color(subject.material.color()));
+    values(&subject, kind, &pairs, options.json)
 }
 
 fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
