@@ -8,7 +8,8 @@ import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
 
-const TIMEOUT_MS = 120_000;
+import { patience } from "../scripts/patience.mjs";
+
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".wasm": "application/wasm" };
 
 const [page, bake, scene, picture] = process.argv.slice(2);
@@ -66,10 +67,10 @@ if (!picture) {
   const failed = new Promise((_, reject) => {
     browser.on("error", reject);
     browser.on("exit", (code) => reject(new Error(`the browser ended with ${code} before there was a picture`)));
-    setTimeout(() => reject(new Error(`no picture after ${TIMEOUT_MS / 1000} s`)), TIMEOUT_MS).unref();
   });
+  const { failed: hung } = patience(browser.pid);
   try {
-    const { picture: data, driver, error } = await Promise.race([answer, failed]);
+    const { picture: data, driver, error } = await Promise.race([answer, failed, hung]);
     if (error) throw new Error(error);
     await writeFile(picture, Buffer.from(data.split(",")[1], "base64"));
     console.error(driver);
@@ -77,7 +78,7 @@ if (!picture) {
     console.error(`error: ${error.message}`);
     process.exitCode = 1;
   } finally {
-    failed.catch(() => {});
+    for (const late of [failed, hung]) late.catch(() => {});
     if (browser.exitCode === null && browser.pid) {
       const ended = new Promise((resolve) => browser.once("exit", resolve));
       browser.kill();

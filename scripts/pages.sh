@@ -39,6 +39,7 @@ budgets() { luthier-lab budgets "${stacks[@]}" -o docs/pages/budgets.md; }
 scenes() { luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >docs/pages/scenes.md; }
 parity() { luthier-lab parity "${stacks[@]}" -o docs/pages/parity.md; }
 places() { luthier-lab places -o docs/pages/places.md; }
+textured() { luthier-lab textured "${stacks[@]}" -o docs/pages/textured.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
@@ -100,7 +101,7 @@ recipes() {
 # The test that follows the tutorial takes its outputs and pictures.
 tutorial() { LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- tutorial; }
 
-all=(materials shapes cost papers budgets scenes parity places stability figures models lobes varying anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes tutorial)
+all=(materials shapes cost papers budgets scenes parity places textured stability figures models lobes varying anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes tutorial)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

@@ -6,7 +6,8 @@ import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
 
-const TIMEOUT_MS = 900_000;
+import { patience } from "../patience.mjs";
+
 const TYPES = { ".js": "text/javascript", ".json": "application/json", ".png": "image/png" };
 
 const page = ({ imports, script, job }) => `<!doctype html>
@@ -29,6 +30,7 @@ const page = ({ imports, script, job }) => `<!doctype html>
 export async function render(jobs, folders) {
   const answers = [];
   let done;
+  let answered = () => {};
   const all = new Promise((resolve) => (done = resolve));
 
   async function file(pathname) {
@@ -48,6 +50,7 @@ export async function render(jobs, folders) {
       // A page that failed twice over has one answer.
       const isNew = answers[id] === undefined;
       if (isNew) answers[id] = answer;
+      answered();
       if (process.env.VERBOSE) console.error(`page ${id + 1} of ${jobs.length}: ${answer.error ?? "done"}`);
       response.end(isNew && id + 1 < jobs.length ? `/job/${id + 1}` : "");
       if (isNew && id + 1 === jobs.length) done();
@@ -74,13 +77,14 @@ export async function render(jobs, folders) {
   const failed = new Promise((_, reject) => {
     browser.on("error", reject);
     browser.on("exit", (code) => reject(new Error(`the browser ended with ${code} before all pages had answered`)));
-    setTimeout(() => reject(new Error(`no answer after ${TIMEOUT_MS / 1000} s`)), TIMEOUT_MS).unref();
   });
+  const { failed: hung, progress } = patience(browser.pid);
+  answered = progress;
   try {
-    await Promise.race([all, failed]);
+    await Promise.race([all, failed, hung]);
     return answers;
   } finally {
-    failed.catch(() => {});
+    for (const late of [failed, hung]) late.catch(() => {});
     if (browser.exitCode === null && browser.pid) {
       const ended = new Promise((resolve) => browser.once("exit", resolve));
       browser.kill();

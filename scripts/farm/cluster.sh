@@ -78,14 +78,14 @@ PartitionName=bake Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
   export SLURM_CONF=$cluster/slurm.conf
 
-  wait_for "munged's socket" 20 test -S "$cluster/socket/munge"
+  wait_for "munged's socket" 500 test -S "$cluster/socket/munge"
   slurmctld -D -c &>"$cluster/log/controller.out" &
   daemons+=($!)
   for node in "${nodes[@]}"; do
     mkdir -p "$cluster/$node"
     start_node "$node"
   done
-  wait_for "two idle nodes" 60 idle_nodes 2
+  wait_for "two idle nodes" 1000 idle_nodes 2
 }
 
 # start_node NAME: each node reads the configuration by a name of its own, which its processes keep in their environment.
@@ -97,13 +97,13 @@ start_node() {
 
 idle_nodes() { [ "$(sinfo -h -N -t idle -o %N 2>/dev/null | sort -u | wc -l)" = "$1" ]; }
 
-# wait_for WHAT SECONDS COMMAND...: returns when the command succeeds.
+# wait_for WHAT LOOKS COMMAND...: returns when the command succeeds. A busy machine is slow to look, too.
 wait_for() {
-  local what=$1 deadline=$((SECONDS + $2))
+  local what=$1 most=$2 looks=0
   shift 2
   until "$@"; do
-    if [ $SECONDS -ge $deadline ]; then
-      echo "error: no $what after the time allowed" >&2
+    if [ $((looks += 1)) -gt "$most" ]; then
+      echo "error: no $what after $most looks" >&2
       [ -z "${cluster-}" ] || tail -n 5 "$cluster"/log/* >&2
       return 1
     fi

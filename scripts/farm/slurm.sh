@@ -64,7 +64,7 @@ submit() {
 }
 # check NAME: all jobs ended well, and the package has the bytes of the bake by one process.
 check() {
-  wait_for "end of the jobs" 900 ended "$bake,$merge"
+  wait_for "end of the jobs" 10000 ended "$bake,$merge"
   echo "task state node restarts"
   tasks "$bake"
   [ "$(tasks "$bake" | grep -c COMPLETED)" = $shards ] || fail "Slurm did not complete all $shards tasks"
@@ -109,7 +109,7 @@ half_way() {
   log=$work/killed/luthier-bake-${victim/_/-}.log
   [ "$(grep -c '"event":"finished"' "$log" 2>/dev/null)" -ge 1 ] && ! grep -q 'jobs run' "$log"
 }
-wait_for "task on node2 that has finished a job" 600 half_way
+wait_for "task on node2 that has finished a job" 10000 half_way
 kill_node node2
 results "$work/killed/store" >"$work/killed/before"
 share=${victim#*_}

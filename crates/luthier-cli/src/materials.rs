@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use luthier_export::{
-    Source, SurfaceSource, gather, of_function, of_model, of_parts, read_all, refuse, refuse_surfaces,
+    Source, SurfaceSource, gather, of_energy, of_function, of_model, of_parts, read_all, refuse, refuse_surfaces,
 };
 use luthier_manifest::{Form, FunctionGroup, Reflectance, ShadingModel, SurfaceEntry};
 use luthier_material::{Diagnostic, Material, Severity};
@@ -38,6 +38,15 @@ impl Shading {
             let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
             let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
             doubts.push(material.diagnostic(Severity::Error, "bake.model", message, Some(hint)));
+        }
+        doubts
+    }
+
+    /// Doubts about a material, those about its energy too, which take some hundredths of a second.
+    pub(crate) fn doubts_and_energy(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
+        let mut doubts = self.doubts(material, forms);
+        if doubts.iter().all(|doubt| doubt.severity != Severity::Error) {
+            doubts.extend(of_energy(material, self.model_of(material, forms)));
         }
         doubts
     }

@@ -49,7 +49,7 @@ fn instead(material: &Material, part: &LeftOut) -> Diagnostic {
         closed if closed != model => format!(
             "write `[bake] model = \"{model}\"` to choose it; `\"{closed}\"` is cheaper, and too bright for coats over metals"
         ),
-        _ => format!("write `[bake] model = \"{model}\"` to choose it; it is too bright for coats over metals"),
+        _ => format!("write `[bake] model = \"{model}\"` to choose it; it has one bounce for each interface"),
     };
     material.diagnostic(Severity::Warning, &part.key, message, Some(hint))
 }

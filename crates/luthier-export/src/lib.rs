@@ -20,6 +20,8 @@ mod beams;
 #[cfg(feature = "bake")]
 mod doubts;
 #[cfg(feature = "bake")]
+mod energy;
+#[cfg(feature = "bake")]
 mod inner;
 #[cfg(feature = "bake")]
 mod make;
@@ -43,6 +45,8 @@ pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_bes
 #[cfg(feature = "bake")]
 pub use doubts::{of_domain, of_model};
 #[cfg(feature = "bake")]
+pub use energy::{Returned, of_energy, returned};
+#[cfg(feature = "bake")]
 pub use inner::{inner_files, inner_packages};
 #[cfg(feature = "bake")]
 pub use luthier_bake::{MemoryStore, Missing, Share, Store};
@@ -51,7 +55,7 @@ pub use luthier_material::{LeftOut, left_out};
 #[cfg(feature = "bake")]
 pub use make::{Bake, ExportError, outline, source_hash, unfitted};
 #[cfg(feature = "bake")]
-pub use parts::{of_function, of_parts, of_scene};
+pub use parts::{of_function, of_parts, of_scene, parts_of};
 #[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]

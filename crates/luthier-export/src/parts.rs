@@ -1,8 +1,11 @@
 //! Doubts about the parts of a model that a material chooses: those that its model does not have, distributions among them, and errors of
 //! approximations.
 
+use luthier_layers::parts::Parts;
 use luthier_lut::TableKind;
-use luthier_manifest::{Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{
+    BeamsRecord, Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel,
+};
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
@@ -25,6 +28,19 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let lower = material.bake.lower_reflectance;
     doubts.extend(lower.and_then(|lower| of_lower_reflectance(material, model, lower)));
     doubts
+}
+
+/// The parts of a model that a material chooses, as f64 has them.
+pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
+    let bake = &material.bake;
+    let masking = bake.masking.filter(|_| model.has_masking()).unwrap_or_default();
+    let reflectance = bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default();
+    let internal = bake.internal_reflection.filter(|_| model.has_path()).unwrap_or_default();
+    let parts = Parts::named(masking.name(), reflectance.name(), internal.name()).unwrap_or(Parts::PLAIN);
+    let beams = material.beams().filter(|_| model.has_beams());
+    beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
+        parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
+    })
 }
 
 /// Cosines at which a curve is compared with the reflectance.

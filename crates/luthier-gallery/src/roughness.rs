@@ -90,7 +90,7 @@ mod tests {
                 critical_plain_share: 0.0,
                 varying,
                 axes: None,
-                base: None,
+                painted: None,
                 error: None,
             };
             let constants = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() };

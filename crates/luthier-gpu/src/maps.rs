@@ -46,7 +46,7 @@ impl Scene {
     }
 
     /// Number of layers that have a place of their own in the shader.
-    fn layer_places(&self) -> usize {
+    pub(crate) fn layer_places(&self) -> usize {
         let shown = self.manifest.materials.iter().flat_map(|entry| entry.shown_layer_maps(self.form()));
         let shown = shown.filter(|(_, slot)| *slot != MapSlot::Albedo);
         shown.map(|(layer, _)| layer as usize + 1).max().unwrap_or(0)

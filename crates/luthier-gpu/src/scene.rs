@@ -27,10 +27,11 @@ pub struct Scene {
     pub(crate) group: wgpu::BindGroup,
     kernels: wgpu::PipelineLayout,
     pub(crate) evaluate: wgpu::ComputePipeline,
+    pub(crate) places: OnceLock<wgpu::ComputePipeline>,
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
-    pub(crate) render: OnceLock<wgpu::ComputePipeline>,
+    /// Of closed shapes and of meshes, each by blurred maps of the environment and by directions.
+    pub(crate) render: [[OnceLock<wgpu::ComputePipeline>; 2]; 2],
     pub(crate) simulations: Pipelines,
-    pub(crate) render_mesh: OnceLock<wgpu::ComputePipeline>,
     pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
@@ -58,10 +59,10 @@ impl Scene {
             group,
             kernels,
             evaluate,
+            places: OnceLock::new(),
             lookups: Default::default(),
-            render: OnceLock::new(),
+            render: Default::default(),
             simulations: Pipelines::default(),
-            render_mesh: OnceLock::new(),
             grounded: Mutex::default(),
         })
     }
@@ -88,10 +89,10 @@ impl Scene {
             group,
             kernels: self.kernels.clone(),
             evaluate: self.evaluate.clone(),
+            places: self.places.clone(),
             lookups: self.lookups.clone(),
             render: self.render.clone(),
             simulations: self.simulations.clone(),
-            render_mesh: self.render_mesh.clone(),
             grounded: Mutex::default(),
         }))
     }

@@ -33,6 +33,8 @@ pub(crate) enum Verb {
     Parity(ParityOptions),
     /// Compare shaders at places of surfaces that vary with their f64 twins: a page in Markdown
     Places(PlacesOptions),
+    /// Compare textured materials at random places: shaders, rows that ship, simulation: a page in Markdown
+    Textured(TexturedOptions),
     /// Run every method on stacks where methods fail, and find the domain of each: a page in Markdown
     Stability(StabilityOptions),
     /// Compare every reflectance model with the layered-mc reference on materials: a page in Markdown
@@ -263,6 +265,38 @@ pub(crate) struct VaryingOptions {
     pub(crate) random: u32,
     #[command(flatten)]
     pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+/// Places of every textured material with a pair of directions each.
+pub(crate) const TEXTURED_PAIRS: u32 = 10_000;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when a shader is not what its tables are.\n\nExamples:\n  luthier-lab textured materials -o docs/pages/textured.md\n  \
+                  luthier-lab textured mine.toml --no-generated --places 4 --noise 0.02"
+)]
+pub(crate) struct TexturedOptions {
+    /// Material files, and folders of them; materials that are the same everywhere are left out
+    #[arg(value_name = "PATH")]
+    pub(crate) paths: Vec<PathBuf>,
+    /// Leave out the materials that are made for each map and for pairs of maps
+    #[arg(long)]
+    pub(crate) no_generated: bool,
+    /// Judge only materials whose names contain this
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) only: Option<String>,
+    /// Random places of each shader, with a pair of directions each
+    #[arg(long, value_name = "N", default_value_t = TEXTURED_PAIRS, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) pairs: u32,
+    /// Random places at which rows are compared with the simulation
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(crate) places: u64,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -15,6 +15,7 @@ mod shapes;
 mod simulation;
 mod stability;
 mod texels;
+mod textured;
 mod throughput;
 mod varying;
 
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Verb::Grammar(options) => grammar::run(options),
         Verb::Parity(options) => parity::run(options),
         Verb::Places(options) => places::run(options),
+        Verb::Textured(options) => textured::run(options),
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),

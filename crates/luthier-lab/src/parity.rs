@@ -8,8 +8,8 @@ use luthier_lut::{Image, TableKind};
 use luthier_manifest::{Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Layer, Stack};
-use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
-use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, valid};
+use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, SurfaceMap, Verdict, parity};
+use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, surface_maps, valid};
 
 use crate::cli::{PARITY_PAIRS, ParityOptions};
 
@@ -46,6 +46,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
             manifest: &compiled.manifest,
             textures: compiled.textures.clone(),
             stacks: compiled.stacks.clone(),
+            maps: compiled.maps.clone(),
         };
         let found =
             parity(&subject, &compiled.shaders, &cases, options.pairs, &mut progress).map_err(Failure::input)?;
@@ -61,7 +62,9 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     deliver(&text, options.destination.output.as_deref())?;
     for row in report.rows.iter().filter(|row| !row.holds()) {
         let broken = Share::ALL.into_iter().filter(|share| row.verdict(*share) == Verdict::Broken);
-        let shares: Vec<String> = broken.map(|share| format!("{} {:.2e}", share.name(), row.max(share))).collect();
+        let mut shares: Vec<String> = broken.map(|share| format!("{} {:.2e}", share.name(), row.max(share))).collect();
+        let at = row.places.as_ref().filter(|_| !row.holds_at_places()).and_then(|at| at.worst.as_ref());
+        shares.extend(at.map(|w| format!("place {} ({}) {:.2e}", w.number, w.place, w.error)));
         complain(&format!(
             "{}, {}, {}: {} not finite; beyond its tolerance: {}",
             row.model.name(),
@@ -126,6 +129,7 @@ pub(crate) struct Compiled {
     pub(crate) manifest: Manifest,
     pub(crate) textures: Vec<(TableKind, Image)>,
     pub(crate) stacks: Vec<Stack>,
+    pub(crate) maps: Vec<SurfaceMap>,
     pub(crate) shaders: Shaders,
 }
 
@@ -133,7 +137,8 @@ impl Compiled {
     pub(crate) fn new(gpu: &Gpu, package: &Package, numbers: Range<usize>, stacks: Vec<Stack>) -> Outcome<Self> {
         let package = package.of_materials(numbers)?;
         let shaders = Shaders::new(gpu, &package)?;
-        Ok(Self { textures: package.textures()?, manifest: package.manifest, stacks, shaders })
+        let maps = surface_maps(&package);
+        Ok(Self { textures: package.textures()?, manifest: package.manifest, stacks, maps, shaders })
     }
 }
 

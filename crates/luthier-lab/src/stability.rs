@@ -101,6 +101,7 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
                 manifest: &compiled.manifest,
                 textures: compiled.textures.clone(),
                 stacks: compiled.stacks.clone(),
+                maps: Vec::new(),
             };
             let mut progress = || {
                 done += 1;

@@ -29,7 +29,7 @@ pub(crate) fn run(options: &TexelsOptions) -> Outcome {
     print(&lines)
 }
 
-/// What a file holds: of a texture its format, its size and the bytes that a device gets, of an image its size and its values, of a
+/// The numbers that a file holds: of a texture its format, its size and the bytes that a device gets, of an image its size and its values, of a
 /// material buffer its words. `None` for files of other kinds.
 fn numbers(ending: &str, bytes: Vec<u8>) -> Result<Option<Vec<u8>>, TextureError> {
     Ok(Some(match ending {

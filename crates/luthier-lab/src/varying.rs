@@ -127,8 +127,8 @@ fn words(varying: Varying) -> &'static str {
 /// The fractional number of a node of what varies, for one of eight nodes.
 fn place(varying: Varying, of_eight: f64) -> f64 {
     match varying {
-        Varying::Alpha | Varying::Slab | Varying::Patina(_) => of_eight,
-        Varying::Film(_) => 2.0 * of_eight + if of_eight.fract() == 0.0 { 0.0 } else { 0.5 },
+        Varying::Alpha | Varying::Patina(_) => of_eight,
+        Varying::Slab | Varying::Film(_) => 2.0 * of_eight + if of_eight.fract() == 0.0 { 0.0 } else { 0.5 },
     }
 }
 
@@ -158,7 +158,7 @@ const TABLES: [(&str, Worst); 2] = [
 
 const INTRODUCTION: &str = "\
 A roughness map scales the slope parameters of all interfaces of a material, a thickness map its first slab, and a film on the first interface may vary. The
-model `lobes` fits such a stack at eight factors, or at fifteen of the film, and shaders mix the rows of two. This page compares them with a simulation of other
+model `lobes` fits such a stack at eight factors on slopes, or at fifteen on a thickness, and shaders mix the rows of two. This page compares them with a simulation of other
 random numbers at two nodes and half way between others. Nodes are numbered as of eight; each stack is shown once with a film of index 2.4 and 100 to 500 nm.
 
 Errors are those of [lobes.md](lobes.md), the worst over three wavelengths and four angles of the eye. In brackets is the error of lobes that were fitted

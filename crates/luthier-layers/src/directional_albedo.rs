@@ -59,8 +59,8 @@ pub fn over_hemisphere<const C: usize>(peak: DVec3, f: impl Fn(DVec3) -> [f64; C
     }
 }
 
-/// The integral over the hemisphere, with `points` on each side of the peak in theta and in phi.
-fn integral<const C: usize>(f: &impl Fn(DVec3) -> [f64; C], peak: DVec3, points: usize) -> [f64; C] {
+/// The integral over the hemisphere, with `points` on each side of the peak in theta and in phi, that crowd there.
+pub fn integral<const C: usize>(f: &impl Fn(DVec3) -> [f64; C], peak: DVec3, points: usize) -> [f64; C] {
     let rule = gauss_legendre(points);
     let theta_peak = libm::atan2(libm::hypot(peak.x, peak.y), peak.z).min(FRAC_PI_2);
     let phi_peak = libm::atan2(peak.y, peak.x);

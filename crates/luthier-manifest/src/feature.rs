@@ -149,8 +149,8 @@ impl ShadingModel {
             Feature::Tangents => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
             Feature::InnerThickness => is_chain || is_statistical,
             Feature::AlbedoMap => self != Self::Phong,
-            // Energies of rough interfaces, and rows of lobes, are tabulated for one F0.
-            Feature::MetallicMap => is_chain || self == Self::Microfacet,
+            // Rows of lobes are tabulated for one F0; of energies, what is not reflected is in proportion to 1 - F0.
+            Feature::MetallicMap => is_chain || is_statistical || self == Self::Microfacet,
             Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
             Feature::Reradiation => is_chain,
             // V-cavities and the other maskings without Smith's Lambda need no more than D.
@@ -178,8 +178,8 @@ mod tests {
         for (model, expected) in [
             (ShadingModel::Elek, "#####b##.######.########"),
             (ShadingModel::WeidlichWilkie, "#####b##################"),
-            (ShadingModel::Belcour, "#####bf#..###.#.##...#.."),
-            (ShadingModel::Yamaguchi, "#####bf##.###.####...#.."),
+            (ShadingModel::Belcour, "#####bf#..###.#.###..#.."),
+            (ShadingModel::Yamaguchi, "#####bf##.###.#####..#.."),
             (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#...#.."),
             (ShadingModel::Phong, "###.##....##.........#.."),
             (ShadingModel::Microfacet, "....#b######..##.##..#.#"),

@@ -19,6 +19,7 @@ mod manifest;
 mod map;
 mod model;
 mod parts;
+mod place;
 mod reads;
 mod record;
 mod search;
@@ -28,7 +29,7 @@ mod tiles;
 
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
 pub use constants::{
-    AxesRecord, BaseRecord, BeamsRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants,
+    AxesRecord, BeamsRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PaintedRecord,
     PatinaRecord, VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
@@ -44,6 +45,7 @@ pub use manifest::{
 pub use map::{MapEntry, MapSlot};
 pub use model::ShadingModel;
 pub use parts::{InternalReflection, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
+pub use place::{LayerValues, PlaceValues};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};

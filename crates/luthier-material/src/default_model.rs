@@ -1,7 +1,9 @@
 //! The model of a material whose file names none.
 
 use luthier_manifest::{Feature, Form, ShadingModel};
+use luthier_optics::stack::{Base, Layer, Surface};
 
+use crate::doubt::SODIUM_D_NM;
 use crate::left_out::{LeftOut, left_out};
 use crate::material::Material;
 
@@ -9,41 +11,95 @@ use crate::material::Material;
 /// (`docs/pages/lobes.md`, `docs/pages/models.md`).
 const OF_STACKS: [ShadingModel; 3] = [ShadingModel::Lobes, ShadingModel::Belcour, ShadingModel::Yamaguchi];
 
+/// Those that give one rough interface its further bounces.
+const OF_FACETS: [ShadingModel; 1] = [ShadingModel::Lobes];
+
 /// Closed forms: of one interface both are the same, and the first is the cheaper. The last shows all that a file can ask for.
 const CLOSED: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::WeidlichWilkie];
 
+/// Slope parameter up to which one bounce is all light of an interface: of a white one 0.01 is missing at 86 degrees, where GGX loses the most
+/// (`luthier-layers/tests/layers/bounces.rs`).
+const ONE_BOUNCE_ALPHA: f64 = 0.008;
+
+/// F0 of a second interface from which closed forms may return more light than falls in: they leave out that light is spread by n^2 where it comes out of a slab.
+const MIRROR_F0: f64 = 0.2;
+
 impl Material {
     /// The model that shades it: the one that its file names, or else the first that shows all that the file asks for. Of a stack that is
-    /// `lobes`, `belcour`, `yamaguchi`, `elek`, `weidlich-wilkie`, in this order; one layer alone has nothing to simulate, and begins with
-    /// `elek`. That `belcour` and `yamaguchi` show a Beckmann distribution as GGX does not count.
+    /// `lobes`, `belcour`, `yamaguchi`, `elek`, `weidlich-wilkie`, in this order; one rough interface alone begins with `lobes` and goes on with
+    /// `elek`, and one smooth interface or a base has nothing to simulate and begins with `elek`. That `belcour` and `yamaguchi` show a Beckmann
+    /// distribution as GGX does not count.
+    ///
+    /// Over a second interface that is a mirror, closed forms return more light than falls in: they are no default there. Where no other model shows
+    /// all, the one that leaves the least out is.
     pub fn model(&self) -> ShadingModel {
-        let stacks = if self.is_stack() { &OF_STACKS[..] } else { &[] };
-        self.bake.model.unwrap_or_else(|| self.first_whole(stacks.iter().chain(&CLOSED)))
+        self.bake.model.unwrap_or_else(|| {
+            let open = if self.is_stack() { &OF_STACKS[..] } else { &OF_FACETS };
+            let open = if self.has_further_bounces() { open } else { &[] };
+            let closed = if self.covers_mirror() { &[][..] } else { &CLOSED };
+            self.most_whole(open.iter().chain(closed))
+        })
     }
 
     /// The model that shades it where nothing is simulated: the one that its file names, or else a closed form.
     pub fn model_without_fit(&self) -> ShadingModel {
-        self.bake.model.unwrap_or_else(|| self.first_whole(CLOSED.iter()))
+        self.bake.model.unwrap_or_else(|| self.most_whole(CLOSED.iter()))
     }
 
-    /// The feature that keeps a stack whose file names no model from the model `lobes`.
+    /// The feature that keeps a material with something to simulate, whose file names no model, from the model `lobes`.
     pub fn unfit_for_lobes(&self) -> Option<LeftOut> {
-        let is_open = self.bake.model.is_none() && self.is_stack();
-        is_open.then(|| self.lack(ShadingModel::Lobes)).flatten()
+        let is_open = self.bake.model.is_none() && self.has_further_bounces() && self.model() != ShadingModel::Lobes;
+        is_open.then(|| self.lacks(ShadingModel::Lobes).into_iter().next()).flatten()
+    }
+
+    /// Whether a model shows all that the file asks for, in a shader with tables.
+    pub fn is_whole_in(&self, model: ShadingModel) -> bool {
+        self.lacks(model).is_empty()
     }
 
     fn is_stack(&self) -> bool {
         self.stack.layers.len() > 1
     }
 
-    fn first_whole<'a>(&self, mut models: impl Iterator<Item = &'a ShadingModel>) -> ShadingModel {
-        models.find(|model| self.lack(**model).is_none()).copied().unwrap_or(CLOSED[CLOSED.len() - 1])
+    /// Whether light bounces more than once on it: it has several layers, or facets.
+    pub fn has_further_bounces(&self) -> bool {
+        let is_rough = |layer: &Layer| {
+            let Surface { alpha_x, alpha_y, .. } = layer.surface;
+            !matches!(layer.base, Base::Diffuse(_)) && alpha_x.max(alpha_y) > ONE_BOUNCE_ALPHA
+        };
+        self.is_stack() || self.stack.layers.first().is_some_and(is_rough)
     }
 
-    /// The first thing that a shader with tables does not show of it.
-    fn lack(&self, model: ShadingModel) -> Option<LeftOut> {
+    /// Whether an interface below the first may reflect much: a metal, one with an F0 that is large or in textures, or one to a thinner medium. Layers
+    /// whose slopes only closed forms have count as none: other models refuse them.
+    fn covers_mirror(&self) -> bool {
+        let layers = &self.stack.layers;
+        let is_free =
+            |layer: &Layer| !matches!(layer.base, Base::Diffuse(_)) && !layer.surface.distribution.has_walks();
+        let mut above = None;
+        let mut is_mirror = |(number, layer): (usize, &Layer)| match &layer.base {
+            Base::Conductor { .. } => true,
+            Base::Diffuse(_) => false,
+            Base::Dielectric { ior, .. } => {
+                let n = ior.at(SODIUM_D_NM).re;
+                let is_thinner = above.replace(n).is_some_and(|above| n < above);
+                let is_bright = ior.f0().is_some_and(|f0| f0.into_iter().any(|f0| f0 > MIRROR_F0));
+                is_thinner || is_bright || self.layers[number].metallic.is_some()
+            }
+        };
+        let mirrors: Vec<bool> = layers.iter().enumerate().map(&mut is_mirror).collect();
+        mirrors.iter().skip(1).any(|mirror| *mirror) && !layers.iter().any(is_free)
+    }
+
+    /// The first model that shows the most of it.
+    fn most_whole<'a>(&self, models: impl Iterator<Item = &'a ShadingModel>) -> ShadingModel {
+        models.copied().min_by_key(|model| self.lacks(*model).len()).unwrap_or(CLOSED[CLOSED.len() - 1])
+    }
+
+    /// The things that a shader with tables does not show of it.
+    fn lacks(&self, model: ShadingModel) -> Vec<LeftOut> {
         let counts = |part: &LeftOut| !(model.is_statistical() && part.feature == Feature::Beckmann);
-        left_out(self, model).into_iter().find(|part| part.forms.contains(&Form::Baked) && counts(part))
+        left_out(self, model).into_iter().filter(|part| part.forms.contains(&Form::Baked) && counts(part)).collect()
     }
 }
 
@@ -56,6 +112,7 @@ mod tests {
     const WHITE: &str = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
     const VARYING: &str = "[[layer]]\ntype = \"thin-film\"\nior = 1.9\n[layer.thickness_nm]\nmin = 100\nmax = 200\n\
                            extent_um = 1000\nmap = { noise = { seed = 1, frequency = 2, octaves = 1 } }\n";
+    const METALLIC: &str = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.9\nmetallic = 1\n";
     const FLAKES: &str = "[effects.flakes]\ncells = { seed = 1, count = 8, spread_deg = 10 }\ntiling = 10\n";
 
     const PATINA: &str = "[effects.patina]\nextent = 0.5\ntransition = 0.5\nmap = { noise = {} }\n";
@@ -75,12 +132,25 @@ mod tests {
         let scratched = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\n";
         let stained = "alpha = 0.1\n[layer.maps]\nthickness = \"t.png\"\n";
         let worn = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\nthickness = \"t.png\"\n";
+        let painted = "[layer.maps]\nmetallic = \"m.png\"\n";
         let bumpy = "alpha = 0.1\n[layer.maps]\nnormal = \"n.png\"\n";
         for (body, model, without, cause) in [
-            (GOLD.to_owned() + rough, "elek", "elek", None),
-            (GOLD.to_owned() + brushed, "weidlich-wilkie", "weidlich-wilkie", None),
+            (GOLD.to_owned() + "alpha = 0.008\n", "elek", "elek", None),
+            (GOLD.to_owned() + rough, "lobes", "elek", None),
+            (COAT.to_owned() + rough, "lobes", "elek", None),
+            (GOLD.to_owned() + brushed, "lobes", "weidlich-wilkie", None),
+            (GOLD.to_owned() + scratched, "lobes", "elek", None),
+            (GOLD.to_owned() + rough + "[layer.maps]\nbumps = \"n.png\"\n", "elek", "elek", Some("layer.0.maps.bumps")),
+            (GOLD.to_owned() + "distribution = \"blinn\"\n" + rough, "elek", "elek", Some("layer.0.distribution")),
             (WHITE.to_owned(), "elek", "elek", None),
-            (VARYING.to_owned() + GOLD + rough, "elek", "elek", None),
+            (VARYING.to_owned() + GOLD + rough, "lobes", "elek", None),
+            (COAT.to_owned() + smooth + METALLIC + rough + painted, "belcour", "elek", Some("layer.1.maps.metallic")),
+            (
+                COAT.to_owned() + smooth + METALLIC + brushed + painted,
+                "yamaguchi",
+                "weidlich-wilkie",
+                Some("layer.1.maps.metallic"),
+            ),
             (COAT.to_owned() + smooth + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + beckmann + GOLD + rough, "lobes", "elek", None),
             (COAT.to_owned() + bumpy + GOLD + rough, "lobes", "elek", None),
@@ -90,12 +160,7 @@ mod tests {
                 "weidlich-wilkie",
                 Some("layer.1.maps.tangent"),
             ),
-            (
-                COAT.to_owned() + smooth + GOLD + rough + "[layer.maps]\nbumps = \"n.png\"\n",
-                "elek",
-                "elek",
-                Some("layer.1.maps.bumps"),
-            ),
+            (COAT.to_owned() + smooth + GOLD + rough + "[layer.maps]\nbumps = \"n.png\"\n", "lobes", "elek", None),
             (COAT.to_owned() + scratched + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + stained + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + worn + WHITE, "belcour", "elek", Some("layer.0.maps.thickness")),
@@ -118,22 +183,13 @@ mod tests {
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "lobes", "elek", None),
             (COAT.to_owned() + smooth + GOLD + rough + PATINA, "lobes", "elek", None),
             (COAT.to_owned() + beckmann + WHITE + PATINA, "lobes", "elek", None),
-            (COAT.to_owned() + scratched + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
-            (COAT.to_owned() + stained + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
+            (COAT.to_owned() + scratched + GOLD + rough + PATINA, "lobes", "elek", None),
+            (COAT.to_owned() + stained + GOLD + rough + PATINA, "lobes", "elek", None),
+            (COAT.to_owned() + scratched + WHITE + PATINA, "elek", "elek", Some("effects.patina")),
             (VARYING.to_owned() + COAT + rough + WHITE + PATINA, "elek", "elek", Some("effects.patina")),
-            (
-                COAT.to_owned() + smooth + GOLD + brushed + PATINA,
-                "weidlich-wilkie",
-                "weidlich-wilkie",
-                Some("effects.patina"),
-            ),
+            (COAT.to_owned() + smooth + GOLD + brushed + PATINA, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
-            (
-                COAT.to_owned() + smooth + COAT + rough + GOLD + rough + FLAKES + PATINA,
-                "elek",
-                "elek",
-                Some("effects.patina"),
-            ),
+            (COAT.to_owned() + smooth + COAT + rough + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
             (COAT.to_owned() + smooth + GOLD + brushed + FLAKES, "lobes", "weidlich-wilkie", None),
         ] {
             let found = material(&body);

@@ -10,6 +10,8 @@
 //! - shaders are compared with `luthier_layers::real_time` over deterministic sets of directions;
 //! - the error of the baked shader is split into the error of the tables and that of f32 arithmetic;
 //! - the difference between three wavelengths and the spectrum is shown apart, because it is not an error of the bake;
+//! - materials that maps or effects vary are judged at random places ([`Places`]): shader, f64 on the tables that ship ([`Rows`]), and exact terms or
+//!   the simulation of the stack that is meant there;
 //! - colour differences say which errors are visible under which light ([`Seen`]);
 //! - samples that miss [`TARGET_MAX_REL_ERR`] are listed with the factor that causes the error;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
@@ -36,6 +38,7 @@ mod models;
 mod pages;
 mod parity;
 mod picture;
+mod places;
 pub mod stability;
 
 pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Statement, Term, audit};
@@ -69,8 +72,12 @@ pub use models::{
 };
 pub use pages::chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use parity::{
-    KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict, parity,
-    tolerance,
+    AT_PLACES, KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict,
+    parity, tolerance,
 };
 pub use picture::flip::lightness_chroma_hue;
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures, sheet};
+pub use places::{
+    AtPlaces, PLACE_FLOOR, PLACES_SEED, PlaceErrors, Places, Rows, SimulatedAt, SimulatedErrors, SimulatedSettings,
+    SurfaceMap, WorstPlace, at_places, simulated, simulated_by,
+};

@@ -283,7 +283,7 @@ fn table_errors(
 ) -> Result<Vec<SceneError>, SceneFailure> {
     let (manifest, textures) = (&package.manifest, package.textures()?);
     let stacks = materials.iter().map(|material| material.stack.clone()).collect();
-    let subject = Subject { manifest, textures, stacks };
+    let subject = Subject { manifest, textures, stacks, maps: Vec::new() };
     let error = |number: usize| {
         let terms = TableTerms::new(&subject, number, Weights::EightBit)?;
         Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))

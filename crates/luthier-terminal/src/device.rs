@@ -1,8 +1,8 @@
 //! The graphics adapter as the judge sees it.
 
 use luthier_export::sha256;
-use luthier_gpu::{Gpu, Package, Scene};
-use luthier_report::{Device, Form, Pair};
+use luthier_gpu::{Gpu, Map, Package, PlaceValues, Scene};
+use luthier_report::{Device, Form, Pair, SurfaceMap};
 use serde_json::{Value, json};
 
 use crate::Outcome;
@@ -54,6 +54,19 @@ impl Device for Shaders {
         let scene = self.scene(form).ok_or_else(|| format!("the bake has no `{form}` shader"))?;
         scene.evaluate(material, pairs).map_err(|source| source.to_string())
     }
+
+    fn evaluate_at(&self, form: Form, material: u32, spots: &[(PlaceValues, Pair)]) -> Result<Vec<[f32; 3]>, String> {
+        let scene = self.scene(form).ok_or_else(|| format!("the bake has no `{form}` shader"))?;
+        let spots: Vec<_> = spots.iter().map(|(place, (wi, wo))| (place.clone(), *wi, *wo)).collect();
+        scene.evaluate_at(material, &spots).map_err(|source| source.to_string())
+    }
+}
+
+/// The maps of a package, for the judge.
+pub fn surface_maps(package: &Package) -> Vec<SurfaceMap> {
+    let map =
+        |map: &Map| SurfaceMap { material: map.material, slot: map.slot, layer: map.layer, image: map.image.clone() };
+    package.maps.iter().map(map).collect()
 }
 
 /// Name, interface and driver of an adapter, as pages have them.
@@ -69,6 +82,29 @@ pub fn adapter_json(gpu: &Gpu) -> Value {
         "backend": gpu.backend(),
         "software": gpu.is_software(),
     })
+}
+
+/// Begins the process again without Mesa's layer that sorts devices, where that would complain on standard error. The layer asks for a Wayland display,
+/// and libwayland says what it misses for one; pictures need none, and adapters are chosen by their kind. Returns where nobody would complain, and
+/// where the program cannot be found again. To be called before anything is read or written.
+pub fn without_display() {
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::unix::process::CommandExt;
+
+        let value = std::env::var_os;
+        let has_display = value("XDG_RUNTIME_DIR").is_some_and(|folder| std::path::Path::new(&folder).is_absolute());
+        // Whoever asks the layer for a device gets it.
+        let is_settled = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT"].into_iter().any(|name| value(name).is_some());
+        if has_display || is_settled {
+            return;
+        }
+        let mut words = std::env::args_os();
+        if let (Ok(program), Some(name)) = (std::env::current_exe(), words.next()) {
+            // Returns only where it fails.
+            let _ = std::process::Command::new(program).arg0(name).args(words).env("NODEVICE_SELECT", "1").exec();
+        }
+    }
 }
 
 /// Opens an adapter: the best there is, or the one whose name contains a text.

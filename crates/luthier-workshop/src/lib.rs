@@ -3,11 +3,13 @@
 #![doc = include_str!("../README.md")]
 
 pub mod material_texts;
+mod patience;
 mod places;
 mod run;
 mod terminal;
 mod workshop;
 
+pub use patience::{LOOK, Patience};
 pub use places::{file_name, is_installed, material_files, root, sha256};
 pub use run::Run;
 pub use terminal::{has_colours, on_terminal};

@@ -2,17 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::process::{Command, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::Run;
-
-/// Far more than anything here takes on a busy machine; a hang becomes a failure.
-const PATIENCE: Duration = Duration::from_secs(900);
+use crate::{LOOK, Patience, Run};
 
 /// A command under test.
 pub trait Program {
@@ -84,13 +83,29 @@ impl<P: Program> Workshop<P> {
 
     /// Runs the command in any folder; its streams are pipes.
     pub fn run_in(folder: &Path, args: &[&str]) -> Run {
-        let mut command = assert_cmd::Command::new(P::PATH);
+        let said = format!("{} {}", P::NAME, args.join(" "));
+        let mut command = Command::new(P::PATH);
         // Tests compute what they judge, and leave nothing in the caches of who runs them.
-        command.env("LUTHIER_CACHE", "");
-        let output = command.current_dir(folder).args(args).timeout(PATIENCE).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        let (stdout, stderr) = (text(output.stdout), text(output.stderr));
-        Run { command: format!("{} {}", P::NAME, args.join(" ")), code: output.status.code(), stdout, stderr }
+        command.env("LUTHIER_CACHE", "").current_dir(folder).args(args);
+        // No test opens a window through this.
+        command.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT");
+        let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut patience = Patience::with(child.id());
+        let streams = [all_of(child.stdout.take().unwrap()), all_of(child.stderr.take().unwrap())];
+        let [stdout, stderr] = streams.map(|stream| {
+            loop {
+                match stream.recv_timeout(LOOK) {
+                    Ok(text) => return text,
+                    Err(RecvTimeoutError::Disconnected) => panic!("{said}: output that is no text"),
+                    Err(RecvTimeoutError::Timeout) => {}
+                }
+                if let Err(did) = patience.look() {
+                    child.kill().unwrap();
+                    panic!("{said}: {did}");
+                }
+            }
+        });
+        Run { command: said, code: child.wait().unwrap().code(), stdout, stderr }
     }
 
     /// All that is in a folder, hidden files too: path from there, with forward slashes, and bytes; folders end in a slash.
@@ -104,6 +119,18 @@ impl<P: Program> Workshop<P> {
     pub fn files(&self, folder: &str) -> Vec<String> {
         self.tree(folder).into_keys().filter(|path| !path.ends_with('/')).collect()
     }
+}
+
+/// All that comes out of a stream, once it ends.
+fn all_of(mut stream: impl Read + Send + 'static) -> mpsc::Receiver<String> {
+    let (all, ended) = mpsc::channel();
+    std::thread::spawn(move || {
+        let mut text = String::new();
+        stream.read_to_string(&mut text).unwrap();
+        // Nobody listens where the test has failed.
+        let _ = all.send(text);
+    });
+    ended
 }
 
 fn collect(folder: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {

@@ -106,10 +106,9 @@ async function replacement(scene, { url, kind, size }) {
     texture = RawTexture.CreateRGBATexture(texels, ...size, scene, false, false, Texture.BILINEAR_SAMPLINGMODE, Constants.TEXTURETYPE_HALF_FLOAT);
   } else {
     // DDS and EXR, by the engine's loaders.
-    texture = new Texture(url, scene, { noMipmap: true, invertY: false, samplingMode: Texture.BILINEAR_SAMPLINGMODE });
-    await new Promise((resolve, reject) => {
-      texture.onLoadObservable.addOnce(resolve);
-      setTimeout(() => reject(new Error(`${url} does not load`)), 20_000);
+    await new Promise((onLoad, reject) => {
+      const onError = (message) => reject(new Error(`${url} does not load: ${message}`));
+      texture = new Texture(url, scene, { noMipmap: true, invertY: false, samplingMode: Texture.BILINEAR_SAMPLINGMODE, onLoad, onError });
     });
   }
   texture.wrapU = texture.wrapV = Texture.CLAMP_ADDRESSMODE;

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use luthier_layers::lobes::{
-    Axes, BaseLight, Cover, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Row, Traced, Varied, Varying, shown,
+    Axes, Cover, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Painted, Row, Traced, Varied, Varying,
+    base_below, most_lobes, shown,
 };
 use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, Search,
-    ShadingModel, VaryingFactor, VaryingRecord,
+    AxesRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, PaintedRecord,
+    Search, ShadingModel, VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
 use luthier_optics::color::Color;
@@ -42,8 +43,8 @@ pub(crate) const FIT: JobKind = JobKind::part("fit");
 pub(crate) struct Table;
 
 impl Kind for Table {
-    fn fixed(&self, _: Ask<'_>) -> Result<Shape, BakeError> {
-        Ok(shape(LOBES, 1))
+    fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
+        Ok(shape(LOBES, materials.iter().any(has_base), 1))
     }
 
     /// A tile for the first layer: the others are in it.
@@ -92,12 +93,19 @@ pub fn is_too_deep(material: &Material) -> bool {
     material.stack.layers.len() > VARIED_LAYERS_MAX && material.model() == ShadingModel::Lobes && is_varied()
 }
 
-/// The shape of tiles for so many lobes, with every so many of the rows.
-fn shape(lobes: usize, step: usize) -> Shape {
-    let (rows, parts) = ((ROWS - 1) / step + 1, Row::parts(lobes) as u32);
+/// Whether rows of a material have the light of a diffuse base.
+fn has_base(material: &Material) -> bool {
+    let is_under_patina = matches!(varying(material), Some(Varying::Patina(_)));
+    material.model() == ShadingModel::Lobes && !is_under_patina && base_below(&material.stack).is_some()
+}
+
+/// The shape of tiles for so many lobes, with the light of diffuse bases or without, with every so many of the rows.
+fn shape(lobes: usize, has_base: bool, step: usize) -> Shape {
+    let rows = (ROWS - 1) / step + 1;
+    let (first, last) = (if has_base { Row::BASE_PARTS } else { 0 } as f64, (Row::parts(lobes) - 1) as f64);
     let axes = [
         axis("cos_theta", "", [0.0, 1.0], rows as u32, Mapping::Rational { bend: 1.0 }),
-        axis("part", "", [0.0, f64::from(parts - 1)], parts, Mapping::Apart),
+        axis("part", "", [0.0 - first, last], (first + last) as u32 + 1, Mapping::Apart),
     ];
     Shape::grid(axes, TexelFormat::Rgba16Float)
 }
@@ -128,8 +136,9 @@ pub(crate) fn decide(
 ) -> Result<Option<Search>, (Refusal, Vec<(usize, MeasuredError)>)> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
+    let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(most_lobes(None), 1));
+        settings.take_lobes(shape(most_lobes(None), has_base, 1));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
@@ -141,7 +150,7 @@ pub(crate) fn decide(
     };
     let candidate = |&(most, i): &(usize, usize)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
-        let Shape { x, y, base, format } = shape(most_lobes(Some(most)), STEPS[i]);
+        let Shape { x, y, base, format } = shape(most_lobes(Some(most)), has_base, STEPS[i]);
         let cost = search::cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * search::cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
@@ -163,7 +172,7 @@ pub(crate) fn decide(
     })?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
-    settings.take_lobes(shape(most_lobes(Some(most)), STEPS[i]));
+    settings.take_lobes(shape(most_lobes(Some(most)), has_base, STEPS[i]));
     Ok(Some(search::report(&found[0], chosen, budget)))
 }
 
@@ -191,7 +200,7 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_plain_share: 0.0,
     varying: None,
     axes: None,
-    base: None,
+    painted: None,
     error: None,
 };
 
@@ -204,7 +213,9 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
     });
     let fits = results.get::<Fits>(fit(material, settings.lobes.is_some()).key());
     let Some((fits, shape)) = fits.zip(settings.shape(TableKind::Lobes)) else {
-        return LobesRecord { axes, ..UNFITTED };
+        let base = base_below(&material.stack).filter(|_| has_base(material));
+        let painted = base.map(|base| PaintedRecord { albedo: base.albedo, moments: None });
+        return LobesRecord { axes, painted, ..UNFITTED };
     };
     let Fit { varied, errors } = fits.of(settings.lobes);
     let step = step(shape.x.size);
@@ -237,7 +248,10 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_plain_share: plain_share,
         varying: varied.varying().map(over),
         axes,
-        base: lobes.frame.base.map(|BaseLight { albedo, share, internal }| BaseRecord { albedo, share, internal }),
+        painted: lobes.frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
+            albedo,
+            moments: varied.varying().filter(|_| is_lambertian).map(|_| wide.moments()),
+        }),
         error,
     }
 }
@@ -281,12 +295,16 @@ impl Job for FitJob {
         FIT
     }
 
+    fn revision(&self) -> u32 {
+        6
+    }
+
     fn inputs(&self) -> Value {
         let FitSettings { rows, paths, seed } = FitSettings::default();
         json!({
             "stack": json::stack(&self.stack),
             "color": json::color(&self.color),
-            "lobes": LOBES,
+            "lobes": most_lobes(&self.stack),
             "excess": EXCESS,
             "rows": rows,
             "paths": paths,
@@ -300,12 +318,13 @@ impl Job for FitJob {
         let Self { stack, color, varying, is_searched } = self;
         let traced = Traced::new(stack, color, *varying, FitSettings::default());
         let judge = Judge::new(stack, color, *varying);
+        let most = most_lobes(stack);
         let fit = |(most, excess)| {
             let varied: Varied = traced.fit(most, excess);
             Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
         };
         let wanted: Vec<(usize, f64)> =
-            if *is_searched { (0..=LOBES).map(|most| (most, 0.0)).collect() } else { vec![(LOBES, EXCESS)] };
+            if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
         Artefact::new(Fits(wanted.into_iter().map(fit).collect()))
     }
 
@@ -368,12 +387,15 @@ impl Job for LobesJob {
         let fits: &Fits = inputs.part(self.fit.as_ref());
         let varied = fits.of(self.most).varied.clone().thinned(step(x.size));
         let (lobes, tile) = varied.tile(self.tile);
-        let most = (y.size as usize - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
+        let (has_base, last) = (y.min < 0.0, y.max as usize);
+        let most = (last + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
+        // Rows without a base have no light of it.
+        let filled = |row: Row| Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) };
         // Parts are side by side; the first and the last node of each stand there twice.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
             let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
-            let mut parts = row.filled(most).to_parts();
+            let mut parts = filled(row).to_parts();
             if let (Some(Varying::Patina(_)), Some([.., free])) = (varied.varying(), parts.last_mut()) {
                 *free = varied.bare_facets(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
             }
@@ -383,8 +405,8 @@ impl Job for LobesJob {
         }
         let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
         let read = |c: f64| {
-            let part = |j: u32| atlas.sample(0, [c, f64::from(j)], WeightBits::Fixed(8));
-            Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>())
+            let part = |j: u32| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8));
+            Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>(), has_base)
         };
         let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
         let energies = |part: usize| {
@@ -392,7 +414,7 @@ impl Job for LobesJob {
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
-                    let [expected, sampled] = [lobes.row_of(tile, c).filled(most), read(c)].map(|row| {
+                    let [expected, sampled] = [filled(lobes.row_of(tile, c)), read(c)].map(|row| {
                         let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });
@@ -401,7 +423,8 @@ impl Job for LobesJob {
                 |u| vec![x.decode(u[0]), part as f64],
             )
         };
-        let error = (1..most + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
+        let count = most + 2 + usize::from(has_base);
+        let error = (1..count).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
         let factor = |varying: Varying| match (varying, varying.factor(self.tile as f64)) {
             (Varying::Patina(_), amount) if amount > 1.0 => {

@@ -1,6 +1,6 @@
 //! Tables are baked because a shader reads them, or because a material asks for them.
 
-use luthier_lut::{TableKind, TexelFormat};
+use luthier_lut::{TableKind, TexelFormat, WeightBits};
 use luthier_manifest::LayerRecord;
 
 use crate::materials::{SMALL, atlas, bake_all, conductor, dielectric, material};
@@ -47,6 +47,37 @@ fn every_kind_can_be_asked_for() {
     for model in ["elek", "granier-heidrich", "phong"] {
         assert_eq!(kinds(&layers, model, &(all.to_owned() + SMALL)), TableKind::ALL, "{model}");
     }
+}
+
+/// Rows of a bake have the light of diffuse bases apart where one of its materials has such a base; those of others have none. Oracle: the share of diffuse
+/// light that a smooth surface of index 1.5 sends back, .596.
+#[test]
+fn rows_have_the_light_of_bases_where_there_are_some() {
+    let coat = dielectric("1.5", 0.001);
+    let metal = coat.clone() + &conductor("{ n = 0.2, k = 3.5 }", 0.3);
+    let paint = coat + "[[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0]\n";
+    let lobes = "[bake]\nmodel = \"lobes\"\ncolor = \"three-wavelengths\"\n";
+    let parts = |bake: &luthier_bake::Baked| atlas(bake, TableKind::Lobes).layout.y.as_ref().map(|y| (y.min, y.max));
+    assert_eq!(parts(&bake_all(&[material("metal", &metal, lobes)])).unwrap().0, 0.0);
+    let bake = bake_all(&[material("metal", &metal, lobes), material("paint", &paint, lobes)]);
+    let (first, last) = parts(&bake).unwrap();
+    assert!(first == -2.0 && last >= 3.0, "{first} {last}");
+    let part = |number: usize, cos_theta: f64, part: f64| {
+        let tile = bake.materials[number].records[0].tiles[TableKind::Lobes].unwrap();
+        atlas(&bake, TableKind::Lobes).sample(tile, [cos_theta, part], WeightBits::Exact)
+    };
+    for cos_theta in [1.0, 0.6, 0.1] {
+        assert_eq!([-2.0, -1.0].map(|of_base| part(0, cos_theta, of_base)), [[0.0; 4]; 2]);
+        let [internal, base, wide] = [-2.0, -1.0, 0.0].map(|of_base| part(1, cos_theta, of_base));
+        for c in 0..2 {
+            assert!((internal[c] - 0.596).abs() < 0.01, "{internal:?}");
+            // A smooth coat sends nothing else up.
+            assert!((base[c] - wide[c]).abs() < 1e-3 && base[c] > 0.05, "{base:?} {wide:?}");
+        }
+        assert_eq!([internal[2], base[2]], [0.0; 2]);
+    }
+    let painted = bake.materials[1].constants.lobes.unwrap().painted.unwrap();
+    assert_eq!((painted.albedo, painted.moments), ([0.8, 0.5, 0.0], None));
 }
 
 /// The one of two materials that asks for D reads it; for the other it is computed.

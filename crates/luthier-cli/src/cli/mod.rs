@@ -544,13 +544,17 @@ pub(crate) struct ModelsOptions {
 }
 
 const EVAL_EXAMPLES: &str = "\
-Prints f cos theta_i in linear Rec.709, spectral by default. Models with a shader (elek, weidlich-wilkie, granier-heidrich, belcour, \
+Prints f cos theta_i in linear Rec.709, in the colour of the file: spectral, or that of three wavelengths where [bake] says so. \
+Models with a shader (elek, weidlich-wilkie, granier-heidrich, belcour, \
 yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the directions of all channels, colours are those of \
-each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
+each term. The colour of the file stands for the `baked` form, --three-wavelengths for the `full` one.
 
 Effects of the file count at the place of --uv and --distance: flakes and patina for elek, weidlich-wilkie and lobes, glitter for all; JSON says \
 what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Of a surface file, the material at that place is evaluated, with the normal there. Maps of single layers, of albedo, base colour and metal count there, too; those of the whole surface (normal, roughness, thickness of the first slab) do not: the options on textures \
 say what they hold.
+
+The model lobes is fitted anew, to the stack at the place. --out FOLDER reads the tables that a bake ships instead, as the shader reads them at the place, of any \
+model that has a shader.
 
 Estimates come with their standard error. It is `not-settled`, in JSON null beside `settled` false, where rare paths carry the light and too \
 few of them were met to know it; more --samples settle it.
@@ -570,6 +574,7 @@ Examples:
   luthier eval materials/car-paint.toml --model elek --albedo
   luthier eval materials/car-paint.toml --model elek --albedo --angles 0,60 --normal 10,0
   luthier eval materials/copper-patina.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval materials/varnished-brass.toml --model lobes --out out --wi 30,0 --wo 45,180
   luthier eval materials/surfaces/sunstone.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
   luthier eval film.toml --polarised --angles 0,60 --wavelength 550
   luthier eval materials/car-paint.toml --model weidlich-wilkie --furnace
@@ -609,19 +614,23 @@ pub(crate) struct EvalOptions {
     /// under films
     #[arg(long, conflicts_with = "model")]
     pub(crate) polarised: bool,
+    /// Folder of a bake whose tables to read, as its shader reads them, in place of exact terms: the model is that of the material in the
+    /// bake, and colours are those of its tables
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["against_angle", "rgb", "wavelength", "three_wavelengths"])]
+    pub(crate) out: Option<PathBuf>,
     /// Angles from the normal instead of 0 to 85 degrees in steps of 5
     #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = angle, requires = "against_angle")]
     pub(crate) angles: Vec<f64>,
     /// Azimuth of the eye, in degrees, in output against angle
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true, requires = "against_angle")]
     pub(crate) azimuth: f64,
-    /// Spectral colour: the default for values; for output against angle, instead of one wavelength
+    /// Spectral colour, whatever the file has; in output against angle in place of one wavelength
     #[arg(long, conflicts_with_all = ["furnace", "environment"])]
     pub(crate) rgb: bool,
     /// One wavelength, 360 to 830 nm. Absorption, diffuse albedo and `f0` are those of the channel nearest to it (645, 525, 445 nm)
     #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with_all = ["rgb", "three_wavelengths"])]
     pub(crate) wavelength: Option<f64>,
-    /// The material's three wavelengths taken as R, G, B instead of spectral colour
+    /// The material's three wavelengths taken as R, G, B, whatever colour the file has
     #[arg(long, conflicts_with_all = ["rgb", "furnace", "environment"])]
     pub(crate) three_wavelengths: bool,
     /// Print as JSON

@@ -55,7 +55,7 @@ impl<'a> Set<'a> {
         }
         let Gathered { materials, mut surfaces, .. } = gather(&others)?;
         let mut materials = read_all(&materials)?;
-        refuse(&mut materials, |material| shading.doubts(material, &[]));
+        refuse(&mut materials, |material| shading.doubts_and_energy(material, &[]));
         refuse_surfaces(&mut surfaces, &materials);
         doubt_surfaces(&mut surfaces);
         refuse_too_many(&mut materials, |materials| shaded(materials, shading, &[]));

@@ -92,7 +92,7 @@ fn scene(first: f32, fresnel: f32, axes: Option<Axes>) -> Option<Scene> {
         critical_plain_share: 0.0,
         varying: None,
         axes: axes.map(|Axes { turn, is_mirrored }| AxesRecord { turn, is_mirrored, tiles }),
-        base: None,
+        painted: None,
         error: None,
     });
     manifest.functions = [FunctionGroup::Environment].into_iter().collect();

@@ -7,7 +7,7 @@ mod stacks;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier_export::read;
-use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, Simulation, shown};
+use luthier_layers::lobes::{EXCESS, FitSettings, Lobes, Simulation, most_lobes, shown};
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -172,7 +172,7 @@ fn simulated(stack: &Stack, wavelengths_nm: [f64; 3], settings: FitSettings) -> 
 
 fn judge(subject: &ModelSubject, options: &LobesOptions) -> (Judged, Reference) {
     let simulation = simulated(&subject.stack, subject.wavelengths_nm, fit_settings(options));
-    let lobes = simulation.fit_fewest(LOBES, EXCESS);
+    let lobes = simulation.fit_fewest(most_lobes(&subject.stack), EXCESS);
     let reference = Reference::new(subject, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
     let beside = BESIDE.iter().filter_map(|name| model(name));
     let judged = Judged {

@@ -1,7 +1,7 @@
 //! Why a fit is as far from the simulation as it is: the fit anew, with one thing changed at a time.
 
 use luthier_layers::layered_mc::JointPaths;
-use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, shown};
+use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, most_lobes, shown};
 use luthier_layers::monochrome::Monochrome;
 use luthier_optics::stack::{Base, Stack};
 use luthier_report::{ModelSubject, Reference, Shown, ViewError};
@@ -69,7 +69,7 @@ impl Reasons {
     pub(super) fn of(subject: &ModelSubject, judged: &Judged, reference: &Reference, options: &LobesOptions) -> Self {
         let settings = fit_settings(options);
         let nm = subject.wavelengths_nm;
-        let fit = |settings| simulated(&subject.stack, nm, settings).fit_fewest(LOBES, EXCESS);
+        let fit = |settings| simulated(&subject.stack, nm, settings).fit_fewest(most_lobes(&subject.stack), EXCESS);
         let lobes = judged.lobes.rows[0].lobes.len();
         let of_lobes = |lobes: &Lobes| reference.errors(Shown::Lobes(lobes));
         let errors = |change: Change| match change {
@@ -107,7 +107,7 @@ fn alone(subject: &ModelSubject, channel: usize, reference: &Reference, settings
     let joined: u64 = sets.filter(|set| set[channel]).flatten().map(u64::from).sum();
     let settings = FitSettings { paths: settings.paths * joined / 3, ..settings };
     let nm = [subject.wavelengths_nm[channel]; 3];
-    let lobes = simulated(&gray(&stack, channel), nm, settings).fit_fewest(LOBES, EXCESS);
+    let lobes = simulated(&gray(&stack, channel), nm, settings).fit_fewest(most_lobes(&stack), EXCESS);
     let errors = reference.errors(Shown::Lobes(&lobes));
     errors.into_iter().skip(channel).step_by(3).collect()
 }

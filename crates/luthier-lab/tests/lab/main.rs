@@ -10,4 +10,5 @@ mod lobes;
 mod parity;
 mod simulation;
 mod stability;
+mod textured;
 mod workshop;

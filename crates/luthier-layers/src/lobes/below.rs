@@ -42,6 +42,9 @@ impl Below {
             }
         };
         let eye = refracted(at, frame.index);
+        let of_base = row.base.filter(|_| frame.base.is_some_and(|base| base.is_lambertian));
+        let wide = of_base.map_or(frame.wide, |base| frame.wide.of_base(base.falloff));
+        let frame = Frame { wide, ..frame };
         Self { frame, row, turn, eye, shapes, tilt: [0.0; 2] }
     }
 
@@ -79,10 +82,9 @@ impl Below {
     /// The light over a diffuse base of another albedo, RGB; the light itself where there is no such base.
     #[must_use]
     pub fn over_base(mut self, albedo: Rgb) -> Self {
-        let Some(base) = &self.frame.base else { return self };
-        let factor = base.factor(albedo);
-        for (c, factor) in factor.into_iter().enumerate() {
-            let more = (factor - 1.0) * self.row.wide[c];
+        let Some((base, simulated)) = self.row.base.zip(self.frame.base) else { return self };
+        for (c, more) in base.more(simulated.albedo, albedo).into_iter().enumerate() {
+            let more = more.max(-self.row.wide[c]);
             self.row.wide[c] += more;
             self.row.albedo_dir[c] += more;
         }

@@ -7,14 +7,14 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Base, Diffuse, Layer, Stack, Surface};
+use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
 use super::problem::{Lobed, Problem, ViewProblem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
-use super::{Axes, BaseLight, Critical, FirstInterface, Lobes, Row, ViewAxis};
+use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
 use crate::facets::ALPHA_MIN;
 use crate::layered_mc::ColorPaths;
 
@@ -87,8 +87,10 @@ pub struct Simulation {
     widths: Vec<Numbers>,
     /// Light by view, in the order of [`Views`].
     pub(super) views: Vec<Tally>,
-    /// Albedo of a diffuse base below interfaces.
-    base_albedo: Option<Rgb>,
+    /// The diffuse base below interfaces.
+    pub(super) base: Option<Painted>,
+    /// Coefficients of the remainder of a Lambertian base.
+    pub(super) base_falloff: Option<[f64; 2]>,
 }
 
 /// Numbers of views: rows of them from grazing views up, one azimuth after the other, without that along the normal; and last that.
@@ -196,6 +198,8 @@ impl Simulation {
         let is_half = axes.is_none() && axis.critical().cot_sq > 0.0;
         let seen = if is_half { ViewAxis::new(2 * axis.size() - 1, axis.critical()) } else { axis };
         let views = Views { rows: seen.size(), axes };
+        let base = base_below(stack)
+            .map(|Diffuse { albedo, sigma }| Painted { albedo, is_lambertian: sigma == 0.0 && albedo != [0.0; 3] });
         let view = |(number, (azimuth, row)): (usize, (usize, usize))| {
             let wo = seen_from(seen, views.azimuth(azimuth), row);
             // The light is traced in the tangents of the stack.
@@ -206,7 +210,7 @@ impl Simulation {
                 Some(_) if row + 1 < seen.size() => count / AZIMUTH_SHARE,
                 Some(_) => count,
             };
-            let mut tally = Tally::new(&cells);
+            let mut tally = Tally::new(&cells, base.is_some_and(|base| base.is_lambertian));
             // A family of its own for every view.
             let seed =
                 settings.seed.wrapping_mul(views.azimuths() as u64 * seen.size() as u64).wrapping_add(number as u64);
@@ -222,9 +226,9 @@ impl Simulation {
             }
             tally
         };
-        let tallies = views.all().enumerate().map(view).collect();
-        let base_albedo = base_albedo(stack);
-        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base_albedo }
+        let tallies: Vec<Tally> = views.all().enumerate().map(view).collect();
+        let base_falloff = Wide::falloff_of(axis, &tallies);
+        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff }
     }
 
     /// The light in one set of its cells.
@@ -290,57 +294,45 @@ impl Simulation {
     }
 
     /// The place that a search comes to from that of a stack much like this one, whose lobes are narrower or wider by a factor. Its shape of the
-    /// remainder is kept.
+    /// remainder is kept, unless this stack has a Lambertian base.
     pub(super) fn follow(&self, from: &Found, factor: f64) -> Found {
+        self.beside(from, factor, self.base_falloff.unwrap_or(from.wide_falloff()))
+    }
+
+    /// [`Self::follow`] with a given shape of the remainder.
+    pub(super) fn with_falloff(&self, from: &Found, falloff: [f64; 2]) -> Found {
+        self.beside(from, 1.0, falloff)
+    }
+
+    fn beside(&self, from: &Found, factor: f64, falloff: [f64; 2]) -> Found {
         let lobes: Vec<Start> = from.starts(self.basis()).iter().map(|lobe| lobe.scaled(factor)).collect();
         let problem = Problem::new(self, from.set);
         let count = lobes.len();
-        let beside = parameters(lobes, from.wide_falloff());
+        let beside = parameters(lobes, falloff);
         let lobed = Lobed { problem: &problem, lobes: count, beside: Some(&beside) };
         let place = Place::new(beside.clone(), &lobed);
         Found { set: from.set, place: SEARCH.descend(place, &lobed, LAST_STEPS) }
-    }
-
-    /// The place that a search comes to from another with a given shape of the remainder, which it keeps.
-    pub(super) fn with_falloff(&self, from: &Found, falloff: [f64; 2]) -> Found {
-        let problem = Problem::new(self, from.set);
-        let lobes = from.starts(self.basis());
-        let lobed = Lobed::new(&problem, lobes.len());
-        let place = Place::new(parameters(lobes, falloff), &lobed);
-        self.follow(&Found { set: from.set, place }, 1.0)
     }
 
     /// The lobes of a place.
     pub(super) fn lobes(&self, found: &Found) -> Lobes {
         let mut lobes = Problem::new(self, found.set).lobes(found);
         lobes.rows = lobes.rows.into_iter().map(Row::bounded).collect();
-        lobes.frame.base = self.base_light(&lobes);
         lobes
     }
 
-    /// The light of the diffuse base in the remainder of lobes.
+    /// Share of the light from a diffuse base that the layers send back to it.
     ///
     /// Light that has met a Lambertian base does not remember from where: of what leaves it, the layers send back the same share, whatever the view and
-    /// however often it came back. So that share is one less the light that met the base once over all that met it, over the albedo. Its share of
-    /// the remainder hangs on the view but little, and is that which is the nearest.
-    fn base_light(&self, lobes: &Lobes) -> Option<BaseLight> {
-        let albedo = self.base_albedo?;
-        let (mut once, mut all, mut joint, mut squares) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
-        let numbers = self.numbers();
-        for ((azimuth, row), tally) in numbers.all().zip(&self.views) {
-            let wo = seen_from(self.seen, numbers.azimuth(azimuth), row);
-            let wide = lobes.row(self.axes.map_or(wo, |axes| axes.outside(wo))).wide;
-            for c in 0..3 {
-                once[c] += tally.base_once[c];
-                all[c] += tally.base[c];
-                joint[c] += tally.base[c] * wide[c];
-                squares[c] += wide[c] * wide[c];
-            }
-        }
+    /// however often it came back. So that share is one less the light that met the base once over all that met it, over the albedo.
+    pub(super) fn internal(&self) -> Option<Rgb> {
+        let albedo = self.base?.albedo;
+        let sum = |of: fn(&Tally) -> Rgb, c: usize| self.views.iter().map(|tally| of(tally)[c]).sum::<f64>();
         let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
-        let share = [0, 1, 2].map(|c: usize| over(joint[c], squares[c]));
-        let internal = [0, 1, 2].map(|c: usize| over(over(all[c] - once[c], all[c]), albedo[c]).clamp(0.0, 1.0));
-        Some(BaseLight { albedo, share, internal })
+        Some([0, 1, 2].map(|c: usize| {
+            let (once, all) = (sum(|tally| tally.base_once, c), sum(|tally| tally.base, c));
+            over(over(all - once, all), albedo[c]).clamp(0.0, 1.0)
+        }))
     }
 
     fn problems(&self) -> Vec<Problem<'_>> {
@@ -349,17 +341,16 @@ impl Simulation {
 
     /// Fits of no lobe, of one, and so on; those that gain nothing by another are the last.
     fn fits(&self, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
-        let basis = self.basis();
+        let (basis, falloff) = (self.basis(), self.base_falloff.unwrap_or(REMAINDER_START));
         let alone = |set: usize| {
-            let start = move |&shape: &Numbers| {
-                TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], REMAINDER_START))
-            };
+            let start =
+                move |&shape: &Numbers| TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff));
             self.starts.iter().flat_map(start)
         };
         let one = (most > 0).then(|| nearest(problems, (0..problems.len()).flat_map(alone).collect()));
         // In the cells of the others, so that residuals compare.
         let set = one.as_ref().map_or(0, |one| one.set);
-        let mut fits = vec![nearest(problems, vec![(set, Vec::new(), REMAINDER_START)])];
+        let mut fits = vec![nearest(problems, vec![(set, Vec::new(), falloff)])];
         fits.extend(one);
         // One lobe more at a time, beside those found, wider or narrower.
         for count in 1..most {
@@ -473,7 +464,10 @@ pub(super) fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> 
     Cells::stretched(index, Plane::OfTangents([0.0; 2]).shape([0.0, mean, share * b, share * c], 0.0))
 }
 
-/// The relative indices in whose half vectors lobes may be: 1, that of the first medium, and that of the last.
+/// The relative indices in whose half vectors lobes may be: next to 1, that of the first medium, and that of the last.
+///
+/// Half vectors outside are those of index 1, but flat light would be as bright there as any. Facets mask it: along their horizon, the light that one of
+/// slope parameter alpha sends is in proportion to `2 cos / alpha` (Smith's G1 of GGX). The index that makes lobes fall as `cos / sqrt(n^2 - 1)` does it.
 pub(super) fn indices(stack: &Stack) -> Vec<f64> {
     let exterior = stack.exterior.at(REFERENCE_NM).re;
     let media = stack.layers.iter().filter_map(|layer| match &layer.base {
@@ -481,7 +475,9 @@ pub(super) fn indices(stack: &Stack) -> Vec<f64> {
         Base::Conductor { .. } | Base::Diffuse(_) => None,
     });
     let media: Vec<f64> = media.collect();
-    let mut indices = vec![1.0];
+    let masked = stack.layers.first().filter(|first| !matches!(first.base, Base::Diffuse(_)));
+    let alpha = masked.map_or(0.0, |first| first.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0));
+    let mut indices = vec![(1.0 + 0.25 * alpha * alpha).sqrt()];
     for index in media.first().into_iter().chain(media.last()).copied() {
         if indices.iter().all(|known| index > known + INDEX_STEP || index < known - INDEX_STEP) && index > 1.0 {
             indices.push(index);
@@ -517,14 +513,6 @@ const SHARPEST: f64 = 2.0;
 
 /// The wavelength at which directions are refracted: the sodium D line.
 const REFERENCE_NM: f64 = 589.3;
-
-/// Albedo of a diffuse base below interfaces.
-fn base_albedo(stack: &Stack) -> Option<Rgb> {
-    let [_, .., Layer { base: Base::Diffuse(Diffuse { albedo, .. }), .. }] = stack.layers.as_slice() else {
-        return None;
-    };
-    Some(*albedo)
-}
 
 /// A place that a search came to.
 pub(super) struct Found {

@@ -10,7 +10,7 @@ use luthier_optics::stack::Stack;
 use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
-use super::{Axes, FirstInterface, FitSettings, Varied, Varying, ViewAxis, patina, shown};
+use super::{Axes, FirstInterface, FitSettings, Lobes, Varied, Varying, ViewAxis, patina, shown};
 use crate::layered_mc::ColorPaths;
 
 /// Views, and paths of each.
@@ -111,11 +111,15 @@ impl Judge {
 
     /// The errors of lobes of the stack, over the same factor.
     pub fn error(&self, varied: &Varied) -> FitError {
-        self.views.iter().map(|view| self.error_at(view, varied)).fold(FitError::default(), FitError::max)
+        self.error_of(|factor| varied.at(factor))
     }
 
-    fn error_at(&self, view: &View, varied: &Varied) -> FitError {
-        let lobes = varied.at(view.factor);
+    /// The errors of the lobes that a factor has.
+    pub(super) fn error_of(&self, at: impl Fn(f64) -> Lobes) -> FitError {
+        self.views.iter().map(|view| self.error_at(view, &at(view.factor))).fold(FitError::default(), FitError::max)
+    }
+
+    fn error_at(&self, view: &View, lobes: &Lobes) -> FitError {
         let Some(below) = lobes.below(view.wo) else { return FitError::default() };
         let at = self.axes.map_or(view.wo, |axes| axes.inside(view.wo));
         let eye = refracted(at, self.cells.index);

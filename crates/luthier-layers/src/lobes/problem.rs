@@ -11,7 +11,7 @@ use super::half_vector::{outside, refracted};
 use super::parameters::{Basis, NODES, SHIFT, Term};
 use super::solve::{Amounts, Column, Guess, Residuals};
 use super::tally::{Cells, Point, Tally};
-use super::{Axes, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
+use super::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
 /// Share of a shape above the horizon below which the fit is held back.
 const SHARE_WANTED: f64 = 0.35;
@@ -107,7 +107,8 @@ impl Residuals for Lobed<'_> {
         match self.problem.views.get(block) {
             Some(view) => {
                 let mut columns = view.slopes(p, self.lobes, now);
-                columns.retain(|(number, _)| self.beside.is_none() || *number < p.len() - 2);
+                let is_kept = self.beside.is_some() || self.problem.simulation.base_falloff.is_some();
+                columns.retain(|(number, _)| !is_kept || *number < p.len() - 2);
                 columns
             }
             None if block > self.problem.views.len() => {
@@ -176,23 +177,28 @@ impl<'a> Problem<'a> {
     /// Energies by view, part and channel.
     ///
     /// Where parts look alike at a view, its light leaves open how much each of them has, and noise would decide: then between the rows the
-    /// energies of one part would be seen with the shape of another. So the energies of a view are pulled to those of the rows beside it.
+    /// energies of one part would be seen with the shape of another. So the energies of a view are pulled to those of the rows beside it. The light
+    /// of a Lambertian base is the remainder's: lobes that had some of it would keep its colour.
     fn energies(&self, p: &[f64], count: usize) -> Vec<Vec<Rgb>> {
         let profiles: Vec<Vec<Vec<f64>>> = self.views.iter().map(|view| view.profiles(p, count).cells).collect();
         let amounts: Vec<Amounts<'_>> =
             self.views.iter().zip(&profiles).map(|(view, profiles)| Amounts::new(profiles, &view.weights)).collect();
         let beside = self.simulation.numbers().beside();
+        let tallies = &self.simulation.views;
         let brightness = smoothed(&beside, |view, guess| {
             amounts[view].positive(&self.views[view].found, self.views[view].total, guess)
         });
         let channels = [0, 1, 2].map(|c: usize| {
             smoothed(&beside, |view, guess| {
-                let tally = &self.simulation.views[view];
+                let tally = &tallies[view];
                 let cells: Vec<f64> = tally.rest[self.set].iter().map(|rgb| rgb[c]).collect();
                 amounts[view].among(&brightness[view], &cells, tally.total[c], guess)
             })
         });
-        let rgb = |view: usize, part: usize| channels.each_ref().map(|channel| channel[view][part]);
+        let rgb = |view: usize, part: usize| {
+            let of_base = if part == count { tallies[view].of_lambertian() } else { [0.0; 3] };
+            [0, 1, 2].map(|c: usize| channels[c][view][part] + of_base[c])
+        };
         (0..amounts.len()).map(|view| (0..=count).map(|part| rgb(view, part)).collect()).collect()
     }
 
@@ -202,7 +208,7 @@ impl<'a> Problem<'a> {
         let count = p.len() / self.basis.per_lobe();
         let energies = self.energies(p, count);
         let Simulation { first, axis, seen, axes, cells, .. } = self.simulation;
-        let index = cells[self.set].index;
+        let (index, internal, wide) = (cells[self.set].index, self.simulation.internal(), wide_of(p, *axis));
         let row = |((view, tally), energies): ((&ViewProblem, &Tally), &Vec<Rgb>)| {
             let lobe = |lobe: usize| {
                 let shape = view.shape(p, lobe);
@@ -218,7 +224,16 @@ impl<'a> Problem<'a> {
                 Lobe { strength, share, shift, sharpness: [x, y], shear, tail: shape.tail }
             };
             let sum = |c: usize| tally.first_facet[c] + energies.iter().map(|energy| energy[c]).sum::<f64>();
-            Row { albedo_dir: [0, 1, 2].map(sum), lobes: (0..count).map(lobe).collect(), wide: energies[count] }
+            Row {
+                albedo_dir: [0, 1, 2].map(sum),
+                lobes: (0..count).map(lobe).collect(),
+                wide: energies[count],
+                base: internal.map(|internal| BaseLight {
+                    energy: tally.base,
+                    internal,
+                    falloff: self.simulation.base_falloff.map_or([0.0; 2], |_| wide.falloff()),
+                }),
+            }
         };
         let rows: Vec<Row> = self.views.iter().zip(&self.simulation.views).zip(&energies).map(row).collect();
         let numbers = self.simulation.numbers();
@@ -233,7 +248,7 @@ impl<'a> Problem<'a> {
         };
         Lobes {
             first: first.clone(),
-            frame: Frame { index, wide: wide_of(p, *axis), axes: *axes, base: None },
+            frame: Frame { index, wide, axes: *axes, base: self.simulation.base },
             axis: *axis,
             rows,
         }
@@ -243,7 +258,8 @@ impl<'a> Problem<'a> {
 /// Brightness of the cells: means of the channels, over that of all light of the view.
 fn brightness(tally: &Tally, set: usize) -> Vec<f64> {
     let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
-    let all = (mean(tally.total) + mean(tally.first_facet)).max(f64::MIN_POSITIVE);
+    let all = [tally.total, tally.first_facet, tally.of_lambertian()].map(mean).iter().sum::<f64>();
+    let all = all.max(f64::MIN_POSITIVE);
     tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect()
 }
 
@@ -571,7 +587,7 @@ mod tests {
         let energy = |paths: f64| expected(&cells, &own, &[&other, &other], paths)[7];
         assert!((energy(1e9) - 2.0).abs() < 1e-3 && (energy(1.0) - 4.0).abs() < 1e-3);
         assert!((energy(MANY_PATHS * cells.count() as f64) - 3.0).abs() < 1e-12);
-        let dark = Tally::new(&[cells]);
+        let dark = Tally::new(&[cells], false);
         assert_eq!((dark.paths(), brightness(&dark, 0)[7]), (0.0, 0.0));
         assert_eq!(expected(&cells, &vec![0.0; cells.count()], &[&own], dark.paths())[7], 2.0);
     }

@@ -147,7 +147,8 @@ impl ViewAxis {
         for ends in cosines.iter().map(|cos_theta| ends(*cos_theta)) {
             ends.iter().for_each(|(i, x)| ends.iter().for_each(|(j, y)| matrix[*i][*j] += x * y));
         }
-        let given: Vec<Vec<[f64; 4]>> = rows.iter().map(Row::to_parts).collect();
+        let (given, has_base): (Vec<Vec<[f64; 4]>>, _) =
+            (rows.iter().map(Row::to_parts).collect(), rows[0].base.is_some());
         let mut parts = vec![given[0].clone(); self.size];
         for (part, c) in (0..given[0].len()).flat_map(|part| [0, 1, 2, 3].map(|c: usize| (part, c))) {
             let mut right = vec![0.0; self.size];
@@ -156,7 +157,7 @@ impl ViewAxis {
             }
             parts.iter_mut().zip(solve(matrix.clone(), right)).for_each(|(parts, x)| parts[part][c] = x);
         }
-        parts.iter().map(|parts| Row::of_parts(parts)).collect()
+        parts.iter().map(|parts| Row::of_parts(parts, has_base)).collect()
     }
 }
 
@@ -181,6 +182,33 @@ pub struct Row {
     pub lobes: Vec<Lobe>,
     /// Energy of the wide remainder.
     pub wide: Rgb,
+    /// The light of a diffuse base below interfaces in the remainder; none of another stack.
+    pub base: Option<BaseLight>,
+}
+
+/// The light of a diffuse base at a view.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct BaseLight {
+    /// Its energy in the wide remainder.
+    pub energy: Rgb,
+    /// Share of the light from the base that the layers send back to it.
+    pub internal: Rgb,
+    /// Coefficients of the remainder's shape, which is that of the light of a Lambertian base; 0 above another base.
+    pub falloff: [f64; 2],
+}
+
+impl BaseLight {
+    /// What a base of an albedo R has more of than one of the albedo with which the stack was simulated: its light is in proportion to `R / (1 - r R)`,
+    /// r being what the layers send back.
+    pub fn more(&self, simulated: Rgb, albedo: Rgb) -> Rgb {
+        [0, 1, 2].map(|c: usize| {
+            let light = |albedo: f64| albedo / (1.0 - self.internal[c] * albedo).max(1e-3);
+            let own = light(simulated[c]);
+            // A black base leaves no light to scale.
+            if own > 0.0 { self.energy[c] * (light(albedo[c]) / own - 1.0) } else { 0.0 }
+        })
+    }
 }
 
 /// A lobe at a view.
@@ -234,7 +262,10 @@ impl Lobe {
 const SHARPNESS_MIN: f64 = 1e-4;
 
 impl Row {
-    /// Number of parts of a row of so many lobes.
+    /// Parts of the light of a diffuse base.
+    pub const BASE_PARTS: usize = 2;
+
+    /// Number of parts of a row of so many lobes, without those of the light of a diffuse base.
     pub const fn parts(lobes: usize) -> usize {
         2 + 2 * lobes
     }
@@ -243,6 +274,8 @@ impl Row {
     ///
     /// | part | x, y, z, w |
     /// |---|---|
+    /// | -2 | share of the light from a diffuse base that the layers send back to it RGB, b of the remainder; not there without such a base |
+    /// | -1 | energy of the light of that base in the remainder RGB, a of the remainder; likewise |
     /// | 0 | wide remainder RGB, shear of the first lobe |
     /// | 1 + 2k | strength of lobe k RGB, shift |
     /// | 2 + 2k | of lobe k the sharpness along the plane of the eye, and across it; 1 over the tail; share |
@@ -252,7 +285,9 @@ impl Row {
     pub fn to_parts(&self) -> Vec<[f64; 4]> {
         let rgb = |[r, g, b]: Rgb, w: f64| [r, g, b, w];
         let shear = |lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt());
-        let mut parts = vec![rgb(self.wide, shear(0))];
+        let of_base = |BaseLight { energy, internal, falloff: [a, b] }| [rgb(internal, b), rgb(energy, a)];
+        let mut parts: Vec<[f64; 4]> = self.base.map(of_base).into_iter().flatten().collect();
+        parts.push(rgb(self.wide, shear(0)));
         for lobe in &self.lobes {
             parts.push(rgb(lobe.strength, lobe.shift));
             let tail = lobe.tail.max(TAIL_MIN);
@@ -263,9 +298,12 @@ impl Row {
         parts
     }
 
-    /// The row of parts.
-    pub fn of_parts(parts: &[[f64; 4]]) -> Self {
+    /// The row of parts, of which the first two are those of a diffuse base if there are such.
+    pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
         let rgb = |part: Option<&[f64; 4]>| part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b]);
+        let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
+        let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
+        let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
         let shear = |lobe: usize| match lobe {
             0 => parts.first(),
@@ -289,6 +327,7 @@ impl Row {
             albedo_dir: rgb(parts.last()),
             lobes: inner.chunks_exact(2).enumerate().filter_map(lobe).collect(),
             wide: rgb(parts.first()),
+            base: has_base.then_some(base),
         }
     }
 
@@ -311,17 +350,19 @@ impl Row {
         self
     }
 
-    /// Energies: the albedo, that of the wide remainder, and those of the lobes.
+    /// Energies: the albedo, that of the wide remainder, and those of the lobes; last that of a diffuse base, which the remainder has in it.
     pub fn energies(&self) -> Vec<Rgb> {
         let lobes = self.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));
-        [self.albedo_dir, self.wide].into_iter().chain(lobes).collect()
+        let of_base = self.base.map(|base| base.energy);
+        [self.albedo_dir, self.wide].into_iter().chain(lobes).chain(of_base).collect()
     }
 
     /// Energy of one facet of the first interface: the albedo without lobes and remainder.
     pub fn first_facet(&self) -> Rgb {
-        let energies = self.energies();
-        [0, 1, 2]
-            .map(|c: usize| (self.albedo_dir[c] - energies[1..].iter().map(|energy| energy[c]).sum::<f64>()).max(0.0))
+        let (energies, parts) = (self.energies(), self.lobes.len() + 2);
+        [0, 1, 2].map(|c: usize| {
+            (self.albedo_dir[c] - energies[1..parts].iter().map(|energy| energy[c]).sum::<f64>()).max(0.0)
+        })
     }
 
     /// The row without light below 0, shares above 1, and more light than falls in, as noise and least squares may leave: of what comes from below
@@ -329,6 +370,7 @@ impl Row {
     pub(super) fn bounded(mut self) -> Self {
         let positive = |rgb: Rgb| rgb.map(|x| x.max(0.0));
         (self.wide, self.albedo_dir) = (positive(self.wide), positive(self.albedo_dir));
+        self.base.iter_mut().for_each(|base| base.energy = positive(base.energy));
         for lobe in &mut self.lobes {
             (lobe.strength, lobe.share) = (positive(lobe.strength), lobe.share.clamp(0.0, 1.0));
         }
@@ -338,6 +380,7 @@ impl Row {
             if self.albedo_dir[c] > 1.0 {
                 let left = if below > 0.0 { (1.0 - facet).max(0.0) / below } else { 0.0 };
                 self.wide[c] *= left;
+                self.base.iter_mut().for_each(|base| base.energy[c] *= left);
                 self.lobes.iter_mut().for_each(|lobe| lobe.strength[c] *= left);
                 self.albedo_dir[c] = 1.0;
             }
@@ -350,7 +393,7 @@ impl Row {
     pub fn between(&self, other: &Self, t: f64) -> Self {
         let mix = |a: &[f64; 4], b: &[f64; 4]| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]));
         let parts: Vec<[f64; 4]> = self.to_parts().iter().zip(&other.to_parts()).map(|(a, b)| mix(a, b)).collect();
-        Self::of_parts(&parts)
+        Self::of_parts(&parts, self.base.is_some())
     }
 }
 
@@ -399,7 +442,7 @@ mod tests {
         let axis = ViewAxis::new(10, Critical::default());
         let seen = ViewAxis::new(19, Critical::default());
         let cosines: Vec<f64> = (0..19).map(|row| seen.cos_theta(f64::from(row))).collect();
-        let row = |albedo: f64| Row { albedo_dir: [albedo; 3], lobes: vec![], wide: [0.0; 3] };
+        let row = |albedo: f64| Row { albedo_dir: [albedo; 3], lobes: vec![], wide: [0.0; 3], base: None };
         let nearest = |of: &dyn Fn(f64) -> f64| {
             let rows: Vec<Row> = cosines.iter().map(|cos_theta| row(of(axis.place(*cos_theta)))).collect();
             axis.nearest(&rows, &cosines)
@@ -427,9 +470,13 @@ mod tests {
             tail: 0.25,
         };
         for lobes in [vec![], vec![lobe(0.0)], vec![lobe(0.0), lobe(0.25)]] {
-            let row = Row { albedo_dir: [4.0, 5.0, 6.0], lobes, wide: [0.1, 0.2, 0.3] };
-            let parts = row.to_parts();
-            assert_eq!((parts.len(), Row::of_parts(&parts)), (Row::parts(row.lobes.len()), row));
+            let base = BaseLight { energy: [0.7, 0.8, 0.9], internal: [0.4, 0.5, 0.6], falloff: [0.2, 0.1] };
+            for base in [None, Some(base)] {
+                let row = Row { albedo_dir: [4.0, 5.0, 6.0], lobes: lobes.clone(), wide: [0.1, 0.2, 0.3], base };
+                let (parts, of_base) = (row.to_parts(), base.map_or(0, |_| Row::BASE_PARTS));
+                let count = Row::parts(row.lobes.len()) + of_base;
+                assert_eq!((parts.len(), Row::of_parts(&parts, base.is_some())), (count, row));
+            }
         }
     }
 
@@ -437,7 +484,8 @@ mod tests {
     fn no_row_returns_more_than_falls_in() {
         let lobe =
             Lobe { strength: [0.5, 0.5, 0.0], share: 0.8, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
-        let row = Row { albedo_dir: [1.25, 0.75, 1.5], lobes: vec![lobe], wide: [0.1, 0.1, -0.2] }.bounded();
+        let row =
+            Row { albedo_dir: [1.25, 0.75, 1.5], lobes: vec![lobe], wide: [0.1, 0.1, -0.2], base: None }.bounded();
         // Of .5 from below .25 are too much; the third channel has nothing there.
         assert_eq!((row.albedo_dir, row.lobes[0].strength), ([1.0, 0.75, 1.0], [0.25, 0.5, 0.0]));
         assert!((row.wide[0] - 0.05).abs() < 1e-15 && (row.first_facet()[0] - 0.75).abs() < 1e-12);
@@ -466,7 +514,7 @@ mod tests {
     fn the_first_facet_has_the_rest() {
         let lobe =
             Lobe { strength: [1.0, 2.0, 3.0], share: 0.5, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
-        let row = Row { albedo_dir: [4.0, 2.0, 1.0], lobes: vec![lobe], wide: [0.1; 3] };
+        let row = Row { albedo_dir: [4.0, 2.0, 1.0], lobes: vec![lobe], wide: [0.1; 3], base: None };
         let expected = [3.4, 0.9, 0.0];
         assert!(row.first_facet().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12));
     }

@@ -3,6 +3,11 @@
 use std::f64::consts::PI;
 
 use super::ViewAxis;
+use super::solve::solve;
+use super::tally::{COSINES, Tally};
+
+/// Points of a bin of cosines.
+const STEPS: usize = 8;
 
 /// A density of slopes: elliptic.
 ///
@@ -100,14 +105,59 @@ impl Wide {
 
     /// The shape of two coefficients over the cosine of an axis.
     pub fn new(falloff: [f64; 2], axis: ViewAxis) -> Self {
-        const POINTS: u32 = 256;
         let mut wide = Self { falloff, axis, integral: 1.0 };
-        let value = |i: u32| wide.value(((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
-        wide.integral = (0..POINTS).map(value).sum::<f64>() / f64::from(POINTS);
+        wide.integral = wide.mean(|wide, cos_theta| wide.value(cos_theta));
         wide
     }
 
-    /// The integral of `S(mu) mu / pi` over the hemisphere, by the midpoint rule over `mu^2`; within 1e-4.
+    /// The shape of coefficients that leave it above 0 everywhere, over the same axis; its integral is linear in them.
+    #[must_use]
+    pub fn of_base(self, falloff: [f64; 2]) -> Self {
+        let [fifth, square] = self.moments();
+        Self { falloff, integral: 1.0 - falloff[0] * fifth - falloff[1] * square, ..self }
+    }
+
+    /// The integrals of `(1 - c)^5 mu / pi` and `(1 - c)^2 mu / pi` over the hemisphere.
+    pub fn moments(&self) -> [f64; 2] {
+        [0, 1].map(|power: usize| self.mean(|wide, cos_theta| -wide.slopes(cos_theta)[power]))
+    }
+
+    /// The mean of a function over the squared cosine, by the midpoint rule.
+    fn mean(&self, of: impl Fn(&Self, f64) -> f64) -> f64 {
+        const POINTS: u32 = 256;
+        let value = |i: u32| of(self, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
+        (0..POINTS).map(value).sum::<f64>() / f64::from(POINTS)
+    }
+
+    /// Coefficients of the shape that is the nearest to the light of a Lambertian base, by least squares over the cosine of that light: it is the
+    /// same at all views. `None` without such light.
+    pub(super) fn falloff_of(axis: ViewAxis, views: &[Tally]) -> Option<[f64; 2]> {
+        let mut light = [0.0; COSINES];
+        for by_cosine in views.iter().filter_map(|view| view.by_cosine.as_ref()) {
+            light.iter_mut().zip(by_cosine).for_each(|(sum, energy)| *sum += energy);
+        }
+        let total: f64 = light.iter().sum();
+        let shape = Self { falloff: [0.0; 2], axis, integral: 1.0 };
+        let (mut matrix, mut right) = (vec![vec![0.0; 3]; 3], vec![0.0; 3]);
+        for (bin, light) in light.iter().enumerate() {
+            // The integral of a function of the cosine over a bin.
+            let integral = |of: &dyn Fn(f64) -> f64| -> f64 {
+                let point = |i: usize| (bin as f64 + (i as f64 + 0.5) / STEPS as f64) / COSINES as f64;
+                (0..STEPS).map(point).map(|mu| 2.0 * mu * of(mu)).sum::<f64>() / (STEPS * COSINES) as f64
+            };
+            let of_cosine = integral(&|_| 1.0);
+            let slope = |power: usize| integral(&|mu| shape.slopes(mu)[power]);
+            let terms = [of_cosine, slope(0), slope(1)];
+            for i in 0..3 {
+                right[i] += terms[i] * light / total / of_cosine;
+                (0..3).for_each(|j| matrix[i][j] += terms[i] * terms[j] / of_cosine);
+            }
+        }
+        let found = solve(matrix, right);
+        (total > 0.0 && found[0] > 0.0).then(|| [found[1] / found[0], found[2] / found[0]])
+    }
+
+    /// The integral of `S(mu) mu / pi` over the hemisphere; within 1e-4.
     pub fn integral(&self) -> f64 {
         self.integral
     }

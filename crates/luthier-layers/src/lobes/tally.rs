@@ -157,43 +157,59 @@ impl Cells {
     }
 }
 
-/// Light of one view: that of one facet of the first interface, and the rest in cells.
+/// Cosines of light among which that of a Lambertian base is counted.
+pub(super) const COSINES: usize = 64;
+
+/// Light of one view: that of one facet of the first interface, that of a Lambertian base, and the rest in cells.
 #[derive(Debug, Clone)]
 pub(super) struct Tally {
     /// Energy by cell and channel, for each set of cells.
     pub(super) rest: Vec<Vec<Rgb>>,
-    /// Their sum.
+    /// Sum of all cells.
     pub(super) total: Rgb,
     /// Energy of the light that met one facet alone, in closed form.
     pub(super) first_facet: Rgb,
     /// Energy of the light that met the diffuse base, and of that which met it once.
     pub(super) base: Rgb,
     pub(super) base_once: Rgb,
+    /// Energy of a Lambertian base by the cosine of the light, the mean of the channels; none of another stack, whose base is in the cells.
+    pub(super) by_cosine: Option<[f64; COSINES]>,
     /// Sum of the squared energies of the paths in cells, means of the channels.
     squares: f64,
 }
 
 impl Tally {
-    pub(super) fn new(sets: &[Cells]) -> Self {
+    /// Without light, of a stack with or without a Lambertian base.
+    pub(super) fn new(sets: &[Cells], is_lambertian: bool) -> Self {
         let rest = sets.iter().map(|cells| vec![[0.0; 3]; cells.count()]).collect();
-        Self { rest, total: [0.0; 3], first_facet: [0.0; 3], base: [0.0; 3], base_once: [0.0; 3], squares: 0.0 }
+        let (none, by_cosine) = ([0.0; 3], is_lambertian.then_some([0.0; COSINES]));
+        Self { rest, total: none, first_facet: none, base: none, base_once: none, by_cosine, squares: 0.0 }
     }
 
     /// Counts light of the rest with a weight, that has met a diffuse base so often.
     pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, base_visits: u32) {
         let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
-        plus(&mut self.total);
+        let mean = weight.iter().sum::<f64>() / 3.0;
         if base_visits > 0 {
             plus(&mut self.base);
         }
         if base_visits == 1 {
             plus(&mut self.base_once);
         }
-        let mean = weight.iter().sum::<f64>() / 3.0;
+        if let Some(by_cosine) = self.by_cosine.as_mut().filter(|_| base_visits > 0) {
+            by_cosine[((wi.z * COSINES as f64) as usize).min(COSINES - 1)] += mean;
+            return;
+        }
+        plus(&mut self.total);
         self.squares += mean * mean;
         for (cells, rest) in cells.iter().zip(&mut self.rest) {
             plus(&mut rest[cells.cell(wi, wo)]);
         }
+    }
+
+    /// Energy of a Lambertian base, which is in no cell.
+    pub(super) fn of_lambertian(&self) -> Rgb {
+        if self.by_cosine.is_some() { self.base } else { [0.0; 3] }
     }
 
     /// Number of paths in cells, as many alike ones as have the noise of their sum.

@@ -1,5 +1,6 @@
 //! The f64 twin of `luthier_eval_at`: a model with a shader, at one place of a surface that varies.
 
+use std::cell::OnceCell;
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
@@ -12,7 +13,7 @@ use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
 use crate::layer_sample::LayerSample;
-use crate::lobes::{self, Below, Cover, Fit, Varied, Varying};
+use crate::lobes::{self, Below, Cover, Fit, Lobes, Varied, Varying};
 use crate::parts::{Chosen, Parts, Reflectance, Reflectances};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
@@ -64,26 +65,37 @@ pub struct Growth {
     pub tarnish: Rgb,
 }
 
-/// A model with a shader at one place, with exact terms.
+/// A model with a shader at one place, with exact terms or those of tables.
 #[derive(Debug)]
-pub struct Shaded {
+pub struct Shaded<T = Exact> {
     place: Place,
-    layers: Layers,
+    layers: Layers<T>,
     /// The layers below the first, where patina leaves them bare.
-    bare: Option<Layers>,
+    bare: Option<Layers<T>>,
     /// Whether the model is `lobes`, whose light is linear in the amount of patina.
     has_lobes: bool,
 }
 
+/// The layers of a stack that are at a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// All of them, where there is no patina.
+    All,
+    /// All of them, where patina has grown whole.
+    Grown,
+    /// Those below the patina.
+    Bare,
+}
+
 #[derive(Debug)]
-struct Layers {
+struct Layers<T> {
     twin: Twin,
-    terms: Exact,
+    terms: T,
     reflectances: Reflectances,
 }
 
-impl Layers {
-    fn terms(&self) -> Chosen<'_, Exact> {
+impl<T> Layers<T> {
+    fn terms(&self) -> Chosen<'_, T> {
         self.reflectances.over(&self.terms)
     }
 }
@@ -109,7 +121,7 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
-        Self::made(&Varied::of, model, stack, wavelengths_nm, color, place, parts)
+        Self::exact(&Varied::of, model, stack, wavelengths_nm, color, place, parts)
     }
 
     /// [`Self::new`] with the lobes of a function that fits them, where the model has some.
@@ -121,11 +133,45 @@ impl Shaded {
         color: Color,
         place: &Place,
     ) -> Option<Self> {
-        Self::made(fit, model, stack, wavelengths_nm, color, place, Parts::PLAIN)
+        Self::exact(fit, model, stack, wavelengths_nm, color, place, Parts::PLAIN)
     }
 
-    fn made(
+    fn exact(
         fit: &Fit<'_>,
+        model: &str,
+        stack: &Stack,
+        wavelengths_nm: [f64; 3],
+        color: Color,
+        place: &Place,
+        parts: Parts,
+    ) -> Option<Self> {
+        let ends: OnceCell<Vec<Lobes>> = OnceCell::new();
+        let is_statistical = ["belcour", "yamaguchi"].contains(&model);
+        let terms = |part: Part, here: &Stack, whole: &Stack| {
+            if model != lobes::MODEL || part == Part::All && Interface::of(here, 0).is_none() {
+                let terms = Exact::new(here, color);
+                return Some(if is_statistical { terms.veiled_by(stack) } else { terms });
+            }
+            let lobes = match (part, place.patina) {
+                (Part::All, _) | (_, None) => fit(here, &color, None).nominal(),
+                (_, Some(Growth { diffuse_albedo, base_alpha, tarnish, .. })) => {
+                    let over = Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish });
+                    let nodes = ends.get_or_init(|| fit(whole, &color, Some(over)).nodes);
+                    let before_last = usize::from(part == Part::Grown);
+                    nodes.iter().rev().nth(before_last)?.clone()
+                }
+            };
+            Some(Exact::with_lobes(here, color, lobes))
+        };
+        Self::of_terms(terms, model, stack, wavelengths_nm, color, place, parts)
+    }
+}
+
+impl<T: ShaderTerms> Shaded<T> {
+    /// The model at a place with terms of any source, [`Shaded::with`] otherwise. `terms` is given which layers there are, the stack of these at the place,
+    /// and that of all.
+    pub fn of_terms(
+        terms: impl Fn(Part, &Stack, &Stack) -> Option<T>,
         model: &str,
         stack: &Stack,
         wavelengths_nm: [f64; 3],
@@ -137,11 +183,10 @@ impl Shaded {
         let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
         let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
-        let is_statistical = ["belcour", "yamaguchi"].contains(&model);
-        let nominal = stack;
-        let layers = |stack: &Stack| {
+        let whole = at(stack, model, place, patina);
+        let layers = |part: Part, here: &Stack| {
             // Lobes are widened one by one, and the first interface beside them.
-            let mut first = stack.clone();
+            let mut first = here.clone();
             if model == lobes::MODEL {
                 first.layers.iter_mut().for_each(|layer| widen(&mut layer.surface, &place.sample));
             }
@@ -152,31 +197,16 @@ impl Shaded {
                 Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation).tilting(normals);
             let has_choice = is_chain || model == "microfacet";
             let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
-            let reflectances = Reflectances::of(stack, wavelengths_nm, color, reflectance);
-            let terms = Exact::new(stack, color);
-            let terms = if is_statistical { terms.veiled_by(nominal) } else { terms };
-            Some(Layers { twin, terms, reflectances })
+            let reflectances = Reflectances::of(here, wavelengths_nm, color, reflectance);
+            Some(Layers { twin, terms: terms(part, here, &whole)?, reflectances })
         };
-        let here = at(stack, model, place, patina);
+        let (all, bare) = match patina {
+            None => (layers(Part::All, &whole)?, None),
+            Some(_) => (layers(Part::Grown, &whole)?, Some(layers(Part::Bare, &lobes::bare(&whole))?)),
+        };
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let place = Place { patina, under, ..place.clone() };
-        let has_lobes = model == lobes::MODEL;
-        let (mut grown, bare) = (layers(&here)?, lobes::bare(&here));
-        let mut bare = if patina.is_some() { Some(layers(&bare)?) } else { None };
-        match (patina, &mut bare) {
-            (Some(Growth { diffuse_albedo, base_alpha, tarnish, .. }), Some(bare)) if has_lobes => {
-                let over = Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish });
-                let mut ends = fit(&here, &color, Some(over)).nodes.into_iter().rev();
-                for (layers, stack) in [(bare, lobes::bare(&here)), (&mut grown, here.clone())] {
-                    layers.terms = Exact::with_lobes(&stack, color, ends.next()?);
-                }
-            }
-            _ if has_lobes && Interface::of(&here, 0).is_some() => {
-                grown.terms = Exact::with_lobes(&here, color, fit(&here, &color, None).nominal());
-            }
-            _ => {}
-        }
-        Some(Self { place, layers: grown, bare, has_lobes })
+        Some(Self { place, layers: all, bare, has_lobes: model == lobes::MODEL })
     }
 
     /// [`Shaded::eval`] times light of a colour, see [`Twin::eval_lit`]; a place with patina has no fluorescent base.
@@ -211,7 +241,7 @@ impl Shaded {
         let dull = patina.tarnish.map(|tarnish| 1.0 + (tarnish - 1.0) * amount);
         let passed = terms.fresnel(0, frame::cos_theta_d(wi, wo)).map(|reflected| 1.0 - reflected);
         let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
-        let mut add = |share: f64, layers: &Layers, first: Rgb, under: &Under| {
+        let mut add = |share: f64, layers: &Layers<T>, first: Rgb, under: &Under| {
             if share > 0.0 {
                 let tarnished = Tarnished { terms: layers.terms(), first, below: dull };
                 let part = layers.twin.eval_over(&tarnished, under, wi, wo);
@@ -221,6 +251,19 @@ impl Shaded {
         add(1.0 - amount, bare, dull, &Under::NONE);
         add(amount, &self.layers, [1.0; 3], under);
         value
+    }
+}
+
+impl Place {
+    /// The stack that a material file means at the place, without patina: factors on slope parameters, slab and film, and the albedo of a diffuse base. The
+    /// simulation of it is what rows of lobes stand for.
+    pub fn stack(&self, stack: &Stack) -> Stack {
+        let mut here = at(stack, lobes::MODEL, self, None);
+        let base = here.layers.last_mut().map(|layer| &mut layer.base);
+        if let (Some(color), Some(Base::Diffuse(base))) = (self.base_color, base) {
+            base.albedo = color;
+        }
+        here
     }
 }
 
@@ -322,13 +365,13 @@ pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
 }
 
 /// Terms whose reflectances are dimmed, those of the first layer and those of the layers below.
-struct Tarnished<'a> {
-    terms: Chosen<'a, Exact>,
+struct Tarnished<'a, T> {
+    terms: Chosen<'a, T>,
     first: Rgb,
     below: Rgb,
 }
 
-impl Terms for Tarnished<'_> {
+impl<T: Terms> Terms for Tarnished<'_, T> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let factor = if layer == 0 { self.first } else { self.below };
         let bright = self.terms.fresnel(layer, cos_theta_d);
@@ -340,13 +383,13 @@ impl Terms for Tarnished<'_> {
     }
 }
 
-impl Energy<3> for Tarnished<'_> {
+impl<T: Energy<3>> Energy<3> for Tarnished<'_, T> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
         self.terms.fgd(layer, cos_theta_i, alpha)
     }
 }
 
-impl ShaderTerms for Tarnished<'_> {
+impl<T: ShaderTerms> ShaderTerms for Tarnished<'_, T> {
     fn veil(&self) -> Veil<3> {
         self.terms.veil()
     }

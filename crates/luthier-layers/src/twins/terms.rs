@@ -7,7 +7,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::microfacet;
-use luthier_optics::stack::{Distribution, Stack};
+use luthier_optics::stack::{Base, Distribution, Stack};
 
 use crate::lobes::{Below, Lobes, Varied, Varying};
 use crate::statistics::diffuse_base::Veil;
@@ -87,7 +87,8 @@ impl Exact {
     }
 
     /// The terms of a stack whose diffuse base is veiled as by the layers of another, as shaders have it: the record of a material has what
-    /// layers return to a base at their nominal thickness and slope.
+    /// layers return to a base at their nominal thickness and slope. Energies are those of the other's F0, in whose tables they are: of what is not
+    /// reflected, another F0 leaves a constant factor.
     #[must_use]
     pub(crate) fn veiled_by(mut self, nominal: &Stack) -> Self {
         let is_other = self.stack != *nominal;
@@ -122,9 +123,28 @@ impl Exact {
         (&self.stack, &self.color, &self.varying)
     }
 
+    /// F0 of an interface of Schlick's, and the one whose energies are in tables.
+    fn f0(&self, layer: usize) -> Option<[Rgb; 2]> {
+        let of = |stack: &Stack| Interface::of(stack, layer)?.below.f0();
+        Some([of(&self.stack)?, of(&self.nominal.as_ref()?.stack)?])
+    }
+
+    /// The stack whose energies are in tables: this one with every F0 of the nominal one.
+    fn tabulated(&self) -> Stack {
+        let mut stack = self.stack.clone();
+        for (number, layer) in stack.layers.iter_mut().enumerate() {
+            if let (Base::Dielectric { ior, .. } | Base::Conductor { ior }, Some([_, nominal])) =
+                (&mut layer.base, self.f0(number))
+            {
+                *ior = ior.clone().with_f0(nominal);
+            }
+        }
+        stack
+    }
+
     fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {
         prepared.get_or_init(|| {
-            let energy = ColorEnergy::new(&self.stack, self.color);
+            let energy = ColorEnergy::new(&self.tabulated(), self.color);
             let veil = match &self.nominal {
                 Some(nominal) => nominal.veil(),
                 None => Veil::new(&Layers::rgb(&self.stack), &energy).unwrap_or(Veil::NONE),
@@ -143,7 +163,11 @@ impl Terms for Exact {
 impl Energy<3> for Exact {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
         match &self.energies {
-            Energies::Facets(prepared) => self.facets(prepared).0.fgd(layer, cos_theta_i, alpha),
+            Energies::Facets(prepared) => {
+                let given = self.facets(prepared).0.fgd(layer, cos_theta_i, alpha);
+                let passing = |c: usize, [here, nominal]: [Rgb; 2]| (1.0 - here[c]) / (1.0 - nominal[c]).max(1e-6);
+                self.f0(layer).map_or(given, |f0| [0, 1, 2].map(|c: usize| 1.0 - passing(c, f0) * (1.0 - given[c])))
+            }
             Energies::Level(_) => self.fresnel(layer, cos_theta_i),
         }
     }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 
+mod bounces;
 mod bumps;
 mod directions;
 mod elek;

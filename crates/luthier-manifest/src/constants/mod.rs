@@ -59,39 +59,24 @@ pub struct LobesRecord {
     /// Axes of an anisotropic stack, with tiles over the azimuth; lobes of others are in the plane of the eye.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<AxesRecord>,
-    /// Light of a diffuse base below interfaces, which may have another colour at a place.
+    /// Diffuse base below interfaces, whose light rows have: it may have another colour at a place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base: Option<BaseRecord>,
+    pub painted: Option<PaintedRecord>,
     /// Errors against the simulated stack at views that no fit saw; absent where nothing was fitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<LobesError>,
 }
 
-/// Light of a diffuse base in the wide remainder of lobes, each RGB: for an albedo R the remainder is `1 - s + s q(R) / q(albedo)` times its own, with
-/// `q(R) = R / (1 - r R)`.
+/// Diffuse base below lobes. For an albedo R its light is that of the rows times `q(R) / q(albedo)`, with `q(R) = R / (1 - r R)`, r being what the
+/// layers send back to it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct BaseRecord {
-    /// Albedo with which the stack was simulated.
+pub struct PaintedRecord {
+    /// Albedo with which the stack was simulated, RGB.
     pub albedo: [f64; 3],
-    /// The share s of the remainder.
-    pub share: [f64; 3],
-    /// The share r of the light from the base that the layers send back to it.
-    pub internal: [f64; 3],
-}
-
-impl BaseRecord {
-    /// The factor on `q(R)`: `s / q(albedo)`.
-    fn gain(&self) -> [f64; 3] {
-        [0, 1, 2].map(|c: usize| {
-            let Self { albedo, share, internal } = self;
-            if albedo[c] > 0.0 { share[c] * (1.0 - internal[c] * albedo[c]) / albedo[c] } else { 0.0 }
-        })
-    }
-
-    /// The shares; 0 where a black base leaves no light to scale.
-    fn shares(&self) -> [f64; 3] {
-        [0, 1, 2].map(|c: usize| if self.albedo[c] > 0.0 { self.share[c] } else { 0.0 })
-    }
+    /// Where the base is Lambertian, and rows over a factor have the coefficients a and b of the remainder: the integrals of `(1 - c)^5 mu / pi` and `(1 - c)^2 mu / pi`
+    /// over the hemisphere, mu being the cosine of the light. That of S is 1 less a times the first and b times the second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moments: Option<[f64; 2]>,
 }
 
 /// Errors of fitted lobes against the simulated stack, the largest of a few views half way between rows, and between the tiles of a factor or
@@ -267,9 +252,9 @@ impl MaterialConstants {
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
-    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of lobes over a diffuse base without patina its share s RGB, 0 |
-    /// | 7 | patina: diffuse albedo RGB, 0; of such lobes s / q(albedo) RGB, 0 |
-    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of lobes over a diffuse base r RGB, 0: see [`BaseRecord`] |
+    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of lobes over a diffuse base without patina the albedo of that base RGB, -1 where rows have a and b, else 0 |
+    /// | 7 | patina: diffuse albedo RGB, 0; of such lobes the two integrals of [`PaintedRecord`], 0, 0 |
+    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
@@ -292,10 +277,10 @@ impl MaterialConstants {
             words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
             words[4] = with([f.spread, f.scale, f.fade_start], 0.0);
         }
-        if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.base), &self.patina) {
-            words[5] = with(base.shares(), 0.0);
-            words[6] = with(base.gain(), 0.0);
-            words[7] = with(base.internal, 0.0);
+        if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), &self.patina) {
+            let [fifth, square] = base.moments.unwrap_or_default();
+            words[5] = with(base.albedo, if base.moments.is_some() { -1.0 } else { 0.0 });
+            words[6] = with([fifth, square, 0.0], 0.0);
         }
         if let Some(p) = &self.patina {
             words[5] = with([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
@@ -376,13 +361,14 @@ mod tests {
             critical_plain_share: 0.25,
             varying: None,
             axes: None,
-            base: None,
+            painted: None,
             error: None,
         };
         let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
-        let base = BaseRecord { albedo: [0.5, 0.0, 1.0], share: [1.0, 0.5, 0.25], internal: [0.5, 0.5, 0.0] };
-        let of_base = words(LobesRecord { base: Some(base), ..lobes });
-        assert_eq!(of_base[5..8], [[1.0, 0.0, 0.25, 0.0], [1.5, 0.0, 0.25, 0.0], [0.5, 0.5, 0.0, 0.0]]);
+        let albedo = [0.5, 0.0, 1.0];
+        let over = |moments| words(LobesRecord { painted: Some(PaintedRecord { albedo, moments }), ..lobes });
+        assert_eq!(over(None)[5..8], [[0.5, 0.0, 1.0, 0.0], [0.0; 4], [0.0; 4]]);
+        assert_eq!(over(Some([0.25, 0.125]))[5..8], [[0.5, 0.0, 1.0, -1.0], [0.25, 0.125, 0.0, 0.0], [0.0; 4]]);
         // Roots: of -3/4 + sqrt(9/16 + 1) = 1/2, and of 1/4 + sqrt(1/16 + 1).
         let horizon = f64::sqrt(0.5);
         let range = f64::sqrt(0.25 * (1.0 + f64::sqrt(17.0))) - horizon;

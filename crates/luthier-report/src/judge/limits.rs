@@ -90,6 +90,19 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
         let quantity = format!("tables: absolute error of {kind} tile {tile}, which misses what the bake aimed at");
         out.extend(report.budget.map(|limit| made("command line", &quantity, limit, Some(found), LARGER)));
     }
+    // A budget of the tables is none of lobes that are another stack's: these have limits of their own.
+    for material in report.materials.iter().filter(|_| report.budget.is_some()) {
+        let at = material.at_places.iter().filter_map(|at| at.simulated.as_ref());
+        let views = at.flat_map(|simulated| &simulated.views);
+        if let Some(worst) = views.max_by(|a, b| a.excess().total_cmp(&b.excess())) {
+            for (name, found, limit) in worst.misses() {
+                let angle = format!("{:.1} degrees", worst.theta_deg);
+                let quantity =
+                    format!("{}: {name} at place {} ({}), from {angle}", material.name, worst.number, worst.place);
+                out.push(made("places of lobes", &quantity, limit, Some(found), HERE));
+            }
+        }
+    }
     let mut add = |quantity: &str, limit: Option<f64>, found: Option<f64>| {
         out.extend(limit.map(|limit| made("command line", quantity, limit, found, HERE)));
     };

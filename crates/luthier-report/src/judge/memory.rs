@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::judge::References;
+use crate::judge::{References, Settings};
 use crate::measure::scan::{run, users};
 use crate::{Device, Subject};
 
@@ -90,15 +90,15 @@ impl<'a> Remembered<'a> {
         });
     }
 
-    /// All that decides the comparisons of a material.
+    /// All that decides the comparisons of a material. Its maps are in its record, by their hashes.
     pub(crate) fn material(
         &self,
         subject: &Subject<'_>,
         number: usize,
         device: Option<&dyn Device>,
-        pairs_per_set: u32,
+        settings: &Settings<'_>,
     ) -> Value {
-        if self.memory.is_none() { Value::Null } else { self.inputs(subject, number, device, Some(pairs_per_set)) }
+        if self.memory.is_none() { Value::Null } else { self.inputs(subject, number, device, Some(settings)) }
     }
 
     fn inputs(
@@ -106,7 +106,7 @@ impl<'a> Remembered<'a> {
         subject: &Subject<'_>,
         number: usize,
         device: Option<&dyn Device>,
-        pairs_per_set: Option<u32>,
+        settings: Option<&Settings<'_>>,
     ) -> Value {
         let entry = &subject.manifest.materials[number];
         // Where tiles lie decides the last digits of a device, and of nothing else.
@@ -116,7 +116,8 @@ impl<'a> Remembered<'a> {
         });
         json!({
             "subject": self.content(subject, number),
-            "pairs": pairs_per_set,
+            "pairs": settings.map(|settings| settings.pairs_per_set),
+            "simulated": settings.map(|settings| format!("{:?}", settings.simulated)),
             "device": on_device,
         })
     }

@@ -17,7 +17,7 @@ use luthier_layers::parts::Parts;
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
 use luthier_manifest::{
-    ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, PatinaRecord, ShadingModel, VaryingFactor,
+    ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, PatinaRecord, PlaceValues, ShadingModel, VaryingFactor,
 };
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -33,6 +33,7 @@ use crate::measure::seen::SeenBy;
 use crate::measure::statistics::{brightest, relative_error};
 use crate::measure::subject::color;
 use crate::measure::table_terms::{TableTerms, Weights, recorded_veil};
+use crate::places::{AtPlaces, PLACES_SEED, SimulatedErrors, SimulatedSettings, at_places, simulated};
 use crate::{
     AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
     TARGET_MAX_REL_ERR, measure::scan, pages::format, statistics,
@@ -61,14 +62,17 @@ pub struct Settings<'a> {
     pub provenance: Vec<(String, String)>,
     /// Results of earlier judgements: what has not changed since is not judged again.
     pub memory: Option<&'a dyn Memory>,
+    /// Simulation of materials of the model `lobes` at places that their maps give; `None` for none.
+    pub simulated: Option<SimulatedSettings>,
     /// Called after every part of the table scan and every set of every material.
     pub progress: Option<&'a dyn Fn(Progress<'_>)>,
 }
 
 impl Default for Settings<'_> {
-    /// 4096 pairs, no budget, no provenance, no memory, no progress.
+    /// 4096 pairs, no budget, no provenance, no memory, a quick simulation, no progress.
     fn default() -> Self {
-        Self { pairs_per_set: 4096, budget: None, provenance: Vec::new(), memory: None, progress: None }
+        let simulated = Some(SimulatedSettings::default());
+        Self { pairs_per_set: 4096, budget: None, provenance: Vec::new(), memory: None, simulated, progress: None }
     }
 }
 
@@ -78,6 +82,7 @@ impl fmt::Debug for Settings<'_> {
             .field("pairs_per_set", &self.pairs_per_set)
             .field("budget", &self.budget)
             .field("provenance", &self.provenance)
+            .field("simulated", &self.simulated)
             .finish_non_exhaustive()
     }
 }
@@ -85,7 +90,7 @@ impl fmt::Debug for Settings<'_> {
 /// Progress of a judgement.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
-    /// Steps done: parts of the table scan, then sets of every material.
+    /// Steps done: parts of the table scan, then sets of every material, then materials at places.
     pub done: u64,
     /// Steps in all.
     pub total: u64,
@@ -116,7 +121,7 @@ pub fn judge(
         .zip(&subject.stacks)
         .map(|(material, stack)| References::new(stack, material))
         .collect::<Result<_, _>>()?;
-    let total = u64::from(scan::STEPS) + (manifest.materials.len() * DirectionSet::ALL.len()) as u64;
+    let total = u64::from(scan::STEPS) + (manifest.materials.len() * (DirectionSet::ALL.len() + 1)) as u64;
     let mut done = 0;
     let mut step = |subject: &str| {
         done += 1;
@@ -134,7 +139,7 @@ pub fn judge(
     let mut weights = WeightsVote::default();
     for (index, (entry, references)) in manifest.materials.iter().zip(&references).enumerate() {
         record_findings(&entry.name, &references.layers, &entry.layers, &mut findings);
-        let inputs = remembered.material(subject, index, device, settings.pairs_per_set);
+        let inputs = remembered.material(subject, index, device, settings);
         let known: Option<WeightsVote> = remembered.recall(VOTE, &inputs);
         let gathered = known.is_none().then(|| bench.gather(index)).transpose()?;
         let vote = known.or_else(|| gathered.as_ref().map(|gathered| gathered.vote)).unwrap_or_default();
@@ -152,7 +157,7 @@ pub fn judge(
     for (index, (inputs, gathered)) in materials.into_iter().enumerate() {
         let entry = &manifest.materials[index];
         let inputs = json!([inputs, device_weights]);
-        let Judged { comparisons, exceptions: own } = match remembered.recall(JUDGED, &inputs) {
+        let Judged { comparisons, exceptions: own, at_places } = match remembered.recall(JUDGED, &inputs) {
             Some(judged) => judged,
             None => {
                 let gathered = gathered.map_or_else(|| bench.gather(index), Ok)?;
@@ -172,15 +177,18 @@ pub fn judge(
             layers: entry.layers.iter().map(format::layer).collect(),
             comparisons,
             against_reference: Vec::new(),
+            at_places,
             alone: Vec::new(),
             picture: None,
             shape_cost: None,
             choice: None,
         });
+        step(&entry.name);
     }
     let materials = judged;
     table_findings(&tables, &mut findings);
     value_findings(&materials, &mut findings);
+    place_findings(&materials, &mut findings);
     Ok(Report {
         schema: REPORT_SCHEMA,
         generator: manifest.generator.clone(),
@@ -204,11 +212,12 @@ pub fn judge(
     })
 }
 
-/// What is kept of a material: its comparisons, and what misses the target.
+/// What is kept of a material: its comparisons, what misses the target, and what was found at places.
 #[derive(Serialize, Deserialize)]
 struct Judged {
     comparisons: Vec<Comparison>,
     exceptions: Vec<Exception>,
+    at_places: Option<AtPlaces>,
 }
 
 /// All that materials are judged with.
@@ -283,8 +292,23 @@ impl Bench<'_> {
             let comparison = gathered.comparisons.iter().find(|comparison| comparison.compared == compared);
             exceptions.extend(comparison.and_then(|comparison| exception(name, comparison, &misses, &factors)));
         }
-        Ok(Judged { comparisons: gathered.comparisons, exceptions })
+        let at_places = at_places_of(self.subject, index, self.device.zip(weights), self.settings)?;
+        Ok(Judged { comparisons: gathered.comparisons, exceptions, at_places })
     }
+}
+
+/// A material at random places, with the simulation there.
+fn at_places_of(
+    subject: &Subject<'_>,
+    material: usize,
+    device: Option<(&dyn Device, Weights)>,
+    settings: &Settings<'_>,
+) -> Result<Option<AtPlaces>, ReportError> {
+    let mut found = at_places(subject, material, device, settings.pairs_per_set, PLACES_SEED)?;
+    if let (Some(found), Some(settings)) = (&mut found, &settings.simulated) {
+        found.simulated = simulated(subject, material, settings)?;
+    }
+    Ok(found)
 }
 
 /// Names of the models in use.
@@ -311,14 +335,7 @@ impl References {
         let color = color(material);
         let model = material.model;
         let varying = varying(material);
-        let (masking, reflectance) = material.parts();
-        let parts = Parts::named(masking.name(), reflectance.name(), material.internal_reflection().name());
-        let parts = parts.unwrap_or(Parts::PLAIN);
-        let parts = material.constants.beams.map_or(parts, |beams| {
-            let weights = [beams.specular_weight, beams.diffuse_weight];
-            parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
-        });
-        let twin = Twin::with(model.name(), stack, material.wavelengths_nm, color, parts);
+        let twin = Twin::with(model.name(), stack, material.wavelengths_nm, color, parts(material));
         Ok(Self {
             layers: elek::layers(stack),
             twin: twin
@@ -350,6 +367,17 @@ impl References {
     }
 }
 
+/// The parts of a model that a material chooses.
+pub(crate) fn parts(material: &MaterialEntry) -> Parts {
+    let (masking, reflectance) = material.parts();
+    let parts = Parts::named(masking.name(), reflectance.name(), material.internal_reflection().name());
+    let parts = parts.unwrap_or(Parts::PLAIN);
+    material.constants.beams.map_or(parts, |beams| {
+        let weights = [beams.specular_weight, beams.diffuse_weight];
+        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+    })
+}
+
 /// The part of a material that its rows of lobes are over.
 fn varying(material: &MaterialEntry) -> Option<Varying> {
     let record = material.constants.lobes?.varying?;
@@ -371,10 +399,28 @@ pub(crate) fn evaluate(twin: &Twin, terms: &(impl ShaderTerms + Sync), pairs: &[
 }
 
 pub(crate) fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
-    let values =
-        device.evaluate(form, material, pairs).map_err(|message| ReportError::Device { form, material, message })?;
-    if values.len() != pairs.len() {
-        return Err(ReportError::DeviceCount { form, material, asked: pairs.len(), found: values.len() });
+    checked(device.evaluate(form, material, pairs), form, material, pairs.len())
+}
+
+/// [`run`] with a place for each pair.
+pub(crate) fn run_at(
+    device: &dyn Device,
+    form: Form,
+    material: u32,
+    spots: &[(PlaceValues, Pair)],
+) -> Result<Vec<Rgb>, ReportError> {
+    checked(device.evaluate_at(form, material, spots), form, material, spots.len())
+}
+
+fn checked(
+    values: Result<Vec<[f32; 3]>, String>,
+    form: Form,
+    material: u32,
+    asked: usize,
+) -> Result<Vec<Rgb>, ReportError> {
+    let values = values.map_err(|message| ReportError::Device { form, material, message })?;
+    if values.len() != asked {
+        return Err(ReportError::DeviceCount { form, material, asked, found: values.len() });
     }
     Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
 }
@@ -540,5 +586,27 @@ fn value_findings(materials: &[MaterialReport], findings: &mut Vec<String>) {
                 }
             }
         }
+    }
+}
+
+fn place_findings(materials: &[MaterialReport], findings: &mut Vec<String>) {
+    for material in materials {
+        let Some(at) = &material.at_places else { continue };
+        for (what, errors) in [("shader", &at.shader), ("tables", &at.tables)] {
+            if let Some(errors) = errors.as_ref().filter(|errors| errors.not_finite > 0) {
+                let (count, all) = (errors.not_finite, 3 * at.places);
+                findings.push(format!("{}, {what} at places: {count} of {all} values are not finite.", material.name));
+            }
+        }
+        let worst =
+            at.simulated.iter().flat_map(SimulatedErrors::misses).max_by(|a, b| a.excess().total_cmp(&b.excess()));
+        let Some(worst) = worst else { continue };
+        let misses = at.simulated.iter().flat_map(SimulatedErrors::misses).count();
+        findings.push(format!(
+            "{}: {}; {misses} of {} places and angles are like it.",
+            material.name,
+            worst.words(),
+            at.simulated.as_ref().map_or(0, |s| s.views.len())
+        ));
     }
 }

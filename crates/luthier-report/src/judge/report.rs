@@ -11,6 +11,7 @@ use crate::judge::evidence::{
 use crate::judge::exceptions::Exception;
 use crate::judge::limits::Limit;
 use crate::measure::seen::Seen;
+use crate::places::AtPlaces;
 use crate::{
     AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, pages::json, pages::page, pages::summary,
 };
@@ -169,6 +170,9 @@ pub struct MaterialReport {
     pub comparisons: Vec<Comparison>,
     /// The models of shaders against the reference of whole stacks; empty where that was not asked for.
     pub against_reference: Vec<AgainstReference>,
+    /// Shader, tables and lobes at random places that its maps give; `None` where it is the same everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_places: Option<AtPlaces>,
     /// Searches for this material alone, by the baker's figures.
     pub alone: Vec<Search>,
     /// Its pictures, compared.
@@ -267,11 +271,18 @@ pub struct WorstCase<'a> {
 impl Report {
     /// The figure that a limit is compared with: the largest error of `f cos_theta_i`, relative to max(brightest
     /// channel of the reference, [`crate::FLOOR`]), of any channel, set and material - of both shaders on the device against their f64
-    /// references, or, when no shader was run, of the tables read with 8-bit weights. Infinite when any of those
+    /// references, or, when no shader was run, of the tables read with 8-bit weights; at places, too. Infinite when any of those
     /// samples, or any read of the table scans, is not finite.
     pub fn max_error(&self) -> f64 {
         let reads = self.tables.iter().flat_map(|t| &t.tiles).any(|t| t.not_finite > 0);
-        if reads { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error) }
+        let at_places = self.worst_place().map_or(0.0, |(_, at)| at.max_error());
+        if reads { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error).max(at_places) }
+    }
+
+    /// The material with the largest error of shader or tables at places.
+    pub fn worst_place(&self) -> Option<(&str, &AtPlaces)> {
+        let at_places = self.materials.iter().filter_map(|m| Some((m.name.as_str(), m.at_places.as_ref()?)));
+        at_places.max_by(|a, b| a.1.max_error().total_cmp(&b.1.max_error()))
     }
 
     /// Place of the largest error of the shaders (without a device, of the tables); nothing without materials.

@@ -1,6 +1,6 @@
 //! Interface to a device that runs the emitted shaders.
 
-use luthier_manifest::Form;
+use luthier_manifest::{Form, PlaceValues};
 
 use crate::Pair;
 
@@ -18,4 +18,10 @@ pub trait Device {
     /// # Errors
     /// The failure, in words for the user.
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String>;
+
+    /// [`Self::evaluate`] with a place of the surface for each pair.
+    ///
+    /// # Errors
+    /// The failure, in words for the user.
+    fn evaluate_at(&self, form: Form, material: u32, spots: &[(PlaceValues, Pair)]) -> Result<Vec<[f32; 3]>, String>;
 }

@@ -6,7 +6,7 @@ use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntr
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use crate::ReportError;
+use crate::{ReportError, SurfaceMap};
 
 /// Subject of a judgement: a bake as its users get it, and the surfaces that it was made from.
 #[derive(Debug, Clone)]
@@ -17,6 +17,8 @@ pub struct Subject<'a> {
     pub textures: Vec<(TableKind, Image)>,
     /// The surfaces that the materials describe, parallel to the materials of the manifest.
     pub stacks: Vec<Stack>,
+    /// The maps of the materials: places are judged where there are some.
+    pub maps: Vec<SurfaceMap>,
 }
 
 /// The colour that the tables of a material hold.

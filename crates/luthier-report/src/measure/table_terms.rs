@@ -1,12 +1,15 @@
 //! The model's terms as a shader reads them: from texels.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
-use luthier_layers::lobes::{Axes, BaseLight, Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
+use luthier_layers::shaded::{Part, Place};
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
-use luthier_manifest::{BaseRecord, LayerRecord, LobesRecord, MaterialEntry};
+use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
@@ -44,9 +47,34 @@ impl Table<'_> {
 
     /// A sampled row of lobes.
     pub(crate) fn row(&self, tile: u32, cos_theta: f64, weights: Weights) -> Row {
-        let parts = self.entry.layout.y.as_ref().map_or(1, |y| y.size);
-        let part = |part: u32| self.read(tile, [cos_theta, f64::from(part)], weights);
-        Row::of_parts(&(0..parts).map(part).collect::<Vec<_>>())
+        Row::of_parts(&self.parts(tile, cos_theta, weights), self.has_base())
+    }
+
+    /// A row of lobes between two tiles: numbers as texels have them are linear between these.
+    fn row_between(&self, tile: u32, share: f64, cos_theta: f64, weights: Weights) -> Row {
+        let share = match weights.bits(self.entry.format) {
+            WeightBits::Exact => share,
+            WeightBits::Fixed(bits) => {
+                let steps = f64::from(1_u32 << bits);
+                libm::round(share * steps) / steps
+            }
+        };
+        if share == 0.0 {
+            return self.row(tile, cos_theta, weights);
+        }
+        let [first, second] = [tile, tile + 1].map(|tile| self.parts(tile, cos_theta, weights));
+        let mixed = |(a, b): (&[f64; 4], &[f64; 4])| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));
+        Row::of_parts(&first.iter().zip(&second).map(mixed).collect::<Vec<_>>(), self.has_base())
+    }
+
+    fn parts(&self, tile: u32, cos_theta: f64, weights: Weights) -> Vec<[f64; 4]> {
+        let (first, parts) = self.entry.layout.y.as_ref().map_or((0.0, 1), |y| (y.min, y.size));
+        (0..parts).map(|part| self.read(tile, [cos_theta, first + f64::from(part)], weights)).collect()
+    }
+
+    /// Whether rows of lobes have the parts of a diffuse base, which come before part 0.
+    fn has_base(&self) -> bool {
+        self.entry.layout.y.as_ref().is_some_and(|y| y.min < 0.0)
     }
 }
 
@@ -108,8 +136,48 @@ pub struct TableTerms<'a> {
     tables: [Option<(Table<'a>, AngleAxis)>; TableKind::ALL.len()],
     veil: Veil<3>,
     lobes: Option<LobesRecord>,
-    records: &'a [LayerRecord],
+    /// The first tile of lobes.
+    lobes_tile: Option<u32>,
+    records: Cow<'a, [LayerRecord]>,
     weights: Weights,
+    here: Here,
+}
+
+/// What the textures of a place change of the terms.
+#[derive(Debug, Clone, Copy)]
+struct Here {
+    part: Part,
+    alpha_factor: f64,
+    slab_factor: f64,
+    film_factor: f64,
+    /// A layer, and the factor on what its interface does not reflect.
+    passing: Option<(usize, Rgb)>,
+}
+
+impl Here {
+    const NOMINAL: Self =
+        Self { part: Part::All, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0, passing: None };
+
+    /// Fractional number of the tile of lobes, and the factor on slopes that its rows are divided by.
+    fn tile(&self, varying: &VaryingRecord) -> (f64, f64) {
+        let last = f64::from(varying.tiles) - 1.0;
+        let from_root = |factor: f64| 1.0 - factor.clamp(0.0, 1.0).sqrt();
+        let place = match varying.factor {
+            // A step before the root of 0.
+            VaryingFactor::AlphaFactor => (from_root(self.alpha_factor) * (last + 1.0)).min(last),
+            VaryingFactor::SlabFactor => from_root(self.slab_factor) * last,
+            VaryingFactor::FilmFactor => {
+                let [most, least] = varying.factors.unwrap_or([1.0, 0.0]);
+                ((most - self.film_factor) / (most - least)).clamp(0.0, 1.0) * last
+            }
+            VaryingFactor::Patina => match self.part {
+                Part::All => 0.0,
+                Part::Grown => last - 1.0,
+                Part::Bare => last,
+            },
+        };
+        (place, self.alpha_factor.max(varying.least_spread))
+    }
 }
 
 impl<'a> TableTerms<'a> {
@@ -130,8 +198,15 @@ impl<'a> TableTerms<'a> {
                 tables[kind as usize] = Some((table, AngleAxis::of(&table)?));
             }
         }
-        let terms =
-            Self { tables, veil: recorded_veil(entry), lobes: entry.constants.lobes, records: &entry.layers, weights };
+        let terms = Self {
+            tables,
+            veil: recorded_veil(entry),
+            lobes: entry.constants.lobes,
+            lobes_tile: entry.layers.first().and_then(|layer| layer.tiles[TableKind::Lobes]),
+            records: Cow::Borrowed(&entry.layers),
+            weights,
+            here: Here::NOMINAL,
+        };
         for (layer, kind) in read_by(entry) {
             let is_computed = match kind {
                 // A layer without a tile has D computed.
@@ -146,8 +221,46 @@ impl<'a> TableTerms<'a> {
         Ok(terms)
     }
 
+    /// The terms of some layers of a material at a place, by the records of its manifest.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn at(
+        subject: &'a Subject<'_>,
+        material: usize,
+        weights: Weights,
+        place: &Place,
+        part: Part,
+    ) -> Result<Self, ReportError> {
+        let mut terms = Self::new(subject, material, weights)?;
+        let entry = &subject.manifest.materials[material];
+        let f0 = |(layer, record): (usize, &LayerRecord)| {
+            let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
+            Some((layer, [0, 1, 2].map(|c: usize| (1.0 - own[c]) / (1.0 - nominal[c]).max(1e-6))))
+        };
+        let sample = &place.sample;
+        terms.here = Here {
+            part,
+            alpha_factor: sample.alpha_factor,
+            slab_factor: sample.slab_factor,
+            film_factor: sample.film_factor,
+            passing: entry.layers.iter().enumerate().find_map(f0),
+        };
+        if let (Part::Bare, Some(patina)) = (part, &entry.constants.patina) {
+            terms.records = std::iter::once(&patina.bare).chain(entry.layers.iter().skip(2)).cloned().collect();
+        }
+        Ok(terms)
+    }
+
     fn table(&self, kind: TableKind) -> Option<Table<'a>> {
         Some(self.tables[kind as usize]?.0)
+    }
+
+    /// Thickness of the film of a layer here, over the greatest.
+    fn film_share(&self, layer: usize) -> f64 {
+        let record = &self.records[layer];
+        let factor = if layer == 0 { self.here.film_factor } else { 1.0 };
+        factor * record.film_thickness_nm / record.film_thickness_max_nm
     }
 
     /// The tile that a layer reads, if it is there.
@@ -192,14 +305,16 @@ impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
         let [r, g, b, _] = if let Some((table, _, tile)) = self.read_at(TableKind::Film, layer) {
-            let record = &self.records[layer];
-            table.read(tile, [cos_theta_d, record.film_thickness_nm / record.film_thickness_max_nm], self.weights)
+            table.read(tile, [cos_theta_d, self.film_share(layer)], self.weights)
         } else if let Some((table, angle, tile)) = self.read_at(TableKind::Fresnel, layer) {
             table.read(tile, [angle.value_at(cos_theta_d), 0.0], self.weights)
         } else {
             [f64::NAN; 4]
         };
-        [r, g, b]
+        match self.here.passing.filter(|(at, _)| *at == layer) {
+            Some((_, [p, q, s])) => [1.0 - p * (1.0 - r), 1.0 - q * (1.0 - g), 1.0 - s * (1.0 - b)],
+            None => [r, g, b],
+        }
     }
 
     /// Read where the layer has a tile; else the closed form.
@@ -215,8 +330,7 @@ impl Terms for TableTerms<'_> {
     /// The interference term from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
     fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
         let (table, _, tile) = self.read_at(TableKind::Phase, layer)?;
-        let record = &self.records[layer];
-        let s = 0.5 * cosines * record.film_thickness_nm / record.film_thickness_max_nm;
+        let s = 0.5 * cosines * self.film_share(layer);
         Some(table.read(tile, [s, 0.0], self.weights)[channel])
     }
 }
@@ -251,7 +365,7 @@ impl ShaderTerms for TableTerms<'_> {
 
     fn below(&self, wo: DVec3) -> Option<Below> {
         let lobes = self.lobes.filter(|_| wo.z > 0.0)?;
-        let (table, _, tile) = self.read_at(TableKind::Lobes, 0)?;
+        let (table, tile) = (self.table(TableKind::Lobes)?, self.lobes_tile?);
         let critical = Critical {
             cot_sq: lobes.critical_cot_sq,
             width: lobes.critical_width,
@@ -259,15 +373,17 @@ impl ShaderTerms for TableTerms<'_> {
         };
         let axis = ViewAxis::new(2, critical);
         let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
-        let base = lobes.base.map(|BaseRecord { albedo, share, internal }| BaseLight { albedo, share, internal });
-        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes, base };
+        let painted = |PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() };
+        let (wide, base) = (Wide::new(lobes.falloff, axis), lobes.painted.map(painted));
+        let frame = Frame { index: lobes.index, wide, axes, base };
         let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
         let row = match (axes, lobes.varying) {
             (Some(axes), _) => axes.row(wo, |number| row(tile + number as u32)),
             (None, Some(varying)) => {
-                let place = varying.nominal();
+                let (place, spread) = self.here.tile(&varying);
                 let first = (place as u32).min(varying.tiles.saturating_sub(2));
-                row(tile + first).between(&row(tile + first + 1), place - f64::from(first))
+                let share = place - f64::from(first);
+                table.row_between(tile + first, share, axis.cosine(wo.z), self.weights).spread(spread)
             }
             (None, None) => row(tile),
         };

@@ -18,6 +18,7 @@
 //! Out of scope: single glints and maps (a model is judged as it is registered), colour, speed.
 
 mod cells;
+pub(crate) mod colored;
 mod compare;
 mod energies;
 mod page;
@@ -205,7 +206,7 @@ fn judge_material(rows: &[Row], subject: &ModelSubject, settings: ModelSettings)
     judged
 }
 
-fn direction(theta_deg: f64, phi_deg: f64) -> DVec3 {
+pub(crate) fn direction(theta_deg: f64, phi_deg: f64) -> DVec3 {
     let (sin_theta, cos_theta) = libm::sincos(theta_deg.to_radians());
     let (sin_phi, cos_phi) = libm::sincos(phi_deg.to_radians());
     DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)

@@ -115,7 +115,7 @@ impl Reference {
 }
 
 /// Whether no surface looks other along one axis than along the other.
-fn is_isotropic(stack: &Stack) -> bool {
+pub(super) fn is_isotropic(stack: &Stack) -> bool {
     let is_round = |surface: &luthier_optics::stack::Surface| surface.alpha_x == surface.alpha_y;
     stack.layers.iter().all(|layer| matches!(layer.base, Base::Diffuse(_)) || is_round(&layer.surface))
 }

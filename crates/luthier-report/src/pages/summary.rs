@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::SeenLight;
 use crate::judge::report::{Compared, Report};
 use crate::pages::format::{bytes, error, number};
+use crate::{PlaceErrors, SeenLight, SimulatedAt};
 
 /// Findings listed by name.
 const SHOWN: usize = 10;
@@ -32,6 +32,7 @@ pub(crate) fn markdown(report: &Report) -> String {
     limits(&mut out, report);
     levels(&mut out, report);
     materials(&mut out, report);
+    places(&mut out, report);
     if let Some(s) = &report.stability {
         let _ = writeln!(
             out,
@@ -131,6 +132,40 @@ fn materials(out: &mut String, report: &Report) {
             seen.map_or_else(none, |s| error(s.max)),
             m.picture.as_ref().map_or_else(none, |p| error(p.flip_mean)),
             lobe.map_or_else(none, |a| error(a.lobe_err))
+        );
+    }
+    out.push('\n');
+}
+
+/// Materials that vary, at random places.
+fn places(out: &mut String, report: &Report) {
+    let at = || report.materials.iter().filter_map(|m| Some((m, m.at_places.as_ref()?)));
+    if at().next().is_none() {
+        return;
+    }
+    out.push_str(
+        "| at random places | varies | shader against f64 on its tables | tables against exact terms | lobes: lobe error | albedo | grazing light |\n\
+         |---|---|--:|--:|--:|--:|--:|\n",
+    );
+    for (material, at) in at() {
+        let none = || "–".to_owned();
+        let largest = |errors: &Option<PlaceErrors>| errors.as_ref().map_or_else(none, |e| error(e.max_error()));
+        let worst = |of: fn(&SimulatedAt) -> [f64; 2]| {
+            at.simulated.as_ref().map_or_else(none, |s| {
+                let [found, noise] = s.worst(of);
+                format!("{found:.3} ± {noise:.3}")
+            })
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {} |",
+            line(&material.name),
+            at.varies.join(", "),
+            largest(&at.shader),
+            largest(&at.tables),
+            worst(|view| view.lobe),
+            worst(|view| view.albedo),
+            worst(|view| view.grazing)
         );
     }
     out.push('\n');

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::judge::exceptions::{Factor, Factors, Miss, Part};
 use crate::judge::{References, WeightsVote, evaluate, run};
 use crate::measure::table_terms::TableTerms;
+use crate::places::{PLACES_SEED, PlaceErrors, at_places};
 use crate::{
     Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, pages::json,
     statistics,
@@ -23,6 +24,9 @@ pub use sets::{POLISHED_ALPHAS, ParitySet};
 pub use tolerances::{KNOWN, Known, Share, Tolerance, tolerance};
 
 use tolerances::known;
+
+/// Limit of the 99th percentile of errors at random places, over max(brightest channel, [`crate::PLACE_FLOOR`]).
+pub const AT_PLACES: f64 = 0.01;
 
 /// A material of a bake, and its polished variants ([`POLISHED_ALPHAS`]): numbers of materials of the [`Subject`].
 #[derive(Debug, Clone, PartialEq)]
@@ -81,6 +85,9 @@ pub struct ParityRow {
     pub worst_arithmetic: Option<(ParitySet, WorstPair)>,
     /// Parts of the error of the shader at the pair with the largest table error, largest first.
     pub parts: Vec<Part>,
+    /// The form `baked` at random places, against f64 on the same tables; nothing for a material that is the same everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub places: Option<PlaceErrors>,
 }
 
 /// Whether an error keeps its tolerance.
@@ -117,9 +124,16 @@ impl ParityRow {
         known.filter(|known| max <= known.limit).map_or(Verdict::Broken, Verdict::Explained)
     }
 
+    /// Whether the shader is what its tables are at random places: 99 of 100 samples within [`AT_PLACES`].
+    pub fn holds_at_places(&self) -> bool {
+        self.places.as_ref().is_none_or(|at| at.not_finite == 0 && at.relative_dim.p99 <= AT_PLACES)
+    }
+
     /// Whether nothing is unexplained: all samples finite, all tolerances met or the reason listed.
     pub fn holds(&self) -> bool {
-        self.not_finite == 0 && Share::ALL.into_iter().all(|share| self.verdict(share) != Verdict::Broken)
+        self.not_finite == 0
+            && self.holds_at_places()
+            && Share::ALL.into_iter().all(|share| self.verdict(share) != Verdict::Broken)
     }
 }
 
@@ -267,11 +281,14 @@ fn compare(
             worst_table: table.and_then(|(statistics, set)| Some((set?, statistics.worst?))),
             worst_arithmetic: arithmetic.1.zip(arithmetic.0.worst),
             parts: Vec::new(),
+            places: None,
         }
     };
     let mut baked =
         row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
     baked.parts = parts(subject, &blocks, weights, &baked, of)?;
+    let at = at_places(subject, case.material as usize, Some((device, weights)), pairs_per_set, PLACES_SEED)?;
+    baked.places = at.and_then(|at| at.shader);
     let full = || row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None);
     let full = has_full.then(full);
     Ok(std::iter::once(baked).chain(full).collect())

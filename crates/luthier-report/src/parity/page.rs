@@ -5,10 +5,10 @@ use std::fmt::Write;
 use luthier_manifest::ShadingModel;
 
 use super::tolerances::{KNOWN, Tolerance, tolerance};
-use super::{Parity, ParityRow, ParitySet, Share, Verdict};
+use super::{AT_PLACES, Parity, ParityRow, ParitySet, Share, Verdict};
 use crate::pages::format::{error, number};
 use crate::pages::page::{angles, cause};
-use crate::{ErrorSummary, Form};
+use crate::{ErrorSummary, Form, PLACE_FLOOR};
 
 /// The whole page.
 pub(super) fn markdown(parity: &Parity, command: &str) -> String {
@@ -16,6 +16,7 @@ pub(super) fn markdown(parity: &Parity, command: &str) -> String {
     summary(&mut out, parity);
     tolerances(&mut out, parity);
     exceptions(&mut out, parity);
+    places(&mut out, parity);
     for model in models(parity) {
         materials(&mut out, parity, model);
     }
@@ -197,6 +198,33 @@ fn exceptions(out: &mut String, parity: &Parity) {
             share.name(),
             error(row.max(share)),
             error(p99),
+        );
+    }
+}
+
+fn places(out: &mut String, parity: &Parity) {
+    let all: Vec<_> = parity.rows.iter().filter_map(|row| Some((row, row.places.as_ref()?))).collect();
+    if all.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "\n## Random places\n\nMaterials that maps or effects vary, each at {} random places with a pair of directions: the form `baked` on the device, against f64 on the \
+         same tables at the same place. Errors are over max(brightest channel, {PLACE_FLOOR}); their 99th percentile may be {AT_PLACES}. \
+         `luthier-lab textured` has more.\n\n| model | material | p99 | max | not finite | worst place | |\n|---|---|--:|--:|--:|---|---|",
+        parity.pairs_per_set
+    );
+    for (row, at) in all {
+        let place = at.worst.as_ref().map_or_else(String::new, |w| format!("{}; {}", w.place, angles(w.wi, w.wo)));
+        let verdict = if row.holds_at_places() { "" } else { "**not accepted**" };
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {place} | {verdict} |",
+            row.model.name(),
+            row.material,
+            error(at.relative_dim.p99),
+            error(at.relative_dim.max),
+            at.not_finite
         );
     }
 }

@@ -12,12 +12,13 @@ use luthier_layers::statistics::total_reflection::escaping_share;
 use luthier_layers::terms::{Exact, Terms};
 use luthier_lut::{AtlasLayout, Axis, ErrorStats, Image, Mapping, TableKind, TexelFormat, Tile, Worst};
 use luthier_manifest::{
-    ColorMode, FileEntry, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShadingModel, TableEntry,
+    ColorMode, FileEntry, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, MaterialEntry, PlaceValues, ShadingModel,
+    TableEntry,
 };
 use luthier_optics::color::Color;
 use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
-use luthier_report::{Device, Form, Pair, Subject, TableTerms, Weights};
+use luthier_report::{Device, Form, Pair, Rows, Subject, TableTerms, Weights};
 
 pub(crate) const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 
@@ -186,7 +187,12 @@ impl Bake {
     }
 
     pub(crate) fn subject(&self) -> Subject<'_> {
-        Subject { manifest: &self.manifest, textures: self.textures.clone(), stacks: self.stacks.clone() }
+        Subject {
+            manifest: &self.manifest,
+            textures: self.textures.clone(),
+            stacks: self.stacks.clone(),
+            maps: Vec::new(),
+        }
     }
 
     /// A device with f64 inside and f32 at its ends: reads the tables with exact weights, and spoils each value with
@@ -254,6 +260,16 @@ impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S>
             (self.spoil)(form, material, n, value.map(|v| v as f32))
         };
         Ok(pairs.iter().enumerate().map(value).collect())
+    }
+
+    fn evaluate_at(&self, form: Form, material: u32, spots: &[(PlaceValues, Pair)]) -> Result<Vec<[f32; 3]>, String> {
+        let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
+        let value = |(n, (place, (wi, wo))): (usize, &(PlaceValues, Pair))| {
+            let rows = Rows::new(&self.subject, material as usize, place, Weights::Exact).map_err(|e| e.to_string())?;
+            let value = rows.eval(wide(*wi), wide(*wo));
+            Ok((self.spoil)(form, material, n, value.map(|v| v as f32)))
+        };
+        spots.iter().enumerate().map(value).collect()
     }
 }
 

@@ -6,6 +6,7 @@ mod judgement;
 mod limits;
 mod page;
 mod parity;
+mod places;
 mod schema;
 mod stability;
 mod tables;

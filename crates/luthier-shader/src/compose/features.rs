@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use luthier_lut::TableKind;
 use luthier_manifest::{
     FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, MapSlot, Masking, MaterialEntry,
-    Reflectance, ShadingModel, SwitchBy, VaryingFactor,
+    PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
 };
 
 use crate::compose::masking;
@@ -44,6 +44,10 @@ impl Features {
                     MapSlot::Thickness => &["layered", "own_slabs"],
                     _ => &["layered", "own_alphas"],
                 });
+            }
+            // Rows over a factor have the shape of the remainder beside the light of the base.
+            if painted(material).is_some_and(|base| base.moments.is_some()) {
+                names.insert("lobes_base");
             }
             if material.constants.glitter.is_some() {
                 names.insert("glitter");
@@ -97,13 +101,12 @@ impl Features {
         for table in set.tables_read(form) {
             names.insert(feature(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Two parts are no lobe's, and each lobe has two.
-                names.extend(
-                    [(4..6, "one_lobe"), (6..7, "two_lobes")]
-                        .iter()
-                        .filter(|(sizes, _)| sizes.contains(&parts.size))
-                        .map(|(_, name)| *name),
-                );
+                // The last part is the albedo, and each lobe has two between it and part 0.
+                names.extend(match parts.max as u32 {
+                    3 => Some("one_lobe"),
+                    5 => Some("two_lobes"),
+                    _ => None,
+                });
             }
             if !table.format.is_filterable() {
                 names.insert("bilinear");
@@ -366,7 +369,12 @@ fn is_over_film(lobes: &LobesRecord) -> bool {
 
 /// Whether the base below lobes may have another colour.
 fn has_base_light(material: &MaterialEntry) -> bool {
-    material.constants.patina.is_none() && material.constants.lobes.is_some_and(|lobes| lobes.base.is_some())
+    painted(material).is_some()
+}
+
+/// The base below lobes that may have another colour.
+fn painted(material: &MaterialEntry) -> Option<PaintedRecord> {
+    material.constants.lobes.filter(|_| material.constants.patina.is_none())?.painted
 }
 
 /// Whether what lies below patina is a diffuse base alone.

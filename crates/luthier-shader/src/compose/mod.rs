@@ -83,7 +83,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
         (has("fitted") || has("several_reflectances"), include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
-        (has("own_f0"), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
+        (has("own_f0") && (facets || has("full")), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
         (facets, include_str!("../wgsl/interface/slopes.wgsl")),
         (!masking.is_empty(), masking.as_str()),
         (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),

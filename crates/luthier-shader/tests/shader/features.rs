@@ -146,7 +146,7 @@ fn mapped(material: MaterialEntry) -> MaterialEntry {
 }
 
 /// A material with a map of a layer.
-fn with_map(material: MaterialEntry, slot: MapSlot, layer: u32) -> MaterialEntry {
+pub(crate) fn with_map(material: MaterialEntry, slot: MapSlot, layer: u32) -> MaterialEntry {
     let file = FileEntry::default();
     let map = MapEntry { slot, layer: Some(layer), source: String::new(), file, width: 1, height: 1, factor: None };
     MaterialEntry { maps: vec![map], ..material }

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use luthier_layers::lobes::{Axes, BaseLight, Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_layers::oren_nayar;
-use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
+use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
-    AxesRecord, BaseRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry,
+    AxesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry, PaintedRecord,
     VaryingFactor, VaryingRecord, material_buffer,
 };
 use luthier_optics::microfacet;
@@ -41,6 +41,27 @@ fn rows() -> (AtlasLayout, Image) {
     (layout, image)
 }
 
+/// [`rows`] with the light of a base before them.
+fn rows_over_base() -> (AtlasLayout, Image) {
+    let (without, of_rows) = rows();
+    let y = without.y.clone().map(|y| Axis { min: -2.0, size: 8, ..y });
+    let layout = AtlasLayout { y, ..without };
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    let across = layout.row_size();
+    for i in 0..across {
+        let c = layout.x.node((i.max(1) - 1).min(layout.x.size - 1));
+        for (j, part) in (0..).zip([[0.4, 0.3 - 0.1 * c, 0.2, 0.1], [0.25 * c, 0.16, 0.1, 0.3 + 0.2 * c]]) {
+            image.texel_mut(j * across + i, 0).copy_from_slice(&part.map(|value| value as f32));
+        }
+        for j in 2..8 {
+            let part = of_rows.texel((j - 2) * across + i, 0).to_vec();
+            image.texel_mut(j * across + i, 0).copy_from_slice(&part);
+        }
+    }
+    (layout, image)
+}
+
 fn set(name: &str) -> Vec<MaterialEntry> {
     sets().into_iter().find(|(known, _)| *known == name).unwrap().1
 }
@@ -68,7 +89,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_plain_share: 0.25,
             varying: None,
             axes: None,
-            base: None,
+            painted: None,
             error: None,
         };
         let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
@@ -87,7 +108,7 @@ fn light_from_below_is_that_of_the_twin() {
                 let at = layout.position(0, [axis.cosine(eye.z), f64::from(part)]);
                 bilinear(&image, at, WeightBits::Exact)
             };
-            let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>());
+            let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false);
             let expected =
                 Below::new(Frame { index: 1.4f32.into(), wide, axes: None, base: None }, row, eye).eval(light);
             let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
@@ -168,7 +189,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
                     let (a, b, t) = (read(low), read(low + 1), tile - f64::from(low));
                     [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]))
                 };
-                let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>()).spread(spread);
+                let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false).spread(spread);
                 let expected = Below::new(frame, row, eye).eval(light);
                 let arguments = vec![Value::Many(place.clone()), Value::U(0), vector(&wo.map(|w| w as f32))];
                 let prepared = machine.call("luthier_prepare_lobes", arguments);
@@ -259,7 +280,10 @@ fn lobes_in_axes_are_those_of_the_twin() {
             }
             let row = |tile: usize| {
                 let at = |part| layout.position(first + tile as u32, [eye.z, f64::from(part)]);
-                Row::of_parts(&(0..6).map(|part| bilinear(&image, at(part), WeightBits::Exact)).collect::<Vec<_>>())
+                Row::of_parts(
+                    &(0..6).map(|part| bilinear(&image, at(part), WeightBits::Exact)).collect::<Vec<_>>(),
+                    false,
+                )
             };
             let row = axes.map_or_else(|| row(0), |axes| axes.row(eye, row));
             let expected = Below::new(frame, row, eye).widened(eye, variance).eval(light);
@@ -324,7 +348,7 @@ fn patina_mixes_the_light_of_two_ends() {
                     let (a, b, t) = (read(low, part.into()), read(low + 1, part.into()), tile - f64::from(low));
                     [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]))
                 };
-                let mut row = Row::of_parts(&(0..6).map(mixed).collect::<Vec<_>>());
+                let mut row = Row::of_parts(&(0..6).map(mixed).collect::<Vec<_>>(), false);
                 let facets = |layer: &LayerRecord| {
                     let half = (light + eye).normalize();
                     let sin_sq = half.x * half.x + half.y * half.y;
@@ -390,25 +414,30 @@ fn covered_rows() -> (AtlasLayout, Image) {
 /// are a walk, a mean and paths (`luthier-layers/src/lobes/tilt_tests.rs`, `tests.rs`).
 #[test]
 fn values_of_a_place_change_lobes_as_in_the_twin() {
-    let (layout, image) = rows();
-    for (name, groups, variance) in [("lobes-flakes", &[][..], 0.0), ("lobes", &[FunctionGroup::Surface], 0.02)] {
+    let surface = [FunctionGroup::Surface];
+    for (name, groups, variance, is_lambertian) in
+        [("lobes-flakes", &[][..], 0.0, false), ("lobes", &surface, 0.02, false), ("lobes", &surface, 0.0, true)]
+    {
+        let has_base = !groups.is_empty();
+        let (layout, image) = if has_base { rows_over_base() } else { rows() };
         let given = set(name).swap_remove(0);
         let record = given.constants.lobes.unwrap();
         let frame = Frame {
             index: record.index,
             wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())),
             axes: None,
-            base: (!groups.is_empty()).then_some(BaseLight {
-                albedo: [0.3, 0.5, 0.7],
-                share: [0.9, 0.8, 1.1],
-                internal: [0.4, 0.3, 0.2],
-            }),
+            base: has_base.then_some(Painted { albedo: [0.3, 0.5, 0.7], is_lambertian }),
         };
-        let base = frame.base.map(|BaseLight { albedo, share, internal }| BaseRecord { albedo, share, internal });
-        let lobes = Some(LobesRecord { integral: frame.wide.integral(), base, ..record });
+        let painted = frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
+            albedo,
+            // By hand: 2 / 42 and 2 / 12.
+            moments: is_lambertian.then_some([1.0 / 21.0, 1.0 / 6.0]),
+        });
+        let lobes = Some(LobesRecord { integral: frame.wide.integral(), painted, ..record });
         let materials =
             [MaterialEntry { constants: MaterialConstants { lobes, ..given.constants.clone() }, ..given.clone() }];
-        let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables()) };
+        let tables = tables_with(&layout);
+        let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
         let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
@@ -422,13 +451,14 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
             let mut place = neutral.clone();
             // After the normal and three factors.
             let color = [0.0, 0.6, 1.0].map(|x: f64| (x + 0.01 * k as f64) % 1.0);
-            if !groups.is_empty() {
+            if has_base {
                 place[4] = Value::F(variance as f32);
                 place[5] = vector(&color.map(|x| x as f32));
             }
             *place.last_mut().unwrap() = vector(&normal.to_array());
-            let part = |part: u32| bilinear(&image, layout.position(0, [eye.z, f64::from(part)]), WeightBits::Exact);
-            let below = Below::new(frame, Row::of_parts(&(0..6).map(part).collect::<Vec<_>>()), eye);
+            let part = |part: i32| bilinear(&image, layout.position(0, [eye.z, f64::from(part)]), WeightBits::Exact);
+            let parts: Vec<_> = (if has_base { -2 } else { 0 }..6).map(part).collect();
+            let below = Below::new(frame, Row::of_parts(&parts, has_base), eye);
             let straight = below.eval(light);
             let there = below.widened(eye, variance).tilted(normal.as_dvec3(), given.layers[0].eta).over_base(color);
             let there = there.eval(light);
@@ -534,7 +564,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_plain_share: 0.0,
             varying,
             axes,
-            base: None,
+            painted: None,
             error: None,
         };
         materials[0].constants.lobes = Some(lobes);

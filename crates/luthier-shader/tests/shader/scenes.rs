@@ -187,7 +187,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_plain_share: 0.25,
         varying: None,
         axes: None,
-        base: None,
+        painted: None,
         error: None,
     });
     material

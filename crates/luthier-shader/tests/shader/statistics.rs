@@ -10,13 +10,14 @@ use luthier_layers::statistics::evaluate::{Follow, evaluate};
 use luthier_layers::statistics::layers::{Below, Layer, Layers};
 use luthier_layers::statistics::spread::Covariance;
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
-use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
+use luthier_manifest::{LayerKind, LayerRecord, MapSlot, MaterialEntry, ShadingModel, material_buffer};
 use luthier_optics::fresnel::{FilmLayer, coated};
 use luthier_optics::stack::{Distribution, Surface};
 use luthier_shader::{Form, MaterialSet, Target, emit};
 use num_complex::Complex64;
 
 use crate::arithmetic::{direction, directions, eval, full};
+use crate::features::with_map;
 use crate::machine::{Machine, Value, vector};
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables, with_escape};
 
@@ -308,6 +309,45 @@ fn lobes_carry_no_more_than_arrives_and_all_of_it_on_a_white_base() {
                     assert!(!is_lossless || (value - 1.0).abs() < ROUNDING, "{cos}: {sum:?}");
                     assert!(is_lossless || cos < 0.05 || *value < 0.99, "{cos}: {sum:?}");
                 }
+            }
+        }
+    }
+}
+
+/// Energies of which another F0 of the second layer leaves a factor of what is not reflected.
+struct Passing<'a>(&'a dyn Energy<3>, [f64; 3]);
+
+impl Energy<3> for Passing<'_> {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> [f64; 3] {
+        let given = self.0.fgd(layer, cos_theta_i, alpha);
+        if layer == 1 { [0, 1, 2].map(|c: usize| 1.0 - self.1[c] * (1.0 - given[c])) } else { given }
+    }
+
+    fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
+        self.0.escaping(layer, cos_theta_i, alpha, eta)
+    }
+}
+
+/// Oracle: the formulas in f64. Copper made of plastic below a coat: what its interface does not reflect is in proportion to 1 - F0.
+#[test]
+fn places_change_the_f0_of_a_layer() {
+    let passing = [0.05, 0.4, 0.5];
+    let probe = "fn probe(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> { var place = luthier_place(); \
+                 place.layers[1].passing = vec3<f32>(0.05, 0.4, 0.5); return luthier_eval_at(place, material, wi, wo); }";
+    for model in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
+        let plastic = LayerRecord { eta: 1.0, f0: Some([0.04; 3]), ..with_escape(clear()) };
+        let layers = [with_escape(dielectric()), plastic, diffuse(0.0)];
+        let entry = with_map(material("painted", &layers), MapSlot::Metallic, 1);
+        let materials = [MaterialEntry { model, ..entry }];
+        let machine = baked(&materials, probe);
+        let read = Read { material: &materials[0], fgd: albedos(), escape: shares() };
+        for (wi, wo) in directions(200) {
+            let expected = twin(&materials[0], &Passing(&read, passing), wi, wo);
+            let [a, b] = [wi, wo].map(|w| vector(&w.map(|v| v as f32)));
+            let found = machine.call("probe", vec![Value::U(0), a, b]).floats();
+            for (e, f) in expected.iter().zip(&found) {
+                let error = (f64::from(*f) - e).abs() / e.abs().max(1e-3);
+                assert!(error < TOLERANCE, "{wi:?} {wo:?}: {found:?}, f64 {expected:?}");
             }
         }
     }

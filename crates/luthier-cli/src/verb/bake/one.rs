@@ -31,7 +31,7 @@ pub(super) struct Begun<'a> {
     found: Found,
 }
 
-/// What was found of a package.
+/// A package as its files and its stamp describe it.
 enum Found {
     /// It is as it was baked before.
     Current(Kept),
@@ -39,7 +39,7 @@ enum Found {
     Set(Set),
 }
 
-/// What is to be baked.
+/// Materials and surfaces that are to be baked.
 struct Set {
     materials: Vec<Material>,
     surfaces: Vec<SurfaceEntry>,
@@ -51,11 +51,11 @@ struct Set {
 pub(super) struct Made<'a> {
     begun: Begun<'a>,
     encoded: Option<Encoded>,
-    /// What a step short of a package has to say, as JSON and in words.
+    /// The words of a step short of a package, as JSON and as text.
     said: Option<(Value, String)>,
 }
 
-/// What became of a package.
+/// The end of a package's bake: published, compared, or only counted.
 #[derive(Default)]
 pub(super) struct Done {
     pub(super) json: Value,
@@ -81,7 +81,7 @@ impl<'a> Begun<'a> {
         }
         let forms = options.emission.forms();
         let mut sources = read_all(&found.materials)?;
-        refuse(&mut sources, |material| options.shading.doubts(material, &forms));
+        refuse(&mut sources, |material| options.shading.doubts_and_energy(material, &forms));
         let told = sources.iter().flat_map(Source::diagnostics).cloned().collect();
         refuse_surfaces(&mut found.surfaces, &sources);
         let surfaces = valid_surfaces(&found.surfaces)?;

@@ -45,7 +45,7 @@ fn escaped(path: &Path) -> String {
     text.replace('\\', "/").replace('$', "$$").replace('#', "\\#").replace(' ', "\\ ")
 }
 
-/// What of a folder a bake would change.
+/// The files and materials of a folder that a bake would change.
 pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<String>) -> Outcome<Done> {
     let mut stale = encoded.stale(&options.out)?;
     stale.extend(lock);
@@ -84,7 +84,7 @@ pub(super) fn missing(missing: &Missing) -> (Value, String) {
     (json!({ "jobs": counts, "is_all": missing.is_all }), lines.join("\n"))
 }
 
-/// What a share took, as JSON and in words.
+/// The jobs that a share took, as JSON and in words.
 pub(super) fn share(options: &BakeOptions, share: Share, progress: &BakeProgress) -> (Value, String) {
     let (run, found) = (progress.run(), progress.had());
     let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();

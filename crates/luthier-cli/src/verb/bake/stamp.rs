@@ -94,7 +94,7 @@ impl Kept {
         files.iter().chain(&self.named).cloned().collect()
     }
 
-    /// That nothing had to be done, as JSON and in words. Warnings that were told before are counted on standard error.
+    /// The verdict that nothing had to be done, as JSON and in words. Warnings that were told before are counted on standard error.
     pub(super) fn say(&self, options: &BakeOptions) -> (Value, String) {
         let mut summary = self.summary.clone();
         summary["up_to_date"] = json!(true);

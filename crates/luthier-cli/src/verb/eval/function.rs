@@ -3,13 +3,14 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
+use luthier_export::parts_of;
 use luthier_layers::directional_albedo::over_hemisphere;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::{BeamsRecord, ColorMode, Reflectance, ShadingModel};
+use luthier_manifest::{Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -174,20 +175,11 @@ impl<'a> Function<'a> {
 
 /// The parts of its shader's model that the file chooses, as far as the model that is evaluated has them.
 pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
-    let (bake, model) = (&subject.material.bake, ShadingModel::from_name(subject.model.info().name));
-    let masking = bake.masking.filter(|_| model.is_some_and(ShadingModel::has_masking)).unwrap_or_default();
-    let has_reflectance = model.is_some_and(ShadingModel::has_reflectance);
-    let reflectance = bake.reflectance.filter(|_| has_reflectance).unwrap_or_default();
-    let internal = bake.internal_reflection.filter(|_| model.is_some_and(ShadingModel::has_path));
-    let parts = Parts::named(masking.name(), reflectance.name(), internal.unwrap_or_default().name());
-    let parts = parts.unwrap_or(Parts::PLAIN);
-    let beams = subject.material.beams().filter(|_| model.is_some_and(ShadingModel::has_beams));
-    (
-        beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
-            parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
-        }),
-        reflectance,
-    )
+    let Some(model) = ShadingModel::from_name(subject.model.info().name) else {
+        return (Parts::PLAIN, Reflectance::default());
+    };
+    let reflectance = subject.material.bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default();
+    (parts_of(&subject.material, model), reflectance)
 }
 
 /// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
@@ -220,11 +212,7 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
             let wavelengths_nm = subject.material.bake.wavelengths_nm();
             // Phong's coefficients and curves of reflectances are in the material's colour, in both forms of its shader.
             let is_own = name == "phong" || reflectance.is_fitted();
-            let color = match subject.material.bake.color {
-                _ if !is_own => color,
-                Some(ColorMode::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
-                Some(ColorMode::Spectral) | None => Color::Spectral,
-            };
+            let color = if is_own { subject.material.color() } else { color };
             Some(How::Shader(Box::new(made(stack, wavelengths_nm, color)?), 0))
         }
     }

@@ -3,6 +3,7 @@
 mod function;
 mod place;
 mod polarised;
+mod shipped;
 mod sweep;
 mod values;
 
@@ -107,7 +108,15 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
         // The command line asks for one or the other.
         (None, ..) => Vec::new(),
     };
-    values(&subject, Kind::asked(options, &subject).unwrap_or(Kind::Color(Color::Spectral)), &pairs, options.json)
+    if let Some(folder) = &options.out {
+        return shipped::shipped(&subject, folder, &pairs, options.json);
+    }
+    if name == lobes::MODEL && subject.place != luthier_layers::shaded::Place::NONE {
+        let what = "fitted to the stack at this place; `--out FOLDER` reads the rows that a bake ships";
+        complain(&format!("note: lobes are {what}"));
+    }
+    let kind = Kind::asked(options, &subject).unwrap_or_else(|| Kind::Color(subject.material.color()));
+    values(&subject, kind, &pairs, options.json)
 }
 
 fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {

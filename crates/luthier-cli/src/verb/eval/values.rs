@@ -15,8 +15,20 @@ pub(crate) fn values(subject: &Subject, kind: Kind, pairs: &[[Angles; 2]], json:
     let is_estimate = function.estimator().is_some();
     let found: Vec<Vec<Estimate>> =
         pairs.par_iter().map(|[wi, wo]| function.values(wi.direction(), wo.direction())).collect();
+    show(subject.head(), kind, is_estimate, pairs, &found, json)
+}
+
+/// Prints values that were found, below a head of JSON.
+pub(super) fn show(
+    mut head: Value,
+    kind: Kind,
+    is_estimate: bool,
+    pairs: &[[Angles; 2]],
+    found: &[Vec<Estimate>],
+    json: bool,
+) -> Outcome {
     if json {
-        let rows = std::iter::zip(pairs, &found).map(|([wi, wo], values)| {
+        let rows = std::iter::zip(pairs, found).map(|([wi, wo], values)| {
             let means: Vec<f64> = values.iter().map(|e| e.mean).collect();
             let mut row = json!({"wi_deg": wi.to_array(), "wo_deg": wo.to_array(), "value": means});
             if is_estimate {
@@ -26,7 +38,6 @@ pub(crate) fn values(subject: &Subject, kind: Kind, pairs: &[[Angles; 2]], json:
             row
         });
         let rows = Value::from_iter(rows);
-        let mut head = subject.head();
         head["color"] = kind.describe();
         head["values"] = rows;
         return print(&format!("{head:#}"));
@@ -36,7 +47,7 @@ pub(crate) fn values(subject: &Subject, kind: Kind, pairs: &[[Angles; 2]], json:
     if is_estimate {
         columns.iter().for_each(|column| text.push_str(&format!(",std_err_{column}")));
     }
-    for ([wi, wo], values) in std::iter::zip(pairs, &found) {
+    for ([wi, wo], values) in std::iter::zip(pairs, found) {
         let angles = wi.to_array().into_iter().chain(wo.to_array()).map(|angle| angle.to_string());
         let means = values.iter().map(|e| significant(e.mean));
         let errors = values.iter().filter(|_| is_estimate).map(error);

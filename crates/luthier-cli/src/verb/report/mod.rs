@@ -10,7 +10,7 @@ use std::path::Path;
 use luthier_export::{Folder, GENERATOR, REPORT_FILES, publish_beside, read_one, shared, source_hash};
 use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
-use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
+use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, SurfaceMap, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
 use luthier_terminal::{Bar, Failure, Outcome, print};
 
@@ -25,12 +25,13 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let folder = Folder::open(&options.out)?;
     let manifest = folder.manifest();
     let textures = folder.textures()?;
+    let maps = maps(&folder)?;
     let materials = materials(manifest)?;
     let given = evidence::given(options)?;
     let device = device(&folder, options)?;
     drop(lock);
     let stacks = materials.iter().map(|m| m.reflecting_stack().into_owned()).collect();
-    let subject = Subject { manifest, textures, stacks };
+    let subject = Subject { manifest, textures, stacks, maps };
     let bar = Bar::new("judging");
     let judgements = memory::Judgements(store()?);
     let settings = Settings {
@@ -39,6 +40,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
         budget: options.max_error,
         provenance: provenance(&folder, options, &given),
         progress: Some(&|p| bar.set(p.done, p.total)),
+        ..Settings::default()
     };
     let judging = device.as_ref().map(|d| d as &dyn Device);
     let mut report = judge(&subject, judging, &settings).map_err(Failure::input)?;
@@ -58,6 +60,17 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
 
     print(&if options.json { json } else { text(&report, &options.out) })?;
     if report.is_within_budget() == Some(false) { Err(Failure::Verdict) } else { Ok(()) }
+}
+
+/// The maps that ship.
+fn maps(folder: &Folder) -> Outcome<Vec<SurfaceMap>> {
+    let materials = (0..).zip(&folder.manifest().materials);
+    let all = materials.flat_map(|(material, entry)| entry.maps.iter().map(move |map| (material, map)));
+    all.map(|(material, map)| {
+        let (_, image) = folder.map(map)?;
+        Ok(SurfaceMap { material, slot: map.slot, layer: map.layer, image })
+    })
+    .collect()
 }
 
 /// Facts that identify the run.
@@ -184,6 +197,15 @@ impl Device for NoShaders {
     }
 
     fn evaluate(&self, _: luthier_report::Form, _: u32, _: &[luthier_report::Pair]) -> Result<Vec<[f32; 3]>, String> {
+        match *self {}
+    }
+
+    fn evaluate_at(
+        &self,
+        _: luthier_report::Form,
+        _: u32,
+        _: &[(luthier_manifest::PlaceValues, luthier_report::Pair)],
+    ) -> Result<Vec<[f32; 3]>, String> {
         match *self {}
     }
 }

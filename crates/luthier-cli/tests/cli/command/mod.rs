@@ -5,8 +5,12 @@ mod failures;
 mod help;
 mod kinds;
 mod manual;
+#[cfg(unix)]
+mod nightly;
 mod pipes;
 mod schema;
 mod shared_store;
 mod sources;
+#[cfg(unix)]
+mod suite;
 mod table;

@@ -75,12 +75,16 @@ fn place(workshop: &Workshop, model: &str) -> String {
 }
 
 fn package(material: &Material, body: Option<&str>) -> Package {
-    let bake = Bake { refuses: false, ..Bake::wgsl(&[Form::Full]) };
+    package_in(Form::Full, material, body)
+}
+
+fn package_in(form: Form, material: &Material, body: Option<&str>) -> Package {
+    let bake = Bake { refuses: false, ..Bake::wgsl(&[form]) };
     let mut package = Package::new(std::slice::from_ref(material), &bake, &MemoryStore::default()).unwrap();
     if let Some(body) = body {
-        let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
+        let wgsl = package.wgsl(form).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
             + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
-        package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
+        package.shaders = vec![Shader::wgsl(form, wgsl)];
     }
     package
 }
@@ -212,4 +216,52 @@ fn a_blurred_environment_refuses_maps_of_layers() {
     let settings = RenderSettings::new(Shape::Sphere).unwrap();
     let error = scene.render(&[0], &settings).unwrap_err().to_string();
     assert!(error.contains("`m` has maps of single layers"), "{error}");
+}
+
+/// Maps that change a coat, each together with a map of the base under it, under `lobes`. Oracle: the simulation of the file with the numbers that they make.
+#[test]
+fn maps_together_show_the_light_of_the_numbers_that_they_make() {
+    let Some(gpu) = gpu() else { return };
+    let workshop = Workshop::new();
+    for (name, texel) in [("factor.png", [15u8; 3]), ("base.png", [204, 156, 96])] {
+        image::RgbImage::from_pixel(1, 1, image::Rgb(texel)).save(workshop.path(name)).unwrap();
+    }
+    let (factor, base) = (15.0 / 255.0, [204.0, 156.0, 96.0].map(|texel| texel / 255.0));
+    let file = |alpha: f64, thickness_um: f64, maps: &str, albedo: [f64; 3], base_maps: &str| {
+        format!(
+            "schema = 1\nname = \"m\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = {alpha:?}\nthickness_um = {thickness_um:?}\n\
+             absorption_per_um = [0.0006, 0.004, 0.016]\n{maps}[[layer]]\ntype = \"diffuse\"\nalbedo = {albedo:?}\n{base_maps}"
+        )
+    };
+    let pairs: Vec<Pair> = pairs().into_iter().step_by(20).collect();
+    workshop.write("pairs.csv", listed(&pairs));
+    for (map, member, [alpha, thickness_um]) in
+        [("thickness", "slab_factor", [0.09, 255.0]), ("roughness", "alpha_factor", [0.5, 15.0])]
+    {
+        let maps = format!("maps = {{ {map} = \"factor.png\" }}\n");
+        workshop.write("m.toml", file(alpha, thickness_um, &maps, [1.0; 3], "maps = { albedo = \"base.png\" }\n"));
+        let material = material(&workshop);
+        assert_eq!(material.model(), ShadingModel::Lobes);
+        let body = format!(
+            "var place = luthier_place();\nplace.{member} = {factor:?};\nplace.base_color = vec3<f32>({:?}, {:?}, {:?});\n\
+             return luthier_eval_at(place, material, wi, wo);",
+            base[0], base[1], base[2]
+        );
+        let package = package_in(Form::Baked, &material, Some(&body));
+        let found = gpu.scene(&package, Form::Baked).unwrap().evaluate(0, &pairs).unwrap();
+        let [alpha, thickness_um] =
+            if map == "thickness" { [alpha, thickness_um * factor] } else { [alpha * factor, thickness_um] };
+        workshop.write("plain.toml", file(alpha, thickness_um, "", base, ""));
+        let mut eval = vec!["eval", "plain.toml", "--model", "layered-mc", "--samples", "40000", "--json"];
+        eval.extend(["--directions", "pairs.csv"]);
+        let json = workshop.run(&eval).exits(0).json();
+        let rows = json["values"].as_array().unwrap();
+        let mut worst = 0.0_f64;
+        for (found, row) in found.iter().zip(rows) {
+            let number = |c: usize| row["value"][c].as_f64().unwrap();
+            worst = worst.max(error(*found, [0, 1, 2].map(number)));
+        }
+        eprintln!("{map} and albedo: {worst:.1e}");
+        assert!(rows.len() == pairs.len() && worst < 0.05, "{map}: {worst}");
+    }
 }

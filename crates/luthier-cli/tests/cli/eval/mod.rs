@@ -21,6 +21,7 @@ mod parts;
 mod polarised;
 #[cfg(feature = "gpu")]
 mod schlick;
+mod shipped;
 mod surfaces;
 #[cfg(feature = "gpu")]
 pub(crate) mod twin;

@@ -252,3 +252,43 @@ fn errors_are_stated_where_they_are_known() {
     let json = workshop.run(&[&few[..], &["--json"]].concat()).exits(0).json();
     assert!(json["values"][0]["std_err"][0].is_null() && json["values"][0]["settled"][0] == false, "{json}");
 }
+
+/// A file with three wavelengths is evaluated at these, as its shaders are. Oracle: Fresnel's reflectance at normal incidence of the n and k that the
+/// file of indices has at each wavelength; D and masking are the same in all channels.
+#[test]
+fn values_have_the_colour_of_the_file() {
+    let nodes = [(645.0, 0.2, 3.0), (525.0, 1.5, 0.4), (445.0, 3.0, 2.0)];
+    // Other indices at all wavelengths between, so that a spectral colour is another one.
+    let mut lines = vec!["wavelength_nm,n,k".to_owned()];
+    for nm in (360..=830).step_by(5) {
+        let at = nodes.iter().find(|node| node.0 == f64::from(nm));
+        let (n, k) = at.map_or((1.1, 0.01), |node| (node.1, node.2));
+        lines.push(format!("{nm},{n},{k}"));
+    }
+    let metal = "schema = 1\nname = \"metal\"\n[[layer]]\ntype = \"conductor\"\nior = \"measured.csv\"\nalpha = 0.3\n[bake]\nmodel = \"microfacet\"\n";
+    let workshop = Workshop::with(&[
+        ("measured.csv", &(lines.join("\n") + "\n")),
+        ("own.toml", &format!("{metal}color = \"three-wavelengths\"\n")),
+        ("plain.toml", metal),
+    ]);
+    let values = |file: &str, more: &[&str]| {
+        let args = ["eval", file, "--model", "microfacet", "--wi", "0,0", "--wo", "0,0"];
+        let text = workshop.run(&[&args, more].concat()).exits(0).stdout;
+        numbers(text.lines().nth(1).unwrap())[4..].to_vec()
+    };
+    let own = values("own.toml", &[]);
+    let fresnel =
+        nodes.map(|(_, n, k): (f64, f64, f64)| ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k));
+    for c in 1..3 {
+        let (found, expected) = (own[c] / own[0], fresnel[c] / fresnel[0]);
+        assert!((found / expected - 1.0).abs() < 1e-5, "channel {c}: {found}, {expected}");
+    }
+    assert_eq!(own, values("plain.toml", &["--three-wavelengths"]));
+    // The other way round, and both by their names.
+    let spectral = values("own.toml", &["--rgb"]);
+    assert_eq!(spectral, values("plain.toml", &[]));
+    assert!((spectral[0] / own[0] - 1.0).abs() > 0.1, "{spectral:?} {own:?}");
+    let said =
+        workshop.run(&["eval", "own.toml", "--model", "microfacet", "--wi", "0,0", "--wo", "0,0", "--json"]).exits(0);
+    assert_eq!(said.json()["color"], serde_json::json!({"three_wavelengths_nm": [645.0, 525.0, 445.0]}));
+}

@@ -3,16 +3,12 @@
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 use image::RgbImage;
-use luthier_workshop::Run;
+use luthier_workshop::{Patience, Run};
 
 use crate::workshop::Workshop;
-
-/// Far more than a busy machine needs.
-const PATIENCE: Duration = Duration::from_secs(240);
 
 const WINDOW: [u32; 2] = [700, 480];
 /// Width of the panel at the right and, in [`STATUS`], height of the line at the bottom, in pixels.
@@ -72,7 +68,7 @@ impl<'a> Window<'a> {
     /// Waits for a screenshot. `None` for want of an adapter.
     fn shot(&mut self, name: &str) -> Option<RgbImage> {
         let path: PathBuf = self.workshop.path(name);
-        let begin = Instant::now();
+        let mut patience = Patience::with(self.process.id());
         while !path.exists() {
             if let Some(status) = self.process.try_wait().unwrap() {
                 let mut stderr = String::new();
@@ -87,8 +83,7 @@ impl<'a> Window<'a> {
                 }
                 panic!("no {name}: {status}\n{}", run.stderr);
             }
-            assert!(begin.elapsed() < PATIENCE, "no {name} after {PATIENCE:?}");
-            std::thread::sleep(Duration::from_millis(20));
+            patience.wait_for(name);
         }
         let picture = image::open(path).unwrap().into_rgb8();
         assert_eq!(picture.dimensions(), (WINDOW[0], WINDOW[1]));

@@ -2,8 +2,8 @@
 
 use std::fs;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
+use luthier_workshop::Patience;
 use luthier_workshop::material_texts::matte;
 
 use crate::workshop::Workshop;
@@ -18,12 +18,13 @@ impl Drop for Watcher {
     }
 }
 
-/// Waits until something holds; fails after a minute.
-fn wait(what: &str, mut holds: impl FnMut() -> bool) {
-    let start = Instant::now();
-    while !holds() {
-        assert!(start.elapsed() < Duration::from_secs(60), "{what}");
-        std::thread::sleep(Duration::from_millis(50));
+impl Watcher {
+    /// Waits until something holds.
+    fn until(&self, what: &str, mut holds: impl FnMut() -> bool) {
+        let mut patience = Patience::with(self.0.id());
+        while !holds() {
+            patience.wait_for(what);
+        }
     }
 }
 
@@ -36,20 +37,20 @@ fn changed_files_are_baked_and_broken_ones_waited_for() {
         .args(["bake", "a", "--watch", "--events", "--quiet", "--no-cache"])
         .stderr(Stdio::from(events))
         .spawn();
-    let _watcher = Watcher(child.unwrap());
+    let watcher = Watcher(child.unwrap());
     let manifest = || fs::read_to_string(workshop.path("out/manifest.json")).unwrap_or_default();
-    wait("the first bake", || manifest().contains("first"));
+    watcher.until("the first bake", || manifest().contains("first"));
     workshop.write("a/second.toml", matte("second"));
-    wait("another file", || manifest().contains("second"));
+    watcher.until("another file", || manifest().contains("second"));
     let good = manifest();
     workshop.write("a/second.toml", "schema = 1\nname = \"second\"\nbroken");
-    wait("an error", || workshop.text("events").contains("cannot be used"));
+    watcher.until("an error", || workshop.text("events").contains("cannot be used"));
     assert_eq!(manifest(), good);
     fs::remove_file(workshop.path("a/second.toml")).unwrap();
-    wait("a file less", || !manifest().is_empty() && !manifest().contains("second"));
+    watcher.until("a file less", || !manifest().is_empty() && !manifest().contains("second"));
     workshop.write("a/first.toml", matte("third"));
-    wait("another name", || manifest().contains("third"));
+    watcher.until("another name", || manifest().contains("third"));
     let published = || workshop.text("events").lines().filter(|line| line.contains("\"published\"")).count();
     // A line follows the files.
-    wait("an event for each bake", || published() == 4);
+    watcher.until("an event for each bake", || published() == 4);
 }

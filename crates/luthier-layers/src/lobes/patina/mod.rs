@@ -127,10 +127,9 @@ pub(super) fn nodes(cover: &Cover, simulations: &[Simulation], most: usize, exce
     let found = simulation.fewest(of_cover, excess);
     let falloff = cover.falloff(&simulation.lobes(&found));
     let found = simulation.with_falloff(&found, falloff);
-    let mut whole = simulation.lobes(&found);
-    // What a base of another colour would change is not known of both ends.
-    whole.frame.base = None;
-    let grown = between.first().map_or_else(|| whole.clone(), |rough| rough.lobes(&rough.follow(&found, 1.0)));
+    let whole = simulation.lobes(&found);
+    let grown =
+        between.first().map_or_else(|| whole.clone(), |rough| rough.lobes(&rough.with_falloff(&found, falloff)));
     let without = without.in_cells(found.set);
     let of_bare = without.fewest(most - of_cover, excess);
     let bare = without.lobes(&without.with_falloff(&of_bare, falloff));
@@ -156,5 +155,10 @@ pub(super) fn nodes(cover: &Cover, simulations: &[Simulation], most: usize, exce
     };
     let rows = grown.rows.iter().zip(&bare.rows).map(row).collect();
     nodes.push(Lobes { first: bare.first, frame: whole.frame, axis: whole.axis, rows });
+    // What a base of another colour would change is not known of both ends.
+    for node in &mut nodes {
+        node.frame.base = None;
+        node.rows.iter_mut().for_each(|row| row.base = None);
+    }
     nodes
 }

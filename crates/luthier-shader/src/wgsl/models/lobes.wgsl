@@ -11,6 +11,11 @@ const LUTHIER_LOBES: u32 = 0u;
 //? end
 /// The part of rows that is the albedo.
 const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
+//? lobes_base
+/// The parts of rows that are what layers send back to a diffuse base, and the light of that base.
+const LUTHIER_LOBES_INTERNAL: f32 = -2.0;
+const LUTHIER_LOBES_BASE: f32 = -1.0;
+//? end
 
 //? one_lobe|two_lobes
 /// A lobe over slopes: elliptic, in the plane of the eye and across it, or in axes.
@@ -67,8 +72,10 @@ struct LuthierPreparedLobes {
     /// Energy of the remainder, RGB.
     wide: vec3<f32>,
     //? lobes_base
+    //? base_color
     /// The part of it by which a base of another colour is brighter, RGB.
     painted: vec3<f32>,
+    //? end
     //? end
     //? lobes_patina
     /// Share of the surface that the first interface covers.
@@ -337,14 +344,27 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.row = vec2<f32>(tile, cos_theta);
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
     //? lobes_base
-    // The base has its light times R / (1 - r R), r being what the layers send back.
-    let mirrored = max(1.0 - luthier_materials[header + $word_patina_tarnish].xyz * place.base_color, vec3<f32>(1e-3));
-    let of_base = luthier_materials[header + $word_patina];
-    let painted = luthier_materials[header + $word_patina_diffuse_albedo].xyz * place.base_color / mirrored - of_base.xyz;
-    // Under patina these words are patina's.
-    let is_painted = place.base_color.x >= 0.0 && of_base.w < 0.5;
-    prepared.painted = select(vec3<f32>(0.0), max(painted, vec3<f32>(-1.0)) * wide.rgb, is_painted);
-    prepared.wide = wide.rgb + prepared.painted;
+    // Rows have a diffuse base apart. Under patina this word is patina's.
+    let painted_word = luthier_materials[header + $word_patina];
+    let of_internal = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_INTERNAL);
+    let of_base = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_BASE);
+    if painted_word.w < 0.0 {
+        // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
+        let falloff = vec2<f32>(of_base.a, of_internal.a);
+        let integral = 1.0 - dot(falloff, luthier_materials[header + $word_patina_diffuse_albedo].xy);
+        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
+    }
+    //? base_color
+    // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
+    let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
+    let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
+    let is_painted = place.base_color.x >= 0.0 && painted_word.w < 0.5;
+    let painted = select(vec3<f32>(0.0), max(of_base.rgb * (other / own - 1.0), -wide.rgb), is_painted);
+    prepared.painted = painted;
+    prepared.wide = wide.rgb + painted;
+    //? else
+    prepared.wide = wide.rgb;
+    //? end
     //? else
     prepared.wide = wide.rgb;
     //? end
@@ -502,7 +522,11 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
 fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
     let albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
     //? lobes_base
+    //? base_color
     return albedo + prepared.painted;
+    //? else
+    return albedo;
+    //? end
     //? else
     return albedo;
     //? end

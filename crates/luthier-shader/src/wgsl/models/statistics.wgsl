@@ -17,7 +17,13 @@ fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
 //? else
 /// Share of the light at a cosine above an interface that it sends back, all bounces on it included.
 fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
-    return saturate(luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb);
+    let given = luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb;
+    //? own_f0
+    // What another F0 does not reflect is in proportion: exact of one bounce, and where all is reflected.
+    return saturate(1.0 - layer.passing * (1.0 - given));
+    //? else
+    return saturate(given);
+    //? end
 }
 //? end
 

@@ -8,11 +8,10 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::mpsc;
-use std::time::Duration;
+use std::sync::mpsc::{self, RecvTimeoutError};
 
 use luthier_workshop::material_texts::{fine_lacquer, gold, lacquer, matte};
-use luthier_workshop::root;
+use luthier_workshop::{LOOK, Patience, root};
 use serde_json::{Value, json};
 
 use crate::report::page::browser;
@@ -36,18 +35,20 @@ const MATERIALS: [&str; 11] = [
 /// Side of compared pictures.
 const SIZE: u32 = 96;
 
-/// Longest wait for a page.
-const PATIENCE: Duration = Duration::from_secs(600);
-
-/// What the page says of itself once all of its pictures are there, and what the given script adds to that.
+/// What the page says of itself once all of its pictures are there, and what the given script adds to that. It tells of each picture before.
 const TELL: &str = r#"<script>
 (async () => {
   const found = { mistakes };
+  const here = "http://127.0.0.1:$port/";
+  const tell = what => fetch(here, { method: "POST", mode: "no-cors", body: JSON.stringify(what) });
   const wait = milliseconds => new Promise(done => setTimeout(done, milliseconds));
   const marked = async name => {
     for (;;) {
       const mark = performance.getEntriesByName(name)[0];
-      if (mark) return mark.startTime;
+      if (mark) {
+        await tell({ progress: name });
+        return mark.startTime;
+      }
       if (mistakes.length) throw new Error(mistakes.join());
       await wait(20);
     }
@@ -59,8 +60,8 @@ const TELL: &str = r#"<script>
   } catch (error) {
     found.mistakes.push(String(error.stack || error));
   }
-  found.requests = performance.getEntriesByType("resource").map(entry => entry.name);
-  await fetch("http://127.0.0.1:$port/", { method: "POST", mode: "no-cors", body: JSON.stringify(found) });
+  found.requests = performance.getEntriesByType("resource").map(entry => entry.name).filter(name => name !== here);
+  await tell(found);
 })();
 </script></body>"#;
 
@@ -68,8 +69,8 @@ const LISTEN: &str = "<script>const mistakes = []; addEventListener('error', e =
                       addEventListener('unhandledrejection', e => mistakes.push(String(e.reason))); \
                       const say = console.error; console.error = (...words) => { mistakes.push(words.join(' ')); say(...words); };</script></head>";
 
-/// Waits for one POST, and gives what it brings.
-fn answer(listener: &TcpListener) -> Value {
+/// Sends on what each POST brings, to the end.
+fn listen(listener: &TcpListener, told: &mpsc::Sender<Value>) {
     for stream in listener.incoming() {
         let mut stream = stream.unwrap();
         let mut reader = BufReader::new(stream.try_clone().unwrap());
@@ -87,10 +88,14 @@ fn answer(listener: &TcpListener) -> Value {
         reader.read_exact(&mut body).unwrap();
         stream.write_all(b"HTTP/1.1 204 No Content\r\nConnection: close\r\n\r\n").unwrap();
         if is_post {
-            return serde_json::from_slice(&body).unwrap();
+            let what: Value = serde_json::from_slice(&body).unwrap();
+            let is_last = what["progress"].is_null();
+            // Nobody listens where the test has failed.
+            if told.send(what).is_err() || is_last {
+                return;
+            }
         }
     }
-    unreachable!("a listener does not end");
 }
 
 /// Opens the page from the disk in a browser of this size, runs a script in it, and gives what the page tells.
@@ -122,11 +127,31 @@ fn opened(browser: &Path, workshop: &Workshop, page: &str, size: [u32; 2], hash:
         .spawn()
         .unwrap();
     let (told, told_by) = mpsc::channel();
-    std::thread::spawn(move || told.send(answer(&listener)));
-    let found = told_by.recv_timeout(PATIENCE);
+    std::thread::spawn(move || listen(&listener, &told));
+    let mut patience = Patience::with(child.id());
+    let mut before = "its begin".to_owned();
+    let found = loop {
+        let problem = match told_by.recv_timeout(LOOK) {
+            Ok(what) => match what["progress"].as_str() {
+                Some(progress) => {
+                    progress.clone_into(&mut before);
+                    patience.progress();
+                    continue;
+                }
+                None => break Ok(what),
+            },
+            Err(RecvTimeoutError::Disconnected) => "it told something else than its pictures".to_owned(),
+            Err(RecvTimeoutError::Timeout) => match (child.try_wait().unwrap(), patience.look()) {
+                (Some(status), _) => format!("the browser ended: {status}"),
+                (None, Err(did)) => did,
+                (None, Ok(())) => continue,
+            },
+        };
+        break Err(problem);
+    };
     child.kill().unwrap();
     child.wait().unwrap();
-    let found = found.unwrap_or_else(|_| panic!("the page told nothing in {PATIENCE:?}"));
+    let found = found.unwrap_or_else(|problem| panic!("nothing of the page after {before}: {problem}"));
     assert_eq!((&found["mistakes"], &found["requests"]), (&json!([]), &json!([])), "mistakes and requests");
     found
 }
@@ -185,7 +210,7 @@ fn pictures_of_the_page_are_those_of_the_device() {
     words.extend(files.iter().map(String::as_str));
     workshop.run(&words).exits(0);
     let script = format!(
-        "found.pictures = [];\nfor (const name of {}) found.pictures.push([...await luthierPicture(name, {{ size: {SIZE} }})]);",
+        "found.pictures = [];\nfor (const name of {}) {{ found.pictures.push([...await luthierPicture(name, {{ size: {SIZE} }})]); await tell({{ progress: name }}); }}",
         json!(MATERIALS.map(|name| name.trim_start_matches("papers/")))
     );
     let found = opened(&browser, &workshop, "page.html", [1280, 900], "", &script);

@@ -61,8 +61,8 @@ fn a_factor_is_that_of_a_file_with_the_multiplied_slopes() {
     }
     workshop.run(&["gallery", "m1", "--html", "page.html", "--no-fit"]).exits(0);
     let script = format!(
-        "found.pictures = [];\nfor (const slopes of {}) for (const name of {}) found.pictures.push([...await luthierPicture(name, {{ size: {SIZE}, \
-         slopes }})]);",
+        "found.pictures = [];\nfor (const slopes of {}) for (const name of {}) {{ found.pictures.push([...await luthierPicture(name, {{ size: {SIZE}, \
+         slopes }})]); await tell({{ progress: name }}); }}",
         json!(factors),
         json!(names)
     );

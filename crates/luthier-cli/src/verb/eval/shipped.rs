@@ -1,0 +1,56 @@
+//! Values of the tables that a bake ships, at a place.
+
+use std::path::Path;
+
+use luthier_export::{Folder, shared, source_hash};
+use luthier_layers::layered_mc::Estimate;
+use luthier_manifest::ColorMode;
+use luthier_optics::color::Color;
+use luthier_report::{Rows, Subject as Judged, Weights};
+use luthier_terminal::{Failure, Outcome};
+use rayon::prelude::*;
+
+use super::function::Kind;
+use super::{Subject, values};
+use crate::directions::Angles;
+
+/// Prints the values of the rows in a folder for pairs (wi, wo).
+pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], json: bool) -> Outcome {
+    let lock = shared(folder);
+    let bake = Folder::open(folder)?;
+    let (manifest, textures) = (bake.manifest(), bake.textures()?);
+    drop(lock);
+    let (material, model) = (&subject.material, subject.model.info().name);
+    let number = manifest.materials.iter().position(|entry| entry.name == material.name);
+    let missing = |why: String| Failure::Input(anyhow::anyhow!("{}: {why}", folder.display()));
+    let number = number.ok_or_else(|| missing(format!("the bake has no material `{}`", material.name)))?;
+    let entry = &manifest.materials[number];
+    if entry.model.name() != model {
+        let text = format!("the bake shades `{}` by `{}`, not by `{model}`", material.name, entry.model.name());
+        return Err(missing(text));
+    }
+    let mut same = material.clone();
+    same.bake.model = Some(entry.model);
+    let (masking, reflectance) = entry.parts();
+    same.bake.masking = entry.model.has_masking().then_some(masking);
+    same.bake.reflectance = Some(reflectance);
+    if source_hash(&same)? != entry.source_hash {
+        return Err(missing(format!(
+            "{} has changed since it was baked, or a file that it names; bake again",
+            material.source
+        )));
+    }
+    // Only this material is evaluated.
+    let stacks = vec![material.reflecting_stack().into_owned(); manifest.materials.len()];
+    let judged = Judged { manifest, textures, stacks, maps: Vec::new() };
+    let rows = Rows::at(&judged, number, &subject.place, Weights::Exact).map_err(Failure::input)?;
+    let found: Vec<Vec<Estimate>> = pairs
+        .par_iter()
+        .map(|[wi, wo]| rows.eval(wi.direction(), wo.direction()).map(Estimate::exact).to_vec())
+        .collect();
+    let color = match entry.color {
+        ColorMode::Spectral => Color::Spectral,
+        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(entry.wavelengths_nm),
+    };
+    values::show(subject.head(), Kind::Color(color), false, pairs, &found, json)
+}

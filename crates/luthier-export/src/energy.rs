@@ -1,0 +1,167 @@
+//! Doubts about energy: a model that returns more light than falls in, or other than a simulation of the layers.
+//!
+//! Both are measured here, in f64, at the numbers of the file: maps multiply them, so that they are those of white texels. Albedos of a model are
+//! sums over directions, those of the simulation ([`ColorPaths`]) means over paths. Three wavelengths stand for the colour. Effects are left out.
+//! A material takes some hundredths of a second, one with energies of rough interfaces some tenths; `lobes` takes nothing, because its albedos are
+//! those of the simulation.
+
+use std::borrow::Cow;
+
+use luthier_layers::directional_albedo::integral;
+use luthier_layers::glam::DVec3;
+use luthier_layers::layer_sample::LayerSample;
+use luthier_layers::layered_mc::ColorPaths;
+use luthier_layers::shaded::{Place, Shaded};
+use luthier_manifest::ShadingModel;
+use luthier_material::{Diagnostic, Material, Metallic, Severity};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::schlick::metallic_roughness;
+use luthier_optics::stack::{Base, Layer, Stack};
+
+use crate::parts::parts_of;
+
+/// More than this share of the light is told. Sums and interpolated tables are not that precise at 1.
+const ALL: f64 = 1.02;
+
+/// Albedo by which a model that a file names may differ from the simulation without a word.
+const TOLERATED: f64 = 0.1;
+
+/// Angles of the eye from the normal, degrees: models gain the most between.
+const ANGLES_DEG: [f64; 5] = [0.0, 30.0, 50.0, 70.0, 80.0];
+
+/// Points on either side of the mirror direction, in the angle from the normal and in azimuth: sums over lobes of all widths are within 0.003.
+const POINTS: usize = 24;
+
+/// Paths of the simulation for each angle: albedos within 0.01.
+const PATHS: u64 = 4096;
+
+/// Family of random numbers of the simulation.
+const SEED: u64 = 37;
+
+/// Albedos of a material at one angle, in the channel in which they differ the most.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Returned {
+    /// Share of the light that the model returns.
+    pub model: f64,
+    /// Share that the simulation returns; none where it has not the facets.
+    pub simulated: Option<f64>,
+    /// Angle of the eye from the normal, degrees.
+    pub angle_deg: f64,
+}
+
+impl Returned {
+    fn error(&self) -> f64 {
+        self.simulated.map_or(0.0, |simulated| (self.model - simulated).abs())
+    }
+}
+
+/// A warning where a model returns more light than falls in, or where its albedo is off: of a model that the file or the command line names by more
+/// than a tenth, and of one that stands in for `lobes` in any case. `asked` is the model of the command line.
+pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Diagnostic> {
+    let model = asked.unwrap_or_else(|| material.model());
+    if !is_questionable(material, model) {
+        return None;
+    }
+    let all = returned(material, model);
+    let most = all.iter().copied().max_by(|a, b| a.model.total_cmp(&b.model))?;
+    let worst = all.iter().copied().max_by(|a, b| a.error().total_cmp(&b.error()))?;
+    let stands_in = asked.is_none() && material.unfit_for_lobes().is_some();
+    let name = model.name();
+    let against = |found: &Returned| match found.simulated {
+        Some(simulated) => format!(" where a simulation of the layers returns {simulated:.2}"),
+        None => String::new(),
+    };
+    let message = if most.model > ALL {
+        format!(
+            "the model `{name}` returns {:.2} times the light that falls in, seen at {} degrees,{}",
+            most.model,
+            most.angle_deg,
+            against(&most)
+        )
+    } else if worst.error() > TOLERATED || stands_in {
+        format!(
+            "the albedo of the model `{name}` is off by {:.2}: it returns {:.2} of the light, seen at {} degrees,{}",
+            worst.error(),
+            worst.model,
+            worst.angle_deg,
+            against(&worst)
+        )
+    } else {
+        return None;
+    };
+    let message = message.trim_end_matches(',').to_owned();
+    let hint = match material.bake.model.or(asked) {
+        Some(_) if material.is_whole_in(ShadingModel::Lobes) => {
+            "the model `lobes` returns what the simulation does: leave the model out".to_owned()
+        }
+        _ => "`lobes` would return what the simulation does, but does not show all that the file asks for".to_owned(),
+    };
+    let key = if material.places.has("bake.model") { "bake.model" } else { "layer.0.type" };
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+/// Whether albedos of a model may be wrong at all: those of `lobes` are simulated, and one bounce off a smooth interface or a base is exact.
+fn is_questionable(material: &Material, model: ShadingModel) -> bool {
+    model != ShadingModel::Lobes && (material.has_further_bounces() || model == ShadingModel::Phong)
+}
+
+/// Albedos of a material in a model, angle by angle: at white texels of its maps, and where textures make a metal of it, without metal, too.
+pub fn returned(material: &Material, model: ShadingModel) -> Vec<Returned> {
+    let has_walks = |layer: &Layer| matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks();
+    let is_simulated = material.stack.layers.iter().all(has_walks);
+    let nm = material.bake.wavelengths_nm();
+    let color = Color::ThreeWavelengths(nm);
+    let reflecting = if model.has_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
+    let mut all = Vec::new();
+    for place in places(material) {
+        let paths = is_simulated.then(|| ColorPaths::new(&at(&material.stack, &place), &color));
+        let Some(shaded) = Shaded::with(model.name(), &reflecting, nm, color, &place, parts_of(material, model)) else {
+            continue;
+        };
+        for angle_deg in ANGLES_DEG {
+            let (sin, cos) = libm::sincos(angle_deg.to_radians());
+            let wo = DVec3::new(sin, 0.0, cos);
+            let own = integral(&|wi: DVec3| shaded.eval(wi, wo), DVec3::new(-sin, 0.0, cos), POINTS);
+            let simulated = paths.as_ref().map(|paths| simulated(paths, wo));
+            let of = |c: usize| Returned { model: own[c], simulated: simulated.map(|all| all[c]), angle_deg };
+            let wrong = |found: &Returned| found.error().max(found.model - ALL);
+            all.extend([0, 1, 2].map(of).into_iter().max_by(|a, b| wrong(a).total_cmp(&wrong(b))));
+        }
+    }
+    all
+}
+
+/// Mean albedo of paths.
+fn simulated(paths: &ColorPaths, wo: DVec3) -> Rgb {
+    let mut sum = [0.0; 3];
+    paths.trace(SEED, PATHS, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c] / PATHS as f64));
+    sum
+}
+
+/// Places of a material where its albedos are compared.
+fn places(material: &Material) -> Vec<Place> {
+    let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
+    let Some((number, Metallic { base_color, metallic })) = textured else { return vec![Place::NONE] };
+    let place = |metallic: f64| {
+        let (f0, albedo) = metallic_roughness(base_color, metallic);
+        let mut layers = vec![LayerSample::NONE; number + 1];
+        layers[number].f0 = Some(f0);
+        Place { base_color: Some(albedo), layers, ..Place::NONE }
+    };
+    if metallic > 0.0 { vec![place(metallic), place(0.0)] } else { vec![place(0.0)] }
+}
+
+/// The stack at such a place.
+fn at(stack: &Stack, place: &Place) -> Stack {
+    let mut here = stack.clone();
+    for (layer, sample) in here.layers.iter_mut().zip(&place.layers) {
+        if let (Base::Dielectric { ior, .. }, Some(f0)) = (&mut layer.base, sample.f0) {
+            *ior = ior.clone().with_f0(f0);
+        }
+    }
+    if let (Some(Base::Diffuse(base)), Some(color)) = (here.layers.last_mut().map(|l| &mut l.base), place.base_color) {
+        base.albedo = color;
+    }
+    here
+}

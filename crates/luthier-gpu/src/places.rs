@@ -1,0 +1,105 @@
+//! Evaluation of `luthier_eval_at`: pairs of directions, each at a place of its own.
+
+use luthier_manifest::{LayerValues, PlaceValues};
+
+use crate::context::Pass;
+use crate::evaluate::{CHUNK, WORKGROUP};
+use crate::{GpuError, Scene};
+
+const KERNEL: &str = include_str!("wgsl/places.wgsl");
+
+/// Words of a pair and its place, before those of its layers.
+const PAIR_WORDS: usize = 7;
+
+/// Words of a layer.
+const LAYER_WORDS: usize = 2;
+
+/// A place, and directions to the light and to the eye.
+pub type Spot = (PlaceValues, [f32; 3], [f32; 3]);
+
+impl Scene {
+    /// Whether the shader takes a place: [`Self::evaluate_at`] needs it.
+    pub fn has_places(&self) -> bool {
+        self.has("struct LuthierPlace")
+    }
+
+    /// `luthier_eval_at` of a material: `f cos_theta_i`, linear RGB, at a place for each pair of directions. Values that the shader has no member
+    /// for are left out: no material of the bake varies in these.
+    ///
+    /// # Errors
+    /// [`GpuError::NoMaterial`], [`GpuError::Refused`] for a shader without places, and whatever the device reports.
+    pub fn evaluate_at(&self, material: u32, spots: &[Spot]) -> Result<Vec<[f32; 3]>, GpuError> {
+        self.layers(material)?;
+        let layers = self.layer_places();
+        let pipeline = self.pipeline(&self.places, &self.places_kernel(layers))?;
+        let mut values = Vec::with_capacity(spots.len());
+        for chunk in spots.chunks(CHUNK) {
+            let words: Vec<[f32; 4]> = chunk.iter().flat_map(|spot| words(material, spot, layers)).collect();
+            let out = self.context.run(&Pass {
+                what: "evaluation at places",
+                pipeline,
+                shader_group: &self.group,
+                workgroups: [chunk.len().div_ceil(WORKGROUP) as u32, 1],
+                inputs: bytemuck::cast_slice(&words),
+                output_words: chunk.len(),
+            })?;
+            values.extend(out.into_iter().map(|[r, g, b, _]| [r, g, b]));
+        }
+        Ok(values)
+    }
+
+    fn places_kernel(&self, layers: usize) -> String {
+        let at = |word: usize, part: &str| format!("kernel_inputs[first + {word}u].{part}");
+        let mut fill: Vec<String> = [
+            ("inner_normal: vec3", format!("place.inner_normal = {};", at(3, "xyz"))),
+            ("flake_normal: vec3", format!("place.flake_normal = {};", at(4, "xyz"))),
+            ("base_color: vec3", format!("place.base_color = {};", at(5, "xyz"))),
+            ("    patina: f32,", format!("place.patina = {};", at(5, "w"))),
+            ("    slope_variance: f32,", format!("place.slope_variance = {};", at(1, "w"))),
+        ]
+        .into_iter()
+        .filter(|(declared, _)| self.has(declared))
+        .map(|(_, line)| line)
+        .collect();
+        for layer in 0..layers {
+            let [first, second] = [0, 1].map(|word| PAIR_WORDS + LAYER_WORDS * layer + word);
+            let members = [
+                (self.has("fn luthier_onto("), "normal", at(first, "xyz")),
+                (self.has("    slab_factor: f32,\n}"), "slab_factor", at(first, "w")),
+                (self.has("alpha_factors: vec2"), "alpha_factors", at(second, "xy")),
+                (self.has("fn luthier_tangent("), "tangent", format!("luthier_tangent({})", at(second, "zw"))),
+            ];
+            let members = members.iter().filter(|(has, ..)| *has);
+            fill.extend(members.map(|(_, member, value)| format!("place.layers[{layer}].{member} = {value};")));
+        }
+        if self.has("fn luthier_metallic_place(") {
+            let [color, metallic] = ["xyz", "w"].map(|part| at(6, part));
+            let next = format!("luthier_metallic_place(place, material, {color}, {metallic})");
+            fill.push(format!("if {metallic} >= 0.0 {{ place = {next}; }}"));
+        }
+        KERNEL
+            .replace("$words", &format!("{}u", PAIR_WORDS + LAYER_WORDS * layers))
+            .replace("$fill", &fill.join("\n    "))
+    }
+}
+
+/// The words of a pair and its place, with so many layers.
+fn words(material: u32, (place, wi, wo): &Spot, layers: usize) -> Vec<[f32; 4]> {
+    let with = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
+    let (color, metallic) = place.metallic.unwrap_or(([0.0; 3], -1.0));
+    let mut words = vec![
+        with(*wi, material as f32),
+        with(*wo, place.slope_variance),
+        with(place.normal, place.alpha_factor),
+        with(place.inner_normal, place.slab_factor),
+        with(place.flake_normal, place.film_factor),
+        with(place.base_color.unwrap_or([-1.0; 3]), place.patina.unwrap_or(-1.0)),
+        with(color, metallic),
+    ];
+    for layer in 0..layers {
+        let own = place.layers.get(layer).unwrap_or(&LayerValues::NONE);
+        let ([ax, ay], [tx, ty]) = (own.alpha_factors, own.tangent);
+        words.extend([with(own.normal, own.slab_factor), [ax, ay, tx, ty]]);
+    }
+    words
+}

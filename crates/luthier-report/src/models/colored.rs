@@ -1,0 +1,226 @@
+//! The reference of one view in the colour of a material, and functions beside it.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use luthier_layers::layered_mc::ColorPaths;
+use luthier_layers::real_time::Twin;
+use luthier_layers::terms::Exact;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::quadrature::gauss_legendre;
+use luthier_optics::stack::{Base, Stack};
+
+use super::cells::{CELLS, Cells, mirrored};
+use super::compare::energy_that_noise_moves;
+use super::energies::Energies;
+use super::reference::{ReferenceSettings, is_isotropic};
+use super::{PHI_DEG, direction};
+
+/// Cosine below which light is *grazing*: from 87.1 degrees.
+pub(crate) const GRAZING_COS: f64 = 0.05;
+
+/// Paths of a family: the spread of families is the noise.
+const FAMILY: u64 = 2048;
+
+/// Families before the first look at the noise.
+const FIRST_FAMILIES: u64 = 8;
+
+/// Light of a stack that comes to the eye from one direction, in the colour of a material.
+#[derive(Debug)]
+pub(crate) struct ColorView {
+    cells: Cells,
+    is_symmetric: bool,
+    /// Energies of families by cell, and last that of grazing light, without the light of one facet of the first interface.
+    families: Vec<Vec<Rgb>>,
+    /// That light, alike.
+    single: Vec<Rgb>,
+}
+
+/// Errors of a function at a view, each with the noise of the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ViewErrors {
+    /// Lobe error, the largest channel, and what noise alone makes of it on average.
+    pub(crate) lobe: [f64; 2],
+    /// Absolute error of the directional albedo, the largest channel, and the standard error there.
+    pub(crate) albedo: [f64; 2],
+    /// Albedo of the function and of the reference in the channel of that error.
+    pub(crate) albedos: [f64; 2],
+    /// Error of the mean of `f cos_theta_i` over grazing light, over max(the mean, a floor), the largest channel, and the standard error there.
+    pub(crate) grazing: [f64; 2],
+    /// Paths that were traced.
+    pub(crate) paths: u64,
+}
+
+impl ColorView {
+    /// Traces a stack with an interface, from an angle against the normal, until the noise is as small as it has to be.
+    pub(crate) fn new(stack: &Stack, color: &Color, nm: [f64; 3], theta_deg: f64, settings: ReferenceSettings) -> Self {
+        let cells = Cells::new(direction(theta_deg, PHI_DEG));
+        let is_symmetric = is_isotropic(stack);
+        let paths = ColorPaths::new(stack, color);
+        let mut view = Self { cells, is_symmetric, families: Vec::new(), single: single(stack, color, nm, &cells) };
+        let mut wanted = FIRST_FAMILIES;
+        let most = (settings.most / FAMILY).max(2);
+        loop {
+            for family in view.families.len() as u64..wanted.min(most) {
+                let mut sums = vec![[0.0; 3]; CELLS + 1];
+                let mut add =
+                    |cell: usize, weight: Rgb| (0..3).for_each(|c| sums[cell][c] += weight[c] / FAMILY as f64);
+                paths.trace(settings.seed.wrapping_add(family), FAMILY, cells.wo, |path| {
+                    if path.is_first_facet {
+                        return;
+                    }
+                    let cell = cells.cell(path.wi);
+                    if is_symmetric {
+                        let half = path.weight.map(|weight| 0.5 * weight);
+                        add(cell, half);
+                        add(mirrored(cell), half);
+                    } else {
+                        add(cell, path.weight);
+                    }
+                    if path.wi.z < GRAZING_COS {
+                        add(CELLS, path.weight);
+                    }
+                });
+                view.families.push(sums);
+            }
+            let channels = || (0..3).filter(|c| view.albedo(*c) > 0.0);
+            let lobe = channels().map(|c| view.lobe_floor(c) / settings.noise);
+            let albedo = channels().map(|c| view.deviation(c, |_| 1.0) / settings.albedo_std_err);
+            let lack = lobe.chain(albedo).fold(0.0, f64::max);
+            if lack <= 1.0 || wanted >= most {
+                return view;
+            }
+            wanted = ((wanted as f64 * (1.1 * lack * lack).clamp(1.2, 4.0)) as u64).clamp(wanted + 1, most);
+        }
+    }
+
+    /// Errors of `f cos_theta_i` of directions to the light; means of grazing light are over at least a floor.
+    pub(crate) fn errors(&self, values: impl Fn(DVec3) -> Rgb, floor: f64) -> ViewErrors {
+        let found = Energies::of_values(&values, &self.cells, self.is_symmetric);
+        let grazing = grazing(&values);
+        let solid_angle = TAU * GRAZING_COS;
+        let mut errors = ViewErrors {
+            lobe: [0.0; 2],
+            albedo: [0.0; 2],
+            albedos: [0.0; 2],
+            grazing: [0.0; 2],
+            paths: FAMILY * self.families.len() as u64,
+        };
+        for c in 0..3 {
+            let energies = &found[c].energies;
+            let (stated, expected) = (energies.iter().sum::<f64>(), self.albedo(c));
+            let moved: f64 = (0..CELLS).map(|cell| (energies[cell] - self.energy(cell, c)).abs()).sum();
+            let lobe = 0.5 * moved / expected.max(f64::MIN_POSITIVE);
+            if lobe > errors.lobe[0] {
+                errors.lobe = [lobe, self.lobe_floor(c)];
+            }
+            if (stated - expected).abs() > errors.albedo[0] {
+                errors.albedo = [(stated - expected).abs(), self.deviation(c, |_| 1.0)];
+                errors.albedos = [stated, expected];
+            }
+            let mean = self.energy(CELLS, c) / solid_angle;
+            let least = mean.max(floor);
+            let error = (grazing[c] / solid_angle - mean).abs() / least;
+            if error > errors.grazing[0] {
+                errors.grazing = [error, self.variance(|family| family[CELLS][c]).sqrt() / solid_angle / least];
+            }
+        }
+        errors
+    }
+
+    fn energy(&self, cell: usize, c: usize) -> f64 {
+        let sum: f64 = self.families.iter().map(|family| family[cell][c]).sum();
+        self.single[cell][c] + sum / self.families.len() as f64
+    }
+
+    fn albedo(&self, c: usize) -> f64 {
+        (0..CELLS).map(|cell| self.energy(cell, c)).sum()
+    }
+
+    fn lobe_floor(&self, c: usize) -> f64 {
+        let deviations = (0..CELLS).map(|cell| self.variance(|family| family[cell][c]).sqrt()).sum();
+        energy_that_noise_moves(deviations) / self.albedo(c)
+    }
+
+    /// Deviation of a sum of energies with factors.
+    fn deviation(&self, c: usize, factor: impl Fn(usize) -> f64) -> f64 {
+        self.variance(|family| (0..CELLS).map(|cell| factor(cell) * family[cell][c]).sum()).sqrt()
+    }
+
+    /// Variance of the mean of a value over the families.
+    fn variance(&self, value: impl Fn(&[Rgb]) -> f64) -> f64 {
+        let values: Vec<f64> = self.families.iter().map(|family| value(family)).collect();
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count * (count - 1.0))
+    }
+}
+
+/// Energy by cell, and last that of grazing light, of what meets one facet of the first interface alone: the closed form, in the colour of the material.
+fn single(stack: &Stack, color: &Color, nm: [f64; 3], cells: &Cells) -> Vec<Rgb> {
+    let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
+    let Some(twin) = Twin::new("microfacet", stack, nm, *color).filter(|_| is_interface) else {
+        return vec![[0.0; 3]; CELLS + 1];
+    };
+    let terms = Exact::new(stack, *color);
+    let values = |wi: DVec3| twin.eval(&terms, wi, cells.wo);
+    let [r, g, b] = Energies::of_values(values, cells, is_isotropic(stack));
+    let mut all: Vec<Rgb> = (0..CELLS).map(|cell| [&r, &g, &b].map(|channel| channel.energies[cell])).collect();
+    all.push(grazing(values));
+    all
+}
+
+/// Integral of a function of the light's direction over grazing light: Gauss and Legendre's rule over the cosine, even azimuths.
+fn grazing(values: impl Fn(DVec3) -> Rgb) -> Rgb {
+    const AZIMUTHS: u32 = 48;
+    let mut sum = [0.0; 3];
+    for (share, weight) in gauss_legendre(8) {
+        let cos = GRAZING_COS * share;
+        let sin = (1.0 - cos * cos).sqrt();
+        for azimuth in 0..AZIMUTHS {
+            let (y, x) = libm::sincos(TAU * (f64::from(azimuth) + 0.5) / f64::from(AZIMUTHS));
+            let value = values(DVec3::new(sin * x, sin * y, cos));
+            (0..3).for_each(|c| sum[c] += GRAZING_COS * weight * TAU / f64::from(AZIMUTHS) * value[c]);
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_layers::lobes::Lobes;
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Diffuse, Distribution, Layer, Slab, Surface};
+
+    use super::*;
+    use crate::models::{ModelSubject, Reference, Shown};
+
+    /// Oracle: the reference at each wavelength alone, which has paths and noise of its own.
+    #[test]
+    fn errors_are_those_of_the_reference_at_each_wavelength() {
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.1, 0.3, 0.6] };
+        let coat = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        let layer = |alpha, base| Layer { films: vec![], surface: Surface::isotropic(Distribution::Ggx, alpha), base };
+        let base = Base::Diffuse(Diffuse { albedo: [0.8, 0.5, 0.2], sigma: 0.0 });
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(0.2, coat), layer(0.0, base)] };
+        let nm = [645.0, 525.0, 445.0];
+        let color = Color::ThreeWavelengths(nm);
+        let settings = |seed| ReferenceSettings { noise: 0.015, albedo_std_err: 2e-3, most: 1 << 20, seed };
+        let lobes = Lobes::with(&stack, &color, luthier_layers::lobes::FitSettings { rows: 6, paths: 4096, seed: 3 });
+        let view = ColorView::new(&stack, &color, nm, 50.0, settings(1));
+        let found = view.errors(|wi| lobes.eval(wi, view.cells.wo), 0.01);
+        let subject = ModelSubject { name: "coated".to_owned(), stack, wavelengths_nm: nm };
+        let reference = Reference::new(&subject, &[50.0], settings(9));
+        let expected = reference.errors(Shown::Lobes(&lobes));
+        let most = |of: fn(&crate::ViewError) -> f64| expected.iter().map(of).fold(0.0, f64::max);
+        let (lobe, albedo) = (most(|view| view.lobe.error), most(|view| view.albedo.error));
+        assert!((found.lobe[0] - lobe).abs() < 0.01, "{found:?} {lobe}");
+        assert!((found.albedo[0] - albedo).abs() < 4.0 * 1.5 * 2e-3, "{found:?} {albedo}");
+        assert!(found.lobe[1] <= 0.015 && found.albedo[1] <= 2e-3, "{found:?}");
+        // Light that is brighter by a tenth of the albedo, and by a value of 1 at grazing angles.
+        let brighter = view
+            .errors(|wi| lobes.eval(wi, view.cells.wo).map(|v| v + if wi.z < GRAZING_COS { 1.0 } else { 0.0 }), 1.0);
+        assert!((brighter.grazing[0] - found.grazing[0] - 1.0).abs() < 0.1, "{found:?} {brighter:?}");
+    }
+}

@@ -1,0 +1,247 @@
+//! Random places of a material: values that the texels of its maps can give, each within its range, all at once.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+use luthier_layers::flakes::Flakes;
+use luthier_layers::patina::Patina;
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
+
+use crate::Subject;
+
+/// A map of a material as it ships.
+#[derive(Debug, Clone)]
+pub struct SurfaceMap {
+    /// Number of the material.
+    pub material: u32,
+    /// Quantity that the map varies.
+    pub slot: MapSlot,
+    /// The layer that it is of; `None` for those of the whole surface.
+    pub layer: Option<u32>,
+    /// Texels, linear.
+    pub image: Image,
+}
+
+/// What varies over the surface of a material, and how far.
+#[derive(Debug, Clone)]
+pub struct Places {
+    entry: MaterialEntry,
+    ranges: Vec<(MapSlot, Option<u32>, [[f64; 2]; 3])>,
+    /// Factors on the thickness of the film, and slopes of its lower boundary.
+    film: Option<[[f64; 2]; 3]>,
+}
+
+/// Random numbers of a place: a function of a seed, of its number, and of how many were drawn before.
+struct Numbers {
+    counter: u64,
+}
+
+impl Numbers {
+    fn new(seed: u64, place: u64) -> Self {
+        Self { counter: mixed(mixed(seed) ^ place.wrapping_mul(GOLDEN)) }
+    }
+
+    /// Uniform in 0..1.
+    fn unit(&mut self) -> f64 {
+        self.counter = self.counter.wrapping_add(GOLDEN);
+        (mixed(self.counter) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Uniform between two numbers.
+    fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// 2^64 over the golden ratio.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
+fn mixed(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// Greatest tangent of a normal that a texel means: flatter normals are turned up.
+const STEEPEST: f64 = 3.0;
+
+impl Places {
+    /// What varies of a material, by its number; `None` for one that is the same everywhere. Maps that its model does not show are left out.
+    pub fn of(subject: &Subject<'_>, material: usize) -> Option<Self> {
+        let entry = subject.manifest.materials.get(material).filter(|entry| entry.varies())?;
+        let shown: Vec<(u32, MapSlot)> = entry.shown_layer_maps(Form::Baked).collect();
+        let maps = subject.maps.iter().filter(|map| map.material as usize == material);
+        let ranges = maps.filter_map(|map| {
+            let is_own = map.layer.is_some_and(|layer| map.slot.layer_feature(layer).is_some());
+            let is_shown = !is_own || map.layer.is_some_and(|layer| shown.contains(&(layer, map.slot)));
+            let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
+            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
+            let range = |c: usize| channel(&map.image, c).map(|value| factor[c] * value);
+            is_shown.then(|| (map.slot, map.layer, [0, 1, 2].map(range)))
+        });
+        let film = entry.layers.first().filter(|layer| layer.varies()).map(|layer| {
+            let texels = subject.textures.iter().find(|(kind, _)| *kind == TableKind::Thickness);
+            let nominal = layer.film_thickness_max_nm / layer.film_thickness_nm;
+            texels.map_or([[2.0 - nominal, nominal], [0.0; 2], [0.0; 2]], |(_, image)| {
+                [channel(image, 0).map(|d| 2.0 * nominal * d), channel(image, 1), channel(image, 2)]
+            })
+        });
+        Some(Self { entry: entry.clone(), ranges: ranges.collect(), film })
+    }
+
+    /// Quantities that vary, in words.
+    pub fn quantities(&self) -> Vec<String> {
+        let constants = &self.entry.constants;
+        let map = |(slot, layer, _): &(MapSlot, Option<u32>, _)| match layer {
+            Some(layer) if *layer > 0 => format!("{} of layer {}", slot.name(), layer + 1),
+            _ => slot.name().to_owned(),
+        };
+        let mut names: Vec<String> = self.ranges.iter().map(map).collect();
+        let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
+        names.extend(self.film.map(|_| "film".to_owned()));
+        names.extend(constants.flakes.filter(|_| !has_flake_map).map(|_| "flakes".to_owned()));
+        names.extend(constants.glitter.map(|_| "glitter".to_owned()));
+        names
+    }
+
+    /// The n-th random place of a seed.
+    pub fn place(&self, seed: u64, n: u64) -> PlaceValues {
+        let mut numbers = Numbers::new(seed, n);
+        let mut place = PlaceValues::NONE;
+        let constants = &self.entry.constants;
+        let (mut color, mut metal) = (None, None);
+        for (slot, layer, range) in &self.ranges {
+            let drawn = range.map(|range| numbers.between(range));
+            let [r, g, _] = drawn.map(|value| value as f32);
+            let rgb = drawn.map(|value| value as f32);
+            match slot {
+                MapSlot::Normal => place.normal = normal([drawn[0], drawn[1]]),
+                MapSlot::Roughness => place.alpha_factor *= r * r,
+                MapSlot::Thickness if layer.is_none_or(|layer| layer == 0) => place.slab_factor = r,
+                MapSlot::Patina => {
+                    let shape = constants.patina.as_ref();
+                    let amount = |p: &luthier_manifest::PatinaRecord| {
+                        let (extent, transition, base_alpha) = (p.extent, p.transition, p.base_alpha);
+                        Patina { extent, transition, diffuse_albedo: 0.0, base_alpha, tarnish: 1.0 }.amount(drawn[0])
+                            as f32
+                    };
+                    place.patina = shape.map(amount);
+                }
+                MapSlot::FlakeNormal => {
+                    let flake = normal([drawn[0], drawn[1]]).map(f64::from);
+                    place.flake_normal = constants.flakes.map_or(UP, |flakes| tilted(&flakes, DVec3::from(flake)));
+                }
+                MapSlot::Albedo => place.base_color = Some(rgb),
+                MapSlot::BaseColor => color = Some(rgb),
+                MapSlot::Metallic => metal = Some(r),
+                MapSlot::Bumps
+                | MapSlot::Alpha
+                | MapSlot::AlphaX
+                | MapSlot::AlphaY
+                | MapSlot::Tangent
+                | MapSlot::Thickness => {
+                    let own = of_layer(&mut place, layer.unwrap_or(0) as usize);
+                    match slot {
+                        MapSlot::Bumps => own.normal = normal([drawn[0], drawn[1]]),
+                        MapSlot::Alpha => own.alpha_factors = own.alpha_factors.map(|factor| factor * r),
+                        MapSlot::AlphaX => own.alpha_factors[0] *= r,
+                        MapSlot::AlphaY => own.alpha_factors[1] *= r,
+                        MapSlot::Tangent => own.tangent = [r, g],
+                        _ => own.slab_factor = r,
+                    }
+                }
+            }
+        }
+        if color.is_some() || metal.is_some() {
+            place.metallic = Some((color.unwrap_or_else(|| self.base_color()), metal.unwrap_or(0.0)));
+        }
+        if let Some([factor, x, y]) = self.film.map(|film| film.map(|range| numbers.between(range))) {
+            place.film_factor = factor as f32;
+            place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
+        }
+        let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
+        if let Some(flakes) = constants.flakes.filter(|_| !has_flake_map) {
+            // As far as nineteen of twenty flakes lean.
+            let (angle, phi) = (2.0 * flakes.spread * numbers.unit(), TAU * numbers.unit());
+            let (sin, cos) = libm::sincos(angle.min(1.5));
+            let (sin_phi, cos_phi) = libm::sincos(phi);
+            place.flake_normal = tilted(&flakes, DVec3::new(sin * cos_phi, sin * sin_phi, cos));
+        }
+        if let Some(glitter) = constants.glitter {
+            let (lack, phi) = (numbers.unit() * (1.0 - libm::cos(glitter.tilt)), TAU * numbers.unit());
+            let across = (lack * (2.0 - lack)).sqrt();
+            let (sin, cos) = libm::sincos(phi);
+            if numbers.unit() < 0.5 {
+                place.normal = DVec3::new(across * cos, across * sin, 1.0 - lack).as_vec3().to_array();
+            }
+        }
+        place
+    }
+
+    /// Base colour of a metallic-roughness surface without a map of it, which is no metal then: that which its albedo shows.
+    fn base_color(&self) -> [f32; 3] {
+        let passed = 0.96 * 20.0 / 21.0;
+        let albedo = self.entry.layers.last().map_or([0.0; 3], |layer| layer.albedo);
+        albedo.map(|albedo| (albedo * passed / (1.0 - albedo * (1.0 - passed))) as f32)
+    }
+}
+
+const UP: [f32; 3] = [0.0, 0.0, 1.0];
+
+/// Least and greatest value of a channel; of a channel that an image lacks, those of the first.
+fn channel(image: &Image, channel: usize) -> [f64; 2] {
+    let channel = if channel < image.channels as usize { channel } else { 0 };
+    let values = image.texels().map(|texel| f64::from(texel[channel]));
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// The unit normal of two numbers of a texel of a normal map, turned up where these leave none.
+fn normal(texel: [f64; 2]) -> [f32; 3] {
+    let across = DVec2::from(texel.map(|value| 2.0 * value - 1.0));
+    let longest = STEEPEST / (1.0 + STEEPEST * STEEPEST).sqrt();
+    let across = across.clamp_length_max(longest);
+    DVec3::new(across.x, across.y, (1.0 - across.length_squared()).sqrt()).as_vec3().to_array()
+}
+
+/// `LuthierPlace::flake_normal` of a flake beside the eye.
+fn tilted(record: &FlakesRecord, flake: DVec3) -> [f32; 3] {
+    let &FlakesRecord { seed, count, tiling, spread, scale, fade_start } = record;
+    Flakes { seed, count: count.max(1), tiling, spread, scale, fade_start }.tilted(flake, 0.0).as_vec3().to_array()
+}
+
+fn of_layer(place: &mut PlaceValues, layer: usize) -> &mut LayerValues {
+    if place.layers.len() <= layer {
+        place.layers.resize(layer + 1, LayerValues::NONE);
+    }
+    &mut place.layers[layer]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_uniform_and_depend_on_their_place_alone() {
+        let drawn = |n: u64| {
+            let mut numbers = Numbers::new(3, n);
+            [numbers.unit(), numbers.unit()]
+        };
+        assert_eq!(drawn(7), drawn(7));
+        let all: Vec<[f64; 2]> = (0..40_000).map(drawn).collect();
+        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        // Standard errors: 1/sqrt(12 n) and 1/(12 sqrt n).
+        assert!((mean(&|x| x[0]) - 0.5).abs() < 4.0 * 0.001_45 && (mean(&|x| x[1]) - 0.5).abs() < 4.0 * 0.001_45);
+        assert!(mean(&|x| (x[0] - 0.5) * (x[1] - 0.5)).abs() < 4.0 * 0.000_42);
+    }
+
+    #[test]
+    fn normals_are_unit_and_never_flat() {
+        for texel in [[0.5, 0.5], [1.0, 1.0], [0.0, 0.3]] {
+            let n = DVec3::from(normal(texel).map(f64::from));
+            assert!((n.length() - 1.0).abs() < 1e-6 && n.z > 0.3, "{texel:?} {n}");
+        }
+        assert_eq!(normal([0.5, 0.5]), UP);
+    }
+}

@@ -1,0 +1,109 @@
+//! The f64 evaluation of rows as they ship, at a place.
+
+use glam::{DVec2, DVec3};
+use luthier_layers::layer_sample::LayerSample;
+use luthier_layers::real_time::Under;
+use luthier_layers::shaded::{Growth, Part, Place, Shaded};
+use luthier_layers::terms::Exact;
+use luthier_layers::textured::TextureSample;
+use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};
+use luthier_optics::Rgb;
+use luthier_optics::schlick::metallic_roughness;
+
+use crate::judge::parts;
+use crate::measure::subject::color;
+use crate::measure::table_terms::{TableTerms, Weights};
+use crate::{ReportError, Subject};
+
+/// A material at a place, in f64: its model, with terms that are read from the tables of the package as its shader reads them.
+#[derive(Debug)]
+pub struct Rows<'a>(Shaded<TableTerms<'a>>);
+
+impl<'a> Rows<'a> {
+    /// A material, by its number, at a place.
+    ///
+    /// # Errors
+    /// A model without a twin, a table that does not fit its layout, a layer that needs a tile and has none.
+    pub fn new(
+        subject: &'a Subject<'_>,
+        material: usize,
+        values: &PlaceValues,
+        weights: Weights,
+    ) -> Result<Self, ReportError> {
+        Self::at(subject, material, &place(values, &subject.manifest.materials[material]), weights)
+    }
+
+    /// [`Self::new`] at a place of the f64 twin.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn at(subject: &'a Subject<'_>, material: usize, place: &Place, weights: Weights) -> Result<Self, ReportError> {
+        let entry = &subject.manifest.materials[material];
+        // Whatever is wrong with the tables is wrong without a place, too.
+        TableTerms::new(subject, material, weights)?;
+        let terms = |part: Part| TableTerms::at(subject, material, weights, place, part).ok();
+        let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
+        let name = entry.model.name();
+        let shaded = Shaded::of_terms(|part, _, _| terms(part), name, stack, nm, color(entry), place, parts(entry));
+        let missing = || ReportError::Model { material: entry.name.clone(), model: entry.model };
+        shaded.map(Self).ok_or_else(missing)
+    }
+
+    /// `f cos_theta_i`, RGB, of unit directions to the light and to the eye.
+    pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
+        self.0.eval(wi, wo)
+    }
+}
+
+/// A material at a place with exact terms.
+pub(super) fn exact(subject: &Subject<'_>, material: usize, values: &PlaceValues) -> Option<Shaded<Exact>> {
+    let entry = &subject.manifest.materials[material];
+    let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
+    Shaded::with(entry.model.name(), stack, nm, color(entry), &place(values, entry), parts(entry))
+}
+
+/// The place of the f64 twin: exactly the numbers that the device gets.
+pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
+    let wide = |[x, y, z]: [f32; 3]| DVec3::new(x.into(), y.into(), z.into());
+    let rgb = |color: [f32; 3]| color.map(f64::from);
+    let layer = |own: &LayerValues| LayerSample {
+        normal: wide(own.normal),
+        alpha_factors: own.alpha_factors.map(f64::from),
+        tangent: match own.tangent.map(f64::from) {
+            [1.0, 0.5] => DVec2::X,
+            texel => LayerSample::tangent_of(texel),
+        },
+        slab_factor: own.slab_factor.into(),
+        f0: None,
+    };
+    let growth = |amount: f32| {
+        let patina = entry.constants.patina.as_ref()?;
+        let (diffuse_albedo, base_alpha, tarnish) = (patina.diffuse_albedo, patina.base_alpha, patina.tarnish);
+        Some(Growth { amount: amount.into(), diffuse_albedo, base_alpha, tarnish })
+    };
+    let mut place = Place {
+        sample: TextureSample {
+            normal: wide(values.normal),
+            alpha_factor: values.alpha_factor.into(),
+            slab_factor: values.slab_factor.into(),
+            film_factor: values.film_factor.into(),
+            slope_variance: values.slope_variance.into(),
+        },
+        under: Under {
+            flake_normal: wide(values.flake_normal),
+            inner_normal: wide(values.inner_normal),
+            ..Under::NONE
+        },
+        patina: values.patina.and_then(growth),
+        base_color: values.base_color.map(rgb),
+        reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
+        layers: values.layers.iter().map(layer).collect(),
+    };
+    if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
+        let (f0, albedo) = metallic_roughness(rgb(color), metallic.into());
+        place.base_color = Some(albedo);
+        place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);
+        place.layers[interface].f0 = Some(f0);
+    }
+    place
+}

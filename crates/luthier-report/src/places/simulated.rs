@@ -1,0 +1,218 @@
+//! Rows of lobes at places against the simulation of the stack that the material file means there.
+
+use glam::DVec3;
+use luthier_layers::lobes::{self, Lobes};
+use luthier_layers::shaded::Place;
+use luthier_manifest::{MaterialEntry, PlaceValues, ShadingModel};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::{Base, Stack};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{PLACE_FLOOR, Places, Rows, rows, words};
+use crate::judge::UNCERTAINTY_MARGIN;
+use crate::measure::subject::color;
+use crate::models::colored::{ColorView, ViewErrors};
+use crate::models::{PHI_DEG, direction};
+use crate::{ReferenceSettings, ReportError, Subject, Weights};
+
+/// Settings of the simulation at places.
+#[derive(Debug, Clone)]
+pub struct SimulatedSettings {
+    /// Random places of a material.
+    pub places: u64,
+    /// Angles of the eye at every place, degrees; where there are none, each place has one of its own.
+    pub thetas_deg: Vec<f64>,
+    /// Noise of the simulation.
+    pub reference: ReferenceSettings,
+    /// Family of the places.
+    pub seed: u64,
+}
+
+impl Default for SimulatedSettings {
+    /// Eight places, each from an angle of its own, to a noise that shows a light that is off by a twentieth: a few tenths of a second.
+    fn default() -> Self {
+        let reference = ReferenceSettings { noise: 0.04, albedo_std_err: 3e-3, most: 1 << 16, seed: 1 << 50 };
+        Self { places: 8, thetas_deg: Vec::new(), reference, seed: super::PLACES_SEED }
+    }
+}
+
+/// Largest lobe error that rows at a place may have, beside noise.
+const LOBE_AT_PLACES: f64 = 0.08;
+
+/// Largest absolute error of the directional albedo, alike.
+const ALBEDO_AT_PLACES: f64 = 0.02;
+
+/// Largest error of the mean of grazing light over max(itself, 0.01), alike.
+const GRAZING_AT_PLACES: f64 = 0.08;
+
+/// Errors of rows of lobes at a place, from an angle of the eye.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulatedAt {
+    /// Number of the place, see [`Places::place`].
+    pub number: u64,
+    /// What its maps give there, in words.
+    pub place: String,
+    /// Angle of the eye against the normal.
+    pub theta_deg: f64,
+    /// Lobe error, the largest channel, and what noise alone makes of it on average.
+    pub lobe: [f64; 2],
+    /// Absolute error of the directional albedo, the largest channel, and the standard error of the simulation there.
+    pub albedo: [f64; 2],
+    /// Directional albedo of the rows and of the simulation in that channel.
+    pub albedos: [f64; 2],
+    /// Error of the mean of `f cos_theta_i` over light flatter than 87.1 degrees, over max(the mean, [`PLACE_FLOOR`]), and the standard error of it.
+    pub grazing: [f64; 2],
+}
+
+impl SimulatedAt {
+    /// Quantities that are farther off than they may be, noise aside, each with what was found and the limit.
+    pub fn misses(&self) -> Vec<(&'static str, f64, f64)> {
+        let beyond = |[error, noise]: [f64; 2], limit: f64, margin: f64| error > limit + margin * noise;
+        [
+            ("lobe error", self.lobe, LOBE_AT_PLACES, 1.5),
+            ("error of the albedo", self.albedo, ALBEDO_AT_PLACES, UNCERTAINTY_MARGIN),
+            ("error of grazing light", self.grazing, GRAZING_AT_PLACES, UNCERTAINTY_MARGIN),
+        ]
+        .into_iter()
+        .filter(|(_, pair, limit, margin)| beyond(*pair, *limit, *margin))
+        .map(|(name, [error, _], limit, _)| (name, error, limit))
+        .collect()
+    }
+
+    /// The largest of these over its limit; 0 where there is none.
+    pub fn excess(&self) -> f64 {
+        self.misses().iter().map(|(_, found, limit)| found / limit).fold(0.0, f64::max)
+    }
+
+    /// Place, angle and misses in words.
+    pub fn words(&self) -> String {
+        let misses: Vec<String> =
+            self.misses().iter().map(|(name, found, limit)| format!("{name} {found:.3} for {limit}")).collect();
+        let ([stated, simulated], theta_deg) = (self.albedos, self.theta_deg);
+        format!(
+            "at place {} ({}), seen from {theta_deg:.1} degrees, its lobes are not the simulated stack: {} (albedo {stated:.4}, simulated {simulated:.4})",
+            self.number,
+            self.place,
+            misses.join(", ")
+        )
+    }
+}
+
+/// Errors of the rows of a material at random places.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulatedErrors {
+    /// Every place and angle.
+    pub views: Vec<SimulatedAt>,
+    /// Paths that were traced.
+    pub paths: u64,
+}
+
+impl SimulatedErrors {
+    /// The largest of a quantity, and the noise there.
+    pub fn worst(&self, of: impl Fn(&SimulatedAt) -> [f64; 2]) -> [f64; 2] {
+        self.views.iter().map(of).fold([0.0; 2], |most, found| if found[0] > most[0] { found } else { most })
+    }
+
+    /// The places where something is farther off than it may be.
+    pub fn misses(&self) -> impl Iterator<Item = &SimulatedAt> {
+        self.views.iter().filter(|view| !view.misses().is_empty())
+    }
+}
+
+/// Compares rows of lobes, as they ship, with the simulation at random places; `None` for materials of other models, for those that are the same everywhere, and
+/// for a diffuse base alone.
+///
+/// Places have what the maps vary, but for normals, which turn the frame of the eye alone, and flakes, whose shift of the lobes is an approximation that has a
+/// measure of its own (`luthier_layers::lobes::Below::tilted`). A patina is there whole or not at all: light is linear between.
+///
+/// # Errors
+/// See [`ReportError`].
+pub fn simulated(
+    subject: &Subject<'_>,
+    material: usize,
+    settings: &SimulatedSettings,
+) -> Result<Option<SimulatedErrors>, ReportError> {
+    let entry = &subject.manifest.materials[material];
+    let Some(places) = Places::of(subject, material).filter(|_| entry.model == ShadingModel::Lobes) else {
+        return Ok(None);
+    };
+    let stack = &subject.stacks[material];
+    if stack.layers.first().is_none_or(|layer| matches!(layer.base, Base::Diffuse(_))) {
+        return Ok(None);
+    }
+    let color = color(entry);
+    let views: Vec<(u64, f64)> = (0..settings.places)
+        .flat_map(|number| {
+            // Of angles by themselves a golden rotation of the cosine, from the normal to 86 degrees.
+            let share = (number as f64 * 0.618_033_988_75).fract();
+            let own = libm::acos(1.0 - 0.93 * share).to_degrees();
+            let all = if settings.thetas_deg.is_empty() { vec![own] } else { settings.thetas_deg.clone() };
+            all.into_iter().map(move |theta_deg| (number, theta_deg))
+        })
+        .collect();
+    let judged = |&(number, theta_deg): &(u64, f64)| {
+        let values = upright(places.place(settings.seed, number), entry);
+        let Some(here) = meant(stack, &rows::place(&values, entry), entry) else { return Ok(None) };
+        let view = ColorView::new(&here, &color, entry.wavelengths_nm, theta_deg, settings.reference);
+        let rows = Rows::new(subject, material, &values, Weights::Exact)?;
+        Ok(Some(seen(number, &values, theta_deg, &view, |wi, wo| rows.eval(wi, wo))))
+    };
+    let found: Vec<Option<(SimulatedAt, u64)>> = views.par_iter().map(judged).collect::<Result<_, ReportError>>()?;
+    let (views, paths): (Vec<SimulatedAt>, Vec<u64>) = found.into_iter().flatten().unzip();
+    Ok((!views.is_empty()).then(|| SimulatedErrors { views, paths: paths.iter().sum() }))
+}
+
+/// The errors at a view of [`simulated`] of lobes that a function fits to the stack of that very place; `None` where there are no lobes.
+pub fn simulated_by(
+    subject: &Subject<'_>,
+    material: usize,
+    settings: &SimulatedSettings,
+    at: &SimulatedAt,
+    fit: &dyn Fn(&Stack, &Color) -> Lobes,
+) -> Option<SimulatedAt> {
+    let entry = subject.manifest.materials.get(material)?;
+    let values = upright(Places::of(subject, material)?.place(settings.seed, at.number), entry);
+    let here = meant(&subject.stacks[material], &rows::place(&values, entry), entry)?;
+    let color = color(entry);
+    let view = ColorView::new(&here, &color, entry.wavelengths_nm, at.theta_deg, settings.reference);
+    let lobes = fit(&here, &color);
+    Some(seen(at.number, &values, at.theta_deg, &view, |wi, wo| lobes.eval(wi, wo)).0)
+}
+
+/// Errors of values at a view, and the paths of it.
+fn seen(
+    number: u64,
+    place: &PlaceValues,
+    theta_deg: f64,
+    view: &ColorView,
+    values: impl Fn(DVec3, DVec3) -> Rgb,
+) -> (SimulatedAt, u64) {
+    let wo = direction(theta_deg, PHI_DEG);
+    let ViewErrors { lobe, albedo, albedos, grazing, paths } = view.errors(|wi| values(wi, wo), PLACE_FLOOR);
+    (SimulatedAt { number, place: words(place), theta_deg, lobe, albedo, albedos, grazing }, paths)
+}
+
+/// The place without normals, where patina is whole or not at all.
+fn upright(values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
+    let PlaceValues { normal, flake_normal, .. } = PlaceValues::NONE;
+    let whole = |amount: f32| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 };
+    PlaceValues { normal, flake_normal, patina: values.patina.map(whole), ..values }
+}
+
+/// Whether patina that has grown whole is its layers and nothing else.
+fn scatters_nothing(entry: &MaterialEntry) -> bool {
+    entry.constants.patina.as_ref().is_none_or(|patina| {
+        patina.diffuse_albedo == [0.0; 3] && patina.base_alpha.is_none() && patina.tarnish == [1.0; 3]
+    })
+}
+
+/// The stack that the file means at a place; `None` for a diffuse base, whose light is a closed form.
+fn meant(stack: &Stack, place: &Place, entry: &MaterialEntry) -> Option<Stack> {
+    let whole = place.stack(stack);
+    let is_bare = entry.constants.patina.is_some() && place.patina.is_some_and(|growth| growth.amount < 0.5);
+    let here = if is_bare { lobes::bare(&whole) } else { whole };
+    let is_interface = here.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
+    is_interface.then_some(here)
+}
