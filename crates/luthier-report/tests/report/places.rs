@@ -47,6 +47,10 @@ struct Forgetful<'a> {
 }
 
 impl Device for Forgetful<'_> {
+    fn identity(&self) -> String {
+        self.name()
+    }
+
     fn name(&self) -> String {
         "forgetful".to_owned()
     }
