@@ -98,8 +98,13 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     parts.extend(pick::pick(set));
     parts.push(eval(set, &features));
     parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
-    if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
-        parts.insert(2, include_str!("../wgsl/pi.wgsl").to_owned());
+    for (word, module) in [
+        ("luthier_choose(", include_str!("../wgsl/interface/choose.wgsl")),
+        ("LUTHIER_PI", include_str!("../wgsl/pi.wgsl")),
+    ] {
+        if parts.iter().any(|part| part.contains(word)) {
+            parts.insert(2, module.to_owned());
+        }
     }
     parts.retain(|part| !part.trim().is_empty());
     let wgsl = without_missing(&parts.join("\n"));

@@ -3,6 +3,7 @@
 use luthier_manifest::BindingEntry;
 use naga::back::hlsl::{Options, PipelineOptions, ShaderModel, Writer};
 
+use crate::languages::lint;
 use crate::languages::text::{helper, layout, rename};
 use crate::validate::module;
 use crate::{ShaderError, Target};
@@ -23,7 +24,9 @@ pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry], group: u32) -> Re
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused(&"a name of naga's is left"));
     }
-    Ok(layout(&body, &module, wgsl))
+    let text = layout(&body, &module, wgsl);
+    lint::check(&text, Target::Hlsl)?;
+    Ok(text)
 }
 
 /// The sampler as a declaration of its own instead of an index into naga's heap of samplers.

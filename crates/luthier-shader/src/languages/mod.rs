@@ -2,6 +2,7 @@
 
 pub(crate) mod glsl;
 pub(crate) mod hlsl;
+mod lint;
 pub(crate) mod msl;
 pub(crate) mod spirv;
 pub(crate) mod text;

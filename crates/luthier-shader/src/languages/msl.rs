@@ -1,11 +1,12 @@
 //! Metal Shading Language of a composed module: naga's output, with our names and comments.
 //!
-//! Nothing here can compile it.
+//! Nothing here can compile it; a lint reads it.
 
 use luthier_manifest::BindingEntry;
 use naga::ResourceBinding;
 use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
 
+use crate::languages::lint;
 use crate::languages::text::{helper, layout, rename};
 use crate::validate::module;
 use crate::{ShaderError, Target};
@@ -38,7 +39,9 @@ pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry]) -> Result<String,
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused(&"a name of naga's is left"));
     }
-    Ok(layout(&joined(&body), &module, wgsl))
+    let text = layout(&joined(&body), &module, wgsl);
+    lint::check(&text, Target::Msl)?;
+    Ok(text)
 }
 
 /// Where an entry point finds a binding.

@@ -66,6 +66,11 @@ const uint LUTHIER_LAYER_WORDS = 11u;
 
 layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_materials[]; };
 
+// Channel by channel, the second value where a condition holds, and the first where it does not. HLSL 2021 has no conditions of three channels.
+vec3 luthier_choose(vec3 first, vec3 second, bvec3 holds) {
+    return vec3(holds.x ? second.x : first.x, holds.y ? second.y : first.y, holds.z ? second.z : first.z);
+}
+
 // A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
 uint luthier_whole(float word) {
     return floatBitsToUint(word) & 8388607u;
@@ -111,8 +116,8 @@ LuthierComplex luthier_normal_index(vec3 ior_n, vec3 ior_k, float cos_theta) {
     vec3 large_sq = 0.5 * (modulus + abs(square));
     vec3 small_sq = (product * product) / max(large_sq, vec3(1e-30));
     bvec3 propagates = greaterThanEqual(square, vec3(0.0));
-    vec3 re_sq = mix(small_sq, large_sq, propagates);
-    vec3 im_sq = mix(large_sq, small_sq, propagates);
+    vec3 re_sq = luthier_choose(small_sq, large_sq, propagates);
+    vec3 im_sq = luthier_choose(large_sq, small_sq, propagates);
     return LuthierComplex(sqrt(re_sq), sqrt(im_sq));
 }
 

@@ -67,6 +67,11 @@ static const uint LUTHIER_LAYER_WORDS = 11u;
 
 ByteAddressBuffer luthier_materials : register(t6);
 
+// Channel by channel, the second value where a condition holds, and the first where it does not. HLSL 2021 has no conditions of three channels.
+float3 luthier_choose(float3 first, float3 second, bool3 holds) {
+    return float3(holds.x ? second.x : first.x, holds.y ? second.y : first.y, holds.z ? second.z : first.z);
+}
+
 // A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
 uint luthier_whole(float word) {
     return asuint(word) & 8388607u;
@@ -119,8 +124,8 @@ LuthierComplex luthier_normal_index(float3 ior_n, float3 ior_k, float cos_theta)
     float3 large_sq = 0.5 * (modulus + abs(square));
     float3 small_sq = (product * product) / max(large_sq, (1e-30).xxx);
     bool3 propagates = square >= (0.0).xxx;
-    float3 re_sq = propagates ? large_sq : small_sq;
-    float3 im_sq = propagates ? small_sq : large_sq;
+    float3 re_sq = luthier_choose(small_sq, large_sq, propagates);
+    float3 im_sq = luthier_choose(large_sq, small_sq, propagates);
     return ConstructLuthierComplex(sqrt(re_sq), sqrt(im_sq));
 }
 

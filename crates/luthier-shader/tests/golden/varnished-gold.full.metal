@@ -77,6 +77,11 @@ constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 11u;
 
+// Channel by channel, the second value where a condition holds, and the first where it does not. HLSL 2021 has no conditions of three channels.
+metal::float3 luthier_choose(metal::float3 first, metal::float3 second, metal::bool3 holds) {
+    return metal::float3(holds.x ? second.x : first.x, holds.y ? second.y : first.y, holds.z ? second.z : first.z);
+}
+
 // A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
 uint luthier_whole(float word) {
     return as_type<uint>(word) & 8388607u;
@@ -122,8 +127,8 @@ LuthierComplex luthier_normal_index(metal::float3 ior_n, metal::float3 ior_k, fl
     metal::float3 large_sq = 0.5 * (modulus + metal::abs(square));
     metal::float3 small_sq = (product * product) / metal::max(large_sq, metal::float3(0.000000000000000000000000000001));
     metal::bool3 propagates = square >= metal::float3(0.0);
-    metal::float3 re_sq = metal::select(small_sq, large_sq, propagates);
-    metal::float3 im_sq = metal::select(large_sq, small_sq, propagates);
+    metal::float3 re_sq = luthier_choose(small_sq, large_sq, propagates);
+    metal::float3 im_sq = luthier_choose(large_sq, small_sq, propagates);
     return LuthierComplex {metal::sqrt(re_sq), metal::sqrt(im_sq)};
 }
 

@@ -20,6 +20,15 @@ const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 
 @group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
 
+/// Channel by channel, the second value where a condition holds, and the first where it does not. HLSL 2021 has no conditions of three channels.
+fn luthier_choose(first: vec3<f32>, second: vec3<f32>, holds: vec3<bool>) -> vec3<f32> {
+    return vec3<f32>(
+        select(first.x, second.x, holds.x),
+        select(first.y, second.y, holds.y),
+        select(first.z, second.z, holds.z),
+    );
+}
+
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 11u;
 
@@ -96,8 +105,8 @@ fn luthier_normal_index(ior_n: vec3<f32>, ior_k: vec3<f32>, cos_theta: f32) -> L
     let large_sq = 0.5 * (modulus + abs(square));
     let small_sq = product * product / max(large_sq, vec3<f32>(1e-30));
     let propagates = square >= vec3<f32>(0.0);
-    let re_sq = select(small_sq, large_sq, propagates);
-    let im_sq = select(large_sq, small_sq, propagates);
+    let re_sq = luthier_choose(small_sq, large_sq, propagates);
+    let im_sq = luthier_choose(large_sq, small_sq, propagates);
     return LuthierComplex(sqrt(re_sq), sqrt(im_sq));
 }
 

@@ -33,6 +33,31 @@ fn every_set_passes() {
     }
 }
 
+/// HLSL and MSL are read by a lint as they are emitted: with all functions for each set and form, with each group alone for the sets of several
+/// models, and with the numbers of a material in the code.
+#[test]
+fn every_function_passes_the_lint() {
+    let alone = FunctionGroup::ALL.into_iter().map(|group| vec![group]);
+    let groups: Vec<Vec<FunctionGroup>> = std::iter::once(FunctionGroup::ALL.to_vec()).chain(alone).collect();
+    for (name, materials) in sets() {
+        let has_several = ["models", "lobes-mixed", "everything"].contains(&name);
+        let groups = if has_several { &groups[..] } else { &groups[..1] };
+        for (form, target) in forms(&materials).flat_map(|form| [(form, Target::Hlsl), (form, Target::Msl)]) {
+            let passes = |text: Result<String, ShaderError>, what: &str| {
+                text.unwrap_or_else(|error| panic!("{name} {form} {target} {what}: {error}"));
+            };
+            for functions in groups {
+                let functions = functions.iter().copied().collect();
+                let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
+                passes(complete(&set, form, target), &format!("{:?}", set.functions));
+            }
+            if materials.len() == 1 {
+                passes(emit_constant(&MaterialSet::new(&materials, tables()), form, target), "constants");
+            }
+        }
+    }
+}
+
 #[test]
 fn every_format_passes() {
     for format in TexelFormat::ALL {

@@ -27,6 +27,8 @@ pub(crate) fn layout(body: &str, module: &Module, wgsl: &str) -> String {
         .chain(module.constants.iter().filter_map(|(_, c)| c.name.as_deref()))
         .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.as_deref()))
         .chain(module.types.iter().filter_map(|(_, t)| t.name.as_deref()))
+        // Types that only the language has, as MSL's structures around arrays.
+        .chain(body.lines().filter_map(|line| line.strip_prefix("struct ")?.strip_suffix(" {")))
         .collect();
     let mut out = String::with_capacity(body.len() * 2);
     let mut last = String::new();

@@ -19,7 +19,7 @@ pub(super) fn tidy(text: &str, function: &Function, globals: &BTreeSet<&str>) ->
     });
     wanted.extend(local_words(text).filter_map(|word| Some((word.to_owned(), unnumbered(word)?.to_owned()))));
     for (from, to) in wanted {
-        if names.contains_key(&from) || !taken.contains(&from) {
+        if names.contains_key(&from) || !taken.contains(&from) || globals.contains(from.as_str()) {
             continue;
         }
         if !taken.contains(&to) && !globals.contains(to.as_str()) && !RESERVED.split(' ').any(|word| word == to) {

@@ -13,7 +13,7 @@ fn luthier_normal_index(ior_n: vec3<f32>, ior_k: vec3<f32>, cos_theta: f32) -> L
     let large_sq = 0.5 * (modulus + abs(square));
     let small_sq = product * product / max(large_sq, vec3<f32>(1e-30));
     let propagates = square >= vec3<f32>(0.0);
-    let re_sq = select(small_sq, large_sq, propagates);
-    let im_sq = select(large_sq, small_sq, propagates);
+    let re_sq = luthier_choose(small_sq, large_sq, propagates);
+    let im_sq = luthier_choose(large_sq, small_sq, propagates);
     return LuthierComplex(sqrt(re_sq), sqrt(im_sq));
 }

@@ -85,8 +85,8 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     let echo = ri0 * r12;
     let q = 1.0 - echo;
     let guarded = max(q, vec3<f32>(1e-20));
-    let upward = select(vec3<f32>(1.0), min(ti0 / guarded, vec3<f32>(1.0)), q > vec3<f32>(0.0));
-    let downward = select(vec3<f32>(1.0), min((1.0 - r12) / guarded, vec3<f32>(1.0)), q > vec3<f32>(0.0));
+    let upward = luthier_choose(vec3<f32>(1.0), min(ti0 / guarded, vec3<f32>(1.0)), q > vec3<f32>(0.0));
+    let downward = luthier_choose(vec3<f32>(1.0), min((1.0 - r12) / guarded, vec3<f32>(1.0)), q > vec3<f32>(0.0));
     let bounces = dot(min(echo / max(q, vec3<f32>(1e-6)), vec3<f32>(1e6)), vec3<f32>(0.333333333));
     let between = (spread_r12 + path.spread_ri0) * bounces;
     next.lobe_energy = path.t0i * r12 * upward;
