@@ -1,10 +1,12 @@
 //! Cubes: six square faces around a direction, in the order and orientation that graphics interfaces and KTX2 give to cube maps.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use luthier_lut::Image;
 
-use crate::vector::unit;
+use crate::integral::Integral;
+use crate::vector::{dot, unit};
 
 /// A direction (not unit) of a point of a face, both coordinates -1 to 1 from the top left. The faces look along +x, -x, +y, -y, +z, -z.
 pub(crate) fn direction(face: usize, [s, t]: [f64; 2]) -> [f64; 3] {
@@ -18,32 +20,66 @@ pub(crate) fn direction(face: usize, [s, t]: [f64; 2]) -> [f64; 3] {
     }
 }
 
-/// The face that a direction meets, and where: the inverse of [`direction`].
-pub(crate) fn place([x, y, z]: [f64; 3]) -> (usize, [f64; 2]) {
-    let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
-    if ax >= ay && ax >= az {
-        if x > 0.0 { (0, [-z / ax, -y / ax]) } else { (1, [z / ax, -y / ax]) }
-    } else if ay >= az {
-        if y > 0.0 { (2, [x / ay, z / ay]) } else { (3, [x / ay, -z / ay]) }
-    } else if z > 0.0 {
-        (4, [x / az, -y / az])
-    } else {
-        (5, [-x / az, -y / az])
+/// A cap around directions, as large as all.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cap {
+    sin: f64,
+    is_narrow: bool,
+    /// Cosine of the least angle to the middle of a face at which the cap misses the face.
+    cos_missed: f64,
+}
+
+impl Cap {
+    /// The cap of directions within an angle.
+    pub(crate) fn new(angle: f64) -> Self {
+        // Corners of a face lean by less than 0.96.
+        Self { sin: libm::sin(angle), is_narrow: angle < 0.5 * PI, cos_missed: libm::cos((angle + 0.96).min(PI)) }
+    }
+
+    /// Columns and rows of a face whose texels may lie within the cap around a unit direction.
+    pub(crate) fn window(&self, face: usize, size: u32, middle: [f64; 3]) -> Option<[Range<u32>; 2]> {
+        let out = direction(face, [0.0, 0.0]);
+        let depth = dot(middle, out);
+        if depth < self.cos_missed {
+            return None;
+        }
+        let [columns, rows] = [[1.0, 0.0], [0.0, 1.0]].map(|at| {
+            let beside = direction(face, at);
+            let side = dot(middle, [0, 1, 2].map(|c| beside[c] - out[c]));
+            // The cap as it is seen along the other axis.
+            let sine = self.sin / (side * side + depth * depth).sqrt();
+            if !self.is_narrow || sine >= 1.0 {
+                return 0..size;
+            }
+            let (turn, half) = (libm::atan2(side, depth), libm::asin(sine));
+            let [low, high] = [turn - half, turn + half].map(|angle| {
+                let at = libm::tan(angle.clamp(-0.25 * PI, 0.25 * PI));
+                0.5 * (at + 1.0) * f64::from(size)
+            });
+            (low - 0.5).round().max(0.0) as u32..((high + 0.5).round() as u32).min(size)
+        });
+        (!columns.is_empty() && !rows.is_empty()).then_some([columns, rows])
     }
 }
 
-/// Coordinates of the centre of a texel; those of an apron lie beyond -1 and 1.
-fn centre(texel: i64, size: u32) -> f64 {
-    (2.0 * texel as f64 + 1.0) / f64::from(size) - 1.0
+/// Coordinates of the centre of a texel.
+fn centre(texel: u32, size: u32) -> f64 {
+    (2.0 * f64::from(texel) + 1.0) / f64::from(size) - 1.0
 }
 
-/// Solid angle of a texel over its area on the face.
-fn obliquity([s, t]: [f64; 2]) -> f64 {
-    let length_sq = 1.0 + s * s + t * t;
-    1.0 / (length_sq * length_sq.sqrt())
+/// Solid angles of the texels of a face, row by row.
+pub(crate) fn solid_angles(size: u32) -> Vec<f64> {
+    // Of the rectangle between the middle of the face and a corner.
+    let corners: Vec<f64> = (0..=size)
+        .flat_map(|y| (0..=size).map(move |x| [x, y].map(|i| 2.0 * f64::from(i) / f64::from(size) - 1.0)))
+        .map(|[s, t]| libm::atan2(s * t, (1.0 + s * s + t * t).sqrt()))
+        .collect();
+    let corner = |x: u32, y: u32| corners[(y * (size + 1) + x) as usize];
+    let texels = (0..size).flat_map(|y| (0..size).map(move |x| (x, y)));
+    texels.map(|(x, y)| corner(x + 1, y + 1) - corner(x, y + 1) - corner(x + 1, y) + corner(x, y)).collect()
 }
 
-/// Radiance on a cube, to be read between texels: each face has an apron of one texel from its neighbours.
+/// Radiance on a cube: means over its texels.
 #[derive(Debug)]
 pub(crate) struct Cube {
     size: u32,
@@ -51,66 +87,48 @@ pub(crate) struct Cube {
 }
 
 impl Cube {
-    /// The cube of a function of unit directions.
-    pub(crate) fn new(size: u32, value: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
-        let faces = (0..6).map(|face| {
-            let mut image = Image::zeros(size + 2, size + 2, 3);
-            for (y, x) in (0..size + 2).flat_map(|y| (0..size + 2).map(move |x| (y, x))) {
-                let at = [x, y].map(|i| centre(i64::from(i) - 1, size));
-                image.texel_mut(x, y).copy_from_slice(&value(unit(direction(face, at))).map(|v| v as f32));
-            }
-            image
-        });
-        Self { size, faces: faces.collect() }
+    /// The cube of a map, of an even size: each texel the mean of what it covers.
+    pub(crate) fn of_map(map: &Image, size: u32) -> Self {
+        let integral = Integral::new(map);
+        Self::new(size, |face| integral.face(face, size))
     }
 
     /// The cube with half the side: means of four texels by solid angle.
     pub(crate) fn halved(&self) -> Self {
         let size = self.size / 2;
-        let mut faces: Vec<Image> = vec![Image::zeros(size + 2, size + 2, 3); 6];
-        for (face, small) in faces.iter_mut().enumerate() {
-            for (y, x) in (0..size).flat_map(|y| (0..size).map(move |x| (y, x))) {
-                let (mut sum, mut weights) = ([0.0; 3], 0.0);
-                for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-                    let [x, y] = [2 * x + i, 2 * y + j];
-                    let weight = obliquity([x, y].map(|i| centre(i64::from(i), self.size)));
-                    let texel = self.faces[face].texel(x + 1, y + 1);
-                    weights += weight;
-                    (0..3).for_each(|c| sum[c] += weight * f64::from(texel[c]));
-                }
-                small.texel_mut(x + 1, y + 1).copy_from_slice(&sum.map(|v| (v / weights) as f32));
+        let weights = solid_angles(self.size);
+        let mean = |face: usize, [x, y]: [u32; 2]| {
+            let (mut sum, mut total) = ([0.0; 3], 0.0);
+            for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| [2 * x + i, 2 * y + j]) {
+                let weight = weights[(y * self.size + x) as usize];
+                let texel = self.faces[face].texel(x, y);
+                total += weight;
+                (0..3).for_each(|c| sum[c] += weight * f64::from(texel[c]));
             }
-        }
-        let mut cube = Self { size, faces };
-        cube.fill_aprons();
-        cube
-    }
-
-    /// Fills the aprons from the nearest texels of the neighbours.
-    fn fill_aprons(&mut self) {
-        let last = i64::from(self.size);
-        let rim = (-1..=last).flat_map(|i| [[i, -1], [i, last], [-1, i], [last, i]]);
-        for (face, [x, y]) in (0..6).flat_map(|face| rim.clone().map(move |at| (face, at))) {
-            let (other, at) = place(direction(face, [x, y].map(|i| centre(i, self.size))));
-            let nearest = at.map(|c| ((0.5 * (c + 1.0) * f64::from(self.size)) as u32).min(self.size - 1) + 1);
-            let value: [f32; 3] = std::array::from_fn(|c| self.faces[other].texel(nearest[0], nearest[1])[c]);
-            self.faces[face].texel_mut((x + 1) as u32, (y + 1) as u32).copy_from_slice(&value);
-        }
-    }
-
-    /// A bilinear read around a direction.
-    pub(crate) fn read(&self, direction: [f64; 3]) -> [f64; 3] {
-        let (face, at) = place(direction);
-        let [x, y] = at.map(|c| 0.5 * (c + 1.0) * f64::from(self.size) + 0.5);
-        let [left, top] = [x, y].map(|v| (v as u32).min(self.size));
-        let [wx, wy] = [x - f64::from(left), y - f64::from(top)];
-        let image = &self.faces[face];
-        let row = |y: u32| {
-            let (a, b) = (image.texel(left, y), image.texel(left + 1, y));
-            [0, 1, 2].map(|c| f64::from(a[c]) + wx * f64::from(b[c] - a[c]))
+            sum.map(|v| v / total)
         };
-        let (above, below) = (row(top), row(top + 1));
-        [0, 1, 2].map(|c| above[c] + wy * (below[c] - above[c]))
+        Self::new(size, |face| {
+            (0..size).flat_map(|y| (0..size).map(move |x| [x, y])).map(|at| mean(face, at)).collect()
+        })
+    }
+
+    /// The cube of the values of each face, row by row.
+    fn new(size: u32, values: impl Fn(usize) -> Vec<[f64; 3]>) -> Self {
+        let face = |face| {
+            let data = values(face).into_iter().flatten().map(|v| v as f32).collect();
+            Image { width: size, height: size, channels: 3, data }
+        };
+        Self { size, faces: (0..6).map(face).collect() }
+    }
+
+    /// Its faces.
+    pub(crate) fn faces(&self) -> &[Image] {
+        &self.faces
+    }
+
+    /// The value of a texel.
+    pub(crate) fn texel_at(&self, face: usize, x: u32, y: u32) -> &[f32] {
+        self.faces[face].texel(x, y)
     }
 
     /// Texels along a side.
@@ -126,13 +144,7 @@ impl Cube {
 
 /// A unit direction for each texel of a face, row by row.
 pub(crate) fn texel_direction(face: usize, size: u32, x: u32, y: u32) -> [f64; 3] {
-    unit(direction(face, [x, y].map(|i| centre(i64::from(i), size))))
-}
-
-/// Solid angle of a texel of a face, by its middle.
-pub(crate) fn solid_angle(size: u32, x: u32, y: u32) -> f64 {
-    let side = 2.0 / f64::from(size);
-    side * side * obliquity([x, y].map(|i| centre(i64::from(i), size)))
+    unit(direction(face, [x, y].map(|i| centre(i, size))))
 }
 
 #[cfg(test)]
@@ -140,32 +152,48 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_and_directions_are_inverse() {
-        for face in 0..6 {
-            for at in [[0.3, -0.7], [-0.9, 0.1], [0.0, 0.99]] {
-                let (found, [s, t]) = place(direction(face, at));
-                assert!(found == face && (s - at[0]).abs() < 1e-12 && (t - at[1]).abs() < 1e-12, "{face} {at:?}");
+    fn texels_fill_the_sphere() {
+        for size in [1, 2, 5, 64] {
+            let total: f64 = solid_angles(size).iter().sum();
+            assert!((6.0 * total / (4.0 * PI) - 1.0).abs() < 1e-12, "{size}: {total}");
+        }
+    }
+
+    /// A window leaves out no texel within the angle.
+    #[test]
+    fn windows_have_all_texels_within_an_angle() {
+        for (i, angle) in (0..400).zip([0.02, 0.1, 0.3, 0.8, 1.4, 2.0].into_iter().cycle()) {
+            let middle = unit([f64::from(i % 13) - 6.1, f64::from(i % 17) - 8.2, f64::from(i % 11) - 5.3]);
+            for face in 0..6 {
+                let found = Cap::new(angle).window(face, 16, middle);
+                for (y, x) in (0..16).flat_map(|y| (0..16).map(move |x| (y, x))) {
+                    if dot(texel_direction(face, 16, x, y), middle) > libm::cos(angle) {
+                        let [columns, rows] = found.as_ref().unwrap();
+                        assert!(columns.contains(&x) && rows.contains(&y), "{middle:?} {angle}: {face} {x} {y}");
+                    }
+                }
             }
         }
     }
 
+    /// Oracle: the function in the middle of a texel.
     #[test]
-    fn texels_fill_the_sphere() {
-        let total: f64 = (0..64).flat_map(|y| (0..64).map(move |x| 6.0 * solid_angle(64, x, y))).sum();
-        assert!((total / (4.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3, "{total}");
-    }
-
-    /// Across edges too: a linear function of the direction is read within the square of a texel.
-    #[test]
-    fn reads_follow_a_smooth_function() {
-        let value = |d: [f64; 3]| [2.0 + d[0], 2.0 + d[1], 2.0 + d[2]];
-        let cube = Cube::new(32, value);
-        let (fine, coarse) = (Cube::new(32, value), Cube::new(64, value).halved());
-        for i in 0..2000 {
-            let d = unit([f64::from(i % 13) - 6.1, f64::from(i % 17) - 8.2, f64::from(i % 11) - 5.3]);
-            for (cube, most) in [(&cube, 2e-3), (&fine, 2e-3), (&coarse, 0.04)] {
-                let read = cube.read(d);
-                assert!((0..3).all(|c| (read[c] - value(d)[c]).abs() < most), "{d:?}: {read:?}");
+    fn means_over_texels_follow_a_smooth_function() {
+        let value = |d: [f64; 3]| [2.0 + d[0], 2.0 + d[1], 2.0 + d[2] * d[0]];
+        let mut map = Image::zeros(256, 128, 3);
+        for (y, x) in (0..128).flat_map(|y| (0..256).map(move |x| (y, x))) {
+            let d = crate::panorama::texel_direction(&map, x, y);
+            map.texel_mut(x, y).copy_from_slice(&value(d).map(|v| v as f32));
+        }
+        // The second value is curved: means over texels are not quite those in their middle.
+        for (cube, most) in [(Cube::of_map(&map, 64), 7e-4), (Cube::of_map(&map, 64).halved(), 2e-3)] {
+            for (face, image) in cube.faces().iter().enumerate() {
+                for (y, x) in (0..cube.size()).flat_map(|y| (0..cube.size()).map(move |x| (y, x))) {
+                    let expected = value(texel_direction(face, cube.size(), x, y));
+                    for (found, expected) in image.texel(x, y).iter().zip(expected) {
+                        assert!((f64::from(*found) - expected).abs() < most, "{face} {x} {y}: {found} {expected}");
+                    }
+                }
             }
         }
     }

@@ -7,12 +7,16 @@
 //! double from level to level, as a cube or as an equirectangular map: a texture with mips. [`Environment::irradiance_level`] is what white
 //! Lambertian patches send out.
 //!
-//! Simplifications: maps with more than 512 rows are averaged down to that; blurs are sums over fixed directions, whose reads are averages
-//! over about the share of each. Bytes of levels depend on the map only: sums have a fixed order, transcendental functions are those of libm.
+//! Texels are means over what they cover: one bright texel of a map has its energy, radiance times solid angle, in every level within 0.4 % wherever it
+//! is (beside a pole, in the last row, bilinear reads give it 8 % more), and in the irradiance within 0.3 %.
+//!
+//! Simplifications: maps with more than 512 rows are averaged down to that; levels blur a cube whose texels are half as wide as their lobe, as light
+//! from the middle of each. Bytes of levels depend on the map only: sums have a fixed order, transcendental functions are those of libm.
 
 mod cube;
 mod environment;
 mod error;
+mod integral;
 mod kernel;
 mod levels;
 mod mirror;

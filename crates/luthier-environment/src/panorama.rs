@@ -25,6 +25,17 @@ pub(crate) fn texel_direction(map: &Image, x: u32, y: u32) -> [f64; 3] {
     direction((f64::from(x) + 0.5) / f64::from(map.width), (f64::from(y) + 0.5) / f64::from(map.height))
 }
 
+/// Two directions in the middle of the column of a texel: the places of Gauss's rule in the height of its row.
+pub(crate) fn gauss_directions(map: &Image, x: u32, y: u32) -> [[f64; 3]; 2] {
+    let edge = |y: u32| libm::cos(PI * f64::from(y) / f64::from(map.height));
+    let (top, bottom) = (edge(y), edge(y + 1));
+    let u = (f64::from(x) + 0.5) / f64::from(map.width);
+    [1.0, -1.0].map(|side| {
+        let height = 0.5 * (top + bottom) + side * 0.5 * (top - bottom) / 3.0_f64.sqrt();
+        direction(u, libm::acos(height) / PI)
+    })
+}
+
 /// Solid angle of a texel of a row.
 pub(crate) fn solid_angle(map: &Image, y: u32) -> f64 {
     let edge = |y: u32| libm::cos(PI * f64::from(y) / f64::from(map.height));

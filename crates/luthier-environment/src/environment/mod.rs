@@ -15,7 +15,7 @@ use crate::{EnvironmentError, Layout, Level, Sky};
 /// Rows of the largest map kept: one texel is 0.35 degrees.
 const MAX_HEIGHT: u32 = 512;
 
-/// Rows of the maps that irradiance is integrated from and stored in.
+/// Rows of the parts that irradiance is summed over, and of the map that it is stored in.
 const IRRADIANCE_HEIGHT: u32 = 32;
 
 /// Light from all around, far away: an equirectangular map of radiance, linear RGB, and what smooth and rough surfaces
@@ -31,14 +31,20 @@ pub struct Environment {
     levels_of_cube: OnceLock<Vec<Level>>,
     /// The map on a cube, then each with half the side of the one before.
     cubes: OnceLock<Vec<Cube>>,
-    lights: OnceLock<Vec<Patch>>,
+    parts: OnceLock<Vec<Part>>,
     irradiance: OnceLock<Image>,
     ggx: OnceLock<Vec<Image>>,
     beckmann: OnceLock<Vec<Image>>,
 }
 
-/// A texel of a small map: its direction, solid angle and radiance.
-type Patch = ([f64; 3], f64, [f64; 3]);
+/// Part of the sphere of directions, as patches see it that have it above their horizon as a whole.
+#[derive(Debug, Clone, Copy, Default)]
+struct Part {
+    /// Integral of the direction.
+    area: [f64; 3],
+    /// Integrals of the direction times the radiance of each channel.
+    flux: [[f64; 3]; 3],
+}
 
 /// A slope distribution that reflections of the environment are blurred by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +77,7 @@ impl Environment {
             levels,
             levels_of_cube: OnceLock::new(),
             cubes: OnceLock::new(),
-            lights: OnceLock::new(),
+            parts: OnceLock::new(),
             irradiance: OnceLock::new(),
             ggx: OnceLock::new(),
             beckmann: OnceLock::new(),
@@ -134,33 +140,23 @@ impl Environment {
             .get_or_init(|| filled(2 * IRRADIANCE_HEIGHT, IRRADIANCE_HEIGHT, |normal| self.irradiance(normal)))
     }
 
-    /// Irradiance over pi, by direct summation over a small copy of the map. The weights of the texels sum to 1, so
-    /// that an even environment is returned exactly.
+    /// Irradiance over pi, summed over parts of the sphere. Parts that the horizon cuts count as one direction, which a thousandth of an even
+    /// environment hangs on; others are exact. The sum is over that of an even environment, which is returned exactly.
     pub(crate) fn irradiance(&self, normal: [f64; 3]) -> [f64; 3] {
-        let lights = self.lights.get_or_init(|| {
-            let source = self.level_with(IRRADIANCE_HEIGHT);
-            let texels = (0..source.height).flat_map(|y| (0..source.width).map(move |x| (x, y)));
-            let patch = |(x, y)| {
-                let radiance = [0, 1, 2].map(|c| f64::from(source.texel(x, y)[c]));
-                (texel_direction(source, x, y), solid_angle(source, y), radiance)
-            };
-            texels.map(patch).collect()
-        });
-        let (mut sum, mut weights) = ([0.0; 3], 0.0);
-        for (direction, solid_angle, radiance) in lights {
-            let weight = solid_angle * dot(*direction, normal).max(0.0);
-            weights += weight;
-            for (sum, value) in sum.iter_mut().zip(radiance) {
-                *sum += weight * value;
+        let (mut sum, mut total) = ([0.0; 3], 0.0);
+        for Part { area, flux } in self.parts.get_or_init(|| parts(self.map())) {
+            total += dot(*area, normal).max(0.0);
+            for (sum, flux) in sum.iter_mut().zip(flux) {
+                *sum += dot(*flux, normal).max(0.0);
             }
         }
-        sum.map(|v| v / weights)
+        sum.map(|v| v / total)
     }
 
     /// The map on a cube as fine as it, and averages over ever larger texels.
-    pub(crate) fn sources(&self) -> &[Cube] {
+    pub(crate) fn cubes(&self) -> &[Cube] {
         self.cubes.get_or_init(|| {
-            let mut cubes = vec![Cube::new(self.level_size(), |direction| self.radiance(direction))];
+            let mut cubes = vec![Cube::of_map(self.map(), self.level_size())];
             while let Some(last) = cubes.last().filter(|cube| cube.size() > 2) {
                 let next = last.halved();
                 cubes.push(next);
@@ -219,11 +215,24 @@ impl Environment {
         let far = bilinear(&self.levels[(low + 1).min(last)], at);
         [0, 1, 2].map(|c| near[c] + weight * (far[c] - near[c]))
     }
+}
 
-    /// The finest level with at most this many rows.
-    fn level_with(&self, height: u32) -> &Image {
-        self.levels.iter().find(|map| map.height <= height).unwrap_or(&self.levels[self.levels.len() - 1])
+/// A map in parts of a fixed number of rows, or as it is where it has fewer.
+fn parts(map: &Image) -> Vec<Part> {
+    let rows = map.height.min(IRRADIANCE_HEIGHT);
+    let mut parts = vec![Part::default(); (2 * rows * rows) as usize];
+    for (y, x) in (0..map.height).flat_map(|y| (0..map.width).map(move |x| (y, x))) {
+        let [row, column] = [y, x].map(|i| i * rows / map.height);
+        let part = &mut parts[(2 * rows * row + column) as usize];
+        let (direction, solid_angle) = (texel_direction(map, x, y), solid_angle(map, y));
+        for (k, along) in direction.into_iter().enumerate() {
+            part.area[k] += solid_angle * along;
+            for (flux, radiance) in part.flux.iter_mut().zip(map.texel(x, y)) {
+                flux[k] += solid_angle * along * f64::from(*radiance);
+            }
+        }
     }
+    parts
 }
 
 /// A map of a function of the direction.

@@ -36,18 +36,26 @@ const IRRADIANCE: u32 = 32;
 impl Layout {
     /// Mean over all directions of images of this layout, RGB.
     pub fn mean(self, images: &[Image]) -> [f64; 3] {
-        let (mut sum, mut weights) = ([0.0; 3], 0.0);
+        let (mut sum, mut total) = ([0.0; 3], 0.0);
         for image in images {
-            for (y, x) in (0..image.height).flat_map(|y| (0..image.width).map(move |x| (y, x))) {
-                let weight = match self {
-                    Self::Cube => cube::solid_angle(image.height, x, y),
-                    Self::Equirect => panorama::solid_angle(image, y),
-                };
-                weights += weight;
-                (0..3).for_each(|c| sum[c] += weight * f64::from(image.texel(x, y)[c]));
+            let weights = self.solid_angles(image.height);
+            for (texel, weight) in image.texels().zip(weights) {
+                total += weight;
+                (0..3).for_each(|c| sum[c] += weight * f64::from(texel[c]));
             }
         }
-        sum.map(|v| v / weights)
+        sum.map(|v| v / total)
+    }
+
+    /// Solid angles of the texels of an image, row by row.
+    fn solid_angles(self, size: u32) -> Vec<f64> {
+        match self {
+            Self::Cube => cube::solid_angles(size),
+            Self::Equirect => {
+                let shape = Image { width: 2 * size, height: size, channels: 3, data: Vec::new() };
+                (0..2 * size * size).map(|i| panorama::solid_angle(&shape, i / (2 * size))).collect()
+            }
+        }
     }
 
     /// An image for each face.
@@ -73,21 +81,23 @@ impl Layout {
         }
     }
 
-    /// Images of a function of unit directions.
+    /// Images of a smooth function of unit directions: its means over texels. Those of a cube are as good as its values in the middle. Rows of a map end
+    /// at poles, where sums of such values are not exact, and take two points of Gauss's rule each.
     fn images(self, size: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Vec<Image> {
         let columns = self.columns(size);
         let image = |face: usize| {
             let mut image = Image::zeros(columns, size, 3);
+            let shape = Image { data: Vec::new(), ..image.clone() };
             image.data.par_chunks_mut(3 * columns as usize).enumerate().for_each(|(y, row)| {
                 for (x, texel) in row.chunks_exact_mut(3).enumerate() {
-                    let direction = match self {
-                        Self::Cube => cube::texel_direction(face, size, x as u32, y as u32),
+                    let mean = match self {
+                        Self::Cube => value(cube::texel_direction(face, size, x as u32, y as u32)),
                         Self::Equirect => {
-                            let [u, v] = [(x as f64 + 0.5) / f64::from(columns), (y as f64 + 0.5) / f64::from(size)];
-                            panorama::direction(u, v)
+                            let [a, b] = panorama::gauss_directions(&shape, x as u32, y as u32).map(&value);
+                            [0, 1, 2].map(|c| 0.5 * (a[c] + b[c]))
                         }
                     };
-                    texel.copy_from_slice(&value(direction).map(|v| v as f32));
+                    texel.copy_from_slice(&mean.map(|v| v as f32));
                 }
             });
             image
@@ -116,20 +126,31 @@ impl Environment {
         if !size.is_power_of_two() || !(32..=1024).contains(&size) {
             return Err(setting("size", size.to_string(), "a power of two from 32 to 1024"));
         }
-        let sources = self.sources();
+        let cubes = self.cubes();
         let count = size.ilog2() - LAST.ilog2() + 1;
         let level = |k: u32| {
             let (size, width) = (size >> k, Self::level_width(size, k));
             let images = if k == 0 {
-                layout.images(size, |direction| self.radiance(direction))
+                self.first_level(layout, size)
             } else {
-                let source = nearest(sources, Kernel::side(width));
-                let kernel = Kernel::new(width, layout.texel(size), source.texel());
-                layout.images(size, |middle| kernel.mean(middle, |direction| source.read(direction)))
+                let kernel = Kernel::new(source(cubes, size), width, layout.texel(size));
+                layout.images(size, |middle| kernel.mean(middle))
             };
             Level { width, images }
         };
         Ok((0..count).map(level).collect())
+    }
+
+    /// The map itself: texels are means of what they cover; where an equirectangular map is finer than it, they are reads.
+    fn first_level(&self, layout: Layout, size: u32) -> Vec<Image> {
+        match layout {
+            Layout::Cube => match self.cubes().iter().find(|cube| cube.size() == size) {
+                Some(cube) => cube.faces().to_vec(),
+                None => Cube::of_map(self.map(), size).faces().to_vec(),
+            },
+            Layout::Equirect if size <= self.map().height => vec![panorama::shrunk(self.map(), size)],
+            Layout::Equirect => layout.images(size, |direction| self.radiance(direction)),
+        }
     }
 
     /// Irradiance over pi around every normal: a texture of one level with 32 rows.
@@ -138,12 +159,9 @@ impl Environment {
     }
 }
 
-/// The cube whose texels are about as large as a square of this side.
-fn nearest(sources: &[Cube], side: f64) -> &Cube {
-    let coarser = libm::log2(side * 0.5 * f64::from(sources[0].size()));
-    // Texels in the corners of a face are smaller than in its middle.
-    let level = (coarser + 0.25).round().clamp(0.0, (sources.len() - 1) as f64);
-    &sources[level as usize]
+/// The cube that has so many texels along a side, or the finest where none has as many.
+fn source(cubes: &[Cube], size: u32) -> &Cube {
+    cubes.iter().find(|cube| cube.size() <= size).unwrap_or(&cubes[cubes.len() - 1])
 }
 
 #[cfg(test)]
