@@ -32,9 +32,9 @@ impl Package {
     }
 }
 
-/// Groups of functions that show an environment.
+/// Groups of functions that show an environment: blurred beforehand, and in directions that are drawn.
 pub fn lit_functions() -> Functions {
-    [FunctionGroup::Environment].into_iter().collect()
+    [FunctionGroup::Environment, FunctionGroup::Sample].into_iter().collect()
 }
 
 /// The materials, each asking for the tables that blurred environments read, too, as far as its distributions of slopes have them.

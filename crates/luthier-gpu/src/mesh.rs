@@ -14,7 +14,7 @@ const FADE: [f32; 2] = [2.5, 9.0];
 /// Squared radius of the sphere that shades a floor in place of the shown part, which fills about so much of the unit sphere.
 const BALL_SQ: f64 = 0.4;
 
-/// The parts of the kernel that depend on the shape: markers in `shading.wgsl` and `render.wgsl`, and what stands there for closed shapes and for
+/// The parts of the kernel that depend on the shape: markers in `shading.wgsl`, `around` and `render.wgsl`, and what stands there for closed shapes and for
 /// meshes.
 const MARKERS: [(&str, &str, &str); 9] = [
     ("$place", "", ", place: Place"),
@@ -22,7 +22,7 @@ const MARKERS: [(&str, &str, &str); 9] = [
     ("$sign", "", " * place.sign"),
     ("$sees", "", " * mesh_sees(place, to_light, light.w, seed)"),
     ("$here", "", ", place"),
-    ("$open", "", " * mesh_open(material, place, turned, wo_world * turned, seed)"),
+    ("$open", "", " * mesh_open(material, place, turned, wo_there, seed)"),
     ("$shown", "", " && hit.part == 0u"),
     ("$behind_environment", "environment_radiance(ray)", "render_behind(hit, ray, environment_radiance(ray), seed)"),
     (
@@ -36,8 +36,8 @@ const MARKERS: [(&str, &str, &str); 9] = [
 const BEHIND: &str = "fn render_behind(hit: Hit, ray: vec3<f32>, behind: vec3<f32>, seed: u32) -> vec3<f32> {\n    \
      if hit.found {\n        return mesh_plain(hit, ray, behind, seed);\n    }\n    return behind;\n}\n";
 
-/// The modules of a picture that depend on the shape.
-pub(crate) fn kernel(shape: Shape) -> [String; 3] {
+/// The modules of a picture that depend on the shape; `around` is the one that shows the environment.
+pub(crate) fn kernel(shape: Shape, around: &str) -> [String; 4] {
     let is_mesh = shape == Shape::Mesh;
     let filled = |text: &str| {
         MARKERS.iter().fold(text.to_owned(), |text, (marker, closed, mesh)| {
@@ -49,7 +49,7 @@ pub(crate) fn kernel(shape: Shape) -> [String; 3] {
     } else {
         include_str!("wgsl/shape.wgsl").to_owned()
     };
-    [rays, filled(include_str!("wgsl/shading.wgsl")), filled(include_str!("wgsl/render.wgsl"))]
+    [rays, filled(include_str!("wgsl/shading.wgsl")), filled(around), filled(include_str!("wgsl/render.wgsl"))]
 }
 
 /// The words of a mesh, the first of which has this number.

@@ -63,8 +63,9 @@ pub struct RenderSettings {
     pub light_angular_radius: f32,
     /// Light from all around.
     pub environment: Arc<Environment>,
-    /// 0 reads maps that were blurred beforehand. Above, up to 4096: the environment goes through `luthier_eval` for that
-    /// many directions per lobe of the material and sample of the pixel, which is slow and noisy and has no other error.
+    /// 0 reads maps that were blurred beforehand. Above, up to 4096: the shader is asked for the environment in that many directions per lobe of the
+    /// material and sample of the pixel, which is slow and noisy and has no other error. `luthier_sample` draws them for the place; where a shader
+    /// lacks it (`functions` of a bake), the slopes of layer records do, with the roughness and the normal of the place.
     pub environment_samples: u32,
     /// Slopes, along the tangent and the bitangent, of the inner boundary of films against the outer one, on top of those
     /// that follow from a varying thickness (Granier and Heidrich 2003, section 7.2). Models without a second boundary, and
@@ -225,10 +226,9 @@ impl Scene {
         };
         let words = self.widened_words(settings.light_angular_radius);
         let group = self.bindings.group(&self.context, &words, &surroundings)?;
-        let pipeline = match settings.shape {
-            Shape::Mesh => self.pipeline(&self.render_mesh, &self.render_kernel(settings.shape))?,
-            _ => self.pipeline(&self.render, &self.render_kernel(settings.shape))?,
-        };
+        let is_drawn = settings.environment_samples > 0;
+        let cell = &self.render[usize::from(settings.shape == Shape::Mesh)][usize::from(is_drawn)];
+        let pipeline = self.pipeline(cell, &self.render_kernel(settings.shape, is_drawn))?;
         let mut inputs = self.inputs(parts, materials, settings);
 
         let size = settings.size;
@@ -271,17 +271,46 @@ impl Scene {
         material_buffer(&materials)
     }
 
-    /// The kernel, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
-    fn render_kernel(&self, shape: Shape) -> String {
+    /// The kernel, by directions of the environment or by its blurred maps.
+    fn render_kernel(&self, shape: Shape, is_drawn: bool) -> String {
+        let [rays, shading, around, render] =
+            mesh::kernel(shape, &if is_drawn { self.drawn_around() } else { self.prefiltered_around() });
+        [
+            &rays,
+            include_str!("wgsl/environment.wgsl"),
+            &shading,
+            &around,
+            include_str!("wgsl/picture.wgsl"),
+            &render,
+            &self.surface_functions(),
+            self.pick_function(),
+        ]
+        .join("\n")
+    }
+
+    /// The environment by directions that the shader draws; by those of layer records where it has no such functions.
+    fn drawn_around(&self) -> String {
+        if !self.has("fn luthier_sample(") {
+            return include_str!("wgsl/around/by_records.wgsl").to_owned();
+        }
+        let prepared = match self.has("struct LuthierPlace") {
+            true => "luthier_prepare_at(surface, material, wo)",
+            false => "luthier_prepare(material, wo)",
+        };
+        // What fluorescent bases send out is no factor times the light.
+        let reflected = match self.has("fn luthier_light_lit(") {
+            true => "luthier_light_lit(prepared, wi, $radiance) / drawn.pdf",
+            false => "drawn.weight * $radiance",
+        };
+        include_str!("wgsl/around/drawn.wgsl").replace("$prepared", prepared).replace("$reflected", reflected)
+    }
+
+    /// The environment by its blurred maps, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
+    fn prefiltered_around(&self) -> String {
         let body = |kind, call| if self.reads(kind) { call } else { "vec3<f32>(0.0)" };
         let fresnel = body(TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)");
         let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
         let film = body(TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)");
-        let lookups = format!(
-            "fn shading_fresnel(tile: f32, cos_theta: f32) -> vec3<f32> {{\n    return {fresnel};\n}}\n\
-             fn shading_fgd(tile: f32, cos_theta: f32, alpha: f32) -> vec3<f32> {{\n    return {fgd};\n}}\n\
-             fn shading_film(tile: f32, cos_theta: f32, fraction: f32) -> vec3<f32> {{\n    return {film};\n}}\n"
-        );
         let shown = if self.bindings.has_surroundings() {
             let place = if self.has("struct LuthierPlace") { "surface, " } else { "" };
             format!(
@@ -290,23 +319,14 @@ impl Scene {
         } else {
             "vec3<f32>(0.0)".to_owned()
         };
-        let lobes = format!(
-            "fn lobes_environment(\n    material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, turn: f32,\n\
+        let look_ups = format!(
+            "fn shading_fresnel(tile: f32, cos_theta: f32) -> vec3<f32> {{\n    return {fresnel};\n}}\n\
+             fn shading_fgd(tile: f32, cos_theta: f32, alpha: f32) -> vec3<f32> {{\n    return {fgd};\n}}\n\
+             fn shading_film(tile: f32, cos_theta: f32, fraction: f32) -> vec3<f32> {{\n    return {film};\n}}\n\
+             fn lobes_environment(\n    material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, turn: f32,\n\
              ) -> vec3<f32> {{\n    return {shown};\n}}\n"
         );
-        let [rays, shading, render] = mesh::kernel(shape);
-        [
-            &rays,
-            include_str!("wgsl/environment.wgsl"),
-            &shading,
-            include_str!("wgsl/picture.wgsl"),
-            &render,
-            &lookups,
-            &lobes,
-            &self.surface_functions(),
-            self.pick_function(),
-        ]
-        .join("\n")
+        [include_str!("wgsl/around/prefiltered.wgsl"), &look_ups].join("\n")
     }
 
     /// The words of `Render` in `picture.wgsl`.

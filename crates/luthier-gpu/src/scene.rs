@@ -28,9 +28,9 @@ pub struct Scene {
     kernels: wgpu::PipelineLayout,
     pub(crate) evaluate: wgpu::ComputePipeline,
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
-    pub(crate) render: OnceLock<wgpu::ComputePipeline>,
+    /// Of closed shapes and of meshes, each by blurred maps of the environment and by directions.
+    pub(crate) render: [[OnceLock<wgpu::ComputePipeline>; 2]; 2],
     pub(crate) simulations: Pipelines,
-    pub(crate) render_mesh: OnceLock<wgpu::ComputePipeline>,
     pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
@@ -59,9 +59,8 @@ impl Scene {
             kernels,
             evaluate,
             lookups: Default::default(),
-            render: OnceLock::new(),
+            render: Default::default(),
             simulations: Pipelines::default(),
-            render_mesh: OnceLock::new(),
             grounded: Mutex::default(),
         })
     }
@@ -91,7 +90,6 @@ impl Scene {
             lookups: self.lookups.clone(),
             render: self.render.clone(),
             simulations: self.simulations.clone(),
-            render_mesh: self.render_mesh.clone(),
             grounded: Mutex::default(),
         }))
     }

@@ -40,7 +40,7 @@ struct ShadingPick {
     normal: vec3<f32>,
 }
 
-// The same as the blurred environment takes it.
+// The same in numbers that do not hang on the shader.
 struct ShadingFactors {
     normal: vec3<f32>,
     alpha: f32,
@@ -116,114 +116,6 @@ fn shading_layer(material: u32, index: u32) -> ShadingLayer {
     return ShadingLayer(head.x, head.y, head.z, head.w, tiles.x, tiles.y, tiles.z, tiles.w, slab.xyz, slab.w, base.xyz);
 }
 
-// Cosine at which the Fresnel row and the film tile of a layer are read.
-fn shading_row_cosine(layer: ShadingLayer, cos_theta: f32) -> f32 {
-    let sin_theta_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
-    return sqrt(max(cos_theta * cos_theta - layer.critical_cot_sq * sin_theta_sq, 0.0));
-}
-
-// Cosine below an interface for one above it; 0 when nothing is refracted.
-fn shading_refract(cos_theta: f32, eta: f32) -> f32 {
-    return sqrt(max(1.0 - (1.0 - cos_theta * cos_theta) / (eta * eta), 0.0));
-}
-
-// The environment as the layers send it along wo, without sampling: each interface reflects its albedo times the blurred
-// environment around the mirrored direction, a diffuse base its albedo times irradiance over pi. Layers attenuate as in
-// luthier_eval, with the cosine of wo for light that comes mirrored and the mean cosine for light from everywhere. Seen
-// from outside, slopes below an interface are steeper by its eta.
-fn shading_prefiltered(
-    material: u32, factors: ShadingFactors, is_bare: bool, frame: mat3x3<f32>, wo: vec3<f32>,
-) -> vec3<f32> {
-    let normal = frame[2];
-    let patina_diffuse = bitcast<vec4<f32>>(shading_map_header(material, 5u));
-    var tarnish = vec3<f32>(1.0);
-    if factors.patina >= 0.0 {
-        tarnish = mix(tarnish, bitcast<vec4<f32>>(shading_map_header(material, 6u)).rgb, factors.patina);
-    }
-    var mirrored = frame * vec3<f32>(-wo.xy, wo.z);
-    var leaving = vec3<f32>(1.0);
-    var entering = vec3<f32>(1.0);
-    var cos_out = clamp(wo.z, 1e-4, 1.0);
-    var cos_in = SHADING_MEAN_COSINE;
-    var alpha = 0.0;
-    var spread = 1.0;
-    var total = vec3<f32>(0.0);
-    let count = shading_layer_count(material);
-    for (var i = select(0u, 1u, is_bare); i < count; i++) {
-        var layer = shading_layer(material, select(i, count, is_bare && i == 1u));
-        if layer.kind == 2.0 {
-            total += leaving * entering * layer.albedo * environment_diffuse(normal);
-            break;
-        }
-        layer.alpha = min(layer.alpha * factors.alpha, 1.0);
-        if i == 1u && factors.patina >= 0.0 && patina_diffuse.w >= 0.0 {
-            layer.alpha = mix(layer.alpha, patina_diffuse.w, factors.patina);
-        }
-        alpha = max(alpha, layer.alpha);
-        let row_out = shading_row_cosine(layer, cos_out);
-        let row_in = shading_row_cosine(layer, cos_in);
-        var reflected_out = shading_fresnel(layer.fresnel_tile, row_out);
-        var reflected_in = shading_fresnel(layer.fresnel_tile, row_in);
-        var albedo = reflected_out;
-        if layer.film_tile >= 0.0 {
-            // Albedos are tabulated for one thickness.
-            let fraction = layer.film_fraction * select(1.0, factors.film, i == 0u);
-            reflected_out = shading_film(layer.film_tile, row_out, fraction);
-            reflected_in = shading_film(layer.film_tile, row_in, fraction);
-            albedo = reflected_out;
-        } else if layer.fgd_tile >= 0.0 {
-            albedo = shading_fgd(layer.fgd_tile, cos_out, alpha);
-        }
-        if i > 0u {
-            albedo *= tarnish;
-        }
-        let light = environment_mirrored(u32(layer.chain), min(alpha * spread, 1.0), mirrored);
-        total += leaving * leaving * albedo * light;
-        if i == 0u && factors.patina > 0.0 {
-            let scattered = (1.0 - reflected_out) * (1.0 - reflected_in) * patina_diffuse.rgb;
-            total += scattered * environment_diffuse(normal);
-        }
-        if layer.kind == 1.0 {
-            break;
-        }
-        let outside = cos_out;
-        cos_out = shading_refract(cos_out, layer.eta);
-        cos_in = shading_refract(cos_in, layer.eta);
-        if min(cos_out, cos_in) <= 0.0 {
-            break;
-        }
-        if i == 0u && factors.below.z < 1.0 {
-            // What a tilted mirror below the interface shows.
-            let down = vec3<f32>(wo.xy / layer.eta, cos_out);
-            let up = reflect(-down, factors.below);
-            let across_sq = dot(up.xy, up.xy) * layer.eta * layer.eta;
-            cos_out = dot(down, factors.below);
-            if min(cos_out, up.z) <= 0.0 || across_sq >= 1.0 {
-                break;
-            }
-            mirrored = frame * vec3<f32>(up.xy * layer.eta, sqrt(1.0 - across_sq));
-        }
-        let depth = layer.optical_depth * select(1.0, factors.slab, i == 0u);
-        leaving *= (1.0 - reflected_out) * exp(-depth / cos_out);
-        entering *= (1.0 - reflected_in) * exp(-depth / cos_in);
-        spread *= layer.eta;
-    }
-    return total;
-}
-
-// The same with and without the first layer where patina has grown in part.
-fn shading_environment(material: u32, factors: ShadingFactors, frame: mat3x3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    let grown = select(1.0, factors.patina, factors.patina >= 0.0);
-    var total = vec3<f32>(0.0);
-    if grown < 1.0 {
-        total += (1.0 - grown) * shading_prefiltered(material, factors, true, frame, wo);
-    }
-    if grown > 0.0 {
-        total += grown * shading_prefiltered(material, factors, false, frame, wo);
-    }
-    return total;
-}
-
 // The frame whose +z is `n` (unit, in the frame): turned the shortest way, as luthier_eval_at does.
 fn shading_turned_frame(frame: mat3x3<f32>, n: vec3<f32>) -> mat3x3<f32> {
     let a = 1.0 / (1.0 + max(n.z, 0.0));
@@ -231,34 +123,7 @@ fn shading_turned_frame(frame: mat3x3<f32>, n: vec3<f32>) -> mat3x3<f32> {
     return frame * mat3x3<f32>(vec3<f32>(1.0 - n.x * n.x * a, shear, -n.x), vec3<f32>(shear, 1.0 - n.y * n.y * a, -n.y), n);
 }
 
-// Slope parameter of the lobe of an interface, seen from outside; 0 for what is no interface. Models that make a base as rough as
-// its coat are sampled for the coat as well.
-fn shading_lobe(material: u32, index: u32) -> f32 {
-    var alpha = 0.0;
-    var spread = 1.0;
-    for (var i = 0u; i <= index; i++) {
-        let layer = shading_layer(material, i);
-        if layer.kind == 2.0 {
-            return 0.0;
-        }
-        alpha = layer.alpha;
-        if i < index {
-            spread *= layer.eta;
-        }
-    }
-    return clamp(alpha * spread, 1e-3, 1.0);
-}
-
-// Density over wi of the lobe that is sampled for an interface (GGX of its slope parameter), or of the cosine.
-fn shading_density(alpha: f32, wi: vec3<f32>, wo: vec3<f32>) -> f32 {
-    if alpha == 0.0 {
-        return wi.z / ENVIRONMENT_PI;
-    }
-    let wh = normalize(wi + wo);
-    let root = alpha / max(alpha * alpha * wh.z * wh.z + dot(wh.xy, wh.xy), 1e-20);
-    return root * root * wh.z / (4.0 * ENVIRONMENT_PI * max(dot(wh, wo), 1e-6));
-}
-
+// A direction mirrored at a facet of a GGX surface, or one by its cosine.
 fn shading_sample(alpha: f32, u: vec2<f32>, wo: vec3<f32>) -> vec3<f32> {
     let phi = 2.0 * ENVIRONMENT_PI * u.y;
     let around = vec2<f32>(cos(phi), sin(phi));
@@ -279,43 +144,6 @@ fn shading_hash(x: u32) -> u32 {
 
 fn shading_unit(x: u32) -> f32 {
     return f32(x >> 8u) * (1.0 / 16777216.0);
-}
-
-// The environment through luthier_eval: the same number of directions for each interface and for the cosine, Hammersley
-// points shifted by the seed, weighed by the balance heuristic (Veach 1997, eq. 9.8).
-fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32$place) -> vec3<f32> {
-    let lobes = shading_layer_count(material) + 1u;
-    let count = kernel_inputs.environment_samples;
-    var total = vec3<f32>(0.0);
-    for (var lobe = 0u; lobe < lobes; lobe++) {
-        var alpha = 0.0;
-        if lobe + 1u < lobes {
-            alpha = shading_lobe(material, lobe);
-            if alpha == 0.0 {
-                continue;
-            }
-        }
-        let first = shading_hash(seed * 16u + lobe);
-        let shift = vec2<f32>(shading_unit(first), shading_unit(shading_hash(first)));
-        let first_direction = kernel_inputs.first_direction;
-        for (var i = first_direction; i < first_direction + kernel_inputs.direction_count; i++) {
-            let point = vec2<f32>((f32(i) + 0.5) / f32(count), shading_unit(reverseBits(i)));
-            let wi = shading_sample(alpha, fract(point + shift), wo);
-            if wi.z <= 0.0 {
-                continue;
-            }
-            var density = wi.z / ENVIRONMENT_PI;
-            for (var other = 0u; other + 1u < lobes; other++) {
-                let other_alpha = shading_lobe(material, other);
-                if other_alpha > 0.0 {
-                    density += shading_density(other_alpha, wi, wo);
-                }
-            }
-            let seen = shading_lit(material, surface, wi, wo, $radiance);
-            total += seen / (density * f32(count));
-        }
-    }
-    return total;
 }
 
 // Radiance along the ray that left the eye in the direction -wo_world.
@@ -342,16 +170,5 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         // The second half of the materials has its slopes widened by the size of the lights.
         total += shading_lit(material + kernel_inputs.material_count, surface, wi, wo, color) / distance_sq$sees;
     }
-    if kernel_inputs.environment_samples > 0u {
-        return total + shading_sampled(material, surface, frame, wo, seed$here);
-    }
-    let factors = shading_factors(surface);
-    let turned = shading_turned_frame(frame, factors.normal);
-    if kernel_inputs.words[kernel_inputs.materials + material].w > 0.0 {
-        // The samples of a pixel share the directions of a circle.
-        let samples = kernel_inputs.samples * kernel_inputs.samples;
-        let turn = f32(seed % samples) / f32(samples);
-        return total + lobes_environment(material, surface, turned, wo_world * turned, turn)$open;
-    }
-    return total + shading_environment(material, factors, turned, wo_world * turned)$open;
+    return total + shading_around(material, surface, frame, wo, seed$here);
 }

@@ -34,10 +34,11 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
     for (i, material) in materials.iter().enumerate() {
         let title = titles.get(i).unwrap_or(&material.name);
         let mut settings = settings.clone();
-        if look.environment_samples.is_none() && !scene.has_albedo(i as u32)? {
+        let number = i as u32;
+        if look.environment_samples.is_none() && (!scene.has_albedo(number)? || scene.has_layer_maps(number)?) {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
-        pictures.push((title.clone(), scene.render(&[i as u32], &settings)?));
+        pictures.push((title.clone(), scene.render(&[number], &settings)?));
     }
     let columns = sheet.columns.unwrap_or_else(|| (pictures.len() as f64).sqrt().ceil() as u32);
     format.write(output, luthier_report::sheet(&pictures, columns), look.tone.into())

@@ -7,6 +7,8 @@ mod environment;
 mod gallery;
 mod gallery_page;
 #[cfg(feature = "gpu")]
+mod noise;
+#[cfg(feature = "gpu")]
 mod preview;
 #[cfg(feature = "view")]
 mod view;
