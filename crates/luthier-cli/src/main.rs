@@ -41,6 +41,10 @@ fn main() -> ExitCode {
     }
     interrupt::watch();
     let line = luthier_terminal::parse::<Cli>(&OF_FEATURES);
+    #[cfg(feature = "gpu")]
+    if let Verb::Preview(_) | Verb::Gallery(_) | Verb::Compare(_) | Verb::Bench(_) | Verb::Report(_) = &line.verb {
+        luthier_terminal::without_display();
+    }
     store::configure(&line.store);
     let outcome = match &line.verb {
         Verb::Bake(options) => verb::bake::run(options),

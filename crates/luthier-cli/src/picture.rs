@@ -41,8 +41,11 @@ pub(crate) fn settings(look: &Look, shape: ShapeName, mesh: Option<&Path>, size:
     if look.background {
         settings.backdrop = Backdrop::Environment;
     }
-    let default = settings.lights.drain(..).next();
-    let Some(Light::Directional { irradiance, .. }) = default else { return Ok(settings) };
+    if let Some(eye) = look.camera {
+        settings.camera.eye = eye.0;
+    }
+    let irradiance = look.light_color.0;
+    let default = settings.lights.drain(..).next().map(|light| light.with_color(irradiance));
     settings.lights.extend(look.light.iter().map(|v| Light::Directional { direction: v.0, irradiance }));
     settings.lights.extend(look.point_light.iter().map(|v| {
         let distance_sq: f32 = v.0.iter().map(|x| x * x).sum();

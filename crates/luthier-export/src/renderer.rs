@@ -37,9 +37,16 @@ pub fn lit_functions() -> Functions {
     [FunctionGroup::Environment, FunctionGroup::Sample].into_iter().collect()
 }
 
+/// Texels of the energies of rough interfaces, over the view and the slope parameter, where pictures alone read them. A table of the size that a bake
+/// looks for takes three times as long, more than all the rest of a first picture.
+const ENERGY_SIZE: [u32; 2] = [32, 16];
+
 /// The materials, each asking for the tables that blurred environments read, too, as far as its distributions of slopes have them.
 pub fn lit(materials: &[Material]) -> Vec<Material> {
     let mut lit = materials.to_vec();
+    let is_of_pictures =
+        |material: &Material| !material.model().is_statistical() && !material.bake.asks_for(TableKind::Fgd);
+    let is_small = materials.iter().all(is_of_pictures);
     // Lobes have their own energies.
     let of_layers = |material: &&mut Material| material.model() != ShadingModel::Lobes;
     for material in lit.iter_mut().filter(of_layers) {
@@ -47,6 +54,9 @@ pub fn lit(materials: &[Material]) -> Vec<Material> {
         let has_walks = material.stack.layers.iter().all(|layer| layer.surface.distribution.has_walks());
         let tables = ENVIRONMENT_TABLES.into_iter().filter(|kind| has_walks || *kind != TableKind::Fgd);
         material.bake.tables.extend(tables);
+        if is_small && has_walks {
+            material.bake.fgd.size = Some(ENERGY_SIZE);
+        }
     }
     lit
 }

@@ -23,6 +23,15 @@ pub enum Light {
 }
 
 impl Light {
+    /// The light with another irradiance or intensity.
+    #[must_use]
+    pub fn with_color(self, color: [f32; 3]) -> Self {
+        match self {
+            Self::Directional { direction, .. } => Self::Directional { direction, irradiance: color },
+            Self::Point { position, .. } => Self::Point { position, intensity: color },
+        }
+    }
+
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         let color = match self {
             Self::Directional { direction, irradiance } => {

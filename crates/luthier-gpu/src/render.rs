@@ -130,8 +130,22 @@ impl Scene {
     /// # Errors
     /// As [`Scene::render`], and [`GpuError::NoSurface`].
     pub fn render_shown(&self, parts: &[Shown], settings: &RenderSettings) -> Result<Image, GpuError> {
-        let image = self.render_passes(parts, settings, &|| false, EVALUATIONS_PER_PASS * self.context.batch)?;
+        let image = self.render_passes(parts, settings, &|_, _| true, EVALUATIONS_PER_PASS * self.context.batch)?;
         Ok(image.expect("nobody stops it"))
+    }
+
+    /// Renders as [`Scene::render_shown`] does, for someone who watches: before every pass, of which each takes a fraction of a second on a software
+    /// adapter where meshes are small, `goes_on` is told how many are done, and of how many. The result is `None` when it said no.
+    ///
+    /// # Errors
+    /// As [`Scene::render_shown`].
+    pub fn render_watched(
+        &self,
+        parts: &[Shown],
+        settings: &RenderSettings,
+        goes_on: &dyn Fn(usize, usize) -> bool,
+    ) -> Result<Option<Image>, GpuError> {
+        self.render_passes(parts, settings, goes_on, EVALUATIONS_PER_SHORT_PASS * self.context.batch)
     }
 
     /// Whether [`Scene::render`] knows the albedo of every interface of a material without samples of the environment: bakes have these
@@ -184,14 +198,14 @@ impl Scene {
         settings: &RenderSettings,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Image>, GpuError> {
-        self.render_passes(&parts(materials), settings, stop, EVALUATIONS_PER_SHORT_PASS * self.context.batch)
+        self.render_watched(&parts(materials), settings, &|_, _| !stop())
     }
 
     fn render_passes(
         &self,
         parts: &[Shown],
         settings: &RenderSettings,
-        stop: &dyn Fn() -> bool,
+        goes_on: &dyn Fn(usize, usize) -> bool,
         evaluations: u32,
     ) -> Result<Option<Image>, GpuError> {
         settings.check(parts)?;
@@ -241,8 +255,9 @@ impl Scene {
         let rows = (evaluations / size.saturating_mul(per_pixel).saturating_mul(cost).max(1)).clamp(1, size);
         let mut data = vec![0.0; (size * size * 3) as usize];
         let blocks = (0..size).step_by(rows as usize).flat_map(|row| shares.iter().map(move |share| (row, *share)));
-        for (row, share) in blocks {
-            if stop() {
+        let count = size.div_ceil(rows) as usize * shares.len();
+        for (done, (row, share)) in blocks.enumerate() {
+            if !goes_on(done, count) {
                 return Ok(None);
             }
             let rows = rows.min(size - row);

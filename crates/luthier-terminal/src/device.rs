@@ -62,6 +62,29 @@ pub fn adapter_json(gpu: &Gpu) -> Value {
     })
 }
 
+/// Begins the process again without Mesa's layer that sorts devices, where that would complain on standard error. The layer asks for a Wayland display,
+/// and libwayland says what it misses for one; pictures need none, and adapters are chosen by their kind. Returns where nobody would complain, and
+/// where the program cannot be found again. To be called before anything is read or written.
+pub fn without_display() {
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::unix::process::CommandExt;
+
+        let value = std::env::var_os;
+        let has_display = value("XDG_RUNTIME_DIR").is_some_and(|folder| std::path::Path::new(&folder).is_absolute());
+        // Whoever asks the layer for a device gets it.
+        let is_settled = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT"].into_iter().any(|name| value(name).is_some());
+        if has_display || is_settled {
+            return;
+        }
+        let mut words = std::env::args_os();
+        if let (Ok(program), Some(name)) = (std::env::current_exe(), words.next()) {
+            // Returns only where it fails.
+            let _ = std::process::Command::new(program).arg0(name).args(words).env("NODEVICE_SELECT", "1").exec();
+        }
+    }
+}
+
 /// Opens an adapter: the best there is, or the one whose name contains a text.
 ///
 /// # Errors

@@ -21,7 +21,7 @@ mod progress;
 
 pub use command_line::parse;
 #[cfg(feature = "gpu")]
-pub use device::{Shaders, adapter_json, adapter_label, open};
+pub use device::{Shaders, adapter_json, adapter_label, open, without_display};
 pub use failure::{Broken, Failure, Outcome, diagnostic, files, print_json};
 pub use materials::{print_diagnostics, valid};
 pub use options::{Sources, named};

@@ -87,6 +87,8 @@ impl<P: Program> Workshop<P> {
         let mut command = assert_cmd::Command::new(P::PATH);
         // Tests compute what they judge, and leave nothing in the caches of who runs them.
         command.env("LUTHIER_CACHE", "");
+        // No test opens a window through this.
+        command.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT");
         let output = command.current_dir(folder).args(args).timeout(PATIENCE).output().unwrap();
         let text = |bytes| String::from_utf8(bytes).unwrap();
         let (stdout, stderr) = (text(output.stdout), text(output.stderr));

@@ -35,7 +35,7 @@ Examples:
 
 /// Options that a page has no use for.
 #[cfg(feature = "gpu")]
-const OF_SHEETS: [&str; 14] = [
+const OF_SHEETS: [&str; 16] = [
     "shape",
     "mesh",
     "size",
@@ -50,6 +50,8 @@ const OF_SHEETS: [&str; 14] = [
     "environment_samples",
     "background",
     "light",
+    "light_color",
+    "camera",
 ];
 
 #[derive(Debug, Args)]

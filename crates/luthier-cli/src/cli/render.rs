@@ -18,6 +18,10 @@ const PREVIEW_EXAMPLES: &str = "\
 MATERIAL is a material file or a surface file, or the name of either in the bake. Directions and positions have +y up and +z to the eye;
 the shapes are about 1 in radius. The grid takes no material: it is of `metallic-roughness` surfaces in the colour of copper.
 
+`model` and --mesh shade themselves: they hide lights from each of their places, and light from all around by what they hide of it from there (of
+smooth materials, by what their mirrored rays meet). Sphere, torus, plane and grid shade nothing, not themselves either. On a software adapter the
+file has a first picture, by one sample of each pixel, until the whole is done.
+
 Examples:
   luthier preview materials/red-lacquer.toml -o ball.png
   luthier preview red-lacquer -o ball.png --size 1024
@@ -26,6 +30,7 @@ Examples:
   luthier preview materials/papers/yamaguchi-brushed.toml -o ball.png --simulated 256
   luthier preview materials/polished-gold.toml -o gold.png --sky evening-room --background
   luthier preview materials/soap-film.toml -o cat.png --mesh cat.glb
+  luthier preview materials/latex.toml -o low.png --camera 3,0.5,6 --light 1,1,0 --light-color 3,2.4,1.6
   luthier preview --shape grid -o grid.png";
 
 /// How pictures are lit, sampled and written.
@@ -59,6 +64,13 @@ pub(crate) struct Look {
     /// A light at this position, as bright at the centre as --light
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub(crate) point_light: Vec<Triple>,
+    /// Irradiance of the lights on a surface that faces them, linear RGB; that of a light at a position is this at the centre
+    #[arg(long, value_name = "R,G,B", default_value = "1.75,1.70,1.62", value_parser = color)]
+    pub(crate) light_color: Triple,
+    /// Position of the eye, which looks at the centre; +y is up in the picture, and what it shows at the centre stays as large. By default each shape
+    /// has its own, 7 away (the grid 16): from the front, or from above where a shape lies flat
+    #[arg(long, value_name = "X,Y,Z", value_parser = eye, allow_hyphen_values = true)]
+    pub(crate) camera: Option<Triple>,
     /// Use the graphics adapter whose name contains this
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -124,7 +136,7 @@ pub(crate) struct SheetOptions {
 const COMPARE_EXAMPLES: &str = "\
 Writes a.png, b.png, difference.png (absolute, of what a display shows, brightened as printed) and flip.png (0 black, 1 white)
 into a folder. RMSE is of linear radiance over all pixels and channels; FLIP is of the displayed pictures at 67 pixels per
-degree. The environment goes through both shaders with the same 64 directions unless told otherwise.
+degree. The environment goes through both shaders in 64 directions for each lobe, drawn by each with the same random numbers, unless told otherwise.
 `simulated` in place of a shader is what `luthier preview --simulated` shows, and simulated/N that with N samples of each pixel (256 by default).
 The noise of its samples is part of the RMSE; it is printed beside it.
 
@@ -305,6 +317,22 @@ fn triple(text: &str) -> Result<Triple, String> {
     match numbers.as_deref() {
         Some(&[x, y, z]) if [x, y, z].iter().all(|v| v.is_finite()) && [x, y, z] != [0.0; 3] => Ok(Triple([x, y, z])),
         _ => Err("expected three numbers that are not all 0, such as 1,2,3".to_owned()),
+    }
+}
+
+fn eye(text: &str) -> Result<Triple, String> {
+    match triple(text)? {
+        Triple([x, _, z]) if libm::hypotf(x, z) < 1e-6 => {
+            Err("expected an eye that is neither above nor below the centre, such as 0,2,7".to_owned())
+        }
+        eye => Ok(eye),
+    }
+}
+
+fn color(text: &str) -> Result<Triple, String> {
+    match triple(text) {
+        Ok(Triple(rgb)) if rgb.iter().all(|v| *v >= 0.0) => Ok(Triple(rgb)),
+        _ => Err("expected three numbers that are not negative and not all 0, such as 1.75,1.70,1.62".to_owned()),
     }
 }
 

@@ -1,9 +1,10 @@
 //! `preview`: a picture of one material, or of the grid.
 
 use luthier_export::{Package, lit};
-use luthier_gpu::{Shape, Shown};
+use luthier_gpu::{RenderSettings, Shape, Shown};
+use luthier_lut::Image;
 use luthier_manifest::Form;
-use luthier_terminal::{Failure, Outcome, open};
+use luthier_terminal::{Bar, Failure, Outcome, open};
 
 use crate::cli::{PreviewOptions, ShapeName};
 use crate::picture::{Format, settings};
@@ -43,8 +44,20 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
     }
-    let image = scene.render_shown(&parts, &settings)?;
-    format.write(&options.output, image, look.tone.into())
+    let write = |image| format.write(&options.output, image, look.tone.into());
+    let render = |settings: &RenderSettings, what: &str| -> Outcome<Image> {
+        let bar = Bar::new(what);
+        let watched = |done: usize, count: usize| {
+            bar.set(done as u64, count as u64);
+            true
+        };
+        Ok(scene.render_watched(&parts, settings, &watched)?.expect("nobody stops it"))
+    };
+    if gpu.is_software() && settings.samples > 1 {
+        // A first picture by one sample of each pixel, to look at meanwhile.
+        write(render(&RenderSettings { samples: 1, ..settings.clone() }, "first picture")?)?;
+    }
+    write(render(&settings, "rendering")?)
 }
 
 /// The picture by random walks of light through the stack of each material.

@@ -346,3 +346,24 @@ fn a_white_ball_is_exposed_just_below_one() {
     let brightest = image.data.iter().copied().fold(0.0, f32::max);
     assert!((0.9..1.0).contains(&brightest), "{brightest}");
 }
+
+/// Passes are counted before each of them, and short ones add up to the same picture.
+#[test]
+fn whoever_watches_is_told_of_every_pass() {
+    let metal = tiled(conductor(0.2, [0.1; 3], [9.0; 3]), None);
+    let Some(scene) = scene_of(vec![vec![metal]], &ggx_tables(0.1, 0.1)) else { return };
+    let settings = RenderSettings { size: 32, samples: 4, environment_samples: 32, ..dark() };
+    let settings = RenderSettings { environment: uniform(0.5), ..settings };
+    let told = std::cell::RefCell::new(Vec::new());
+    let tell = |done: usize, count: usize| {
+        told.borrow_mut().push((done, count));
+        true
+    };
+    let parts = [luthier_gpu::Shown::Material(0)];
+    let watched = scene.render_watched(&parts, &settings, &tell).unwrap().unwrap();
+    let told = told.into_inner();
+    assert!(told.len() > 1 && told.iter().enumerate().all(|(i, pass)| *pass == (i, told.len())), "{told:?}");
+    assert_eq!(watched, scene.render_shown(&parts, &settings).unwrap());
+    let stopped = scene.render_watched(&parts, &settings, &|done, _| done < 1).unwrap();
+    assert!(stopped.is_none());
+}

@@ -290,6 +290,52 @@ fn meshes_are_refused_with_a_reason() {
 const BRUSHED: &str = "schema = 1\nname = \"brushed\"\n[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nalpha_x = 0.1\nalpha_y = 0.3\n\
     [bake]\nmodel = \"elek\"\n";
 
+/// Oracle: irradiance is linear in the colour of the light, and a light from the eye of a camera lights what that sees.
+#[test]
+fn cameras_and_colours_of_lights() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let dark: RgbImage = RgbImage::new(64, 32);
+    image::codecs::hdr::HdrEncoder::new(std::fs::File::create(workshop.path("dark.hdr")).unwrap())
+        .encode(&vec![image::Rgb([0.0_f32; 3]); dark.pixels().count()], 64, 32)
+        .unwrap();
+    let seen = |more: &[&str]| -> Option<Vec<f64>> {
+        let args = ["preview", "matte.toml", "-o", "ball.exr", "--size", "24", "--samples", "1", "--shape", "sphere"];
+        let run = workshop.run(&[&args[..], &["--environment", "dark.hdr"], more].concat());
+        if run.lacks_adapter() {
+            return None;
+        }
+        run.exits(0);
+        let (image, _) = luthier_texture::exr::decode(&std::fs::read(workshop.path("ball.exr")).unwrap()).unwrap();
+        let inner = (8..16).flat_map(|y| (8..16).map(move |x| (x, y)));
+        Some((0..3).map(|c| inner.clone().map(|(x, y)| f64::from(image.texel(x, y)[c])).sum()).collect())
+    };
+    let Some(plain) = seen(&["--light", "0,0,1"]) else { return };
+    let colored = seen(&["--light", "0,0,1", "--light-color", "0.875,3.4,0"]).unwrap();
+    for (found, expected) in colored.iter().zip([0.5 * plain[0], 2.0 * plain[1], 0.0]) {
+        assert!((found - expected).abs() <= 1e-3 * expected, "{colored:?} {plain:?}");
+    }
+    let from_behind = seen(&["--light", "0,0,-1", "--camera", "0,0,-7"]).unwrap();
+    let unlit = seen(&["--light", "0,0,1", "--camera", "0,0,-7"]).unwrap();
+    assert!(from_behind.iter().zip(&plain).all(|(a, b)| (a / b - 1.0).abs() < 1e-3), "{from_behind:?} {plain:?}");
+    assert!(unlit.iter().all(|v| *v == 0.0), "{unlit:?}");
+    for (option, bad) in
+        [("--camera", "0,3,0"), ("--camera", "1,2"), ("--light-color", "1,-1,1"), ("--light-color", "red")]
+    {
+        workshop.run(&["preview", "matte.toml", "-o", "no.png", option, bad]).fails(2, &[option, bad]);
+    }
+}
+
+/// A library of a driver misses a display, which pictures do not need.
+#[test]
+fn a_good_run_is_silent_without_a_display() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let run = workshop.run(&["preview", "matte.toml", "-o", "ball.png", "--size", "8"]);
+    if run.lacks_adapter() {
+        return;
+    }
+    assert_eq!(run.exits(0).stderr, "");
+}
+
 #[test]
 fn lights_and_tone_curves() {
     let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
