@@ -71,14 +71,13 @@ fn scene(workshop: &Workshop, gpu: &luthier_gpu::Gpu, text: &str) -> Scene {
     gpu.scene(&package, Form::Baked).unwrap()
 }
 
-/// Pixels that are brighter than they should be by half, and by a twentieth.
+/// Number of pixels that are brighter than they should be by half, and by a twentieth.
 fn outliers(found: &Image, expected: &Image) -> usize {
     let is_one = |(a, b): (&[f32], &[f32])| (0..3).any(|c| a[c] > 1.5 * b[c] + 0.05);
     found.texels().zip(expected.texels()).filter(|pair| is_one(*pair)).count()
 }
 
-/// Oracle: the picture with 64 times as many directions, which has an eighth of the noise. Where directions followed the numbers of the file, 20 to 200
-/// of these 1,024 pixels were white dots in five of the eight.
+/// Oracle: the picture with 64 times as many directions, which has an eighth of the noise.
 #[test]
 fn pictures_of_maps_have_no_white_dots() {
     let Some(gpu) = gpu() else { return };
