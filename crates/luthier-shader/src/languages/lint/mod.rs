@@ -262,20 +262,22 @@ impl<'a> Lint<'a> {
             if self.vocabulary.method(word.text).is_none() {
                 self.find(at, format!("`.{}` is no function of {version}", word.text));
             }
-        } else if next == "(" {
+            return;
+        }
+        if next == "(" {
             let is_own = self.names.functions.contains_key(word.text);
             let is_type = self.names.of_type(word.text, self.vocabulary).is_some();
             if !is_own && !is_type && !self.vocabulary.has_function(word.text) {
                 self.find(at, format!("`{}` is no function of {version}", word.text));
             }
-        } else if self.tokens.get(at + 1).is_some_and(Token::is_word)
-            && !BEFORE_TYPES.contains(&word.text)
-            && before != "."
-        {
-            let is_type = self.names.of_type(word.text, self.vocabulary).is_some();
-            if !is_type {
-                self.find(at, format!("`{}` is no type of {version}", word.text));
-            }
+            return;
+        }
+        // `float a`, or in MSL `= record {`.
+        let is_declared = self.tokens.get(at + 1).is_some_and(Token::is_word) && !BEFORE_TYPES.contains(&word.text);
+        let is_made = next == "{" && ["=", "return", "(", ","].contains(&before);
+        let is_known = self.names.of_type(word.text, self.vocabulary).is_some();
+        if !is_known && (is_made || is_declared && before != ".") {
+            self.find(at, format!("`{}` is no type of {version}", word.text));
         }
     }
 

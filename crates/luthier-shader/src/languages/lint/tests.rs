@@ -160,6 +160,8 @@ fn arrays_keep_the_names_of_their_types() {
         return few[i % 2u] + many[i % 3u];\n}\n";
     let text = crate::library(wgsl, Target::Msl).unwrap();
     assert_eq!(text.matches("struct type_").count(), 2, "{text}");
-    let other = text.replacen("    type_", "    typo_", 1);
-    assert!(!messages(&other, Target::Msl).is_empty(), "{other}");
+    for (right, wrong) in [("    type_", "    type"), (" = type_", " = type")] {
+        let other = text.replacen(right, wrong, 1);
+        assert!(messages(&other, Target::Msl).iter().any(|found| found.contains("is no type of")), "{other}");
+    }
 }
