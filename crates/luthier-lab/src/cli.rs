@@ -284,8 +284,8 @@ pub(crate) struct TexturedOptions {
     /// Leave out the materials that are made for each map and for pairs of maps
     #[arg(long)]
     pub(crate) no_generated: bool,
-    /// Judge only materials whose names contain this
-    #[arg(long, value_name = "TEXT")]
+    /// Judge only the material of this name
+    #[arg(long, value_name = "NAME")]
     pub(crate) only: Option<String>,
     /// Random places of each shader, with a pair of directions each
     #[arg(long, value_name = "N", default_value_t = TEXTURED_PAIRS, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]

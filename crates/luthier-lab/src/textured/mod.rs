@@ -6,7 +6,7 @@ mod page;
 use luthier_export::{Bake, GENERATOR, MemoryStore, Package, read};
 use luthier_gpu::Gpu;
 use luthier_layers::lobes::Lobes;
-use luthier_manifest::{Form, ShadingModel};
+use luthier_manifest::ShadingModel;
 use luthier_material::{Effects, Material};
 use luthier_optics::stack::Film;
 use luthier_report::{
@@ -50,7 +50,7 @@ pub(crate) fn run(options: &TexturedOptions) -> Outcome {
     if !options.no_generated {
         materials.extend(cases::all());
     }
-    materials.retain(|material| options.only.as_ref().is_none_or(|part| material.name.contains(part)));
+    materials.retain(|material| options.only.as_ref().is_none_or(|name| material.name == *name));
     let gpu = open(options.adapter.name.as_deref())?;
     let bar = Bar::new("judging");
     let mut judged = Vec::new();
@@ -84,7 +84,7 @@ fn as_by_default(material: &Material) -> Option<Material> {
 }
 
 fn judge(material: &Material, gpu: &Gpu, options: &TexturedOptions) -> Outcome<Option<Judged>> {
-    let bake = Bake { refuses: false, ..Bake::wgsl(&[Form::Baked]) };
+    let bake = Bake { refuses: false, ..Bake::wgsl(&[]) };
     let package = Package::new(std::slice::from_ref(material), &bake, &MemoryStore::default())?;
     let shaders = Shaders::new(gpu, &package)?;
     let subject = Subject {

@@ -32,7 +32,7 @@ fn introduction(generator: &str, adapter: &str, options: &TexturedOptions) -> St
          {} degrees. For other models the exact terms at the place stand here.\n\n\
          Errors of the shader are over max(brightest channel, 0.01); their 99th percentile may be {AT_PLACES}. The lobe error of rows may be 0.08 and the error of their albedo \
          0.02; both are those of [lobes.md](lobes.md), the largest channel, the largest of all places and angles. *Grazing* is the error of the mean of `f cos` over light flatter than \
-         87.1 degrees, over max(the mean, 0.01); it may be 0.08. Behind ± is the noise of the simulation there: of lobe errors what noise makes of no error, else a standard \
+         87.1 degrees, over max(the mean, 0.01); it may be 0.08. Eyes flatter than 78.5 degrees have their highlight in that light, and are left out. Behind ± is the noise of the simulation there: of lobe errors what noise makes of no error, else a standard \
          error. Views were traced to a lobe noise of {noise}. A miss is beyond its limit by more than one and a half times the noise of a lobe error, or four standard errors.\n\n\
          Normals turn the frame of the eye alone, and flakes have a measure of their own: the simulation leaves both out. Patina is there whole or not at all, because light is \
          linear between; patina that scatters is compared where it is bare.\n\n",
@@ -46,7 +46,7 @@ fn command(options: &TexturedOptions) -> String {
     words.extend(options.paths.iter().map(|path| path.display().to_string()));
     words.push(format!("--pairs {} --places {} --noise {}", options.pairs, options.places, options.precision.noise));
     words.extend(options.no_generated.then(|| "--no-generated".to_owned()));
-    words.extend(options.only.as_ref().map(|part| format!("--only {part}")));
+    words.extend(options.only.as_ref().map(|name| format!("--only {name}")));
     words.extend(options.destination.output.as_ref().map(|path| format!("-o {}", path.display())));
     words.join(" ")
 }

@@ -20,6 +20,9 @@ use super::{PHI_DEG, direction};
 /// Cosine below which light is *grazing*: from 87.1 degrees.
 pub(crate) const GRAZING_COS: f64 = 0.05;
 
+/// Least cosine of an eye whose grazing light is compared: 78.5 degrees.
+const STEEP_COS: f64 = 4.0 * GRAZING_COS;
+
 /// Paths of a family: the spread of families is the noise.
 const FAMILY: u64 = 2048;
 
@@ -46,7 +49,8 @@ pub(crate) struct ViewErrors {
     pub(crate) albedo: [f64; 2],
     /// Albedo of the function and of the reference in the channel of that error.
     pub(crate) albedos: [f64; 2],
-    /// Error of the mean of `f cos_theta_i` over grazing light, over max(the mean, a floor), the largest channel, and the standard error there.
+    /// Error of the mean of `f cos_theta_i` over grazing light, over max(the mean, a floor), the largest channel, and the standard error there; 0 for an eye
+    /// flatter than [`STEEP_COS`].
     pub(crate) grazing: [f64; 2],
     /// Paths that were traced.
     pub(crate) paths: u64,
@@ -118,6 +122,10 @@ impl ColorView {
             if (stated - expected).abs() > errors.albedo[0] {
                 errors.albedo = [(stated - expected).abs(), self.deviation(c, |_| 1.0)];
                 errors.albedos = [stated, expected];
+            }
+            // A flat eye has its highlight in that light: what is far from it is lost beside it.
+            if self.cells.wo.z < STEEP_COS {
+                continue;
             }
             let mean = self.energy(CELLS, c) / solid_angle;
             let least = mean.max(floor);

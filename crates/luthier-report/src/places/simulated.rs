@@ -62,7 +62,8 @@ pub struct SimulatedAt {
     pub albedo: [f64; 2],
     /// Directional albedo of the rows and of the simulation in that channel.
     pub albedos: [f64; 2],
-    /// Error of the mean of `f cos_theta_i` over light flatter than 87.1 degrees, over max(the mean, [`PLACE_FLOOR`]), and the standard error of it.
+    /// Error of the mean of `f cos_theta_i` over light flatter than 87.1 degrees, over max(the mean, [`PLACE_FLOOR`]), and the standard error of it. 0 for an eye flatter
+    /// than 78.5 degrees, which has its highlight there.
     pub grazing: [f64; 2],
 }
 
