@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn tables_are_kept_while_they_serve() {
         let text = "schema = 1\nname = \"m\"\n[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3 }\nalpha = 0.2\n\
-                    [bake]\nfgd = { size = [8, 8] }\ndistribution = { size = [16, 16] }\ncolor = \"three-wavelengths\"\n";
+                    [bake]\nmodel = \"elek\"\nfgd = { size = [8, 8] }\ndistribution = { size = [16, 16] }\ncolor = \"three-wavelengths\"\n";
         let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
         let mut material = luthier_material::parse("m.toml", text, &no_files).unwrap().material;
         let host = ViewHost::new(Vec::new(), None, &Shading::default());

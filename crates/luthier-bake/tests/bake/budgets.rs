@@ -236,7 +236,7 @@ fn a_refusal_names_the_material_that_breaks_the_budget() {
     let (reason, hint, told) =
         refused(&[glass("first", limit), film.clone(), glass("last", FIXED_ALBEDO)], Budget::default());
     assert!(reason.contains("no fresnel table is good enough for layer 0 of `film` (film.toml:"), "{reason}");
-    assert!(reason.contains("under max_abs = 1e-9 of first.toml:8;"), "{reason}");
+    assert!(reason.contains("under max_abs = 1e-9 of first.toml:9;"), "{reason}");
     assert_eq!(needs(&hint), of_film);
     assert_eq!((told.len(), told[0].label.as_str()), (1, "film.toml"));
     // A limit of the options has no place; the material has.
