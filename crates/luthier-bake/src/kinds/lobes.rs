@@ -83,6 +83,9 @@ fn varying(material: &Material) -> Option<Varying> {
     })
 }
 
+/// A budget that cannot be met, with the errors of each material, by number, under the nearest candidate.
+pub(crate) type Broken = (Refusal, Vec<(usize, MeasuredError)>);
+
 /// Most layers of a stack whose rows are over something beside the view: it has a fit for each of its tiles. The time of a fit is in proportion to the layers. Transparent
 /// ones of alpha 0.25 take 31 s of a core for 50, and 46 s for 16 under a roughness map, so that no fit takes a minute.
 pub const VARIED_LAYERS_MAX: usize = 16;
@@ -133,7 +136,7 @@ pub(crate) fn decide(
     results: &Results,
     budget: &Budget,
     lock: &[Decision],
-) -> Result<Option<Search>, (Refusal, Vec<(usize, MeasuredError)>)> {
+) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());

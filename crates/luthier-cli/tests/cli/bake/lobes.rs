@@ -62,7 +62,7 @@ fn lobes_are_as_small_as_their_budget_allows() {
     let refused = ["bake", "a.toml", "--target", "wgsl", "--max-lobe-err", "1e-4"];
     let message = workshop.run(&refused).fails(1, &["no lobes table is good enough", "lobe error"]).stderr;
     assert_eq!(workshop.text("out/manifest.json"), before);
-    let would = message.split("max_lobe_err = ").nth(1).unwrap().split('`').next().unwrap();
+    let would = message.rsplit("max_lobe_err = ").next().unwrap().split('`').next().unwrap();
     workshop.run(&["bake", "a.toml", "--target", "wgsl", "-q", "--max-lobe-err", would]).exits(0);
     let albedo = ["bake", "a.toml", "--target", "wgsl", "-q", "--max-albedo-err", "0.02"];
     workshop.run(&albedo).exits(0);
