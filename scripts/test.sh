@@ -40,9 +40,7 @@ crashes() {
 judge() {
   local device=()
   [ -z "$(./scripts/wants.sh --missing)" ] || device=(--no-device)
-  for package in materials materials/papers; do
-    "$LUTHIER" report --out "$work/golden/$package" "${device[@]}" --max-error 2e-2
-  done
+  "$LUTHIER" report --out "$work/golden/$1" "${device[@]}" --max-error 2e-2
 }
 
 attempt "what the tests need" ./scripts/wants.sh
@@ -55,5 +53,7 @@ export LUTHIER=$PWD/target/debug/luthier LUTHIER_LAB=$PWD/target/debug/luthier-l
 attempt "same bytes as in tests/golden" after "build" ./scripts/golden.sh --keep "$work/golden"
 attempt "kills, signals, bakes side by side, and faults of files" after "build" crashes
 attempt "pages are up to date" after "build" pages
-attempt "judging the bakes" after "build" judge
+for package in materials materials/papers; do
+  attempt "judging the bake of $package" after "build" judge "$package"
+done
 summary

@@ -30,7 +30,7 @@ Examples:
   luthier preview materials/papers/yamaguchi-brushed.toml -o ball.png --simulated 256
   luthier preview materials/polished-gold.toml -o gold.png --sky evening-room --background
   luthier preview materials/soap-film.toml -o cat.png --mesh cat.glb
-  luthier preview materials/latex.toml -o low.png --camera 3,0.5,6 --light 1,1,0 --light-color 3,2.4,1.6
+  luthier preview materials/latex.toml -o low.png --camera 3,0.5,6 --light-color 3,2.4,1.6
   luthier preview --shape grid -o grid.png";
 
 /// How pictures are lit, sampled and written.

@@ -72,7 +72,8 @@ fn a_shader_that_forgets_what_varies_breaks_the_budget() {
     let (bake, maps) = textured();
     let subject = Subject { maps, ..bake.subject() };
     let device = bake.device(|_, _, _, value| value);
-    let forgotten: [(&str, fn(&mut PlaceValues)); 5] = [
+    type Forget = fn(&mut PlaceValues);
+    let forgotten: [(&str, Forget); 5] = [
         ("nothing", |_| {}),
         ("normal", |place| place.normal = [0.0, 0.0, 1.0]),
         ("alpha_factor", |place| place.alpha_factor = 1.0),

@@ -166,7 +166,7 @@ fn parts_that_a_model_does_not_have() {
     let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
     let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.3\nthickness_nm = 300\n";
     for (layers, bake, words) in [
-        (metal.to_owned(), "masking = \"kelemen\"", ["the masking `kelemen`", "has `elek`", "x.toml:10:11"]),
+        (metal.to_owned(), "masking = \"kelemen\"", ["the masking `kelemen`", "has `lobes`", "x.toml:10:11"]),
         (format!("{coat}{metal}"), "masking = \"smith\"", ["the masking `smith`", "has `lobes`", "x.toml:14:11"]),
         (metal.to_owned(), "masking = \"smiht\"", ["`smiht`", "is no value of `masking`", "x.toml:10:11"]),
         (
@@ -291,7 +291,7 @@ fn parts_are_written_down() {
 fn stacks_that_are_too_deep_to_be_fitted() {
     let stack = |layers: usize, more: &str| {
         let coat = |i: usize| {
-            let ior = if i % 2 == 0 { 1.5 } else { 1.3 };
+            let ior = if i.is_multiple_of(2) { 1.5 } else { 1.3 };
             format!("\n[[layer]]\ntype = \"dielectric\"\nior = {ior}\nalpha = 0.2\n{}", if i == 0 { more } else { "" })
         };
         let base = "\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
