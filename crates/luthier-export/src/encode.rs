@@ -103,7 +103,7 @@ impl Part {
 }
 
 impl Encoded {
-    /// The same files under names that contain the hashes of their contents, before the extension: `tables/fresnel.0123456789abcdef.ktx2`. The manifest keeps its name, so
+    /// Files under names that contain the hashes of their contents, before the extension: `tables/fresnel.0123456789abcdef.ktx2`. The manifest keeps its name, so
     /// that its replacement alone switches from one bake to the next.
     #[must_use]
     pub fn with_hashed_names(mut self) -> Self {

@@ -27,7 +27,7 @@ pub(crate) enum Refusal {
     Whole {
         /// Name of the limit.
         limit: &'static str,
-        /// What the least is, in words before the limit.
+        /// Words for the quantity of a limit, before its value.
         reason: String,
         /// A limit that would be met.
         hint: String,

@@ -199,7 +199,7 @@ pub struct BaseLight {
 }
 
 impl BaseLight {
-    /// What a base of an albedo R has more of than one of the albedo with which the stack was simulated: its light is in proportion to `R / (1 - r R)`,
+    /// Light by which a base of an albedo R is brighter than one of the albedo with which the stack was simulated: its light is in proportion to `R / (1 - r R)`,
     /// r being what the layers send back.
     pub fn more(&self, simulated: Rgb, albedo: Rgb) -> Rgb {
         [0, 1, 2].map(|c: usize| {

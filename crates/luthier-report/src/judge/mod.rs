@@ -212,7 +212,7 @@ pub fn judge(
     })
 }
 
-/// What is kept of a material: its comparisons, what misses the target, and what was found at places.
+/// Kept judgement of a material: its comparisons, what misses the target, and what was found at places.
 #[derive(Serialize, Deserialize)]
 struct Judged {
     comparisons: Vec<Comparison>,

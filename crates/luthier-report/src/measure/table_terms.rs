@@ -143,7 +143,7 @@ pub struct TableTerms<'a> {
     here: Here,
 }
 
-/// What the textures of a place change of the terms.
+/// Changes of the terms by the textures of a place.
 #[derive(Debug, Clone, Copy)]
 struct Here {
     part: Part,

@@ -36,7 +36,7 @@ pub(crate) struct ColorView {
     is_symmetric: bool,
     /// Energies of families by cell, and last that of grazing light, without the light of one facet of the first interface.
     families: Vec<Vec<Rgb>>,
-    /// That light, alike.
+    /// Simulated light of the second interface and below, alike.
     single: Vec<Rgb>,
 }
 

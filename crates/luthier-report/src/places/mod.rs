@@ -46,7 +46,7 @@ pub struct PlaceErrors {
 pub struct WorstPlace {
     /// Number of the place, see [`Places::place`].
     pub number: u64,
-    /// What its maps give there, in words.
+    /// Values of the maps there, in words.
     pub place: String,
     /// Direction to the light.
     pub wi: [f32; 3],

@@ -23,7 +23,7 @@ pub struct SurfaceMap {
     pub image: Image,
 }
 
-/// What varies over the surface of a material, and how far.
+/// Quantities that vary over the surface of a material, with their ranges.
 #[derive(Debug, Clone)]
 pub struct Places {
     entry: MaterialEntry,

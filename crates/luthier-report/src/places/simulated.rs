@@ -52,7 +52,7 @@ const GRAZING_AT_PLACES: f64 = 0.08;
 pub struct SimulatedAt {
     /// Number of the place, see [`Places::place`].
     pub number: u64,
-    /// What its maps give there, in words.
+    /// Values of the maps there, in words.
     pub place: String,
     /// Angle of the eye against the normal.
     pub theta_deg: f64,

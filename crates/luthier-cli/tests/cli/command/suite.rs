@@ -24,7 +24,7 @@ exit 101
 "#;
 
 /// Everything that the script runs, in its order.
-const ALL: [&str; 10] = [
+const ALL: [&str; 12] = [
     "wants.sh",
     "cargo tree",
     "nightly.sh",
@@ -35,6 +35,7 @@ const ALL: [&str; 10] = [
     "pages.sh",
     "wants.sh",
     "luthier",
+    "wants.sh",
     "luthier",
 ];
 

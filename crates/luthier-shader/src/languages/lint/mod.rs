@@ -1,4 +1,4 @@
-//! What no compiler here sees in HLSL and MSL: glslang, which reads HLSL, is laxer than Microsoft's compilers, and nothing here reads MSL.
+//! Mistakes in HLSL and MSL that no compiler here sees: glslang, which reads HLSL, is laxer than Microsoft's compilers, and nothing here reads MSL.
 //!
 //! The lint reads a text that naga wrote, and this crate arranged, by its tokens. It finds
 //!
@@ -169,7 +169,7 @@ impl<'a> Lint<'a> {
         }
     }
 
-    /// What functions return.
+    /// Types that functions return.
     fn functions(&mut self) {
         let mut depth = 0;
         for i in 0..self.tokens.len() {

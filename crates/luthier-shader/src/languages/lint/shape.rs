@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::tokens::Token;
 use super::vocabulary::Vocabulary;
 
-/// What a value is made of.
+/// Shape of a value: its components.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Shape {
     Scalar,
@@ -54,7 +54,7 @@ impl Shape {
     }
 }
 
-/// What names stand for.
+/// Shapes by name.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     /// Members of structures.
