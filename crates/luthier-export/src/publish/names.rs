@@ -77,7 +77,8 @@ impl<'de> Visitor<'de> for Names<'_> {
                 _ => {}
             }
         }
-        self.0.extend(path.zip(hash));
+        // A file without a name is none.
+        self.0.extend(path.filter(|path| !path.is_empty()).zip(hash));
         Ok(None)
     }
 
