@@ -16,6 +16,7 @@ use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Metallic, Severity};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::ior::Ior;
 use luthier_optics::schlick::metallic_roughness;
 use luthier_optics::stack::{Base, Layer, Stack};
 
@@ -166,6 +167,15 @@ fn places(material: &Material) -> Vec<Place> {
 /// The stack at such a place.
 fn at(stack: &Stack, place: &Place) -> Stack {
     let mut here = stack.clone();
+    let metal = place.layers.last().and_then(|sample| sample.f0).filter(|_| place.base_color == Some([0.0; 3]));
+    if let Some(f0) = metal {
+        // Metal is opaque, as where a file gives it without maps.
+        here.layers.truncate(place.layers.len());
+        if let Some(layer) = here.layers.last_mut() {
+            layer.base = Base::Conductor { ior: Ior::vacuum().with_f0(f0) };
+        }
+        return here;
+    }
     for (layer, sample) in here.layers.iter_mut().zip(&place.layers) {
         if let (Base::Dielectric { ior, .. }, Some(f0)) = (&mut layer.base, sample.f0) {
             *ior = ior.clone().with_f0(f0);
