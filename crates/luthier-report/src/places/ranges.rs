@@ -68,7 +68,7 @@ fn mixed(mut x: u64) -> u64 {
 const STEEPEST: f64 = 3.0;
 
 impl Places {
-    /// What varies of a material, by its number; `None` for one that is the same everywhere. Maps that its model does not show are left out.
+    /// Varying quantities of a material, by its number; `None` for one that is the same everywhere. Maps that its model does not show are left out.
     pub fn of(subject: &Subject<'_>, material: usize) -> Option<Self> {
         let entry = subject.manifest.materials.get(material).filter(|entry| entry.varies())?;
         let shown: Vec<(u32, MapSlot)> = entry.shown_layer_maps(Form::Baked).collect();

@@ -61,7 +61,7 @@ pub(super) struct Names {
     pub(super) structs: BTreeMap<String, BTreeMap<String, Shape>>,
     /// Other names for types.
     pub(super) aliases: BTreeMap<String, Shape>,
-    /// What functions return.
+    /// Shapes that functions return.
     pub(super) functions: BTreeMap<String, Shape>,
     /// Variables; those of functions lie above those of the file.
     pub(super) variables: Vec<(String, Shape)>,

@@ -22,7 +22,7 @@ const SIGNS: [&str; 21] = [
     "++", "--",
 ];
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Word,

@@ -1,4 +1,4 @@
-//! What the languages know and keep for themselves, from their references: the pages "Intrinsic functions", "Keywords" and "Reserved words" of
+//! Words that the languages know or reserve, from their references: the pages "Intrinsic functions", "Keywords" and "Reserved words" of
 //! Microsoft's reference of HLSL, with what shader model 5.1 has; Apple's Metal Shading Language Specification, version 2.0, sections 4 and 5, and
 //! the keywords of C++14 that it is based on.
 
