@@ -1,4 +1,4 @@
-//! What is told of the energy of models, and what defaults return.
+//! Warnings about the energy of models, and the light that defaults return.
 
 use std::path::Path;
 

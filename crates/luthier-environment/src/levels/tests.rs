@@ -99,7 +99,7 @@ fn irradiance_of_one_texel_is_its_cosine() {
     }
 }
 
-/// Oracle: the lobe of a level over the texels of the map by brute force. Measured: 0.046 at most (width 1), as light counts as from the middle of texels half as wide
+/// Oracle: the lobe of a level over the texels of the map by brute force. Measured: 0.020 up to width 0.25, and 0.031 and 0.046 at 0.5 and 1, as light counts as from the middle of texels half as wide
 /// as the lobe.
 #[test]
 fn levels_follow_a_sum_over_the_texels_of_the_map() {
@@ -125,7 +125,8 @@ fn levels_follow_a_sum_over_the_texels_of_the_map() {
             worst = worst.max((found - sum / total).abs() / brightest);
         }
         eprintln!("width {:.4}: {worst:.4} of the brightest texel", level.width);
-        assert!(worst < 0.05, "width {}: {worst}", level.width);
+        let limit = if level.width > 0.3 { 0.05 } else { 0.03 };
+        assert!(worst < limit, "width {}: {worst}", level.width);
     }
 }
 

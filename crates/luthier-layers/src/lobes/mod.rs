@@ -169,8 +169,8 @@ const INFO: ModelInfo = ModelInfo {
 /// The most lobes that a bake has.
 pub const LOBES: usize = 2;
 
-/// The most lobes that a bake has of a stack: none of one interface. What bounces between its facets, or comes back through them, is wide: of a white
-/// metal the remainder alone is within a lobe error of 0.03 and an albedo error of 0.005 (`tests_bounces.rs`), for two reads less.
+/// The most lobes that a bake has of a stack: none of one interface. What bounces between its facets, or comes back through them, is wide: the
+/// remainder alone is within an albedo error of 0.01 (`tests/layers/bounces.rs`), for two reads less.
 pub fn most_lobes(stack: &Stack) -> usize {
     if stack.layers.len() > 1 { LOBES } else { 0 }
 }

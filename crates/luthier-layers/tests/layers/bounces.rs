@@ -76,7 +76,7 @@ fn one_rough_interface_returns_all_its_light() {
     }
 }
 
-/// The same of a brushed metal, across all azimuths, and between the factors of a roughness map.
+/// All light of a brushed metal comes back, across all azimuths, and between the factors of a roughness map.
 #[test]
 fn brushed_and_mapped_interfaces_return_all_their_light() {
     let brushed = Surface { distribution: Distribution::Ggx, alpha_x: 0.1, alpha_y: 0.5, rotation: 0.3 };
