@@ -426,8 +426,7 @@ impl Job for LobesJob {
                 |u| vec![x.decode(u[0]), part as f64],
             )
         };
-        let count = most + 2 + usize::from(has_base);
-        let error = (1..count).map(energies).fold(energies(0), ErrorStats::with_worst_of);
+        let error = (1..most + 3).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
         let factor = |varying: Varying| match (varying, varying.factor(self.tile as f64)) {
             (Varying::Patina(_), amount) if amount > 1.0 => {

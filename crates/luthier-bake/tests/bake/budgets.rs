@@ -247,6 +247,6 @@ fn a_refusal_names_the_material_that_breaks_the_budget() {
     let bytes = "[budget]\nmax_abs = 1e-3\nmax_bytes = 16\n";
     let (reason, _, told) =
         refused(&[glass("first", FIXED_ALBEDO), glass("small", &format!("{bytes}{FIXED_ALBEDO}"))], Budget::default());
-    assert!(reason.ends_with("more than max_bytes = 16 of small.toml:9"), "{reason}");
-    assert_eq!((told[0].label.as_str(), told[0].line), ("small.toml", 9));
+    assert!(reason.ends_with("more than max_bytes = 16 of small.toml:10"), "{reason}");
+    assert_eq!((told[0].label.as_str(), told[0].line), ("small.toml", 10));
 }

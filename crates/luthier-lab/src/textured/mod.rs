@@ -7,7 +7,7 @@ use luthier_export::{Bake, GENERATOR, MemoryStore, Package, read};
 use luthier_gpu::Gpu;
 use luthier_layers::lobes::Lobes;
 use luthier_manifest::ShadingModel;
-use luthier_material::{Effects, Material};
+use luthier_material::{Effects, Material, left_out};
 use luthier_optics::stack::Film;
 use luthier_report::{
     AT_PLACES, AtPlaces, PLACES_SEED, SimulatedAt, SimulatedSettings, Subject, Weights, at_places, simulated,
@@ -27,6 +27,8 @@ struct Judged {
     name: String,
     model: ShadingModel,
     at: AtPlaces,
+    /// What the model leaves out of the material.
+    left_out: Vec<&'static str>,
     /// The worst view of the simulation that misses, and the errors of lobes that are fitted at that very place.
     worst: Option<(SimulatedAt, SimulatedAt)>,
 }
@@ -110,5 +112,7 @@ fn judge(material: &Material, gpu: &Gpu, options: &TexturedOptions) -> Outcome<O
         let again = simulated_by(&subject, 0, &settings, &worst, &Lobes::of)?;
         Some((worst, again))
     });
-    Ok(Some(Judged { name: material.name.clone(), model: package.manifest.materials[0].model, at, worst }))
+    let model = package.manifest.materials[0].model;
+    let left_out = left_out(material, model).iter().map(|part| part.feature.name()).collect();
+    Ok(Some(Judged { name: material.name.clone(), model, at, left_out, worst }))
 }

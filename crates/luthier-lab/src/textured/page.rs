@@ -114,14 +114,16 @@ fn misses(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
          varies in it: where these hold, what is wrong is the way from the rows to the place; where they do not, two lobes have not the shape.\n"
     )?;
     writeln!(out, "| material | place | angle | what | fitted there | cause |\n|---|---|--:|---|---|---|")?;
-    for (Judged { name, .. }, (worst, again)) in all {
+    for (Judged { name, left_out, .. }, (worst, again)) in all {
         let quantities = |view: &SimulatedAt| {
             format!("lobe {:.3}, albedo {:.3}, grazing {:.3}", view.lobe[0], view.albedo[0], view.grazing[0])
         };
-        let cause = if again.misses().is_empty() {
-            "rows are not those of the place"
+        let cause = if !left_out.is_empty() {
+            format!("the model leaves out {}", left_out.join(", "))
+        } else if again.misses().is_empty() {
+            "rows are not those of the place".to_owned()
         } else {
-            "shape: two lobes have not this one"
+            "shape: two lobes have not this one".to_owned()
         };
         let (place, theta_deg) = (&worst.place, worst.theta_deg);
         writeln!(out, "| {name} | {place} | {theta_deg} | {} | {} | {cause} |", quantities(worst), quantities(again))?;

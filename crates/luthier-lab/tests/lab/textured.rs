@@ -28,6 +28,22 @@ fn shader_rows_and_simulation_agree_where_two_maps_vary() {
     }
 }
 
+/// Maps of base colour and metal, in models that read energies from tables: the f64 of the rows has the metal of the place, as the shader does.
+#[test]
+fn energies_in_tables_are_those_of_the_metal_of_a_place() {
+    let workshop = Workshop::with(&[]);
+    for material in ["base-color-metallic-roughness", "coated-base-color-metallic", "coated-tangent"] {
+        let run = workshop.run(&["textured", "--only", material, "--pairs", "400"]);
+        if run.lacks_adapter() {
+            return;
+        }
+        let page = run.exits(0).stdout;
+        let shader = cells(&page, "## Shader against rows", material);
+        assert!(["`belcour`", "`yamaguchi`"].contains(&shader[2]) && shader[6] == "0", "{shader:?}");
+        assert!(shader[4].parse::<f64>().unwrap() <= 1e-4, "{shader:?}");
+    }
+}
+
 /// Materials that are the same everywhere are left out, and a file that names another model than it has by default is shown in both.
 #[test]
 fn what_is_the_same_everywhere_is_left_out() {

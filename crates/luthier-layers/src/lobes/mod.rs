@@ -132,9 +132,12 @@ impl FirstInterface {
         Some(Self { facets: Facets::new(&stack.layers[0].surface), reflectance: interface.sampled(color) })
     }
 
-    /// Energy that one facet sends to `wo`, by channel: over [`NORMALS`] visible normals, within 4e-4.
+    /// Energy that one facet sends to `wo`, by channel: over [`NORMALS`] visible normals, within 4e-4. Reflectances of these are linear between
+    /// cosines whose roots are even.
     fn energy(&self, wo: DVec3) -> Rgb {
-        let mut sum = [0.0; 3];
+        let intervals = self.intervals();
+        let cos_theta = |i: usize| (i as f64 / intervals as f64) * (i as f64 / intervals as f64);
+        let mut weights = vec![0.0; intervals + 1];
         for i in 0..NORMALS {
             // Hammersley's points.
             let u = [(f64::from(i) + 0.5) / f64::from(NORMALS), (f64::from(i.reverse_bits()) + 0.5) / 4_294_967_296.0];
@@ -142,15 +145,33 @@ impl FirstInterface {
             let wi = 2.0 * wh.dot(wo) * wh - wo;
             let Some(lobe) = self.facets.lobe(Masking::Smith, wi, wo) else { continue };
             let weight = lobe.value / self.facets.pdf_solid_angle(wi, wo) / f64::from(NORMALS);
-            let reflected = self.reflectance.rgb(lobe.cos_theta_d);
+            let first = ((lobe.cos_theta_d.max(0.0).sqrt() * intervals as f64) as usize).min(intervals - 1);
+            let [from, to] = [first, first + 1].map(cos_theta);
+            let share = (lobe.cos_theta_d - from) / (to - from);
+            weights[first] += weight * (1.0 - share);
+            weights[first + 1] += weight * share;
+        }
+        let mut sum = [0.0; 3];
+        for (i, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
+            let reflected = self.reflectance.rgb(cos_theta(i));
             (0..3).for_each(|c| sum[c] += weight * reflected[c]);
         }
         sum
+    }
+
+    /// Intervals between cosines: more where films make the reflectance wave.
+    fn intervals(&self) -> usize {
+        let interfaces = self.reflectance.nodes.iter().map(|(_, at)| at);
+        let waves = interfaces.map(|at| at.films.iter().map(|film| film.waves).sum()).fold(0.0, f64::max);
+        (f64::from(INTERVALS) * (1.0 + 4.0 * waves)).min(f64::from(NORMALS)) as usize
     }
 }
 
 /// Visible normals over which the first interface's energy is a mean.
 const NORMALS: u32 = 4096;
+
+/// Intervals between the cosines at which its reflectance is computed, where there are no films.
+const INTERVALS: u32 = 256;
 
 /// The name of the model.
 pub const MODEL: &str = "lobes";

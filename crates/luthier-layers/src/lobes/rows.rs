@@ -350,19 +350,18 @@ impl Row {
         self
     }
 
-    /// Energies: the albedo, that of the wide remainder, and those of the lobes; last that of a diffuse base, which the remainder has in it.
+    /// Energies: the albedo, that of the wide remainder, that of a diffuse base, which the remainder has in it, and those of the lobes.
     pub fn energies(&self) -> Vec<Rgb> {
+        let of_base = self.base.map_or([0.0; 3], |base| base.energy);
         let lobes = self.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));
-        let of_base = self.base.map(|base| base.energy);
-        [self.albedo_dir, self.wide].into_iter().chain(lobes).chain(of_base).collect()
+        [self.albedo_dir, self.wide, of_base].into_iter().chain(lobes).collect()
     }
 
     /// Energy of one facet of the first interface: the albedo without lobes and remainder.
     pub fn first_facet(&self) -> Rgb {
-        let (energies, parts) = (self.energies(), self.lobes.len() + 2);
-        [0, 1, 2].map(|c: usize| {
-            (self.albedo_dir[c] - energies[1..parts].iter().map(|energy| energy[c]).sum::<f64>()).max(0.0)
-        })
+        let energies = self.energies();
+        let of_lobes = |c: usize| energies[3..].iter().map(|energy| energy[c]).sum::<f64>();
+        [0, 1, 2].map(|c: usize| (self.albedo_dir[c] - self.wide[c] - of_lobes(c)).max(0.0))
     }
 
     /// The row without light below 0, shares above 1, and more light than falls in, as noise and least squares may leave: of what comes from below

@@ -4,7 +4,7 @@ use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::quadrature::gauss_legendre;
-use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
+use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
 use super::{FirstInterface, FitSettings, Lobes, Simulation};
 use crate::facets::Masking;
@@ -234,10 +234,13 @@ fn a_base_of_another_albedo_has_its_light() {
 #[test]
 fn energy_of_the_first_facet_is_its_integral() {
     let color = Color::ThreeWavelengths(NM);
-    for distribution in [Distribution::Ggx, Distribution::Beckmann] {
+    let film = |nm| Film { ior: Ior::constant(1.9, 0.0).unwrap(), thickness: FilmThickness { min_nm: nm, max_nm: nm } };
+    for (distribution, films) in
+        [(Distribution::Ggx, vec![]), (Distribution::Beckmann, vec![]), (Distribution::Ggx, vec![film(400.0)])]
+    {
         for [alpha_x, alpha_y] in [[0.02; 2], [0.2; 2], [0.8; 2], [0.05, 0.4]] {
             let surface = Surface { alpha_x, alpha_y, ..Surface::isotropic(distribution, 0.0) };
-            let layers = vec![Layer { films: Vec::new(), surface, base: metal() }];
+            let layers = vec![Layer { films: films.clone(), surface, base: metal() }];
             let first = FirstInterface::of(&stack(layers), &color).unwrap();
             for theta_deg in [0.0, 40.0, 70.0, 80.0, 85.0, 89.0] {
                 let wo = direction(theta_deg, 0.7);

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use crate::judge::{References, Settings};
-use crate::measure::scan::{run, users};
+use crate::measure::scan::{tiles, users};
 use crate::{Device, Subject};
 
 /// Where the results of earlier judgements are. It may forget at any time.
@@ -137,12 +137,10 @@ impl<'a> Remembered<'a> {
     /// A material by its content: its record, its stack, and the texels of the tiles that it reads.
     fn content(&self, subject: &Subject<'_>, number: usize) -> Value {
         let entry = &subject.manifest.materials[number];
-        let varying = entry.constants.lobes.and_then(|lobes| lobes.varying);
-        let rows = run(entry, TableKind::Lobes).end.max(varying.map_or(1, |varying| varying.tiles));
-        let tiles = |record: &LayerRecord| {
+        let hashes = |record: &LayerRecord| {
             let of = |kind: TableKind| {
                 let first = record.tiles[kind]?;
-                let count = if kind == TableKind::Lobes { rows } else { 1 };
+                let count = tiles(entry, kind);
                 Some((first..first + count).map(|tile| self.hash(kind, tile)).collect::<Vec<_>>())
             };
             TableKind::ALL.map(of)
@@ -151,7 +149,7 @@ impl<'a> Remembered<'a> {
             "name": entry.name,
             "entry": nameless(entry),
             "stack": subject.stacks[number],
-            "tiles": entry.layers.iter().map(tiles).collect::<Vec<_>>(),
+            "tiles": entry.layers.iter().map(hashes).collect::<Vec<_>>(),
         })
     }
 

@@ -256,6 +256,12 @@ impl<'a> TableTerms<'a> {
         Some(self.tables[kind as usize]?.0)
     }
 
+    /// What an interface reflects here, of a reflectance in its tables.
+    fn passed(&self, layer: usize, reflected: Rgb) -> Rgb {
+        let passing = self.here.passing.filter(|(at, _)| *at == layer).map_or([1.0; 3], |(_, passing)| passing);
+        [0, 1, 2].map(|c: usize| 1.0 - passing[c] * (1.0 - reflected[c]))
+    }
+
     /// Thickness of the film of a layer here, over the greatest.
     fn film_share(&self, layer: usize) -> f64 {
         let record = &self.records[layer];
@@ -311,10 +317,7 @@ impl Terms for TableTerms<'_> {
         } else {
             [f64::NAN; 4]
         };
-        match self.here.passing.filter(|(at, _)| *at == layer) {
-            Some((_, [p, q, s])) => [1.0 - p * (1.0 - r), 1.0 - q * (1.0 - g), 1.0 - s * (1.0 - b)],
-            None => [r, g, b],
-        }
+        self.passed(layer, [r, g, b])
     }
 
     /// Read where the layer has a tile; else the closed form.
@@ -340,7 +343,7 @@ impl Energy<3> for TableTerms<'_> {
         match self.read_at(TableKind::Fgd, layer) {
             Some((table, angle, tile)) => {
                 let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_i), alpha], self.weights);
-                [r, g, b]
+                self.passed(layer, [r, g, b])
             }
             _ => [f64::NAN; 3],
         }

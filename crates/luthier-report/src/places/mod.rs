@@ -19,6 +19,7 @@ pub use rows::Rows;
 pub use simulated::{SimulatedAt, SimulatedErrors, SimulatedSettings, simulated, simulated_by};
 
 use crate::judge::run_at;
+use crate::measure::scan::DOMAIN_COS_THETA;
 use crate::measure::statistics::{brightest, relative_error, summarise};
 use crate::{Device, DirectionSet, ErrorSummary, FLOOR, Pair, ReportError, Subject, Weights};
 
@@ -105,7 +106,8 @@ pub struct AtPlaces {
     pub places: u64,
     /// The shader on the device against f64 on the tables that ship; nothing without a device.
     pub shader: Option<PlaceErrors>,
-    /// f64 on the tables that ship against exact terms at the place; nothing for models whose terms have no closed form.
+    /// f64 on the tables that ship against exact terms at the place, where both directions are within 89.5 degrees: closer to the horizon the
+    /// resonances of a film are narrower than the steps of the spectrum that the terms sum. Nothing for models whose terms have no closed form.
     pub tables: Option<PlaceErrors>,
     /// Rows of `lobes` against the simulation of the stack at the place; nothing for other models.
     pub simulated: Option<SimulatedErrors>,
@@ -172,7 +174,10 @@ pub fn at_places(
             let exact = rows::exact(subject, material, &spot.place);
             exact.map_or([f64::NAN; 3], |exact| exact.eval(wide(spot.pair.0), wide(spot.pair.1)))
         };
-        PlaceErrors::new(&spots, &read, &spots.par_iter().map(exact).collect::<Vec<_>>())
+        let is_resolved = |spot: &Spot| spot.pair.0[2].min(spot.pair.1[2]) >= DOMAIN_COS_THETA as f32;
+        let (near, read): (Vec<Spot>, Vec<Rgb>) =
+            spots.iter().cloned().zip(read).filter(|(spot, _)| is_resolved(spot)).unzip();
+        PlaceErrors::new(&near, &read, &near.par_iter().map(exact).collect::<Vec<_>>())
     });
     Ok(Some(AtPlaces { varies: places.quantities(), places: spots.len() as u64, shader, tables, simulated: None }))
 }

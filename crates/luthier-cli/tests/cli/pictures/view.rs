@@ -216,7 +216,7 @@ fn differences_are_shown() {
 fn a_simulation_beside_the_picture() {
     let Some(display) = Display::open() else { return };
     let file = paint("[0.7, 0.05, 0.05]");
-    let args = ["--model", "elek", "--environment-samples", "16"];
+    let args = ["--model", "lobes", "--environment-samples", "16"];
     let Some(alone) = once(&display, &file, &args) else { return };
     let beside = once(&display, &file, &[&args[..], &["--against", "simulated/8"]].concat()).unwrap();
     let middle = (WINDOW[0] - PANEL) / 2;
@@ -225,9 +225,9 @@ fn a_simulation_beside_the_picture() {
     let right = |window: &RgbImage| part(window, [middle + 4, 40, middle - 8, height]);
     assert!(left(&alone) == left(&beside), "the first picture is as without a second");
     assert!(right(&alone) != right(&beside));
-    // Both are pictures of the same ball.
+    // Both are pictures of the same ball, one with the noise of eight paths; elek would be 12 brighter.
     let (model, simulated) = (mean(&right(&alone)), mean(&right(&beside)));
-    assert!((0..3).all(|c| (model[c] - simulated[c]).abs() < 12.0), "{model:?} {simulated:?}");
+    assert!((0..3).all(|c| (model[c] - simulated[c]).abs() < 5.0), "{model:?} {simulated:?}");
     assert_eq!(alarms(&beside), 0);
 }
 

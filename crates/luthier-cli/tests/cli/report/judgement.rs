@@ -204,7 +204,8 @@ fn shaders_on_the_device_are_what_they_should_be() {
 
     let workshop = Workshop::with(&[("m/lacquer.toml", &fine_lacquer("lacquer"))]);
     let metal = gold("gold");
-    workshop.write("m/gold.toml", metal.split("\n[bake]").next().unwrap());
+    // A rough metal's default are lobes, which have no form without tables.
+    workshop.write("m/gold.toml", format!("{}\n[bake]\nmodel = \"elek\"\n", metal.split("\n[bake]").next().unwrap()));
     workshop.run(&["bake", "m", "-q"]).exits(0);
     let run = workshop.run(&["report", "--pairs", "1024", "--max-error", "2e-2"]);
     if run.lacks_adapter() {

@@ -12,7 +12,7 @@ use crate::measure::table_terms::Weights;
 const POINTS_PER_CELL: u32 = 4;
 
 /// Energies of a row of lobes, over the cosine of the view, against those of the simulation and fit that the stack's terms make anew: the
-/// albedo, the wide remainder, each lobe. Whether the fit is near the simulation is judged with the models.
+/// albedo, the wide remainder, the light of a diffuse base in it, each lobe. Whether the fit is near the simulation is judged with the models.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -32,7 +32,9 @@ pub(super) fn scan(
         let c = x.decode(u);
         let (expected, sampled) =
             (lobes.row_of(number, c).energies(), table.row(tile, c, Weights::EightBit).energies());
-        for (part, (expected, sampled)) in expected.iter().zip(&sampled).enumerate() {
+        // An atlas has as many lobes as its richest row: those beyond a stack's own have no light.
+        for part in 0..expected.len().max(sampled.len()) {
+            let [expected, sampled] = [&expected, &sampled].map(|row| row.get(part).copied().unwrap_or_default());
             for channel in 0..3 {
                 scan.add(&[c, part as f64], channel, expected[channel], sampled[channel]);
             }

@@ -88,7 +88,7 @@ pub(crate) fn scan(
             tiles.push(TileReport {
                 name: tile.name.clone(),
                 model: tile.model.clone(),
-                users: names(subject, kind, number, &users),
+                users: names(subject, kind, number),
                 baker: tile.error.clone(),
                 aim: tile.aim,
                 uncertainty,
@@ -121,6 +121,13 @@ pub(crate) fn run(material: &MaterialEntry, kind: TableKind) -> Range<u32> {
     nominal..nominal + lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles)
 }
 
+/// Number of tiles from its own on that a layer of a material reads, wherever it is seen from and whatever its maps say.
+pub(crate) fn tiles(material: &MaterialEntry, kind: TableKind) -> u32 {
+    let varying = material.constants.lobes.filter(|_| kind == TableKind::Lobes).and_then(|lobes| lobes.varying);
+    run(material, kind).end.max(varying.map_or(1, |varying| varying.tiles))
+}
+
+/// The layers whose nominal surface reads a tile.
 pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
@@ -133,17 +140,16 @@ pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<Us
     out
 }
 
-/// Names of those that read a tile: the layers, and what lies bare where no patina has grown.
-fn names(subject: &Subject<'_>, kind: TableKind, tile: u32, users: &[User]) -> Vec<String> {
+/// Names of those that read a tile somewhere: the layers, and what lies bare where no patina has grown.
+fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     let materials = &subject.manifest.materials;
+    let layers = materials.iter().flat_map(|m| m.layers.iter().enumerate().map(move |(l, layer)| (m, l, layer)));
+    let reads = |m: &MaterialEntry, first: u32| (first..first + tiles(m, kind)).contains(&tile);
+    let layers = layers.filter(|(m, _, layer)| layer.tiles[kind].is_some_and(|first| reads(m, first)));
     let bare = materials
         .iter()
         .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| patina.bare.tiles[kind] == Some(tile)));
-    users
-        .iter()
-        .map(|&(m, l)| format!("{}/{l}", materials[m].name))
-        .chain(bare.map(|m| format!("{}/bare", m.name)))
-        .collect()
+    layers.map(|(m, l, _)| format!("{}/{l}", m.name)).chain(bare.map(|m| format!("{}/bare", m.name))).collect()
 }
 
 /// Findings of the scan of a tile.
