@@ -27,7 +27,7 @@ struct Judged {
     name: String,
     model: ShadingModel,
     at: AtPlaces,
-    /// What the model leaves out of the material.
+    /// Names of features of the material that its model does not show.
     left_out: Vec<&'static str>,
     /// The worst view of the simulation that misses, and the errors of lobes that are fitted at that very place.
     worst: Option<(SimulatedAt, SimulatedAt)>,

@@ -256,7 +256,7 @@ impl<'a> TableTerms<'a> {
         Some(self.tables[kind as usize]?.0)
     }
 
-    /// What an interface reflects here, of a reflectance in its tables.
+    /// Reflectance of an interface at this place, for one in its tables.
     fn passed(&self, layer: usize, reflected: Rgb) -> Rgb {
         let passing = self.here.passing.filter(|(at, _)| *at == layer).map_or([1.0; 3], |(_, passing)| passing);
         [0, 1, 2].map(|c: usize| 1.0 - passing[c] * (1.0 - reflected[c]))
