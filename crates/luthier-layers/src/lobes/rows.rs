@@ -360,8 +360,8 @@ impl Row {
     /// Energy of one facet of the first interface: the albedo without lobes and remainder.
     pub fn first_facet(&self) -> Rgb {
         let energies = self.energies();
-        let of_lobes = |c: usize| energies[3..].iter().map(|energy| energy[c]).sum::<f64>();
-        [0, 1, 2].map(|c: usize| (self.albedo_dir[c] - self.wide[c] - of_lobes(c)).max(0.0))
+        let below = |c: usize| energies[1..2].iter().chain(&energies[3..]).map(|energy| energy[c]).sum::<f64>();
+        [0, 1, 2].map(|c: usize| (self.albedo_dir[c] - below(c)).max(0.0))
     }
 
     /// The row without light below 0, shares above 1, and more light than falls in, as noise and least squares may leave: of what comes from below
