@@ -1,6 +1,9 @@
 //! `report`: numbers, limits and exit codes.
 
+use std::fs;
+
 use luthier_workshop::material_texts::{NOISE, film, gold, lacquer};
+use luthier_workshop::root;
 use serde_json::Value;
 
 use crate::workshop::Workshop;
@@ -72,6 +75,24 @@ fn bare_surfaces_have_readers() {
     assert!(tiles.clone().any(|tile| tile["users"].to_string().contains("bare")));
     let findings = report["findings"].as_array().unwrap();
     assert!(!findings.iter().any(|finding| finding.to_string().contains("no layer reads it")), "{findings:?}");
+}
+
+/// Rows of one atlas: of a coat over a base without a lobe, and of two lobes at the ends of a patina. Each is measured against a fit of its own stack, and those
+/// that only places read have readers.
+#[test]
+fn rows_of_several_stacks_in_one_atlas_have_no_findings() {
+    let copy = |name: &str| fs::read_to_string(root().join(format!("materials/{name}.toml"))).unwrap();
+    let names = ["house-paint", "copper-patina"];
+    let texts = names.map(copy);
+    let workshop = Workshop::with(&[("m/a.toml", &texts[0]), ("m/b.toml", &texts[1])]);
+    workshop.run(&["bake", "m", "-q"]).exits(0);
+    workshop.run(&TABLES_ONLY).exits(0);
+    let report = workshop.json("out/report/report.json");
+    let lobes = report["tables"].as_array().unwrap().iter().find(|table| table["kind"] == "lobes").unwrap();
+    let tiles = lobes["tiles"].as_array().unwrap();
+    let users = |tile: &Value| tile["users"].as_array().unwrap().len();
+    assert_eq!(tiles.iter().map(users).collect::<Vec<_>>(), [1; 4], "{tiles:?}");
+    assert_eq!(report["findings"], serde_json::json!([]));
 }
 
 /// Rows under patina are fitted together with the bare ones, and so is their reference.
