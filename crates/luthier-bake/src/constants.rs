@@ -41,7 +41,7 @@ fn flakes(effects: &Effects) -> Option<FlakesRecord> {
     let flakes = effects.flakes.as_ref()?;
     let (seed, count, spread) = match flakes.source {
         FlakeSource::Cells { seed, count, spread } => (seed, count, spread),
-        FlakeSource::NormalMap { .. } | FlakeSource::HeightMap { .. } => (0, 0, 0.0),
+        FlakeSource::NormalMap(_) | FlakeSource::HeightMap { .. } => (0, 0, 0.0),
     };
     let (tiling, scale, fade_start) = (flakes.tiling, flakes.scale, flakes.fade_start);
     Some(FlakesRecord { seed, count, tiling, spread, scale, fade_start })

@@ -3,7 +3,7 @@
 use luthier_layers::flakes::Flakes;
 use luthier_lut::Image;
 use luthier_manifest::MapSlot;
-use luthier_material::{FlakeSource, Material, VariationSource};
+use luthier_material::{FlakeSource, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::stack::Base;
 
 use crate::kinds::thickness::relief::{Field, Relief};
@@ -27,12 +27,12 @@ pub struct MaterialMap {
 /// Where a map comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MapSource {
-    /// An image, by its path relative to the material file: shipped as it is.
-    File(String),
-    /// Heights in an image, by its path relative to the material file: normals are made of them.
+    /// A picture and the meaning of its texels.
+    Picture(PictureRef, TexelUse),
+    /// Heights in a picture: normals are made of them.
     Heights {
-        /// The path.
-        path: String,
+        /// The picture.
+        picture: PictureRef,
         /// Height of white above black, as a share of the width of the picture.
         height: f64,
     },
@@ -51,15 +51,15 @@ impl MapSource {
     /// The source in words, for manifests.
     pub fn label(&self) -> String {
         match self {
-            Self::File(path) => path.clone(),
-            Self::Heights { path, height } => format!("{path}, normals of heights up to {height}"),
+            Self::Picture(picture, _) => picture.label(),
+            Self::Heights { picture, height } => format!("{}, normals of heights up to {height}", picture.label()),
             Self::Noise { seed, frequency, octaves } => {
                 format!("Perlin noise, seed {seed}, frequency {frequency}, {octaves} octaves")
             }
         }
     }
 
-    /// The texels of noise, one channel in 0..=1, centres at (i + 1/2) / size; `None` for a file.
+    /// The texels of noise, one channel in 0..=1, centres at (i + 1/2) / size; `None` for a picture.
     pub fn texels(&self) -> Option<Image> {
         let &Self::Noise { seed, frequency, octaves } = self else { return None };
         let relief = Relief::Noise { seed, frequency, octaves };
@@ -96,8 +96,12 @@ pub fn height_normals(heights: &Image, height: f64) -> Image {
 
 /// The maps of a material: layers from the top down, then effects.
 pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
-    let file =
-        |slot, layer, path: &str| MaterialMap { slot, layer, source: MapSource::File(path.to_owned()), factor: None };
+    let picture = |slot, layer, picture: &PictureRef, texels| MaterialMap {
+        slot,
+        layer,
+        source: MapSource::Picture(picture.clone(), texels),
+        factor: None,
+    };
     let mut maps = Vec::new();
     for (i, layer) in material.layers.iter().enumerate() {
         let albedo = match &material.stack.layers[i].base {
@@ -111,20 +115,22 @@ pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
                 MapSlot::Metallic => layer.metallic.map(|surface| [surface.metallic; 3]),
                 _ => None,
             },
-            ..file(map.slot, Some(i as u32), map.path)
+            ..picture(map.slot, Some(i as u32), map.picture, map.texels())
         }));
     }
     match material.effects.flakes.as_ref().map(|flakes| &flakes.source) {
-        Some(FlakeSource::NormalMap { path }) => maps.push(file(MapSlot::FlakeNormal, None, path)),
-        Some(FlakeSource::HeightMap { path, height }) => {
-            let source = MapSource::Heights { path: path.clone(), height: *height };
-            maps.push(MaterialMap { source, ..file(MapSlot::FlakeNormal, None, path) });
+        Some(FlakeSource::NormalMap(normals)) => {
+            maps.push(picture(MapSlot::FlakeNormal, None, normals, TexelUse::Normal));
+        }
+        Some(FlakeSource::HeightMap { picture, height }) => {
+            let source = MapSource::Heights { picture: picture.clone(), height: *height };
+            maps.push(MaterialMap { slot: MapSlot::FlakeNormal, layer: None, source, factor: None });
         }
         Some(FlakeSource::Cells { .. }) | None => {}
     }
     if let Some(patina) = &material.effects.patina {
         let source = match &patina.map {
-            VariationSource::Image { path } => MapSource::File(path.clone()),
+            VariationSource::Image(picture) => MapSource::Picture(picture.clone(), TexelUse::Number),
             &VariationSource::Noise { seed, frequency, octaves } => MapSource::Noise { seed, frequency, octaves },
         };
         maps.push(MaterialMap { slot: MapSlot::Patina, layer: None, source, factor: None });

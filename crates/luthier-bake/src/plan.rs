@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{ColorMode, Feature, Form, LayerRecord};
-use luthier_material::{LayerExtras, Material};
+use luthier_material::{LayerExtras, Material, PictureRef};
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
@@ -58,7 +58,7 @@ pub(crate) fn color_mode(material: &Material) -> ColorMode {
 }
 
 /// Reads an image that a material names: material file, path as written there.
-pub type ImageReader<'a> = &'a (dyn Fn(&str, &str) -> Result<Image, String> + Sync);
+pub type ImageReader<'a> = &'a (dyn Fn(&str, &PictureRef) -> Result<Image, String> + Sync);
 
 /// Materials that are planned side by side: few beside all that a large bake has.
 const SIDE_BY_SIDE: usize = 256;

@@ -10,7 +10,7 @@ use luthier_layers::model::Model;
 use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
 use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
-use luthier_material::{Effects, Material, left_out};
+use luthier_material::{Effects, Material, PictureRef, TexelUse, left_out};
 use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
@@ -168,7 +168,9 @@ impl ModelInputs {
         for (layer, map) in maps {
             match map.slot.layer_feature(layer as u32) {
                 Some(feature) if lacks(feature) => dropped.push(feature.name()),
-                Some(_) => shown.push(LayerMap { layer, slot: map.slot, path: map.path.to_owned() }),
+                Some(_) => {
+                    shown.push(LayerMap { layer, slot: map.slot, picture: map.picture.clone(), texels: map.texels() })
+                }
                 None => {}
             }
         }
@@ -264,8 +266,10 @@ pub(crate) struct LayerMap {
     pub(crate) layer: usize,
     /// Quantity that it varies.
     pub(crate) slot: MapSlot,
-    /// Path relative to the file.
-    pub(crate) path: String,
+    /// The picture.
+    pub(crate) picture: PictureRef,
+    /// Meaning of its texels.
+    pub(crate) texels: TexelUse,
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -28,6 +28,8 @@ mod make;
 #[cfg(feature = "bake")]
 mod parts;
 #[cfg(feature = "bake")]
+mod pictures;
+#[cfg(feature = "bake")]
 mod refusals;
 #[cfg(feature = "bake")]
 mod renderer;
@@ -57,11 +59,13 @@ pub use make::{Bake, ExportError, outline, source_hash, unfitted};
 #[cfg(feature = "bake")]
 pub use parts::{of_function, of_parts, of_scene, parts_of};
 #[cfg(feature = "bake")]
+pub use pictures::{read_image, read_picture};
+#[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]
 pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
-pub use sources::{Source, find, label, of_text, parse, plain, read, read_all, read_image, read_one};
+pub use sources::{Source, find, label, of_text, parse, plain, read, read_all, read_one};
 #[cfg(feature = "bake")]
 pub use surfaces::{Gathered, SurfaceSource, doubt_surfaces, gather, refuse_surfaces, surface_map};
 

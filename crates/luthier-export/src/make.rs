@@ -10,7 +10,7 @@ use luthier_bake::{
     BakeError, BakedMaterial, ImageReader, MapSource, MaterialMap, Missing, Observer, Options, Share, Silent, Store,
     height_normals,
 };
-use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
+use luthier_lut::{Atlas, AtlasLayout, Image, Picture, PictureSamples, TableKind, TexelFormat};
 use luthier_manifest::{
     FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, SurfaceEntry, TableEntry, Target,
     material_buffer,
@@ -21,7 +21,9 @@ use luthier_texture::{Texture, TextureError, png};
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::{GENERATOR, Map, Package, PackageError, Shader, Table, input, of_domain, of_parts, sha256, sources};
+use crate::{
+    GENERATOR, Map, Package, PackageError, Shader, Table, input, of_domain, of_parts, pictures, sha256, sources,
+};
 
 /// How a package is made, beside what its materials say. The default is all that `luthier bake` writes.
 #[derive(Clone)]
@@ -82,7 +84,7 @@ impl Bake<'_> {
         if bake.forms == [Form::Full] {
             return Ok(());
         }
-        Ok(luthier_bake::bake_share(&materials, &bake.options, &sources::read_image, bake.observer, store, share)?)
+        Ok(luthier_bake::bake_share(&materials, &bake.options, &pictures::read_image, bake.observer, store, share)?)
     }
 
     /// The jobs that a bake would run because a store lacks their results.
@@ -94,7 +96,7 @@ impl Bake<'_> {
         if bake.forms == [Form::Full] {
             return Ok(Missing { jobs: BTreeMap::new(), is_all: true });
         }
-        Ok(luthier_bake::missing(&materials, &bake.options, &sources::read_image, store)?)
+        Ok(luthier_bake::missing(&materials, &bake.options, &pictures::read_image, store)?)
     }
 }
 
@@ -143,14 +145,14 @@ pub enum ExportError {
     #[error(transparent)]
     Shader(#[from] ShaderError),
     /// A map that a material names is no picture.
-    #[error("{material}: map {map}: {source}")]
+    #[error("{material}: map {map}: {reason}")]
     Map {
         /// The material file.
         material: String,
         /// The map, as the file names it.
         map: String,
         /// Fault of the picture.
-        source: TextureError,
+        reason: String,
     },
     /// The parts do not make a package.
     #[error(transparent)]
@@ -166,7 +168,7 @@ impl Package {
     /// [`ExportError`]. The bytes depend on nothing but the arguments and the files.
     pub fn new(materials: &[Material], bake: &Bake<'_>, store: &dyn Store) -> Result<Self, ExportError> {
         let (materials, bake) = &bake.settled(materials)?;
-        let read = &sources::read_image as ImageReader<'_>;
+        let read = &pictures::read_image as ImageReader<'_>;
         if bake.forms == [Form::Full] {
             // Without a shader that reads them there are no tables.
             let options = Options { search: false, ..bake.options };
@@ -257,7 +259,7 @@ impl Package {
 /// # Errors
 /// [`ExportError`].
 pub fn outline(materials: &[Material], options: &Options<'_>, store: &dyn Store) -> Result<Manifest, ExportError> {
-    let outline = luthier_bake::outline_with(materials, options, &sources::read_image, store)?;
+    let outline = luthier_bake::outline_with(materials, options, &pictures::read_image, store)?;
     let (entries, _) = material_entries(materials, &outline.materials)?;
     let tables = outline.tables.iter().map(|(kind, layout, format)| table_entry(*kind, layout, *format)).collect();
     Ok(Manifest { searches: outline.searches, ..Manifest::new(GENERATOR, entries, tables) })
@@ -327,8 +329,8 @@ fn material_entries(
     for (number, (material, baked)) in (0..).zip(materials.iter().zip(baked)) {
         let mut own = Vec::with_capacity(baked.maps.len());
         for map in &baked.maps {
-            let (entry, image, png) = self::map(material, map)?;
-            maps.push(Map { material: number, slot: map.slot, layer: map.layer, image, png });
+            let (entry, picture, png) = self::map(material, map)?;
+            maps.push(Map { material: number, slot: map.slot, layer: map.layer, picture, png });
             own.push(entry);
         }
         entries.push(MaterialEntry {
@@ -347,28 +349,51 @@ fn material_entries(
     Ok((entries, maps))
 }
 
-/// A map as it ships: an image as it is, noise as a grey PNG.
-fn map(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Image, Vec<u8>), ExportError> {
-    let label = map.source.label();
-    let unusable = |source| ExportError::Map { material: material.source.clone(), map: map.source.label(), source };
-    let bytes = match &map.source {
-        MapSource::File(path) => named_file(material, path)?,
-        MapSource::Heights { path, height } => {
-            let normals = height_normals(&png::decode(&named_file(material, path)?).map_err(unusable)?, *height);
-            let texels: Vec<u8> = normals.data.iter().map(|value| (255.0 * value).round() as u8).collect();
-            png::encode_rgb(normals.width, normals.height, &texels).map_err(unusable)?
+/// A map as it ships: a picture as its material reads it, noise as a grey PNG.
+fn map(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Picture, Vec<u8>), ExportError> {
+    let unusable = |reason| ExportError::Map { material: material.source.clone(), map: map.source.label(), reason };
+    let sentence = |source: TextureError| unusable(source.to_string());
+    let (named, (picture, bytes)) = match &map.source {
+        MapSource::Picture(named, texels) => {
+            let read = pictures::read(&material.source, named, *texels).map_err(unusable)?;
+            (Some(named), pictures::file(read, named).map_err(unusable)?)
+        }
+        MapSource::Heights { picture: named, height } => {
+            let heights = pictures::read_image(&material.source, named).map_err(unusable)?;
+            let normals = height_normals(&heights, *height);
+            let bytes = png::encode_rgb(normals.width, normals.height, &codes(&normals)).map_err(sentence)?;
+            (Some(named), (bits8(&normals), bytes))
         }
         MapSource::Noise { .. } => {
             let texels = map.source.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
-            png::encode_gray(&texels).map_err(unusable)?
+            (None, (bits8(&texels), png::encode_gray(&texels).map_err(sentence)?))
         }
     };
-    let image = png::decode(&bytes).map_err(unusable)?;
     let layer = map.layer.map_or_else(String::new, |layer| format!("-{layer}"));
     let path = format!("maps/{}-{}{layer}.png", material.name, map.slot.name());
-    let file = FileEntry { path, sha256: sha256(&bytes) };
-    let (slot, layer, width, height) = (map.slot, map.layer, image.width, image.height);
-    Ok((MapEntry { slot, layer, source: label, file, width, height, factor: map.factor }, image, bytes))
+    let entry = MapEntry {
+        slot: map.slot,
+        layer: map.layer,
+        source: map.source.label(),
+        file: FileEntry { path, sha256: sha256(&bytes) },
+        width: picture.width,
+        height: picture.height,
+        factor: map.factor,
+        srgb: picture.is_srgb,
+        transform: named.and_then(|named| named.transform).map(|transform| transform.matrix()),
+    };
+    Ok((entry, picture, bytes))
+}
+
+/// Values from 0 to 1 as codes of 8 bits.
+fn codes(image: &Image) -> Vec<u8> {
+    image.data.iter().map(|value| (255.0 * value.clamp(0.0, 1.0)).round() as u8).collect()
+}
+
+/// An image of values from 0 to 1 in steps of 1/255.
+fn bits8(image: &Image) -> Picture {
+    let Image { width, height, channels, .. } = *image;
+    Picture { width, height, channels, is_srgb: false, samples: PictureSamples::Bits8(codes(image)) }
 }
 
 /// A file that a material names.

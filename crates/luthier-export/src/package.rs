@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier_lut::{Image, TableKind};
+use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{Form, Manifest, MapSlot, MaterialEntry, Target};
 use luthier_texture::Texture;
 
@@ -52,8 +52,8 @@ pub struct Map {
     pub slot: MapSlot,
     /// The layer that it is of; `None` for those of the whole surface.
     pub layer: Option<u32>,
-    /// RGBA, linear.
-    pub image: Image,
+    /// Its texels.
+    pub picture: Picture,
     /// The PNG file.
     pub png: Vec<u8>,
 }

@@ -6,18 +6,15 @@ use luthier_bake::{BakeError, MemoryStore};
 use luthier_material::{Diagnostic, Material, NamedImage, Severity};
 use rayon::prelude::*;
 
-use crate::input;
-use crate::sources::{Source, beside, read_image};
-
-/// The key of the film's map, which is read for its grey; the others are pictures of any kind.
-const FILM_MAP: &str = "layer.0.film.0.thickness_nm.map.image";
+use crate::pictures::{self, read_image};
+use crate::sources::Source;
 
 /// Adds `doubts`, and makes files unusable that cannot be baked: one by one, then, where each is usable, as a set.
 pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic> + Sync) {
     sources.par_iter_mut().for_each(|source| {
         let Ok(parsed) = &source.parsed else { return };
         let mut found = doubts(&parsed.material);
-        found.extend(parsed.material.images().iter().filter_map(|image| unreadable(&parsed.material, image)));
+        found.extend(parsed.material.images().iter().flat_map(|image| told(&parsed.material, image)));
         add(source, found);
     });
     let Some(materials) = usable(sources) else { return };
@@ -60,18 +57,24 @@ fn add(source: &mut Source, found: Vec<Diagnostic>) {
     }
 }
 
-/// The diagnostic of an image that a material names, if it cannot be used.
-fn unreadable(material: &Material, image: &NamedImage<'_>) -> Option<Diagnostic> {
-    let NamedImage { key, path } = image;
-    let decoded = if *key == FILM_MAP {
-        read_image(&material.source, path).map(drop)
-    } else {
-        let bytes = input::image(&beside(&material.source, path)).map_err(|source| source.to_string());
-        bytes.and_then(|bytes| luthier_texture::png::decode(&bytes).map(drop).map_err(|source| source.to_string()))
-    };
-    let reason = decoded.err()?;
-    let hint = "name a PNG file by its path relative to the material file".to_owned();
-    Some(material.diagnostic(Severity::Error, key, format!("cannot use the map `{path}`: {reason}"), Some(hint)))
+/// What is to be told of a picture that a material names: why it cannot be used, or what is doubtful about it.
+fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
+    let NamedImage { key, picture, texels } = image;
+    let path = &picture.path;
+    match pictures::read(&material.source, picture, *texels) {
+        Ok(read) => {
+            let doubts = pictures::doubts(&read, picture, *texels).into_iter();
+            let warning = |(sentence, hint)| {
+                material.diagnostic(Severity::Warning, key, format!("the map `{path}`: {sentence}"), Some(hint))
+            };
+            doubts.map(warning).collect()
+        }
+        Err(reason) => {
+            let hint = "name a PNG, JPEG or WebP file by its path relative to the material file".to_owned();
+            let message = format!("cannot use the map `{path}`: {reason}");
+            vec![material.diagnostic(Severity::Error, key, message, Some(hint))]
+        }
+    }
 }
 
 /// Diagnostics of materials together, each with the number of the material that it is said of.

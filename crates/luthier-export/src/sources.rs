@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 use std::string::FromUtf8Error;
 
-use luthier_lut::Image;
 use luthier_material::{Diagnostic, Material, Parsed, Severity};
 use rayon::prelude::*;
 
@@ -118,15 +117,6 @@ fn not_utf8(label: String, source: &FromUtf8Error) -> Source {
         count: 1,
     };
     Source { label, text, parsed: Err(vec![diagnostic]) }
-}
-
-/// Reads an image that a material names, relative to the material's file.
-///
-/// # Errors
-/// Why it cannot be used, in words.
-pub fn read_image(material: &str, path: &str) -> Result<Image, String> {
-    let bytes = input::image(&beside(material, path)).map_err(|source| source.to_string())?;
-    luthier_texture::png::decode_gray(&bytes).map_err(|source| source.to_string())
 }
 
 /// The path of a file that a material names.

@@ -201,6 +201,7 @@ tests_of_targets!(
     ktx2,
     exr,
     png,
+    picture,
     radiance,
     gltf,
     table,

@@ -1,7 +1,7 @@
 //! Textures of materials for a page.
 
 use luthier_export::Package;
-use luthier_lut::Image;
+use luthier_lut::{Image, Picture};
 use luthier_manifest::{Form, MapSlot, MaterialEntry};
 use serde::Serialize;
 
@@ -16,6 +16,8 @@ pub(crate) struct PageMaps {
     /// Places among the slots of the shader.
     slots: Vec<usize>,
     sizes: Vec<[u32; 2]>,
+    /// Two rows each, which make the texture coordinates of the surface's.
+    turns: Vec<[[f64; 3]; 2]>,
     texels: String,
 }
 
@@ -23,17 +25,14 @@ impl PageMaps {
     /// The textures of a material that the page shows, or `None` where there are none.
     pub(crate) fn of(package: &Package, number: u32) -> Option<Self> {
         let entry = package.manifest.materials.get(number as usize)?;
-        let mut maps = Self { slots: Vec::new(), sizes: Vec::new(), texels: String::new() };
+        let mut maps = Self { slots: Vec::new(), sizes: Vec::new(), turns: Vec::new(), texels: String::new() };
         let mut images = Vec::new();
         for map in package.maps.iter().filter(|map| map.material == number) {
             let Some(slot) = place(map.layer, map.slot).filter(|slot| !maps.slots.contains(slot)) else { continue };
             let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
             // Flakes are told apart, and are not averaged.
-            let mut image = map.image.clone();
-            while map.slot != MapSlot::FlakeNormal && image.width.max(image.height) > LARGEST {
-                image = halved(&image);
-            }
+            let mut image = shrunk(&map.picture, if map.slot == MapSlot::FlakeNormal { u32::MAX } else { LARGEST });
             let channels = image.channels as usize;
             for texel in image.data.chunks_exact_mut(channels) {
                 for (value, factor) in texel.iter_mut().zip(factor) {
@@ -41,7 +40,8 @@ impl PageMaps {
                 }
             }
             maps.slots.push(slot);
-            maps.sizes.push([image.width, image.height]);
+            maps.sizes.push(image.size());
+            maps.turns.push(stated.and_then(|stated| stated.transform).unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]));
             images.push(image);
         }
         if images.is_empty() {
@@ -63,18 +63,13 @@ fn place(layer: Option<u32>, map: MapSlot) -> Option<usize> {
     slot(map).filter(|_| !is_own)
 }
 
-/// Half the columns and rows; a last odd one is left out.
-fn halved(image: &Image) -> Image {
-    let [width, height] = [image.width, image.height].map(|side| (side / 2).max(1));
-    let mut half = Image::zeros(width, height, image.channels);
-    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let at = |dx: u32, dy: u32| image.texel((2 * x + dx).min(image.width - 1), (2 * y + dy).min(image.height - 1));
-        let texels = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-        for (c, value) in half.texel_mut(x, y).iter_mut().enumerate() {
-            *value = texels.iter().map(|texel| texel[c]).sum::<f32>() / 4.0;
-        }
+/// The texels of a picture, averaged down by halves to so many columns and rows at most; a last odd one is left out.
+fn shrunk(picture: &Picture, largest: u32) -> Image {
+    let mut image = picture.image();
+    while image.width.max(image.height) > largest {
+        image = image.halved();
     }
-    half
+    image
 }
 
 /// Place of a texture in `view.glsl`.

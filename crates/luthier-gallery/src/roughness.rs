@@ -49,6 +49,8 @@ pub(crate) fn with_places(materials: &mut [MaterialEntry]) {
             width: 1,
             height: 1,
             factor: None,
+            srgb: false,
+            transform: None,
         });
     }
 }

@@ -25,11 +25,21 @@ impl Scene {
             };
             // Layers that the model does not read have no words. Of whole surfaces the topmost map counts.
             let Some(header) = headers.get_mut(word).filter(|header| header[1] == 0) else { continue };
-            *header = [(behind + texels.len()) as u32, map.image.width, map.image.height, 0];
             let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
+            // Two words more in front of the texels where the map lies otherwise than the texture coordinates.
+            let transform = stated.and_then(|stated| stated.transform);
+            let at = (behind + texels.len()) as u32;
+            texels.extend(
+                transform
+                    .map(|rows| rows.map(|[u, v, one]| [u, v, one, 0.0].map(|v| (v as f32).to_bits())))
+                    .into_iter()
+                    .flatten(),
+            );
+            let [width, height] = map.picture.size();
+            *header = [(behind + texels.len()) as u32, width, height, transform.map_or(0, |_| at)];
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
             let [r, g, b] = factor.map(|factor| factor as f32);
-            texels.extend(map.image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
+            texels.extend(map.picture.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
         if let Some(patina) = &entry.constants.patina {
             let bits = |[r, g, b]: [f64; 3], w: f64| [r, g, b, w].map(|v| (v as f32).to_bits());

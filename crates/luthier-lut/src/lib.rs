@@ -20,7 +20,9 @@ mod image;
 mod kind;
 mod measure;
 mod named;
+mod picture;
 mod sampler;
+pub mod srgb;
 
 pub use atlas::{Atlas, AtlasLayout, Tile, read};
 pub use axis::{Axis, Mapping};
@@ -34,4 +36,5 @@ pub use image::Image;
 pub use kind::{KindFacts, Served, TableKind, Values};
 pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_at, measure_scan};
 pub use named::UnknownName;
+pub use picture::{Picture, PictureSamples};
 pub use sampler::{WeightBits, bilinear};

@@ -391,6 +391,8 @@ mod tests {
                         width: 64,
                         height: 32,
                         factor: None,
+                        srgb: false,
+                        transform: None,
                     },
                     MapEntry {
                         slot: MapSlot::Roughness,
@@ -400,6 +402,8 @@ mod tests {
                         width: 1,
                         height: 1,
                         factor: Some([0.1, 0.2, 0.3]),
+                        srgb: false,
+                        transform: None,
                     },
                 ],
             }],

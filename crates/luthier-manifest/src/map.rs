@@ -38,8 +38,8 @@ luthier_lut::named! {
     }
 }
 
-/// A map of a material: PNG, linear values in 0..=1, which repeats in both texture coordinates. Texel centres are at
-/// (i + 1/2) / size, the first row is at v = 0.
+/// A map of a material: PNG, values in 0..=1, which repeats in both texture coordinates. Texel centres are at
+/// (i + 1/2) / size, the first row is at v = 0. Values are linear, unless `srgb` says otherwise.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MapEntry {
     /// Quantity that the map varies.
@@ -57,6 +57,12 @@ pub struct MapEntry {
     /// Number of the material file that the texels multiply, of maps of a colour or of metal: one number three times, or RGB.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factor: Option<[f64; 3]>,
+    /// Whether R, G and B are stored by the sRGB curve: a texture of the format `rgba8unorm-srgb` reads them. Absent where they are linear.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub srgb: bool,
+    /// The two rows that make the map's texture coordinates of (u, v, 1). Absent where these are the surface's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transform: Option<[[f64; 3]; 2]>,
 }
 
 impl MapSlot {

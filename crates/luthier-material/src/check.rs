@@ -144,7 +144,7 @@ fn check_value(
             Some(kind) => check_value(name, kind, value, in_list, sink),
             None => mismatch(name, kind, value, sink),
         },
-        (Kind::True, DeValue::Boolean(true)) => {}
+        (Kind::True, DeValue::Boolean(true)) | (Kind::Flag, DeValue::Boolean(_)) => {}
         (Kind::True, DeValue::Boolean(false)) => {
             sink.error(span, format!("`{name}` can only be true"), Some(format!("leave `{name}` out")));
         }
@@ -301,7 +301,7 @@ fn mismatch(name: &str, kind: &Kind, value: &Spanned<DeValue<'_>>, sink: &mut Si
 
 fn accepts(kind: &Kind, value: &DeValue<'_>) -> bool {
     match value {
-        DeValue::Boolean(_) => matches!(kind, Kind::True),
+        DeValue::Boolean(_) => matches!(kind, Kind::True | Kind::Flag),
         DeValue::Integer(_) => matches!(kind, Kind::Number(_) | Kind::Integer(..)),
         DeValue::Float(_) => matches!(kind, Kind::Number(_)),
         DeValue::String(_) => matches!(kind, Kind::Text(_) | Kind::Choice(_)),
@@ -322,6 +322,7 @@ fn accepts_number(kind: &Kind) -> bool {
 fn describe(kind: &Kind) -> String {
     match kind {
         Kind::True => "true".to_owned(),
+        Kind::Flag => "true or false".to_owned(),
         Kind::Number(_) => "a number".to_owned(),
         Kind::Integer(..) => "a whole number".to_owned(),
         Kind::Text(_) => "a string".to_owned(),

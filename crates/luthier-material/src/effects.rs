@@ -3,6 +3,7 @@
 use luthier_optics::Rgb;
 
 use crate::material::VariationSource;
+use crate::picture::PictureRef;
 
 /// Effects that modify the layered model.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -45,14 +46,11 @@ pub struct Flakes {
 #[derive(Debug, Clone, PartialEq)]
 pub enum FlakeSource {
     /// A tangent-space normal map, sampled without filtering.
-    NormalMap {
-        /// Path relative to the material file.
-        path: String,
-    },
+    NormalMap(PictureRef),
     /// Heights, of which normals are made by finite differences.
     HeightMap {
-        /// Path relative to the material file.
-        path: String,
+        /// The picture.
+        picture: PictureRef,
         /// Height of white above black, as a share of the width of the picture.
         height: f64,
     },

@@ -12,6 +12,7 @@ use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::effects::{Effects, FlakeSource};
+use crate::picture::{PictureRef, TexelUse};
 use crate::places::Places;
 
 /// A validated material.
@@ -46,12 +47,14 @@ pub struct Material {
 }
 
 /// An image that a material names.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NamedImage<'m> {
     /// The key that names it, as in [`Places`].
     pub key: String,
-    /// Path relative to the material file.
-    pub path: &'m str,
+    /// The picture.
+    pub picture: &'m PictureRef,
+    /// Meaning of its texels.
+    pub texels: TexelUse,
 }
 
 impl Material {
@@ -122,25 +125,29 @@ impl Material {
 
     /// The images that it names: of layers from the top down, then of effects.
     pub fn images(&self) -> Vec<NamedImage<'_>> {
-        let mut found: Vec<(String, Option<&str>)> = Vec::new();
+        let mut found = Vec::new();
+        let mut add = |key: String, texels, picture| found.push(NamedImage { key, picture, texels });
         for (i, LayerExtras { film_variation, maps, .. }) in self.layers.iter().enumerate() {
-            let film = film_variation.as_ref().and_then(|variation| variation.source.image());
-            found.extend(maps.named().map(|map| (format!("layer.{i}.maps.{}", map.key), Some(map.path))));
-            found.push((format!("layer.{i}.film.0.thickness_nm.map.image"), film));
+            for map in maps.named() {
+                add(format!("layer.{i}.maps.{}", map.key), map.texels(), map.picture);
+            }
+            if let Some(picture) = film_variation.as_ref().and_then(|variation| variation.source.image()) {
+                add(format!("layer.{i}.film.0.thickness_nm.map.image"), TexelUse::Number, picture);
+            }
         }
-        let flakes = self.effects.flakes.as_ref().and_then(|flakes| match &flakes.source {
-            FlakeSource::NormalMap { path } => Some(("effects.flakes.normal_map", path.as_str())),
-            FlakeSource::HeightMap { path, .. } => Some(("effects.flakes.height_map.image", path.as_str())),
-            FlakeSource::Cells { .. } => None,
-        });
-        let patina = self.effects.patina.as_ref().and_then(|patina| patina.map.image());
-        found.extend(
-            [flakes, patina.map(|path| ("effects.patina.map.image", path))]
-                .into_iter()
-                .flatten()
-                .map(|(key, path)| (key.to_owned(), Some(path))),
-        );
-        found.into_iter().filter_map(|(key, path)| Some(NamedImage { key, path: path? })).collect()
+        match self.effects.flakes.as_ref().map(|flakes| &flakes.source) {
+            Some(FlakeSource::NormalMap(picture)) => {
+                add("effects.flakes.normal_map".to_owned(), TexelUse::Normal, picture);
+            }
+            Some(FlakeSource::HeightMap { picture, .. }) => {
+                add("effects.flakes.height_map.image".to_owned(), TexelUse::Number, picture);
+            }
+            Some(FlakeSource::Cells { .. }) | None => {}
+        }
+        if let Some(picture) = self.effects.patina.as_ref().and_then(|patina| patina.map.image()) {
+            add("effects.patina.map.image".to_owned(), TexelUse::Number, picture);
+        }
+        found
     }
 }
 
@@ -169,42 +176,54 @@ pub struct Metallic {
     pub metallic: f64,
 }
 
-/// Paths of the textures that modulate a layer, relative to the material file.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// Pictures that modulate a layer.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Maps {
     /// Tangent-space normal map.
-    pub normal: Option<String>,
+    pub normal: Option<PictureRef>,
     /// Multiplies the layer's roughness.
-    pub roughness: Option<String>,
+    pub roughness: Option<PictureRef>,
     /// Multiplies the slab's thickness.
-    pub thickness: Option<String>,
+    pub thickness: Option<PictureRef>,
     /// Tangent-space normal map of this layer alone.
-    pub bumps: Option<String>,
+    pub bumps: Option<PictureRef>,
     /// Multiplies the slope parameters of this layer alone.
-    pub alpha: Option<String>,
+    pub alpha: Option<PictureRef>,
     /// Multiplies its slope parameter along the tangent.
-    pub alpha_x: Option<String>,
+    pub alpha_x: Option<PictureRef>,
     /// Multiplies its slope parameter along the bitangent.
-    pub alpha_y: Option<String>,
+    pub alpha_y: Option<PictureRef>,
     /// Directions of its tangent: cosine and sine of the doubled angle.
-    pub tangent: Option<String>,
+    pub tangent: Option<PictureRef>,
     /// Multiplies the albedo of a diffuse base.
-    pub albedo: Option<String>,
+    pub albedo: Option<PictureRef>,
     /// Multiplies the base colour of a metallic-roughness surface.
-    pub base_color: Option<String>,
+    pub base_color: Option<PictureRef>,
     /// Multiplies how metallic it is.
-    pub metallic: Option<String>,
+    pub metallic: Option<PictureRef>,
 }
 
 /// A map of a layer with its key in the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedMap<'m> {
     /// Key below `maps`.
     pub key: &'static str,
     /// Quantity that it varies.
     pub slot: MapSlot,
-    /// Path relative to the material file.
-    pub path: &'m str,
+    /// The picture.
+    pub picture: &'m PictureRef,
+}
+
+impl NamedMap<'_> {
+    /// Meaning of its texels.
+    pub fn texels(&self) -> TexelUse {
+        match self.slot {
+            MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal => TexelUse::Normal,
+            MapSlot::Tangent => TexelUse::Direction,
+            MapSlot::Albedo | MapSlot::BaseColor => TexelUse::Color,
+            _ => TexelUse::Number,
+        }
+    }
 }
 
 impl Maps {
@@ -224,7 +243,7 @@ impl Maps {
             ("metallic", MapSlot::Metallic, &self.metallic),
         ]
         .into_iter()
-        .filter_map(|(key, slot, path)| Some(NamedMap { key, slot, path: path.as_deref()? }))
+        .filter_map(|(key, slot, picture)| Some(NamedMap { key, slot, picture: picture.as_ref()? }))
     }
 }
 
@@ -249,18 +268,15 @@ pub enum VariationSource {
         /// Octaves, each of twice the frequency and half the weight.
         octaves: u32,
     },
-    /// An image; its red channel is read as linear.
-    Image {
-        /// Path relative to the material file.
-        path: String,
-    },
+    /// A picture.
+    Image(PictureRef),
 }
 
 impl VariationSource {
     /// The image that it names, if it is one.
-    pub(crate) fn image(&self) -> Option<&str> {
+    pub(crate) fn image(&self) -> Option<&PictureRef> {
         match self {
-            Self::Image { path } => Some(path),
+            Self::Image(picture) => Some(picture),
             Self::Noise { .. } => None,
         }
     }

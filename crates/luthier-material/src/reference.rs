@@ -89,6 +89,8 @@ fn absent(table: &str, key: &str) -> &'static str {
         ("scene-material", "budget") => "that of the scene",
         ("patina", "diffuse_remainder") => "`diffuse_albedo` holds",
         ("patina", "base_alpha") => "that of the layer",
+        ("picture" | "map" | "flake-heights", "transform") => "as the texture coordinates lie",
+        ("picture" | "map" | "flake-heights", "channel") => "all that are needed",
         ("ior", "wavelengths_nm") => "none: numbers hold at all wavelengths",
         (table, _) if table.ends_with("-table") => "the baker's choice",
         _ => "nothing",
@@ -99,6 +101,7 @@ fn absent(table: &str, key: &str) -> &'static str {
 fn value(kind: &Kind) -> String {
     match kind {
         Kind::True => "`true`".to_owned(),
+        Kind::Flag => "`true` or `false`".to_owned(),
         Kind::Number(range) => format!("a number{}", bounds(*range)),
         Kind::Integer(min, max) if min == max => format!("{min}"),
         Kind::Integer(min, max) if *max == i64::MAX => format!("a whole number, at least {min}"),

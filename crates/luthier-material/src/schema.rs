@@ -85,6 +85,7 @@ fn table(table: &'static Table, definitions: &mut Definitions) -> Value {
 fn kind(of: &'static Kind, definitions: &mut Definitions) -> Value {
     match of {
         Kind::True => json!({ "const": true }),
+        Kind::Flag => json!({ "type": "boolean" }),
         Kind::Number(range) => {
             let mut schema = Map::new();
             schema.insert("type".to_owned(), json!("number"));

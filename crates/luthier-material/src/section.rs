@@ -66,6 +66,10 @@ impl<'t> Section<'t> {
         integer(self.value(key)?.get_ref()).and_then(|i| u32::try_from(i).ok())
     }
 
+    pub(crate) fn flag(&self, key: &str) -> Option<bool> {
+        self.value(key)?.get_ref().as_bool()
+    }
+
     pub(crate) fn text(&self, key: &str) -> Option<&'t str> {
         self.value(key)?.get_ref().as_str()
     }

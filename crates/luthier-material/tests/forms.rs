@@ -4,7 +4,7 @@ use std::io;
 
 use luthier_lut::TexelFormat;
 use luthier_manifest::ColorMode;
-use luthier_material::{DistributionMapping, FlakeSource, Material, Parsed, VariationSource, parse};
+use luthier_material::{DistributionMapping, FlakeSource, Material, Parsed, PictureRef, VariationSource, parse};
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Surface};
 
@@ -94,7 +94,7 @@ fn films_stack_and_only_the_top_one_varies() {
     let layer = &material.stack.layers[0];
     assert_eq!(layer.films.iter().map(|f| f.thickness.nominal_nm()).collect::<Vec<_>>(), [20.0, 100.0]);
     let variation = material.layers[0].film_variation.as_ref().unwrap();
-    assert_eq!(variation.source, VariationSource::Image { path: "t.png".to_owned() });
+    assert_eq!(variation.source, VariationSource::Image(PictureRef::plain("t.png")));
     assert_eq!(variation.extent_um, 5.0);
     assert!(errors(&format!("{}{range}{base}", film("100"))).contains("only the top film"));
     assert!(errors(&format!("{range}[[layer]]\ntype = \"diffuse\"\nalbedo = 1\n")).contains("no interface"));
@@ -114,8 +114,9 @@ fn effects_maps_and_bake_are_read() {
          fgd = { size = [32, 32], format = \"rgba32float\" }\nphase = { size = 256 }\nthickness = { size = 128 }\n",
     );
     let maps = &material.layers[0].maps;
-    assert_eq!((maps.normal.as_deref(), maps.roughness.as_deref()), (Some("n.png"), None));
-    assert_eq!(maps.thickness.as_deref(), Some("t.png"));
+    let path = |map: &Option<PictureRef>| map.as_ref().map(|picture| picture.path.clone());
+    assert_eq!((path(&maps.normal), path(&maps.roughness)), (Some("n.png".to_owned()), None));
+    assert_eq!(path(&maps.thickness), Some("t.png".to_owned()));
     let flakes = material.effects.flakes.as_ref().unwrap();
     assert!(matches!(flakes.source, FlakeSource::Cells { seed: 0, count: 64, .. }));
     assert_eq!((flakes.tiling, flakes.scale), (1000.0, 0.5));

@@ -64,8 +64,12 @@ impl Device for Shaders {
 
 /// The maps of a package, for the judge.
 pub fn surface_maps(package: &Package) -> Vec<SurfaceMap> {
-    let map =
-        |map: &Map| SurfaceMap { material: map.material, slot: map.slot, layer: map.layer, image: map.image.clone() };
+    let map = |map: &Map| SurfaceMap {
+        material: map.material,
+        slot: map.slot,
+        layer: map.layer,
+        picture: map.picture.clone(),
+    };
     package.maps.iter().map(map).collect()
 }
 

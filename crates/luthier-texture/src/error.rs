@@ -17,6 +17,10 @@ pub enum Container {
     Exr,
     /// Portable network graphics.
     Png,
+    /// JPEG.
+    Jpeg,
+    /// WebP.
+    WebP,
     /// Radiance RGBE.
     Hdr,
     /// DirectDraw Surface.
@@ -29,6 +33,8 @@ impl fmt::Display for Container {
             Self::Ktx2 => "KTX2",
             Self::Exr => "EXR",
             Self::Png => "PNG",
+            Self::Jpeg => "JPEG",
+            Self::WebP => "WebP",
             Self::Hdr => "Radiance HDR",
             Self::Dds => "DDS",
         })
@@ -95,8 +101,19 @@ pub enum TextureError {
     #[error("cannot encode EXR")]
     ExrEncode(#[source] ::exr::error::Error),
     /// A PNG file that does not decode.
-    #[error("not a valid PNG file")]
-    PngDecode(#[source] ::image::ImageError),
+    #[error("not a valid PNG file: {}", decoder_reason(.0))]
+    PngDecode(::image::ImageError),
+    /// A JPEG or WebP file that does not decode.
+    #[error("not a valid {container} file: {}", decoder_reason(.reason))]
+    PictureDecode {
+        /// The format that its first bytes say.
+        container: Container,
+        /// Fault of the file, in the decoder's words.
+        reason: ::image::ImageError,
+    },
+    /// No picture of a format that maps are read from.
+    #[error("{0}; PNG, JPEG and WebP are read")]
+    NoPicture(&'static str),
     /// A Radiance file that does not decode.
     #[error("not a valid Radiance HDR file")]
     HdrDecode(#[source] ::image::ImageError),
@@ -106,17 +123,16 @@ pub enum TextureError {
     /// The PNG encoder of tables refused.
     #[error("cannot encode PNG")]
     PngTable(#[source] ::png::EncodingError),
-    /// A grey-scale map was expected.
-    #[error("the image has colours; a map needs equal red, green and blue, as at ({x}, {y}) they are not")]
-    NotGrey {
-        /// Column of the first coloured pixel, 0-based.
-        x: u32,
-        /// Its row.
-        y: u32,
-    },
     /// Texels that do not fit their format.
     #[error(transparent)]
     Lut(#[from] LutError),
+}
+
+/// The decoder's reason, without the format's name, which stands before it.
+fn decoder_reason(error: &::image::ImageError) -> String {
+    use std::error::Error;
+    let inner = error.source().map(ToString::to_string);
+    inner.unwrap_or_else(|| error.to_string())
 }
 
 impl TextureError {

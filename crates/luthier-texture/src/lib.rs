@@ -1,5 +1,5 @@
 //! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at; and, to read, what others made: pictures
-//! of radiance ([`radiance`]) and tables ([`table`]: DDS, KTX2, EXR, PNG, raw). The bytes of a file depend
+//! of radiance ([`radiance`]), maps ([`picture`]: PNG, JPEG, WebP) and tables ([`table`]: DDS, KTX2, EXR, PNG, raw). The bytes of a file depend
 //! on its content only; nothing here reads a clock or starts a thread.
 //!
 #![doc = include_str!("../README.md")]
@@ -19,6 +19,7 @@ pub mod exr;
 pub mod ktx2;
 mod limits;
 mod metadata;
+pub mod picture;
 pub mod png;
 pub mod radiance;
 mod srgb;

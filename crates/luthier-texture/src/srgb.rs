@@ -1,18 +1,10 @@
-//! The sRGB transfer function, and 8-bit pixels.
+//! 8-bit pixels to look at.
 
 use luthier_lut::Image;
 
-/// The sRGB transfer function of IEC 61966-2-1 as 8 bits, clipped to 0..=1; not a number is 0.
+/// The code of 8 bits of a linear value, clipped to 0..=1; not a number is 0.
 pub(crate) fn encode(linear: f32) -> u8 {
-    let v = f64::from(linear).clamp(0.0, 1.0);
-    let encoded = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * libm::pow(v, 1.0 / 2.4) - 0.055 };
-    (encoded * 255.0).round() as u8
-}
-
-/// The inverse transfer function of a value in 0..=1.
-pub(crate) fn decode(encoded: f32) -> f32 {
-    let v = f64::from(encoded);
-    (if v <= 0.040_45 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) }) as f32
+    (luthier_lut::srgb::code(linear) * 255.0).round() as u8
 }
 
 /// Pixels to look at, three bytes each: one and two channels as grey, alpha left out.

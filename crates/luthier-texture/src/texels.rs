@@ -79,7 +79,7 @@ impl TexelLayout {
                 texel.swap(0, 2);
             }
             if self.srgb {
-                texel.iter_mut().take(3).for_each(|v| *v = crate::srgb::decode(*v));
+                texel.iter_mut().take(3).for_each(|v| *v = luthier_lut::srgb::linear(*v));
             }
         }
         Image { width, height, channels: self.channels, data }

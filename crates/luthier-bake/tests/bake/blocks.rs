@@ -24,7 +24,7 @@ fn set(settings: &str) -> Vec<Material> {
 
 fn with(materials: &[Material], max_abs: f64, formats: FormatSet) -> Result<Baked, BakeError> {
     let budget = Budget { max_abs: Some(max_abs), ..Budget::default() };
-    let no_images = |_: &str, _: &str| Err("no images here".to_owned());
+    let no_images = |_: &str, _: &luthier_material::PictureRef| Err("no images here".to_owned());
     bake_with(materials, &Options { budget, formats, ..Options::default() }, &no_images, &Silent, &*STORE)
 }
 

@@ -52,7 +52,7 @@ pub(crate) fn dielectric(ior: &str, alpha: f64) -> String {
 /// Results that tests share: facets of a slope distribution are costly, and many need them.
 pub(crate) static STORE: LazyLock<MemoryStore> = LazyLock::new(MemoryStore::default);
 
-pub(crate) fn no_images(_: &str, _: &str) -> Result<luthier_lut::Image, String> {
+pub(crate) fn no_images(_: &str, _: &luthier_material::PictureRef) -> Result<luthier_lut::Image, String> {
     Err("no images here".to_owned())
 }
 

@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
-use luthier_lut::{Image, TableKind};
+use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FileEntry, Manifest, MapEntry, TableEntry, Target};
-use luthier_texture::{MAX_BYTES, Texture, ktx2, png};
+use luthier_texture::{MAX_BYTES, Texture, ktx2, picture};
 use sha2::{Digest, Sha256};
 
 use crate::{Map, Package, PackageError, READY, Shader, Table};
@@ -106,17 +106,18 @@ impl Folder {
         self.manifest.tables.iter().map(|table| Ok((table.kind, self.texture(table)?.image()?))).collect()
     }
 
-    /// A map of a material: its file, and RGBA, linear.
+    /// A map of a material: its file, and its texels.
     ///
     /// # Errors
     /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::MapSize`].
-    pub fn map(&self, map: &MapEntry) -> Result<(Vec<u8>, Image), PackageError> {
+    pub fn map(&self, map: &MapEntry) -> Result<(Vec<u8>, Picture), PackageError> {
         let path = || self.named.join(&map.file.path);
         let bytes = self.read(&map.file)?;
-        let image = png::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
-        let (found, expected) = ([image.width, image.height], [map.width, map.height]);
+        let decoded = picture::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let picture = Picture { is_srgb: map.srgb, ..decoded.picture };
+        let (found, expected) = (picture.size(), [map.width, map.height]);
         if found == expected {
-            Ok((bytes, image))
+            Ok((bytes, picture))
         } else {
             Err(PackageError::MapSize { path: path(), found, expected })
         }
@@ -137,8 +138,8 @@ impl Folder {
         let mut package = Package::from_parts(manifest.clone(), tables, shaders)?;
         for (material, entry) in (0..).zip(&manifest.materials) {
             for map in &entry.maps {
-                let (png, image) = self.map(map)?;
-                package.maps.push(Map { material, slot: map.slot, layer: map.layer, image, png });
+                let (png, picture) = self.map(map)?;
+                package.maps.push(Map { material, slot: map.slot, layer: map.layer, picture, png });
             }
         }
         Ok(package)

@@ -123,6 +123,8 @@ fn maps_have_the_size_that_the_manifest_states() {
         width,
         height: 1,
         factor: None,
+        srgb: false,
+        transform: None,
     };
     let bake = Folder::open(&folder).unwrap();
     assert_eq!(bake.map(&map(2)).unwrap().1.width, 2);

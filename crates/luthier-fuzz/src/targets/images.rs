@@ -2,8 +2,8 @@
 
 use luthier_lut::Image;
 use luthier_texture::{
-    MAX_BYTES, Samples, TextureError, exr as openexr, ktx2 as khronos, png as portable, radiance as light,
-    table as tables,
+    MAX_BYTES, Samples, TextureError, exr as openexr, ktx2 as khronos, picture as pictures, png as portable,
+    radiance as light, table as tables,
 };
 
 /// First bytes of a PNG file.
@@ -48,14 +48,24 @@ pub(super) fn png(bytes: &[u8]) {
         is_whole(&image);
         assert!(image.channels == 4 && image.data.iter().all(|value| (0.0..=1.0).contains(value)));
     }
-    if let Some(map) = read(portable::decode_gray(bytes)) {
-        is_whole(&map);
-        if map.data.len() <= WRITTEN_MAX {
-            let written = portable::encode_gray(&map).unwrap_or_else(|error| panic!("read, but not written: {error}"));
-            let Ok(again) = portable::decode_gray(&written) else { panic!("written, but not read") };
-            let near = again.data.iter().zip(&map.data).all(|(a, b)| (a - b).abs() <= 0.5001 / 255.0);
-            assert!(near && again.data.len() == map.data.len());
-        }
+    round_trip(bytes);
+}
+
+/// A map of any of its formats.
+pub(super) fn picture(bytes: &[u8]) {
+    round_trip(bytes);
+}
+
+/// What is read is written as PNG with the same samples.
+fn round_trip(bytes: &[u8]) {
+    let Some(pictures::Decoded { picture, .. }) = read(pictures::decode(bytes)) else { return };
+    let values = picture.texel_count() * picture.channels as usize;
+    assert!((1..=4).contains(&picture.channels) && (values == 0 || picture.stored(values - 1).is_finite()));
+    if values <= WRITTEN_MAX {
+        let written =
+            portable::encode_picture(&picture).unwrap_or_else(|error| panic!("read, but not written: {error}"));
+        let Ok(again) = pictures::decode(&written) else { panic!("written, but not read") };
+        assert!(again.picture == picture);
     }
 }
 

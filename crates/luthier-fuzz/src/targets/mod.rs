@@ -26,7 +26,7 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 19] = [
+pub const TARGETS: [Target; 20] = [
     Target {
         name: "material",
         parser: "luthier_material::parse, is_material",
@@ -141,11 +141,19 @@ pub const TARGETS: [Target; 19] = [
     },
     Target {
         name: "png",
-        parser: "luthier_texture::png::{decode, decode_gray}",
+        parser: "luthier_texture::png::decode, luthier_texture::picture::decode",
         reads: "maps of materials and of bakes",
         holds: "values are in 0..1 and as many as the size needs; a map that is written is read as an equal one",
         folders: &[],
         run: images::png,
+    },
+    Target {
+        name: "picture",
+        parser: "luthier_texture::picture::decode",
+        reads: "maps of materials: PNG, JPEG and WebP",
+        holds: "samples are as many as the size needs; a picture that is written as PNG is read as an equal one",
+        folders: &[],
+        run: images::picture,
     },
     Target {
         name: "radiance",

@@ -115,7 +115,7 @@ fn holds(material: &Material) {
     }
     assert!(!SurfaceClass::of(stack).name().is_empty());
     for image in material.images() {
-        assert!(!image.path.is_empty());
+        assert!(!image.picture.path.is_empty());
     }
 }
 

@@ -136,6 +136,12 @@ ViewLayer view_layer(uint material, uint index) {
 // where there is none.
 uniform highp sampler2D view_textures;
 uniform ivec3 view_slots[6];
+// Two rows for each, which make its texture coordinates of the surface's.
+uniform highp vec3 view_turns[12];
+
+vec2 view_uv(int map, vec2 uv) {
+    return vec2(dot(view_turns[2 * map], vec3(uv, 1.0)), dot(view_turns[2 * map + 1], vec3(uv, 1.0)));
+}
 
 vec4 view_texel(ivec3 slot, vec2 at) {
     vec2 size = vec2(slot.yz);
@@ -143,8 +149,9 @@ vec4 view_texel(ivec3 slot, vec2 at) {
     return texelFetch(view_textures, ivec2(wrapped.x, slot.x + wrapped.y), 0);
 }
 
-vec4 view_bilinear(ivec3 slot, vec2 uv) {
-    vec2 position = fract(uv) * vec2(slot.yz) - 0.5;
+vec4 view_bilinear(int map, vec2 uv) {
+    ivec3 slot = view_slots[map];
+    vec2 position = fract(view_uv(map, uv)) * vec2(slot.yz) - 0.5;
     vec2 corner = floor(position);
     vec2 weight = position - corner;
     vec4 above = mix(view_texel(slot, corner), view_texel(slot, corner + vec2(1.0, 0.0)), weight.x);
@@ -156,16 +163,16 @@ vec4 view_bilinear(ivec3 slot, vec2 uv) {
 LuthierPlace view_surface(uint material, vec2 uv, float distance) {
     LuthierPlace place = luthier_place();
     if (view_slots[0].y > 0) {
-        vec3 n = 2.0 * view_bilinear(view_slots[0], uv).xyz - 1.0;
+        vec3 n = 2.0 * view_bilinear(0, uv).xyz - 1.0;
         place.normal = normalize(vec3(n.xy, max(n.z, 1e-3)));
     }
     if (view_slots[1].y > 0) {
-        float roughness = view_bilinear(view_slots[1], uv).x;
+        float roughness = view_bilinear(1, uv).x;
         place.alpha_factor = roughness * roughness;
     }
     place.alpha_factor *= view_slopes;
     if (view_slots[2].y > 0) {
-        place.slab_factor = view_bilinear(view_slots[2], uv).x;
+        place.slab_factor = view_bilinear(2, uv).x;
     }
 #ifdef VIEW_FILMS
     place = luthier_film_place(place, material, uv);
@@ -174,12 +181,12 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
     place.flake_normal = luthier_flake_normal(material, uv, distance);
     if (view_slots[4].y > 0) {
         float tiling = view_word(material * VIEW_MATERIAL_WORDS + 4u).w;
-        vec3 flake = 2.0 * view_texel(view_slots[4], floor(fract(uv * tiling) * vec2(view_slots[4].yz))).xyz - 1.0;
+        vec3 flake = 2.0 * view_texel(view_slots[4], floor(fract(view_uv(4, uv * tiling)) * vec2(view_slots[4].yz))).xyz - 1.0;
         place.flake_normal = luthier_flake_tilt(material, flake, distance);
     }
 #endif
 #ifdef VIEW_PATINA
-    float grown = view_slots[3].y > 0 ? view_bilinear(view_slots[3], uv).x : 0.5;
+    float grown = view_slots[3].y > 0 ? view_bilinear(3, uv).x : 0.5;
     place.patina = luthier_patina_amount(material, grown);
 #endif
 #ifdef VIEW_GLITTER
@@ -188,7 +195,7 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
 #endif
 #ifdef VIEW_COLORS
     if (view_slots[5].y > 0) {
-        place.base_color = view_bilinear(view_slots[5], uv).xyz;
+        place.base_color = view_bilinear(5, uv).xyz;
     }
 #endif
     return place;

@@ -110,11 +110,15 @@ class Painter {
   async loadTextures(number) {
     const { maps } = data.materials[number];
     const slots = Array(18).fill(0);
-    if (!maps) return { texture: this.black, slots };
+    const turns = Array(6).fill([1, 0, 0, 0, 1, 0]);
+    if (!maps) return { texture: this.black, slots, turns: turns.flat() };
     const images = await inflateImages(maps.texels, maps.sizes);
     const { texture, headers } = this.stacked(images);
-    maps.slots.forEach((slot, i) => slots.splice(3 * slot, 3, ...headers[i]));
-    return { texture, slots };
+    maps.slots.forEach((slot, i) => {
+      slots.splice(3 * slot, 3, ...headers[i]);
+      turns[slot] = maps.turns[i].flat();
+    });
+    return { texture, slots, turns: turns.flat() };
   }
 
   /** The simulated picture of a material. */
@@ -246,6 +250,7 @@ class Painter {
     gl.uniform2iv(at("view_chains"), surroundings.chains);
     gl.uniform1f(at("view_slopes"), picture.slopes);
     gl.uniform3iv(at("view_slots"), textures.slots);
+    gl.uniform3fv(at("view_turns"), textures.turns);
     gl.uniform1i(at("view_directions"), directions);
     gl.uniform1i(at("view_first_direction"), firstDirection);
     gl.uniform1i(at("view_direction_count"), directionCount);

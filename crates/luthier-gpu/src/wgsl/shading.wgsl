@@ -52,7 +52,16 @@ struct ShadingFactors {
     patina: f32,
 }
 
-// Texel of a map that repeats. `header`: word offset, columns, rows.
+// Texture coordinates of a map. `header.w` names the rows that make them of the surface's; 0: they are the same.
+fn shading_map_uv(header: vec4<u32>, uv: vec2<f32>) -> vec2<f32> {
+    if header.w == 0u {
+        return uv;
+    }
+    let at = vec3<f32>(uv, 1.0);
+    return vec2<f32>(dot(kernel_inputs.words[header.w].xyz, at), dot(kernel_inputs.words[header.w + 1u].xyz, at));
+}
+
+// Texel of a map that repeats. `header`: word offset, columns, rows, word of its transformation.
 fn shading_texel(header: vec4<u32>, at: vec2<f32>) -> vec4<f32> {
     let size = vec2<f32>(header.yz);
     let wrapped = vec2<u32>(clamp(at - floor(at / size) * size, vec2<f32>(0.0), size - 1.0));
@@ -60,7 +69,7 @@ fn shading_texel(header: vec4<u32>, at: vec2<f32>) -> vec4<f32> {
 }
 
 fn shading_bilinear(header: vec4<u32>, uv: vec2<f32>) -> vec4<f32> {
-    let position = fract(uv) * vec2<f32>(header.yz) - 0.5;
+    let position = fract(shading_map_uv(header, uv)) * vec2<f32>(header.yz) - 0.5;
     let corner = floor(position);
     let weight = position - corner;
     let above = mix(shading_texel(header, corner), shading_texel(header, corner + vec2<f32>(1.0, 0.0)), weight.x);
@@ -96,7 +105,7 @@ fn shading_maps(material: u32, uv: vec2<f32>) -> ShadingMaps {
     let flakes = shading_map_header(material, 4u);
     if flakes.y > 0u {
         let tiling = luthier_materials[luthier_header(material) + 4u].w;
-        maps.flake = 2.0 * shading_texel(flakes, floor(fract(uv * tiling) * vec2<f32>(flakes.yz))).xyz - 1.0;
+        maps.flake = 2.0 * shading_texel(flakes, floor(fract(shading_map_uv(flakes, uv * tiling)) * vec2<f32>(flakes.yz))).xyz - 1.0;
         maps.has_flakes = true;
     }
     return maps;

@@ -219,6 +219,8 @@ fn normal_maps_tilt_the_surface_in_pictures() {
         width: 1,
         height: 1,
         factor: None,
+        srgb: false,
+        transform: None,
     });
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).unwrap();
@@ -231,7 +233,7 @@ fn normal_maps_tilt_the_surface_in_pictures() {
         material: 0,
         slot: MapSlot::Normal,
         layer: Some(0),
-        image,
+        picture: image.into(),
         png: Vec::new(),
     });
     let scene = gpu.scene(&artefacts, Form::Baked).unwrap();

@@ -4,7 +4,7 @@ use luthier_export::{MemoryStore, Package, lit};
 use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
-use luthier_material::{Material, VariationSource};
+use luthier_material::{Material, PictureRef, VariationSource};
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
@@ -141,13 +141,13 @@ fn edges(studio: &Studio) -> Outcome<Made> {
         let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
         let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
         (patina.extent, patina.transition) = (0.45, transition);
-        patina.map = VariationSource::Image { path: "patina.png".to_owned() };
+        patina.map = VariationSource::Image(PictureRef::plain("patina.png"));
         materials.push(mapped(stage));
     }
     let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
     let mut pictures: Labelled = Vec::new();
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::Patina) {
-        pictures.push(("map".to_owned(), scaled(&map.image, 2 * studio.size)));
+        pictures.push(("map".to_owned(), scaled(&map.picture.image(), 2 * studio.size)));
     }
     for (transition, picture) in TRANSITIONS.into_iter().zip(from_above(studio, &package)?) {
         let green = greenness(&picture);
@@ -244,9 +244,9 @@ fn examples(studio: &Studio) -> Outcome<Made> {
     for (label, lacquered) in &all[1..3] {
         let package = Package::for_renderer(&lit(std::slice::from_ref(lacquered)), &MemoryStore::default())?;
         let square = from_above(studio, &package)?.swap_remove(0);
-        let map = package.maps.iter().find(|map| map.slot == MapSlot::Thickness).map(|map| &map.image);
+        let map = package.maps.iter().find(|map| map.slot == MapSlot::Thickness).map(|map| map.picture.image());
         let thickness: Vec<f64> = map
-            .into_iter()
+            .iter()
             .flat_map(|map| places_of_square(&square).map(|place| f64::from(nearest(map, place)[0])))
             .collect();
         for (what, values) in [("saturation", saturations(&square)), ("luminance", middle_values(&square))] {

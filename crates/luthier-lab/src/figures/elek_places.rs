@@ -4,7 +4,7 @@ use luthier_export::{MemoryStore, Package, lit};
 use luthier_gpu::{RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
-use luthier_material::{Material, VariationSource};
+use luthier_material::{Material, PictureRef, VariationSource};
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
@@ -186,7 +186,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let copper = crusted()?;
     let mut materials = Vec::new();
-    let map = || VariationSource::Image { path: "patina.png".to_owned() };
+    let map = || VariationSource::Image(PictureRef::plain("patina.png"));
     for (i, extent) in EXTENTS.into_iter().enumerate() {
         let mut stage = shaded(&copper, &format!("stage-{i}"), ShadingModel::Elek);
         let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
@@ -222,7 +222,7 @@ pub(super) fn from_above(studio: &Studio, package: &Package) -> Outcome<Vec<Imag
 
 /// How dark the map of the patina is in each pixel of the middle half of a level square, row by row.
 fn darkness(package: &Package, square: Option<&Image>) -> Vec<f64> {
-    let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
+    let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| map.picture.image());
     let (Some(map), Some(square)) = (map, square) else { return Vec::new() };
-    places_of_square(square).map(|[u, v]| 1.0 - f64::from(nearest(map, [u, v])[0])).collect()
+    places_of_square(square).map(|[u, v]| 1.0 - f64::from(nearest(&map, [u, v])[0])).collect()
 }

@@ -205,8 +205,8 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
     shown.push(("heights".to_owned(), scaled(&heights, studio.size)));
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::FlakeNormal) {
-        slopes(&mut made, &heights, &map.image);
-        shown.push(("normals".to_owned(), scaled(&map.image, studio.size)));
+        slopes(&mut made, &heights, &map.picture.image());
+        shown.push(("normals".to_owned(), scaled(&map.picture.image(), studio.size)));
     }
     made.shown("elek-6", shown, 3);
     Ok(made)

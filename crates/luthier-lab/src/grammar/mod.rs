@@ -96,6 +96,7 @@ fn is_shared(earlier: &TableReference, table: &TableReference, key: &KeyReferenc
     let family = |table: &TableReference| match table.name {
         "dielectric" | "conductor" | "diffuse" | "metallic-roughness" => "layers",
         name if name.ends_with("-maps") => "maps",
+        "picture" | "map" | "flake-heights" => "pictures",
         name => name,
     };
     family(earlier) == family(table) && earlier.keys.contains(key)

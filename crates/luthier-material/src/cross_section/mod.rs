@@ -11,6 +11,7 @@ use luthier_optics::stack::{Base, Distribution, Film, Layer, Surface};
 use crate::doubt::SODIUM_D_NM;
 use crate::effects::{Effects, FlakeSource};
 use crate::material::{LayerExtras, Material};
+use crate::picture::PictureRef;
 use crate::suggest::short;
 
 /// Cross-section through a material. Lengths are in widths of the drawing.
@@ -123,7 +124,7 @@ impl Material {
         let range = if least < most { format!("{} to {} nm", short(least), short(most)) } else { nm(least) };
         numbers.insert(0, PartNumber { name: "thickness", value: range });
         if let Some(variation) = self.layers[number].film_variation.as_ref().filter(|_| i == 0) {
-            let map = variation.source.image().unwrap_or("noise");
+            let map = variation.source.image().map_or_else(|| "noise".to_owned(), PictureRef::label);
             numbers.push(PartNumber { name: "map", value: format!("{map}, {} µm", short(variation.extent_um)) });
         }
         Part {
@@ -253,7 +254,9 @@ fn beyond(extras: &LayerExtras) -> Vec<PartNumber> {
     if let Some([outer, inner]) = extras.exponents {
         numbers.push(PartNumber { name: "exponents", value: format!("{}, {}", short(outer), short(inner)) });
     }
-    numbers.extend(extras.maps.named().map(|map| PartNumber { name: map.key, value: format!("× {}", map.path) }));
+    numbers.extend(
+        extras.maps.named().map(|map| PartNumber { name: map.key, value: format!("× {}", map.picture.label()) }),
+    );
     numbers
 }
 
@@ -264,7 +267,7 @@ fn effects(effects: &Effects) -> Vec<String> {
     }
     if let Some(record) = &effects.flakes {
         let source = match &record.source {
-            FlakeSource::NormalMap { path } | FlakeSource::HeightMap { path, .. } => path.clone(),
+            FlakeSource::NormalMap(picture) | FlakeSource::HeightMap { picture, .. } => picture.label(),
             FlakeSource::Cells { count, spread, .. } => flake_cells(*count, *spread),
         };
         found.push(flakes(&source, record.scale, record.tiling));

@@ -187,6 +187,8 @@ mod tests {
             width: 1,
             height: 1,
             factor: None,
+            srgb: false,
+            transform: None,
         };
         let whole = MapEntry { slot: MapSlot::Normal, layer: None, ..map.clone() };
         let entry = MaterialEntry { layers: vec![coat, metal], maps: vec![map, whole], ..MaterialEntry::default() };

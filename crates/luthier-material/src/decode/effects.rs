@@ -3,10 +3,11 @@
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Stack};
 
-use super::films;
+use super::{films, picture};
 use crate::diagnostic::Sink;
 use crate::effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 use crate::grammar::UNIT;
+use crate::picture::TexelUse;
 use crate::section::Section;
 use crate::suggest::short;
 
@@ -24,7 +25,7 @@ pub(super) fn decode(document: &Section<'_>, stack: &Stack, is_fluorescent: bool
         sink.error(at.key_span("patina"), "no model has patina over a base with `reradiation`", Some(hint));
     }
     Effects {
-        flakes: at.section("flakes").and_then(|at| flakes(&at)),
+        flakes: at.section("flakes").and_then(|at| flakes(&at, sink)),
         patina: at.section("patina").and_then(|at| patina(&at, stack, sink)),
         glitter: at.section("glitter").map(|at| glitter(&at)),
     }
@@ -39,12 +40,16 @@ fn glitter(at: &Section<'_>) -> Glitter {
     }
 }
 
-fn flakes(at: &Section<'_>) -> Option<Flakes> {
-    let source = match at.path("normal_map") {
-        Some(path) => FlakeSource::NormalMap { path },
+fn flakes(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Flakes> {
+    if let Some(normals) = at.section("normal_map") {
+        picture::check(&normals, TexelUse::Normal, sink);
+    }
+    let source = match picture::under(at, "normal_map") {
+        Some(picture) => FlakeSource::NormalMap(picture),
         None if at.has("height_map") => {
             let heights = at.section("height_map")?;
-            FlakeSource::HeightMap { path: heights.path("image")?, height: heights.number("height")? }
+            picture::check(&heights, TexelUse::Number, sink);
+            FlakeSource::HeightMap { picture: picture::of(&heights)?, height: heights.number("height")? }
         }
         None => {
             let cells = at.section("cells")?;
@@ -76,7 +81,7 @@ fn patina(at: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Option<Patina
     Some(Patina {
         extent,
         transition,
-        map: films::map(&at.section("map")?)?,
+        map: films::map(at, "map", sink)?,
         diffuse_albedo: scattered(at, stack, sink),
         base_alpha: at.number("base_alpha"),
         tarnish: at.rgb("tarnish").unwrap_or([1.0; 3]),

@@ -5,11 +5,12 @@ use std::ops::Range as Span;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Film, FilmThickness};
 
-use super::Read;
+use super::{Read, picture};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::{NOT_NEGATIVE, POSITIVE};
 use crate::material::{FilmVariation, VariationSource};
+use crate::picture::TexelUse;
 use crate::section::Section;
 use crate::suggest::short;
 
@@ -61,16 +62,26 @@ fn varying(at: &Section<'_>, sink: &mut Sink<'_>) -> (FilmThickness, Option<Film
         let message = format!("the range is upside down: min {} is above max {}", short(min_nm), short(max_nm));
         sink.error(at.span.clone(), message, Some(hint));
     }
-    let variation = at.section("map").and_then(|map| self::map(&map)).zip(at.number("extent_um"));
+    let variation = map(at, "map", sink).zip(at.number("extent_um"));
+    if let Some(transform) = at.section("map").filter(|map| map.has("transform")) {
+        let hint = "say by `extent_um` how wide one repeat is, or turn the picture itself".to_owned();
+        let message = "the map of a film lies as the texture coordinates do";
+        sink.error(transform.key_span("transform"), message, Some(hint));
+    }
     let variation = variation.map(|(source, extent_um)| FilmVariation { source, extent_um });
     (FilmThickness { min_nm, max_nm }, variation)
 }
 
-/// A scalar map: noise or an image.
-pub(super) fn map(at: &Section<'_>) -> Option<VariationSource> {
-    if let Some(path) = at.path("image") {
-        return Some(VariationSource::Image { path });
+/// A map of one number: noise or a picture.
+pub(super) fn map(of: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<VariationSource> {
+    if let Some(picture) = picture::under(of, key) {
+        if let Some(at) = of.section(key) {
+            picture::check(&at, TexelUse::Number, sink);
+        }
+        return Some(VariationSource::Image(picture));
     }
+    let at = of.section(key)?;
+    picture::check_absent(&at, sink);
     let noise = at.section("noise")?;
     Some(VariationSource::Noise {
         seed: noise.integer("seed").unwrap_or(0),

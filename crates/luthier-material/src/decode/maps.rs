@@ -1,5 +1,6 @@
 //! Decoder of the maps of a layer.
 
+use super::picture;
 use crate::diagnostic::Sink;
 use crate::material::{LayerExtras, Maps};
 use crate::section::Section;
@@ -8,17 +9,17 @@ use crate::section::Section;
 pub(super) fn decode(at: &Section<'_>) -> Maps {
     let Some(maps) = at.section("maps") else { return Maps::default() };
     Maps {
-        normal: maps.path("normal"),
-        roughness: maps.path("roughness"),
-        thickness: maps.path("thickness"),
-        bumps: maps.path("bumps"),
-        alpha: maps.path("alpha"),
-        alpha_x: maps.path("alpha_x"),
-        alpha_y: maps.path("alpha_y"),
-        tangent: maps.path("tangent"),
-        albedo: maps.path("albedo"),
-        base_color: maps.path("base_color"),
-        metallic: maps.path("metallic"),
+        normal: picture::under(&maps, "normal"),
+        roughness: picture::under(&maps, "roughness"),
+        thickness: picture::under(&maps, "thickness"),
+        bumps: picture::under(&maps, "bumps"),
+        alpha: picture::under(&maps, "alpha"),
+        alpha_x: picture::under(&maps, "alpha_x"),
+        alpha_y: picture::under(&maps, "alpha_y"),
+        tangent: picture::under(&maps, "tangent"),
+        albedo: picture::under(&maps, "albedo"),
+        base_color: picture::under(&maps, "base_color"),
+        metallic: picture::under(&maps, "metallic"),
     }
 }
 
@@ -37,6 +38,11 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
         }
     }
     check_metallic(at, &maps, sink);
+    for map in decode(at).named() {
+        if let Some(table) = maps.section(map.key) {
+            picture::check(&table, map.texels(), sink);
+        }
+    }
     for name in ["alpha_x", "alpha_y", "tangent"] {
         if maps.has(name) && !(at.has("alpha_x") && at.has("alpha_y")) {
             let what = if name == "tangent" { "turns the axes" } else { "scales one of the two slope parameters" };

@@ -8,6 +8,7 @@ mod films;
 mod ior;
 mod layers;
 mod maps;
+mod picture;
 mod reradiation;
 mod schlick;
 mod surface;
@@ -68,7 +69,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         places,
     };
     let mut files = named.into_inner();
-    files.extend(material.images().iter().map(|image| image.path.to_owned()));
+    files.extend(material.images().iter().map(|image| image.picture.path.clone()));
     material.files = files.into_iter().collect();
     if !sink.has_errors() {
         bake::check_limits(&material, document, sink);

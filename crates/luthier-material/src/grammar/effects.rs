@@ -1,6 +1,7 @@
 //! Grammar of the section `[effects]`.
 
 use super::layers::VARIATION;
+use super::picture::{CHANNEL, PICTURE, SCALE, SRGB, TRANSFORM};
 use super::{ANY, Alternatives, Key, Kind, NOT_NEGATIVE, PATH, POSITIVE, Range, Table, UNIT, UNIT_RGB};
 
 /// Slope angles of flakes that still lie face up.
@@ -36,7 +37,7 @@ static FLAKES: Table = Table {
     name: "flakes",
     doc: "Metal flakes: normals that are perturbed below the first interface (Elek 2010, section 4.1).",
     keys: &[
-        Key::optional("normal_map", PATH, "Path of a tangent-space normal map; it is sampled without filtering."),
+        Key::optional("normal_map", PICTURE, "A tangent-space normal map; it is sampled without filtering."),
         Key::optional("height_map", Kind::Table(&FLAKE_HEIGHTS), "Heights of flakes, of which normals are made."),
         Key::optional("cells", Kind::Table(&FLAKE_CELLS), "A grid of cells, each with a random normal."),
         Key::with_default("tiling", Kind::Number(POSITIVE), "1000", "Repeats per unit of texture coordinate."),
@@ -61,12 +62,16 @@ static FLAKE_HEIGHTS: Table = Table {
     name: "flake-heights",
     doc: "Heights of flakes; a texel has the normal of the differences of its neighbours' heights.",
     keys: &[
-        Key::required("image", PATH, "Path of a picture whose red channel is the height, read as linear; it repeats."),
+        Key::required("image", PATH, "Path of a picture of heights, PNG, JPEG or WebP; it repeats."),
         Key::required(
             "height",
             Kind::Number(POSITIVE),
             "Height of white above black, as a share of the width of the picture.",
         ),
+        CHANNEL,
+        SRGB,
+        SCALE,
+        TRANSFORM,
     ],
     exactly_one: None,
 };
@@ -93,7 +98,7 @@ static PATINA: Table = Table {
     keys: &[
         Key::required("extent", Kind::Number(ANY), "How far it has developed, from -transition to 1 + transition."),
         Key::required("transition", Kind::Number(UNIT), "Softness of its boundary; 0 is a step."),
-        Key::required("map", Kind::Table(&VARIATION), "Order of development: dark places come first."),
+        Key::required("map", VARIATION, "Order of development: dark places come first."),
         Key::with_default(
             "diffuse_albedo",
             UNIT_RGB,

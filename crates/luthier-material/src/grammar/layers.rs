@@ -1,5 +1,6 @@
 //! Grammar of layers: types, indices, micro-surfaces, slabs, maps.
 
+use super::picture::{CHANNEL, PICTURE, SCALE, SRGB, TRANSFORM};
 use super::{
     Alternatives, Key, Kind, NOT_NEGATIVE, NOT_NEGATIVE_RGB, PATH, POSITIVE, Range, Table, TextForm, UNIT,
     UNIT_ABOVE_ZERO, UNIT_RGB,
@@ -178,19 +179,19 @@ static SGD_TABLE: Table = Table {
 };
 
 const MAPS_DOC: &str = "Textures that modulate the layer.";
-const NORMAL_MAP: Key = Key::optional("normal", PATH, "Path of a tangent-space normal map.");
-const ROUGHNESS_MAP: Key = Key::optional("roughness", PATH, "Path of a map that multiplies the roughness.");
-const THICKNESS_MAP: Key = Key::optional("thickness", PATH, "Path of a map that multiplies the slab's thickness.");
+const NORMAL_MAP: Key = Key::optional("normal", PICTURE, "A tangent-space normal map.");
+const ROUGHNESS_MAP: Key = Key::optional("roughness", PICTURE, "A map that multiplies the roughness.");
+const THICKNESS_MAP: Key = Key::optional("thickness", PICTURE, "A map that multiplies the slab's thickness.");
 
-const BUMPS: Key = Key::optional("bumps", PATH, "Path of a tangent-space normal map that tilts this layer alone.");
+const BUMPS: Key = Key::optional("bumps", PICTURE, "A tangent-space normal map that tilts this layer alone.");
 const ALPHA_MAP: Key =
-    Key::optional("alpha", PATH, "Path of a map that multiplies the slope parameters of this layer alone.");
-const ALPHA_X_MAP: Key = Key::optional("alpha_x", PATH, "Path of a map that multiplies alpha_x.");
-const ALPHA_Y_MAP: Key = Key::optional("alpha_y", PATH, "Path of a map that multiplies alpha_y.");
+    Key::optional("alpha", PICTURE, "A map that multiplies the slope parameters of this layer alone.");
+const ALPHA_X_MAP: Key = Key::optional("alpha_x", PICTURE, "A map that multiplies alpha_x.");
+const ALPHA_Y_MAP: Key = Key::optional("alpha_y", PICTURE, "A map that multiplies alpha_y.");
 const TANGENT_MAP: Key = Key::optional(
     "tangent",
-    PATH,
-    "Path of a map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
+    PICTURE,
+    "A map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
 );
 
 static DIELECTRIC_MAPS: Table = Table {
@@ -208,11 +209,7 @@ static CONDUCTOR_MAPS: Table = Table {
 static DIFFUSE_MAPS: Table = Table {
     name: "diffuse-maps",
     doc: MAPS_DOC,
-    keys: &[
-        NORMAL_MAP,
-        BUMPS,
-        Key::optional("albedo", PATH, "Path of a picture, RGB read as linear, that multiplies the albedo."),
-    ],
+    keys: &[NORMAL_MAP, BUMPS, Key::optional("albedo", PICTURE, "A picture whose colours multiply the albedo.")],
     exactly_one: None,
 };
 static METALLIC_MAPS: Table = Table {
@@ -225,8 +222,8 @@ static METALLIC_MAPS: Table = Table {
         ALPHA_X_MAP,
         ALPHA_Y_MAP,
         TANGENT_MAP,
-        Key::optional("base_color", PATH, "Path of a picture, RGB read as linear, that multiplies the base colour."),
-        Key::optional("metallic", PATH, "Path of a map that multiplies `metallic`."),
+        Key::optional("base_color", PICTURE, "A picture whose colours multiply the base colour."),
+        Key::optional("metallic", PICTURE, "A map that multiplies `metallic`."),
     ],
     exactly_one: None,
 };
@@ -382,18 +379,24 @@ static FILM_THICKNESS: Table = Table {
         Key::required("min", Kind::Number(NOT_NEGATIVE), "Thinnest, in nm."),
         Key::required("max", Kind::Number(POSITIVE), "Thickest, in nm."),
         Key::required("extent_um", Kind::Number(POSITIVE), "Width of one repeat of the map on the surface, in um."),
-        Key::required("map", Kind::Table(&VARIATION), "How it varies: 0 is the thinnest, 1 the thickest."),
+        Key::required("map", VARIATION, "How it varies: 0 is the thinnest, 1 the thickest."),
     ],
     exactly_one: None,
 };
 
-/// A scalar map.
-pub(super) static VARIATION: Table = Table {
+/// A map of one number: the path of a picture, or a table.
+pub(super) const VARIATION: Kind = Kind::OneOf(&[PATH, Kind::Table(&VARIATION_TABLE)]);
+
+static VARIATION_TABLE: Table = Table {
     name: "map",
-    doc: "A scalar map: noise or an image.",
+    doc: "A map of one number: noise, or a picture and how it is read. A string alone is the path of a picture.",
     keys: &[
         Key::optional("noise", Kind::Table(&NOISE), "Fractal gradient noise."),
-        Key::optional("image", PATH, "Path of an image; its red channel is read as linear."),
+        Key::optional("image", PATH, "Path of a picture, PNG, JPEG or WebP."),
+        CHANNEL,
+        SRGB,
+        SCALE,
+        TRANSFORM,
     ],
     exactly_one: Some(Alternatives {
         what: "map",

@@ -5,6 +5,7 @@ mod bake;
 mod document;
 mod effects;
 mod layers;
+mod picture;
 mod scene;
 mod surface;
 mod unit;
@@ -58,6 +59,8 @@ pub(crate) struct Key {
 pub(crate) enum Kind {
     /// `true` only.
     True,
+    /// `true` or `false`.
+    Flag,
     /// A finite number.
     Number(Range),
     /// A whole number between two bounds, both included.
@@ -199,7 +202,7 @@ mod tests {
 
     fn toml_type(kind: &Kind) -> &'static str {
         match kind {
-            Kind::True => "boolean",
+            Kind::True | Kind::Flag => "boolean",
             Kind::Number(_) | Kind::Integer(..) => "number",
             Kind::Text(_) | Kind::Choice(_) => "string",
             Kind::List { .. } | Kind::Tagged { .. } => "array",

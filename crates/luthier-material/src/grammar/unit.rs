@@ -28,7 +28,8 @@ const NAMES: [(&str, &str, &str); 14] = [
 ];
 
 /// Keys of pure numbers.
-const PURES: [&str; 34] = [
+const PURES: [&str; 35] = [
+    "offset",
     "f0",
     "roughness",
     "alpha",

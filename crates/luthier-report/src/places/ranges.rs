@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use luthier_layers::flakes::Flakes;
 use luthier_layers::patina::Patina;
-use luthier_lut::{Image, TableKind};
+use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
 
 use crate::Subject;
@@ -19,8 +19,8 @@ pub struct SurfaceMap {
     pub slot: MapSlot,
     /// The layer that it is of; `None` for those of the whole surface.
     pub layer: Option<u32>,
-    /// Texels, linear.
-    pub image: Image,
+    /// Its texels.
+    pub picture: Picture,
 }
 
 /// Quantities that vary over the surface of a material, with their ranges.
@@ -78,7 +78,7 @@ impl Places {
             let is_shown = !is_own || map.layer.is_some_and(|layer| shown.contains(&(layer, map.slot)));
             let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
-            let range = |c: usize| channel(&map.image, c).map(|value| factor[c] * value);
+            let range = |c: usize| texels(&map.picture, c).map(|value| factor[c] * value);
             is_shown.then(|| (map.slot, map.layer, [0, 1, 2].map(range)))
         });
         let film = entry.layers.first().filter(|layer| layer.varies()).map(|layer| {
@@ -194,6 +194,12 @@ const UP: [f32; 3] = [0.0, 0.0, 1.0];
 fn channel(image: &Image, channel: usize) -> [f64; 2] {
     let channel = if channel < image.channels as usize { channel } else { 0 };
     let values = image.texels().map(|texel| f64::from(texel[channel]));
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// Smallest and largest value of a channel of a picture.
+fn texels(picture: &Picture, channel: usize) -> [f64; 2] {
+    let values = picture.texels().map(|texel| f64::from(texel[channel]));
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 

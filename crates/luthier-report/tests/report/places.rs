@@ -18,13 +18,23 @@ use crate::fixture::{Bake, WAVELENGTHS_NM, axis, table};
 /// A map of two texels, the least and the greatest value of each channel.
 fn map(bake: &mut Bake, material: usize, slot: MapSlot, layer: u32, texels: [[f32; 3]; 2]) -> SurfaceMap {
     let file = FileEntry::default();
-    let entry = MapEntry { slot, layer: Some(layer), source: String::new(), file, width: 2, height: 1, factor: None };
+    let entry = MapEntry {
+        slot,
+        layer: Some(layer),
+        source: String::new(),
+        file,
+        width: 2,
+        height: 1,
+        factor: None,
+        srgb: false,
+        transform: None,
+    };
     bake.manifest.materials[material].maps.push(entry);
     let mut image = Image::zeros(2, 1, 4);
     for (x, [r, g, b]) in (0..).zip(texels) {
         image.texel_mut(x, 0).copy_from_slice(&[r, g, b, 1.0]);
     }
-    SurfaceMap { material: material as u32, slot, layer: Some(layer), image }
+    SurfaceMap { material: material as u32, slot, layer: Some(layer), picture: image.into() }
 }
 
 /// The bake of the fixture, whose first material has maps of normal, roughness, thickness and albedo.

@@ -148,7 +148,17 @@ fn mapped(material: MaterialEntry) -> MaterialEntry {
 /// A material with a map of a layer.
 pub(crate) fn with_map(material: MaterialEntry, slot: MapSlot, layer: u32) -> MaterialEntry {
     let file = FileEntry::default();
-    let map = MapEntry { slot, layer: Some(layer), source: String::new(), file, width: 1, height: 1, factor: None };
+    let map = MapEntry {
+        slot,
+        layer: Some(layer),
+        source: String::new(),
+        file,
+        width: 1,
+        height: 1,
+        factor: None,
+        srgb: false,
+        transform: None,
+    };
     MaterialEntry { maps: vec![map], ..material }
 }
 

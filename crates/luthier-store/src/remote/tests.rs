@@ -240,7 +240,7 @@ fn bake(server: &Arc<Server>) -> (Baked, usize, (TempDir, DiskStore), Option<Str
     let folder = tempfile::tempdir().unwrap();
     let disk = DiskStore::open(folder.path(), DEFAULT_LIMIT).unwrap();
     let remote = server.store(if server.fault == Fault::Silent { Duration::from_millis(50) } else { PATIENT });
-    let (ran, no_images) = (Ran::default(), |_: &str, _: &str| Err("no images".to_owned()));
+    let (ran, no_images) = (Ran::default(), |_: &str, _: &luthier_material::PictureRef| Err("no images".to_owned()));
     let baked = bake_with(&[material()], &Options::default(), &no_images, &ran, &Layers(&[&disk, &remote])).unwrap();
     remote.close();
     assert!(disk.problem().is_none());

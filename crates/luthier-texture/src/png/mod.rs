@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use ::image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use ::image::{ExtendedColorType, ImageDecoder, ImageEncoder, Limits};
-use luthier_lut::Image;
+use luthier_lut::{Image, Picture, PictureSamples};
 
 use crate::error::Container;
 use crate::limits::{check_image, checked_bytes};
@@ -82,22 +82,39 @@ pub fn encode_gray(map: &Image) -> Result<Vec<u8>, TextureError> {
     Ok(file)
 }
 
-/// A map: one channel in 0..=1, the stored values over their maximum (8 or 16 bits), not linearised. Alpha is ignored;
-/// a colour image will do if it is grey throughout.
+/// A picture of one channel, or of the three of RGB, as PNG of the same bits; texels of floats become 16 bits.
 ///
 /// # Errors
-/// As [`decode`], and [`TextureError::NotGrey`].
-pub fn decode_gray(file: &[u8]) -> Result<Image, TextureError> {
-    let Pixels { width, height, channels, values, .. } = read(file, 1)?;
-    let mut data = Vec::with_capacity(values.len() / channels);
-    for (i, pixel) in values.chunks_exact(channels).enumerate() {
-        if channels >= 3 && (pixel[0] != pixel[1] || pixel[1] != pixel[2]) {
-            let i = i as u32;
-            return Err(TextureError::NotGrey { x: i % width, y: i / width });
+/// [`TextureError::Size`], [`TextureError::Length`], [`TextureError::PngTable`].
+pub fn encode_picture(picture: &Picture) -> Result<Vec<u8>, TextureError> {
+    let (width, height, channels) = (picture.width, picture.height, picture.channels as usize);
+    let bytes = match &picture.samples {
+        PictureSamples::Bits8(values) => values.clone(),
+        PictureSamples::Bits16(values) => values.iter().flat_map(|value| value.to_be_bytes()).collect(),
+        PictureSamples::Float(values) => {
+            let code = |value: &f32| (value.clamp(0.0, 1.0) * 65535.0).round() as u16;
+            values.iter().flat_map(|value| code(value).to_be_bytes()).collect()
         }
-        data.push(pixel[0]);
+    };
+    let size = if matches!(picture.samples, PictureSamples::Bits8(_)) { 1 } else { 2 };
+    let expected = checked_bytes(width, height, (size * channels) as u32)?;
+    if bytes.len() != expected {
+        return Err(TextureError::Length { found: bytes.len() / size, expected: expected / size });
     }
-    Ok(Image { width, height, channels: 1, data })
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, width, height);
+    encoder.set_depth(if size == 1 { ::png::BitDepth::Eight } else { ::png::BitDepth::Sixteen });
+    encoder.set_color(match channels {
+        1 => ::png::ColorType::Grayscale,
+        2 => ::png::ColorType::GrayscaleAlpha,
+        3 => ::png::ColorType::Rgb,
+        _ => ::png::ColorType::Rgba,
+    });
+    encoder.set_compression(::png::Compression::Balanced);
+    let mut writer = encoder.write_header().map_err(TextureError::PngTable)?;
+    writer.write_image_data(&bytes).map_err(TextureError::PngTable)?;
+    writer.finish().map_err(TextureError::PngTable)?;
+    Ok(file)
 }
 
 /// An image as RGBA in 0..=1, the stored values over their maximum (8 or 16 bits), not linearised; alpha is 1 where the
@@ -106,16 +123,9 @@ pub fn decode_gray(file: &[u8]) -> Result<Image, TextureError> {
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::PngDecode`] for damaged files, [`TextureError::Size`].
 pub fn decode(file: &[u8]) -> Result<Image, TextureError> {
-    let Pixels { width, height, channels, values, .. } = read(file, 4)?;
-    let rgba = |pixel: &[f32]| match *pixel {
-        [y] => [y, y, y, 1.0],
-        [y, a] => [y, y, y, a],
-        [r, g, b] => [r, g, b, 1.0],
-        [r, g, b, a, ..] => [r, g, b, a],
-        [] => [0.0; 4],
-    };
-    let data = values.chunks_exact(channels).flat_map(rgba).collect();
-    Ok(Image { width, height, channels: 4, data })
+    let picture = read(file)?;
+    checked_bytes(picture.width, picture.height, 16)?;
+    Ok(picture.image())
 }
 
 /// A table with as many channels as the file has (a grey one has 1), values over their maximum, and its bits per value.
@@ -123,31 +133,25 @@ pub fn decode(file: &[u8]) -> Result<Image, TextureError> {
 /// # Errors
 /// As [`decode`].
 pub(crate) fn decode_table(file: &[u8]) -> Result<(Image, u32), TextureError> {
-    let Pixels { width, height, channels, bits, values } = read(file, 1)?;
-    Ok((Image { width, height, channels: channels as u32, data: values }, bits))
+    let picture = read(file)?;
+    let bits = if matches!(picture.samples, PictureSamples::Bits8(_)) { 8 } else { 16 };
+    let data = (0..picture.texel_count() * picture.channels as usize).map(|i| picture.stored(i)).collect();
+    Ok((Image { width: picture.width, height: picture.height, channels: picture.channels, data }, bits))
 }
 
-struct Pixels {
-    width: u32,
-    height: u32,
-    /// 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
-    channels: usize,
-    /// 8 or 16.
-    bits: u32,
-    values: Vec<f32>,
-}
-
-/// Reads pixels that will become an image of `channels_wanted`.
-fn read(file: &[u8], channels_wanted: u32) -> Result<Pixels, TextureError> {
+/// The pixels of a file as they are stored.
+pub(crate) fn read(file: &[u8]) -> Result<Picture, TextureError> {
+    if let Some(reason) = unreadable(file) {
+        return Err(TextureError::malformed(Container::Png, reason));
+    }
+    check_palette(file)?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_DECODER_BYTES);
-    check_palette(file)?;
     // Palettes, 1 to 4 bits and colour keys become 8-bit channels.
     let decoder = PngDecoder::with_limits(Cursor::new(file), limits).map_err(TextureError::PngDecode)?;
     let (width, height) = decoder.dimensions();
     let color = decoder.color_type();
-    let channels = color.channel_count();
-    checked_bytes(width, height, 4 * channels_wanted.max(channels.into()))?;
+    checked_bytes(width, height, color.bytes_per_pixel().into())?;
     // A pixel takes one bit at least.
     if u64::from(width) * u64::from(height) / 8 > MAX_EXPANSION * file.len() as u64 {
         return Err(TextureError::malformed(Container::Png, "it is too short for the size that it states"));
@@ -155,25 +159,50 @@ fn read(file: &[u8], channels_wanted: u32) -> Result<Pixels, TextureError> {
     let size = usize::try_from(decoder.total_bytes()).map_err(|_| TextureError::Size { width, height })?;
     let mut bytes = vec![0; size];
     decoder.read_image(&mut bytes).map_err(TextureError::PngDecode)?;
-    let bits = 8 * u32::from(color.bytes_per_pixel() / channels);
-    let values = if bits == 8 {
-        bytes.iter().map(|&b| f32::from(b) / 255.0).collect()
+    let channels = u32::from(color.channel_count());
+    let samples = if u32::from(color.bytes_per_pixel()) == channels {
+        PictureSamples::Bits8(bytes)
     } else {
-        bytes.as_chunks().0.iter().map(|&b| f32::from(u16::from_ne_bytes(b)) / 65535.0).collect()
+        PictureSamples::Bits16(bytes.as_chunks().0.iter().map(|&b| u16::from_ne_bytes(b)).collect())
     };
-    Ok(Pixels { width, height, channels: channels.into(), bits, values })
+    Ok(Picture { width, height, channels, is_srgb: false, samples })
+}
+
+/// Whether a file says that its colours are stored by the sRGB curve, or by a power that stands for it.
+pub(crate) fn says_srgb(file: &[u8]) -> bool {
+    chunks(file).any(|(kind, data)| match kind {
+        b"sRGB" | b"iCCP" => true,
+        b"gAMA" => data.first_chunk().is_some_and(|gamma| (45_000..46_000).contains(&u32::from_be_bytes(*gamma))),
+        _ => false,
+    })
+}
+
+/// Why a file of PNG's signature is none that others than its maker read.
+fn unreadable(file: &[u8]) -> Option<&'static str> {
+    let apple = chunks(file).next().is_some_and(|(kind, _)| kind == b"CgBI");
+    apple.then_some("Xcode made it for iOS (chunk CgBI), which no other program reads; export the picture again")
+}
+
+/// The chunks of a file: kind and data, as far as it goes.
+fn chunks(file: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
+    // Chunks: length, kind, data, sum.
+    let mut rest = file.get(8..).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let (length, chunk) = rest.split_first_chunk()?;
+        let (kind, data) = chunk.split_first_chunk()?;
+        let length = u32::from_be_bytes(*length) as usize;
+        rest = data.get(length.saturating_add(4)..).unwrap_or_default();
+        Some((kind, data.get(..length).unwrap_or(data)))
+    })
 }
 
 /// Refuses palettes that do not consist of 1 to 256 colours (section 11.2.2 of the PNG specification): the decoder reads beyond their end.
 fn check_palette(file: &[u8]) -> Result<(), TextureError> {
-    // Chunks: length, kind, data, sum.
-    let mut rest = file.get(8..).unwrap_or_default();
-    while let Some((length, chunk)) = rest.split_first_chunk() {
-        let length = u32::from_be_bytes(*length) as usize;
-        if chunk.starts_with(b"PLTE") && !(length.is_multiple_of(3) && (3..=768).contains(&length)) {
-            return Err(TextureError::malformed(Container::Png, "the palette does not consist of 1 to 256 colours"));
-        }
-        rest = chunk.get(length.saturating_add(8)..).unwrap_or_default();
+    let is_wrong = |(kind, data): (&[u8; 4], &[u8])| {
+        kind == b"PLTE" && !(data.len().is_multiple_of(3) && (3..=768).contains(&data.len()))
+    };
+    if chunks(file).any(is_wrong) {
+        return Err(TextureError::malformed(Container::Png, "the palette does not consist of 1 to 256 colours"));
     }
     Ok(())
 }

@@ -367,7 +367,7 @@ impl Handle {
             Self::FlakeFadeStart => (&mut effects.flakes.as_mut()?.fade_start, Unit::Own),
             Self::FlakeSpread => match &mut effects.flakes.as_mut()?.source {
                 FlakeSource::Cells { spread, .. } => (spread, Unit::Degrees),
-                FlakeSource::NormalMap { .. } | FlakeSource::HeightMap { .. } => return None,
+                FlakeSource::NormalMap(_) | FlakeSource::HeightMap { .. } => return None,
             },
         })
     }

@@ -38,9 +38,9 @@ impl Kind for Table {
         let variation = site.extras.and_then(|extras| extras.film_variation.as_ref());
         let Some((film, variation)) = site.layer.films.first().zip(variation) else { return Ok(None) };
         let source = &site.material.source;
-        let relief = Relief::of(&variation.source, |path| {
-            let map = |reason| BakeError::Map { material: source.clone(), path: path.to_owned(), reason };
-            (site.read_image)(source, path).map_err(map)
+        let relief = Relief::of(&variation.source, |picture| {
+            let map = |reason| BakeError::Map { material: source.clone(), path: picture.path.clone(), reason };
+            (site.read_image)(source, picture).map_err(map)
         })?;
         Ok(Some(Arc::new(ThicknessJob {
             relief,

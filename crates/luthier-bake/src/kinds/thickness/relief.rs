@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use luthier_layers::perlin::Octaves;
 use luthier_lut::Image;
-use luthier_material::VariationSource;
+use luthier_material::{PictureRef, VariationSource};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
@@ -21,13 +21,13 @@ impl Relief {
     /// The relief that a material describes, with `read` to fetch images.
     pub(crate) fn of(
         source: &VariationSource,
-        read: impl FnOnce(&str) -> Result<Image, crate::BakeError>,
+        read: impl FnOnce(&PictureRef) -> Result<Image, crate::BakeError>,
     ) -> Result<Self, crate::BakeError> {
         Ok(match source {
             VariationSource::Noise { seed, frequency, octaves } => {
                 Self::Noise { seed: *seed, frequency: *frequency, octaves: *octaves }
             }
-            VariationSource::Image { path } => Self::Image(read(path)?),
+            VariationSource::Image(picture) => Self::Image(read(picture)?),
         })
     }
 

@@ -1,7 +1,5 @@
 //! The place of a surface that is evaluated: what options say of it, and the effects of the material file there.
 
-use std::path::Path;
-
 use glam::{DVec2, DVec3};
 use luthier_bake::{MapSource, height_normals};
 use luthier_layers::flakes::Flakes;
@@ -10,12 +8,12 @@ use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
-use luthier_lut::Image;
+use luthier_lut::{Image, Picture};
 use luthier_manifest::MapSlot;
-use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
+use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Base;
-use luthier_terminal::{Failure, Outcome, files};
+use luthier_terminal::{Failure, Outcome};
 
 use crate::model_inputs::{LayerMap, ModelInputs};
 
@@ -33,15 +31,19 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     if let Some(flakes) = &shows.flakes {
         let (seed, count, spread) = match flakes.source {
             FlakeSource::Cells { seed, count, spread } => (seed, count, spread),
-            FlakeSource::NormalMap { .. } | FlakeSource::HeightMap { .. } => (0, 1, 0.0),
+            FlakeSource::NormalMap(_) | FlakeSource::HeightMap { .. } => (0, 1, 0.0),
         };
         let (tiling, scale, fade_start) = (flakes.tiling, flakes.scale, flakes.fade_start);
         let all = Flakes { seed, count, tiling, spread, scale, fade_start };
         let flake = match &flakes.source {
             FlakeSource::Cells { .. } => all.flake(uv),
-            FlakeSource::NormalMap { path } => texel(&image(material, path)?, uv * tiling),
-            FlakeSource::HeightMap { path, height } => {
-                texel(&height_normals(&image(material, path)?, *height), uv * tiling)
+            FlakeSource::NormalMap(normals) => {
+                let map = picture(material, normals, TexelUse::Normal)?;
+                texel(&map.image(), moved(normals, uv * tiling))
+            }
+            FlakeSource::HeightMap { picture: heights, height } => {
+                let map = picture(material, heights, TexelUse::Number)?;
+                texel(&height_normals(&map.channel(0), *height), moved(heights, uv * tiling))
             }
         };
         place.under.flake_normal = all.tilted(flake, inputs.distance().unwrap_or(0.0));
@@ -49,7 +51,9 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     if let Some(patina) = &shows.patina {
         let map = match (inputs.map(), &patina.map) {
             (Some(map), _) => map,
-            (None, VariationSource::Image { path }) => filtered(&image(material, path)?, uv),
+            (None, VariationSource::Image(named)) => {
+                filtered(&picture(material, named, TexelUse::Number)?.channel(0), moved(named, uv))
+            }
             (None, &VariationSource::Noise { seed, frequency, octaves }) => {
                 let noise = MapSource::Noise { seed, frequency, octaves }.texels();
                 noise.map_or(0.5, |noise| filtered(&noise, uv))
@@ -72,7 +76,8 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
     let mut metallic: Option<(usize, Rgb, f64)> = None;
     for map in maps {
         let own = &mut layers[map.layer];
-        let image = image(material, &map.path)?;
+        let image = picture(material, &map.picture, map.texels)?.image();
+        let uv = moved(&map.picture, uv);
         let texel = |channel| filtered_channel(&image, uv, channel);
         match map.slot {
             MapSlot::Bumps => {
@@ -115,11 +120,15 @@ fn particle(&Glitter { seed, frequency, filled, tilt }: &Glitter, uv: DVec2) -> 
     Map::Glitter { cells, stacks: vec![0], filled, tilt, under: Box::new(Map::Uniform(0)) }.pick(uv).normal
 }
 
-fn image(material: &Material, path: &str) -> Outcome<Image> {
-    let path = Path::new(&material.source).parent().unwrap_or(Path::new("")).join(path);
-    let bytes = luthier_export::input::image(&path).map_err(files(&path, "read"))?;
-    luthier_texture::png::decode(&bytes)
-        .map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())))
+fn picture(material: &Material, named: &PictureRef, texels: TexelUse) -> Outcome<Picture> {
+    luthier_export::read_picture(&material.source, named, texels)
+        .map_err(|reason| Failure::Input(anyhow::anyhow!("{}: {}: {reason}", material.source, named.path)))
+}
+
+/// Texture coordinates of a picture.
+fn moved(named: &PictureRef, uv: DVec2) -> DVec2 {
+    let Some(transform) = named.transform else { return uv };
+    DVec2::from(transform.matrix().map(|[u, v, one]| u * uv.x + v * uv.y + one))
 }
 
 /// The texel of a map of normals that repeats, unfiltered.

@@ -67,8 +67,8 @@ fn maps(folder: &Folder) -> Outcome<Vec<SurfaceMap>> {
     let materials = (0..).zip(&folder.manifest().materials);
     let all = materials.flat_map(|(material, entry)| entry.maps.iter().map(move |map| (material, map)));
     all.map(|(material, map)| {
-        let (_, image) = folder.map(map)?;
-        Ok(SurfaceMap { material, slot: map.slot, layer: map.layer, image })
+        let (_, picture) = folder.map(map)?;
+        Ok(SurfaceMap { material, slot: map.slot, layer: map.layer, picture })
     })
     .collect()
 }

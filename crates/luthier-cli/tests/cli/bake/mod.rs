@@ -8,6 +8,7 @@ mod maps;
 mod misses;
 mod output;
 mod packages;
+mod pictures;
 mod plain;
 mod refusals;
 mod scenes;

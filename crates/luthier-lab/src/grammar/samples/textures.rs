@@ -4,7 +4,7 @@ use super::{Sample, sample};
 
 const FILM: &str = "layer.0.film.0.thickness_nm";
 
-pub(super) static SAMPLES: [Sample; 14] = [
+pub(super) static SAMPLES: [Sample; 21] = [
     sample(
         "noise.seed",
         FILM,
@@ -88,5 +88,47 @@ pub(super) static SAMPLES: [Sample; 14] = [
         "layer.0.maps.metallic",
         "layer = [{ type = 'metallic-roughness', base_color = [0.955, 0.638, 0.538], metallic = 1, roughness = 0.4, maps = { @ } }]\nbake = { model = 'elek' }",
         &["absent|", "'thickness.png'|metallic = 'thickness.png'", "'patina.png'|metallic = 'patina.png'"],
+    ),
+    sample(
+        "picture.image",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = @ } } }]",
+        &["'paint.png'", "'thickness.png'", "'patina.png'"],
+    ),
+    sample(
+        "picture.channel",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = 'paint.png', channel = @ } } }]",
+        &["'r'", "'g'", "'b'"],
+    ),
+    sample(
+        "picture.srgb",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = 'paint.png', srgb = @ } } }]",
+        &["false", "true"],
+    ),
+    sample(
+        "picture.scale",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = 'paint.png', scale = @ } } }]",
+        &["1", "0.5", "0.2"],
+    ),
+    sample(
+        "uv-transform.offset",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = 'paint.png', transform = { offset = @ } } } }]",
+        &["[0, 0]", "[0.25, 0]", "[0.25, 0.25]"],
+    ),
+    sample(
+        "uv-transform.rotation_deg",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = 'paint.png', transform = { rotation_deg = @ } } } }]",
+        &["0", "30", "90"],
+    ),
+    sample(
+        "uv-transform.scale",
+        "layer.0.maps.albedo",
+        "layer = [{ type = 'diffuse', albedo = 0.9, maps = { albedo = { image = 'paint.png', transform = { scale = @ } } } }]",
+        &["[1, 1]", "[2, 2]", "[8, 1]"],
     ),
 ];

@@ -38,6 +38,7 @@ pub(crate) static UNSEEN: [Unseen; 7] = [
             "effects.glitter",
             "flakes.height_map",
             "map.noise",
+            "picture.transform",
             "bake.granier-heidrich",
             "surface.cells",
             "surface.glitter",

@@ -1,0 +1,160 @@
+//! Pictures that materials name: read, made into the map that ships, and looked at for what is unlikely to be meant.
+
+mod doubts;
+
+use luthier_lut::{Image, Picture, PictureSamples, srgb};
+use luthier_material::{Channel, PictureRef, TexelUse};
+use luthier_texture::picture::{Decoded, decode};
+use luthier_texture::{Container, png};
+
+pub(crate) use doubts::doubts;
+
+use crate::{input, sources};
+
+/// A picture as its material reads it.
+pub(crate) struct Read {
+    /// Texels as they ship.
+    pub(crate) picture: Picture,
+    /// The file.
+    pub(crate) bytes: Vec<u8>,
+    /// What the file holds.
+    pub(crate) decoded: Decoded,
+}
+
+/// Reads a picture that a material names, relative to the material's file: the texels that ship.
+///
+/// # Errors
+/// Why it cannot be used, in words.
+pub fn read_picture(material: &str, picture: &PictureRef, texels: TexelUse) -> Result<Picture, String> {
+    read(material, picture, texels).map(|read| read.picture)
+}
+
+/// Reads a picture of one number that a material names, relative to the material's file.
+///
+/// # Errors
+/// Why it cannot be used, in words.
+pub fn read_image(material: &str, picture: &PictureRef) -> Result<Image, String> {
+    Ok(read_picture(material, picture, TexelUse::Number)?.channel(0))
+}
+
+pub(crate) fn read(material: &str, picture: &PictureRef, texels: TexelUse) -> Result<Read, String> {
+    let bytes = input::image(&sources::beside(material, &picture.path)).map_err(|source| source.to_string())?;
+    let decoded = decode(&bytes).map_err(|source| source.to_string())?;
+    let made = shipped(&decoded.picture, picture, texels)?;
+    Ok(Read { picture: made, bytes, decoded })
+}
+
+/// The file of a map that ships: that of its source where this is a PNG whose texels stay.
+pub(crate) fn file(read: Read, picture: &PictureRef) -> Result<(Picture, Vec<u8>), String> {
+    if picture.keeps_texels() && read.decoded.container == Container::Png {
+        return Ok((read.picture, read.bytes));
+    }
+    let bytes = png::encode_picture(&read.picture).map_err(|source| source.to_string())?;
+    Ok((read.picture, bytes))
+}
+
+/// The texels of a picture as a material asks for them.
+fn shipped(stored: &Picture, asked: &PictureRef, texels: TexelUse) -> Result<Picture, String> {
+    let mut picture = match asked.channel {
+        Some(channel) => one_channel(stored, channel)?,
+        None => stored.clone(),
+    };
+    picture.is_srgb = asked.srgb == Some(true) && asked.channel != Some(Channel::A);
+    if asked.scale == 1.0 {
+        return Ok(picture);
+    }
+    let scale = asked.scale as f32;
+    let scaled = |texel: [f32; 4]| match texels {
+        TexelUse::Normal => {
+            let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel[c] - 1.0);
+            let (x, y) = (scale * x, scale * y);
+            let length = (x * x + y * y + z * z).sqrt().max(f32::MIN_POSITIVE);
+            [x, y, z].map(|v| 0.5 + 0.5 * v / length)
+        }
+        _ => [0, 1, 2].map(|c| scale * texel[c]),
+    };
+    Ok(replaced(&picture, scaled))
+}
+
+/// One channel of a picture, as grey. Grey has the same red, green and blue.
+fn one_channel(picture: &Picture, channel: Channel) -> Result<Picture, String> {
+    let place = match (channel, picture.channels) {
+        (Channel::A, 1 | 3) => return Err("its channel `a` is asked for, and it has no alpha".to_owned()),
+        (Channel::A, count) => count as usize - 1,
+        (_, 1 | 2) => 0,
+        _ => channel.index(),
+    };
+    let samples = match &picture.samples {
+        PictureSamples::Bits8(values) => PictureSamples::Bits8(every(values, picture.channels, place)),
+        PictureSamples::Bits16(values) => PictureSamples::Bits16(every(values, picture.channels, place)),
+        PictureSamples::Float(values) => PictureSamples::Float(every(values, picture.channels, place)),
+    };
+    Ok(Picture { channels: 1, samples, ..*picture })
+}
+
+fn every<T: Copy>(values: &[T], channels: u32, place: usize) -> Vec<T> {
+    values.iter().skip(place).step_by(channels as usize).copied().collect()
+}
+
+/// A picture with other texels, in the bits and by the curve of the given one: RGB, or grey where that is grey without alpha.
+fn replaced(picture: &Picture, texel: impl Fn([f32; 4]) -> [f32; 3]) -> Picture {
+    let channels = if picture.channels == 1 { 1 } else { 3 };
+    let coded = |value: f32| if picture.is_srgb { srgb::code(value) } else { f64::from(value).clamp(0.0, 1.0) };
+    let codes = picture.texels().flat_map(|t| texel(t).into_iter().take(channels)).map(coded);
+    let samples = match picture.samples {
+        PictureSamples::Bits8(_) => PictureSamples::Bits8(codes.map(|code| (255.0 * code).round() as u8).collect()),
+        _ => PictureSamples::Bits16(codes.map(|code| (65535.0 * code).round() as u16).collect()),
+    };
+    Picture { channels: channels as u32, samples, ..*picture }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rgb(values: Vec<u8>) -> Picture {
+        let width = values.len() as u32 / 3;
+        Picture { width, height: 1, channels: 3, is_srgb: false, samples: PictureSamples::Bits8(values) }
+    }
+
+    fn asked() -> PictureRef {
+        PictureRef::plain("p.png")
+    }
+
+    #[test]
+    fn a_channel_is_taken_alone() {
+        let packed = rgb(vec![10, 20, 30, 40, 50, 60]);
+        let green = shipped(&packed, &PictureRef { channel: Some(Channel::G), ..asked() }, TexelUse::Number).unwrap();
+        assert_eq!((green.channels, green.samples), (1, PictureSamples::Bits8(vec![20, 50])));
+        let alpha = PictureRef { channel: Some(Channel::A), ..asked() };
+        assert!(shipped(&packed, &alpha, TexelUse::Number).unwrap_err().contains("no alpha"));
+        let grey = Picture { channels: 2, width: 3, ..packed };
+        assert_eq!(shipped(&grey, &alpha, TexelUse::Number).unwrap().samples, PictureSamples::Bits8(vec![20, 40, 60]));
+    }
+
+    /// Half of the light of a code: by the sRGB curve 188 is .5029, half of it is code 137.
+    #[test]
+    fn colours_are_scaled_as_light() {
+        let scaled = PictureRef { srgb: Some(true), scale: 0.5, ..asked() };
+        let half = shipped(&rgb(vec![188, 0, 255]), &scaled, TexelUse::Color).unwrap();
+        assert!(half.is_srgb);
+        assert_eq!(half.samples, PictureSamples::Bits8(vec![137, 0, 188]));
+        let linear = PictureRef { scale: 0.5, ..asked() };
+        let half = shipped(&rgb(vec![188, 0, 255]), &linear, TexelUse::Color).unwrap();
+        assert_eq!(half.samples, PictureSamples::Bits8(vec![94, 0, 128]));
+    }
+
+    /// A slope of 3/4 becomes one of 3/2: (3, 0, 2) / sqrt 13.
+    #[test]
+    fn normals_are_scaled_in_their_slope() {
+        let leaning = rgb(vec![204, 128, 230]);
+        let scaled = PictureRef { scale: 2.0, ..asked() };
+        let PictureSamples::Bits8(codes) = shipped(&leaning, &scaled, TexelUse::Normal).unwrap().samples else {
+            panic!("bits are kept")
+        };
+        let expected = [3.0 / 13.0f64.sqrt(), 0.0, 2.0 / 13.0f64.sqrt()].map(|c| (127.5 + 127.5 * c).round() as i32);
+        for (code, expected) in codes.iter().zip(expected) {
+            assert!((i32::from(*code) - expected).abs() <= 1, "{codes:?}");
+        }
+    }
+}

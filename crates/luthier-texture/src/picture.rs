@@ -1,0 +1,134 @@
+//! Maps made by others: PNG, JPEG and WebP of 8 or 16 bits. To read only.
+//!
+//! [`decode`] tells the format by its first bytes: file endings are often wrong. Values are as they are stored, without a curve. A JPEG or WebP
+//! that says which way is up is turned that way; of an animation the first frame counts.
+
+use std::io::Cursor;
+
+use ::image::codecs::jpeg::JpegDecoder;
+use ::image::codecs::webp::WebPDecoder;
+use ::image::{DynamicImage, ImageDecoder, ImageError};
+use luthier_lut::{Picture, PictureSamples};
+
+use crate::error::Container;
+use crate::limits::checked_bytes;
+use crate::{TextureError, png};
+
+/// Texels of a byte of JPEG at most: each block of 8 x 8 has a code of its own, of a bit at least (ITU T.81, annex F).
+const JPEG_TEXELS: u64 = 8 * 64;
+
+/// Texels of a byte of lossy WebP at most: a macroblock of 16 x 16 has modes, of more than half a bit by the fixed probabilities of key
+/// frames (RFC 6386, section 11.2).
+const WEBP_TEXELS: u64 = 4096;
+
+/// Texels that lossless WebP may have in any number of bytes: where all are equal, they take none.
+const EVEN_TEXELS: u64 = 1 << 24;
+
+/// A picture, and what its file says of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decoded {
+    /// Its samples, not linearised.
+    pub picture: Picture,
+    /// The format.
+    pub container: Container,
+    /// Whether its colours are stored by the sRGB curve: PNG says it in a chunk, JPEG and WebP are made so.
+    pub says_srgb: bool,
+}
+
+/// Reads a picture.
+///
+/// # Errors
+/// [`TextureError::NoPicture`] for files of other formats, [`TextureError::Malformed`], [`TextureError::PngDecode`] and
+/// [`TextureError::PictureDecode`] for damaged ones, [`TextureError::Size`].
+pub fn decode(file: &[u8]) -> Result<Decoded, TextureError> {
+    if file.starts_with(b"\x89PNG") {
+        let picture = png::read(file)?;
+        return Ok(Decoded { picture, container: Container::Png, says_srgb: png::says_srgb(file) });
+    }
+    let (container, read): (_, fn(&[u8]) -> Result<Picture, Fault>) = if file.starts_with(b"\xff\xd8\xff") {
+        (Container::Jpeg, |file| pixels(JpegDecoder::new(Cursor::new(file))?, JPEG_TEXELS * file.len() as u64))
+    } else if file.starts_with(b"RIFF") && file.get(8..12) == Some(b"WEBP") {
+        (Container::WebP, |file| {
+            pixels(WebPDecoder::new(Cursor::new(file))?, EVEN_TEXELS.max(WEBP_TEXELS * file.len() as u64))
+        })
+    } else {
+        return Err(TextureError::NoPicture(kind(file)));
+    };
+    let picture = read(file).map_err(|fault| match fault {
+        Fault::Codec(reason) => TextureError::PictureDecode { container, reason },
+        Fault::Ours(error) => error,
+        Fault::Short => TextureError::malformed(container, "it is too short for the size that it states"),
+    })?;
+    Ok(Decoded { picture, container, says_srgb: true })
+}
+
+/// Why a decoder has no picture.
+enum Fault {
+    Codec(ImageError),
+    Ours(TextureError),
+    Short,
+}
+
+impl From<ImageError> for Fault {
+    fn from(error: ImageError) -> Self {
+        Self::Codec(error)
+    }
+}
+
+/// The pixels of a decoder, upright. A file holds so many texels at most.
+fn pixels(mut decoder: impl ImageDecoder, most: u64) -> Result<Picture, Fault> {
+    let (width, height) = decoder.dimensions();
+    checked_bytes(width, height, decoder.color_type().bytes_per_pixel().into()).map_err(Fault::Ours)?;
+    if u64::from(width) * u64::from(height) > most {
+        return Err(Fault::Short);
+    }
+    let orientation = decoder.orientation()?;
+    let mut image = DynamicImage::from_decoder(decoder)?;
+    image.apply_orientation(orientation);
+    let (width, height) = (image.width(), image.height());
+    let (channels, bytes) = match image {
+        DynamicImage::ImageLuma8(image) => (1, image.into_raw()),
+        DynamicImage::ImageLumaA8(image) => (2, image.into_raw()),
+        DynamicImage::ImageRgba8(image) => (4, image.into_raw()),
+        other => (3, other.into_rgb8().into_raw()),
+    };
+    Ok(Picture { width, height, channels, is_srgb: false, samples: PictureSamples::Bits8(bytes) })
+}
+
+/// What a file that is no picture seems to be.
+fn kind(file: &[u8]) -> &'static str {
+    const SIGNATURES: [(&[u8], &str); 17] = [
+        (b"GIF8", "it is a GIF"),
+        (b"BM", "it is a Windows bitmap (BMP)"),
+        (b"II*\0", "it is a TIFF"),
+        (b"MM\0*", "it is a TIFF"),
+        (b"\x76\x2f\x31\x01", "it is an OpenEXR file, and maps hold numbers from 0 to 1"),
+        (b"#?", "it is a Radiance HDR file, and maps hold numbers from 0 to 1"),
+        (b"DDS ", "it is a DDS file"),
+        (b"\xabKTX", "it is a KTX file"),
+        (b"8BPS", "it is a Photoshop document"),
+        (b"gimp xcf", "it is a GIMP document"),
+        (b"%PDF", "it is a PDF"),
+        (b"<svg", "it is an SVG drawing"),
+        (b"<?xml", "it is XML, perhaps a drawing"),
+        (b"PK\x03\x04", "it is a ZIP archive: unpack it"),
+        (b"version https://git-lfs", "it is a Git LFS pointer: fetch the file with `git lfs pull`"),
+        (b"\0\0\0\x0cjP  ", "it is a JPEG 2000 picture"),
+        (b"\0\0\0\x0cJXL ", "it is a JPEG XL picture"),
+    ];
+    if file.is_empty() {
+        return "the file is empty";
+    }
+    let text = String::from_utf8_lossy(&file[..file.len().min(64)]).trim_start().to_lowercase();
+    if text.starts_with("<!doctype html") || text.starts_with("<html") {
+        return "it is a page of HTML, perhaps in place of a download";
+    }
+    if file.get(4..8) == Some(b"ftyp") {
+        return "it is a HEIC or AVIF picture";
+    }
+    let found = SIGNATURES.iter().find(|(start, _)| file.starts_with(start));
+    found.map_or("it does not begin as a picture does", |(_, kind)| kind)
+}
+
+#[cfg(test)]
+mod tests;
