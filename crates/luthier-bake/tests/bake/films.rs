@@ -120,7 +120,7 @@ fn images_become_thickness() {
     let image = Image { width: 2, height: 2, channels: 1, data: vec![0.0, 1.0, 1.0, 0.0] };
     let set = [material("film", &film("image = \"map.png\""), &(SMALL.to_owned() + "format = \"rgba32float\"\n"))];
     let baked =
-        bake(&set, &|_, path| if path == "map.png" { Ok(image.clone()) } else { Err(path.to_owned()) }, &Silent);
+        bake(&set, &|_, map| if map.path == "map.png" { Ok(image.clone()) } else { Err(map.path.clone()) }, &Silent);
     let baked = baked.unwrap();
     let table = atlas(&baked, TableKind::Thickness);
     let middle = 0.5 * (MIN_NM + MAX_NM);
