@@ -1,11 +1,15 @@
 //! Maps that vary a surface, for the renderer.
 
+use luthier_lut::Image;
 use luthier_manifest::{MapSlot, MaterialEntry};
 
-use crate::{GpuError, Scene};
+use crate::{GpuError, Map, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
 pub(crate) const MAP_WORDS: usize = 8;
+
+/// Texels of a map that a picture is made with: 2048 x 2048 take 64 MiB of the buffer.
+const TEXELS_MAX: usize = 1 << 22;
 
 /// Words of each layer that has maps of its own, behind those.
 const OWN_WORDS: usize = 8;
@@ -35,11 +39,12 @@ impl Scene {
                     .into_iter()
                     .flatten(),
             );
-            let [width, height] = map.picture.size();
+            let image = shrunk(map);
+            let [width, height] = image.size();
             *header = [(behind + texels.len()) as u32, width, height, transform.map_or(0, |_| at)];
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
             let [r, g, b] = factor.map(|factor| factor as f32);
-            texels.extend(map.picture.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
+            texels.extend(image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
         if let Some(patina) = &entry.constants.patina {
             let bits = |[r, g, b]: [f64; 3], w: f64| [r, g, b, w].map(|v| (v as f32).to_bits());
@@ -164,6 +169,15 @@ impl Scene {
             .replace("$patina", patina);
         functions + &layers
     }
+}
+
+/// The texels of a map, RGBA; of more than [`TEXELS_MAX`] averages. Flakes are told apart, and are not averaged.
+fn shrunk(map: &Map) -> Image {
+    let mut image = map.picture.image();
+    while map.slot != MapSlot::FlakeNormal && image.texel_count() > TEXELS_MAX {
+        image = image.halved();
+    }
+    image
 }
 
 fn slot_word(slot: MapSlot) -> usize {
