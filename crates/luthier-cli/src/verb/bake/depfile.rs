@@ -135,12 +135,15 @@ fn confused(path: &Path) -> Option<String> {
         let start = name.find(['[', '?'])?;
         let end = name.rfind([']', '?']).map_or(name.len(), |end| end + 1);
         // A pair of brackets stands for one sign.
-        let most = name.chars().count() - usize::from(!name.contains('?'));
+        let count = |text: &str| text.chars().count();
+        let signs = name.matches(['[', ']', '?']).count();
+        let is_pair = signs == 2 && !name.contains('?');
+        let most = if is_pair { count(name) - count(&name[start..end]) + 1 } else { count(name) };
         let others = real(path.parent()?)?.read_dir().ok()?.filter_map(Result::ok);
         let mut others = others.map(|other| other.file_name().to_string_lossy().into_owned());
         others.find(|other| {
             let fits = other.starts_with(&name[..start]) && name.get(end..).is_some_and(|rest| other.ends_with(rest));
-            other != name && fits && other.chars().count() <= most
+            other != name && fits && count(other) <= most
         })
     })
 }

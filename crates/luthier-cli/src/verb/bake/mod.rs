@@ -129,7 +129,8 @@ impl Emission {
 impl BakeOptions {
     /// The files of a package, as these options ask for them.
     pub(super) fn encoded(&self, package: &Package) -> Outcome<Encoded> {
-        let encoded = package.encode(if self.no_zstd { Compression::None } else { Compression::Zstd })?;
+        let compression = if self.no_zstd { Compression::None } else { Compression::Zstd };
+        let encoded = package.encode(compression)?.for_folder(&self.out);
         Ok(if self.hashed_names { encoded.with_hashed_names() } else { encoded })
     }
 }

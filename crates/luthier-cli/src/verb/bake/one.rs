@@ -181,7 +181,7 @@ impl Made<'_> {
             complain(&why);
         }
         published(&options.out);
-        let told = [set.told, misses::name(manifest, options.quiet)?].concat();
+        let told = [set.told, misses::name(manifest, &options.out, options.quiet)?].concat();
         let mut json = words::summary(options, manifest, &progress);
         json["diagnostics"] = diagnostics(&told);
         let text = if options.quiet { String::new() } else { words::text(options, manifest, &progress) };

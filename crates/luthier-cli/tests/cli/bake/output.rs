@@ -56,9 +56,9 @@ fn a_bake_is_what_its_manifest_says() {
 
     let manifest = workshop.json("out/manifest.json");
     assert_eq!(names(&manifest["materials"], "name"), ["film", "gold", "lacquer"], "by file name");
-    assert_eq!(names(&manifest["materials"], "source"), ["m/film.toml", "m/gold.toml", "m/lacquer.toml"]);
+    assert_eq!(names(&manifest["materials"], "source"), ["../m/film.toml", "../m/gold.toml", "../m/lacquer.toml"]);
     for material in manifest["materials"].as_array().unwrap() {
-        let source = workshop.text(material["source"].as_str().unwrap());
+        let source = workshop.text(&format!("out/{}", material["source"].as_str().unwrap()));
         assert_eq!(material["source_hash"], sha256(source.as_bytes()));
     }
     let kinds = ["fresnel", "distribution", "fgd", "phase", "thickness", "film"];
