@@ -27,13 +27,11 @@ pub fn origin(folder: &Path, source: &str) -> PathBuf {
 fn from_folder(folder: &Path, source: &str) -> String {
     let (Ok(folder), Ok(file)) = (absolute(folder), absolute(source)) else { return source.to_owned() };
     let (folder, file) = (plain(&folder), plain(&file));
-    let mut parts = [folder.components(), file.components()];
-    let shared = parts[0].clone().zip(parts[1].clone()).take_while(|(a, b)| a == b).count();
+    let shared = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
     if shared == 0 {
         return source.to_owned();
     }
-    parts.iter_mut().for_each(|parts| drop(parts.nth(shared - 1)));
-    let [up, down] = parts;
+    let [up, down] = [&folder, &file].map(|path| path.components().skip(shared));
     label(&up.map(|_| Component::ParentDir).chain(down).collect::<PathBuf>())
 }
 
