@@ -1,7 +1,7 @@
 //! Packages made from materials.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
 use std::path::Path;
@@ -323,15 +323,11 @@ fn material_entries(
     materials: &[Material],
     baked: &[BakedMaterial],
 ) -> Result<(Vec<MaterialEntry>, Vec<Map>), ExportError> {
-    let (mut entries, mut maps, mut taken) = (Vec::with_capacity(materials.len()), Vec::new(), BTreeSet::new());
+    let (mut entries, mut maps) = (Vec::with_capacity(materials.len()), Vec::new());
     for (number, (material, baked)) in (0..).zip(materials.iter().zip(baked)) {
         let mut own = Vec::with_capacity(baked.maps.len());
         for map in &baked.maps {
-            let (mut entry, image, png) = self::map(material, map)?;
-            // `a-flake` has a normal, and `a` the normals of flakes; some file systems take `A` for `a`.
-            if !taken.insert(entry.file.path.to_lowercase()) {
-                entry.file.path = map_path(material, map, '.');
-            }
+            let (entry, image, png) = self::map(material, map)?;
             maps.push(Map { material: number, slot: map.slot, layer: map.layer, image, png });
             own.push(entry);
         }
@@ -368,15 +364,11 @@ fn map(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Image, Vec<u
         }
     };
     let image = png::decode(&bytes).map_err(unusable)?;
-    let file = FileEntry { path: map_path(material, map, '-'), sha256: sha256(&bytes) };
+    let layer = map.layer.map_or_else(String::new, |layer| format!("-{layer}"));
+    let path = format!("maps/{}-{}{layer}.png", material.name, map.slot.name());
+    let file = FileEntry { path, sha256: sha256(&bytes) };
     let (slot, layer, width, height) = (map.slot, map.layer, image.width, image.height);
     Ok((MapEntry { slot, layer, source: label, file, width, height, factor: map.factor }, image, bytes))
-}
-
-/// The file of a map, with a sign between its material and its slot.
-fn map_path(material: &Material, map: &MaterialMap, between: char) -> String {
-    let layer = map.layer.map_or_else(String::new, |layer| format!("-{layer}"));
-    format!("maps/{}{between}{}{layer}.png", material.name, map.slot.name())
 }
 
 /// A file that a material names.
