@@ -245,5 +245,5 @@ fn names_are_free() {
     workshop.run(&["bake", "m", "--target", "wgsl,glsl450,glsl-es300,hlsl,msl,spirv", "--quiet"]).exits(0);
     assert!(workshop.text("out/shaders/baked.wgsl").contains("const LUTHIER_MATERIAL_WORDS_ID: u32 = 4u;"));
     workshop.write("m/id.toml", matte("words-id"));
-    workshop.run(&["check", "m"]).fails(1, &["`words` and `words-id`", "LUTHIER_MATERIAL_WORDS_ID"]);
+    workshop.run(&["check", "m"]).exits(1).says(&["`words` and `words-id`", "LUTHIER_MATERIAL_WORDS_ID"]);
 }
