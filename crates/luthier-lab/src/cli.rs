@@ -439,8 +439,7 @@ pub(crate) struct TexelsOptions {
 #[command(
     after_help = "Folders are fetched by hand: the page says where from. Outcomes of a collection take the place of earlier ones in --data, so that a page is made of many runs. \
                   Without --collection the page is made of --data alone.\n\n\
-                  Examples:\n  luthier-lab foreign --collection playcanvas --from github.com/playcanvas/engine --licence MIT --data foreign.json --page foreign.md engine/examples/assets\n  \
-                  luthier-lab foreign --collection playcanvas --kind mesh --data foreign.json engine/examples/assets\n  luthier-lab foreign --data foreign.json --page foreign.md"
+                  Examples:\n  luthier-lab foreign --collection mine --from mine.org --licence CC0 --data foreign.json mine\n  luthier-lab foreign --collection mine --kind mesh --data foreign.json mine/meshes\n  luthier-lab foreign --data foreign.json --page foreign.md"
 )]
 pub(crate) struct ForeignOptions {
     /// Folders of the collection; folders inside count

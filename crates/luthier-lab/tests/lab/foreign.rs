@@ -60,6 +60,6 @@ fn files_are_counted_by_kind_and_reason() {
 fn a_collection_says_where_it_is() {
     let workshop = workshop();
     workshop.run(&["foreign", "--collection", "tiny", "c"]).fails(2, &["--from", "--licence"]);
-    workshop.run(&["foreign", "c"]).fails(2, &["--collection"]);
+    workshop.run(&["foreign", "c"]).exits(2).says(&["--collection"]);
     workshop.run(&[&NEW[..], &["CC0", "nowhere"]].concat()).fails(3, &["nowhere"]);
 }
