@@ -27,5 +27,5 @@ luthier table dfg --preset three -o "$out/tables/DFGLUTData.js" >&2
 luthier table dfg --preset bevy --no-zstd -o "$out/tables/bevy.ktx2" >&2
 # Not every version bakes it.
 rm -f "$out/tables/babylon"
-luthier table dfg --preset babylon -o "$out/tables/babylon" >&2 || true
+luthier table dfg --preset babylon -o "$out/tables/babylon.png" >&2 && mv "$out/tables/babylon.png" "$out/tables/babylon" || true
 node "$here/furnace.mjs" "$out/tables" "$out" "${shots[@]}"

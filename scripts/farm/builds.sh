@@ -73,8 +73,8 @@ expect() {
       [ "$system" != ninja ] || grep -q 'no work to do' "$work/log" || fail "Ninja had work to do: $2"
       ;;
   esac
-  LUTHIER_CACHE="$work/plain-store" "$program" bake "$work/materials" "${options[@]}" --out "$work/plain" --quiet 2>/dev/null
-  diff -rq "$work/plain" "$work/$system/$package" >&2 || fail "other bytes than those of a plain bake: $2"
+  LUTHIER_CACHE="$work/plain-store" "$program" bake "$work/materials" "${options[@]}" --out "$work/plain/$package" --quiet 2>/dev/null
+  diff -rq "$work/plain/$package" "$work/$system/$package" >&2 || fail "other bytes than those of a plain bake: $2"
   printf '%-14s %s calls: %s\n' "$system" "$calls" "$2"
 }
 

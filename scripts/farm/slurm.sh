@@ -69,13 +69,13 @@ check() {
   tasks "$bake"
   [ "$(tasks "$bake" | grep -c COMPLETED)" = $shards ] || fail "Slurm did not complete all $shards tasks"
   scontrol -o show job "$merge" | grep -q 'JobState=COMPLETED' || fail "Slurm did not complete the merge"
-  diff -rq "$work/single" "$work/$1/out" || fail "the merged package differs from the bake by one process"
+  diff -rq "$work/single/out" "$work/$1/out" || fail "the merged package differs from the bake by one process"
   echo "$(find "$work/$1/out" -type f | wc -l) files, equal to those of the bake by one process"
   grep -hE '^(share|merge) ' "$work/$1"/luthier-*.log
 }
 
 step "one process"
-LUTHIER_CACHE="" "$LUTHIER" bake "${arguments[@]}" --out "$work/single" --quiet
+LUTHIER_CACHE="" "$LUTHIER" bake "${arguments[@]}" --out "$work/single/out" --quiet
 
 step "a controller and two nodes"
 start_cluster "$work/cluster"
@@ -94,7 +94,7 @@ mkdir "$work/ninja"
   LAUNCH="srun --ntasks=1 --job-name=luthier-ninja" SHARDS=$shards "$OLDPWD/examples/farm/ninja/configure.sh" "${arguments[@]}"
   ninja -j $shards
 )
-diff -rq "$work/single" "$work/ninja/out" || fail "the package of Ninja differs from the bake by one process"
+diff -rq "$work/single/out" "$work/ninja/out" || fail "the package of Ninja differs from the bake by one process"
 nodes_of_ninja=$(sed -n 's/.*Name=luthier-ninja JobState=COMPLETED .*NodeList=\([^ ]*\) .*/\1/p' "$work/cluster/completed")
 [ "$(wc -l <<<"$nodes_of_ninja")" = 5 ] || fail "Slurm did not complete four shares and a merge for Ninja"
 [ "$(sort -u <<<"$nodes_of_ninja" | xargs)" = "node1 node2" ] || fail "Slurm did not use both nodes for Ninja"

@@ -1,6 +1,7 @@
 //! The `luthier` command: all that a user of luthier runs. What it has in common with `luthier-lab` is in luthier-terminal.
 
 mod cli;
+mod destinations;
 mod directions;
 #[cfg(feature = "gpu")]
 mod grid;
@@ -46,7 +47,7 @@ fn main() -> ExitCode {
         luthier_terminal::without_display();
     }
     store::configure(&line.store);
-    let outcome = match &line.verb {
+    let outcome = line.verb.refuse_destinations().and_then(|()| match &line.verb {
         Verb::Bake(options) => verb::bake::run(options),
         Verb::Merge(options) => verb::bake::merge(options),
         Verb::Cache(verb) => verb::cache::run(verb),
@@ -74,7 +75,7 @@ fn main() -> ExitCode {
         Verb::Schema { scene, surface } => verb::schema::run(*scene, *surface),
         Verb::Completions(options) => verb::completions::run(options),
         Verb::Man(options) => verb::man::run(options),
-    };
+    });
     store::close();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use luthier_export::{Source, read_image, read_one};
+use luthier_export::{Source, origin, read_image, read_one};
 use luthier_lut::TableKind;
 use luthier_manifest::Manifest;
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_terminal::{Outcome, print_diagnostics};
 
-/// A warning for every layer that reads a tile which misses its aim, at its line of its file; unless quiet, they are printed.
-pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>> {
+/// A warning for every layer that reads a tile which misses its aim, at its line of its file; unless quiet, they are printed. Files are named from `folder`.
+pub(crate) fn name(manifest: &Manifest, folder: &Path, quiet: bool) -> Outcome<Vec<Diagnostic>> {
     let mut warnings = Vec::new();
     for table in &manifest.tables {
         for material in &manifest.materials {
@@ -18,7 +18,7 @@ pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>>
                     continue;
                 };
                 let Some((error, aim)) = tile.miss() else { continue };
-                let source = read_one(Path::new(&material.source))?;
+                let source = read_one(&origin(folder, &material.source))?;
                 let Ok(parsed) = &source.parsed else { continue };
                 let warning = diagnostic(&parsed.material, layer, table.kind, error, aim);
                 if !quiet {

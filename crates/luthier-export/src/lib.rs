@@ -26,6 +26,8 @@ mod inner;
 #[cfg(feature = "bake")]
 mod make;
 #[cfg(feature = "bake")]
+mod origins;
+#[cfg(feature = "bake")]
 mod parts;
 #[cfg(feature = "bake")]
 mod pictures;
@@ -56,6 +58,8 @@ pub use luthier_bake::{MemoryStore, Missing, Share, Store};
 pub use luthier_material::{LeftOut, left_out};
 #[cfg(feature = "bake")]
 pub use make::{Bake, ExportError, outline, source_hash, unfitted};
+#[cfg(feature = "bake")]
+pub use origins::origin;
 #[cfg(feature = "bake")]
 pub use parts::{of_function, of_parts, of_scene, parts_of};
 #[cfg(feature = "bake")]

@@ -8,6 +8,8 @@ use luthier_cost::Family;
 use luthier_manifest::ShadingModel;
 use luthier_terminal::{Sources, named};
 
+use crate::foreign::Kind;
+
 const AFTER_HELP: &str = "\
 Exit codes and failures in JSON are those of `luthier --help`. `scripts/pages.sh` makes all pages.
 
@@ -57,6 +59,8 @@ pub(crate) enum Verb {
     Throughput(ThroughputOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
     Shapes(ShapesOptions),
+    /// Try files that others wrote with the readers of their kinds: a page in Markdown
+    Foreign(ForeignOptions),
     /// Hash what the textures, maps and material buffers below a folder hold, whatever their containers: lines as `sha256sum` has them
     Texels(TexelsOptions),
 }
@@ -429,4 +433,34 @@ pub(crate) struct TexelsOptions {
     /// Folder of one bake or of many
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Folders are fetched by hand: the page says where from. Outcomes of a collection take the place of earlier ones in --data, so that a page is made of many runs. \
+                  Without --collection the page is made of --data alone.\n\n\
+                  Examples:\n  luthier-lab foreign --collection mine --from mine.org --licence CC0 --data foreign.json mine\n  luthier-lab foreign --collection mine --kind mesh --data foreign.json mine/meshes\n  luthier-lab foreign --data foreign.json --page foreign.md"
+)]
+pub(crate) struct ForeignOptions {
+    /// Folders of the collection; folders inside count
+    #[arg(value_name = "FOLDER", requires = "collection")]
+    pub(crate) folders: Vec<PathBuf>,
+    /// Kind of file to try; may be given again. By default all
+    #[arg(long, value_name = "KIND", value_enum, requires = "collection")]
+    pub(crate) kind: Vec<Kind>,
+    /// Name of the collection on the page
+    #[arg(long, value_name = "NAME", requires = "folders")]
+    pub(crate) collection: Option<String>,
+    /// Where to fetch it, of a collection that --data does not have
+    #[arg(long, value_name = "TEXT", requires = "collection")]
+    pub(crate) from: Option<String>,
+    /// Its licence, likewise
+    #[arg(long, value_name = "TEXT", requires = "collection")]
+    pub(crate) licence: Option<String>,
+    /// File of all outcomes, as JSON: it is read, and written again
+    #[arg(long, value_name = "FILE")]
+    pub(crate) data: Option<PathBuf>,
+    /// File to write the page to instead of standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) page: Option<PathBuf>,
 }

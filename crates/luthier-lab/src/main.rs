@@ -5,6 +5,7 @@ mod budgets;
 mod cli;
 mod environment;
 mod figures;
+mod foreign;
 mod grammar;
 mod judge;
 mod lobes;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Verb::Papers(options) => papers::run(options),
         Verb::Throughput(options) => throughput::run(options),
         Verb::Shapes(options) => shapes::run(options),
+        Verb::Foreign(options) => foreign::run(options),
         Verb::Texels(options) => texels::run(options),
     };
     match outcome {

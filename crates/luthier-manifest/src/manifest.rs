@@ -63,7 +63,7 @@ luthier_lut::named! {
 pub struct MaterialEntry {
     /// Name, unique in the bake; letters, digits and hyphens.
     pub name: String,
-    /// The file it came from, as it was named on the command line.
+    /// The file it came from: a path from the folder of the manifest. Before a package is made for a folder, the path that was given.
     pub source: String,
     /// SHA-256, hex, of that file; of the file and, in the order of their names, the hashes of the files that it names, if any.
     pub source_hash: String,

@@ -98,3 +98,20 @@ impl MaterialEntry {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Maps are files called `{material}-{slot}`, and those of a layer have its number behind: no end of a slot's name is the name of another with the same
+    /// end of the file.
+    #[test]
+    fn names_of_maps_are_told_apart() {
+        let has_layer = |slot| !matches!(slot, MapSlot::FlakeNormal | MapSlot::Patina);
+        for a in MapSlot::ALL {
+            for b in MapSlot::ALL.into_iter().filter(|&b| has_layer(b) == has_layer(a)) {
+                assert!(!a.name().ends_with(&format!("-{}", b.name())), "{} {}", a.name(), b.name());
+            }
+        }
+    }
+}

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct SurfaceEntry {
     /// Name, unique among the surfaces and materials of the bake; letters, digits and hyphens.
     pub name: String,
-    /// The file it came from, as it was named on the command line.
+    /// The file it came from, as of a material.
     pub source: String,
     /// SHA-256, hex, of that file.
     pub source_hash: String,

@@ -251,8 +251,11 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     bindings
 }
 
+/// Constants of the shaders themselves that a name would make.
+const TAKEN: [&str; 1] = ["LUTHIER_MATERIAL_WORDS"];
+
 /// The constant that shaders have for a material of this name: for `red-lacquer` it is `LUTHIER_MATERIAL_RED_LACQUER`. A last digit is
-/// followed by `_ID`: names end in a letter.
+/// followed by `_ID`, because names end in a letter; so is `WORDS`, which shaders have for themselves.
 ///
 /// # Errors
 /// [`ShaderError::Name`] for a name of other characters than letters, digits and hyphens.
@@ -276,7 +279,7 @@ fn constant(kind: &str, name: &str) -> Result<String, ShaderError> {
         return Err(ShaderError::Name(name.to_owned()));
     }
     let mut constant = format!("LUTHIER_{kind}_{}", words.join("_").to_ascii_uppercase());
-    if constant.ends_with(|c: char| c.is_ascii_digit()) {
+    if constant.ends_with(|c: char| c.is_ascii_digit()) || TAKEN.contains(&constant.as_str()) {
         constant.push_str("_ID");
     }
     Ok(constant)
@@ -292,10 +295,13 @@ mod tests {
             ("red-lacquer", "LUTHIER_MATERIAL_RED_LACQUER"),
             ("granier-film-2", "LUTHIER_MATERIAL_GRANIER_FILM_2_ID"),
             ("a--b-", "LUTHIER_MATERIAL_A_B"),
+            ("words-of-gold", "LUTHIER_MATERIAL_WORDS_OF_GOLD"),
         ] {
             assert_eq!(identifier(name).unwrap(), expected);
             assert_eq!(surface_identifier(name).unwrap(), expected.replace("MATERIAL", "SURFACE"));
         }
+        assert_eq!(identifier("Words").unwrap(), "LUTHIER_MATERIAL_WORDS_ID");
+        assert_eq!(surface_identifier("words").unwrap(), "LUTHIER_SURFACE_WORDS");
         for name in ["", "-", "sp ace", "émail", "a;b"] {
             assert!(matches!(identifier(name), Err(ShaderError::Name(_))), "{name}");
         }

@@ -22,12 +22,15 @@ pub fn print(text: &str) -> Outcome {
     Ok(())
 }
 
-/// Writes a text to a file, or to standard output where none is named.
+/// The name of standard output where a file is asked for.
+pub const STDOUT: &str = "-";
+
+/// Writes a text to a file, or to standard output where none is named or `-`.
 ///
 /// # Errors
 /// [`Failure::Files`], [`Failure::BrokenPipe`].
 pub fn deliver(text: &str, file: Option<&Path>) -> Outcome {
-    match file {
+    match file.filter(|path| *path != Path::new(STDOUT)) {
         Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
         None => print(text),
     }

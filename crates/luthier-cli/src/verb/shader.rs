@@ -1,10 +1,12 @@
 //! `shader`: the shader of some materials, without a bake.
 
+use std::path::Path;
+
 use luthier_bake::Options;
 use luthier_export::{find, outline};
 use luthier_manifest::Form;
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
-use luthier_terminal::{Failure, Outcome, files, print_bytes};
+use luthier_terminal::{Failure, Outcome, STDOUT, files, print_bytes};
 
 use crate::cli::ShaderOptions;
 use crate::materials::{bakeable_with_surfaces, refuse_environment, shows_environment};
@@ -12,6 +14,9 @@ use crate::store::store;
 
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
+    if let Some(path) = &options.output {
+        refuse_ending(path, options.target)?;
+    }
     let found = find(&options.sources.paths)?;
     let (materials, surfaces) = bakeable_with_surfaces(&found, &options.shading, &[options.form], false)?;
     let is_shown = materials.iter().any(shows_environment) && options.form == Form::Baked;
@@ -33,8 +38,23 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
         (_, false) => emit(&set, form, target).map(String::into_bytes),
     };
     let bytes = bytes.map_err(Failure::input)?;
-    match &options.output {
+    match options.output.as_deref().filter(|path| *path != Path::new(STDOUT)) {
         Some(path) => std::fs::write(path, bytes).map_err(files(path, "write")),
         None => print_bytes(&bytes, target != Target::SpirV),
     }
+}
+
+/// Refuses a file whose ending is that of another language. Endings of no language say nothing.
+fn refuse_ending(path: &Path, target: Target) -> Outcome {
+    let name = path.to_string_lossy().to_lowercase();
+    let ends = |target: &Target| name.ends_with(&format!(".{}", target.extension()));
+    // Both kinds of GLSL are found in files that end in .glsl alone.
+    let other = Target::ALL.into_iter().find(ends).filter(|_| !ends(&target));
+    let is_glsl = name.ends_with(".glsl") && !target.extension().ends_with("glsl");
+    let Some(other) = other.map(Target::name).or(is_glsl.then_some("glsl450 or glsl-es300")) else { return Ok(()) };
+    Err(Failure::Usage(anyhow::anyhow!(
+        "{}: the ending is not that of {}, the language of --target: write --target {other}, or another ending",
+        path.display(),
+        target.name()
+    )))
 }

@@ -5,8 +5,8 @@ use luthier_workshop::{Program, has_colours, is_installed, on_terminal};
 
 use crate::workshop::Workshop;
 
-const VERBS: [&str; 9] =
-    ["figures", "parity", "stability", "judge", "simulation", "budgets", "papers", "shapes", "texels"];
+const VERBS: [&str; 10] =
+    ["figures", "foreign", "parity", "stability", "judge", "simulation", "budgets", "papers", "shapes", "texels"];
 
 #[test]
 fn every_verb_shows_an_example() {

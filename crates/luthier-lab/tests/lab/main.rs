@@ -3,6 +3,7 @@
 mod command;
 mod costs;
 mod figures;
+mod foreign;
 mod golden;
 mod grammar;
 mod judge;

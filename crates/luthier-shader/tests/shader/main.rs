@@ -15,6 +15,7 @@ mod library;
 mod lobes;
 mod machine;
 mod manual;
+mod names;
 mod pages;
 mod paper;
 mod scenes;

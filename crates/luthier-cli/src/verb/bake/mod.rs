@@ -1,5 +1,6 @@
 //! `bake`: files into a folder, and `merge`, which finds the results of shares in the store.
 
+mod depfile;
 mod locked;
 mod one;
 mod pipeline;
@@ -15,6 +16,7 @@ use luthier_manifest::Functions;
 use luthier_shader::{Form, Target};
 use luthier_terminal::{Failure, Outcome, Sources, print};
 
+use self::depfile::Depfile;
 use self::one::{Begun, Done, Made};
 use crate::cli::{BakeOptions, Emission};
 use crate::store::disk;
@@ -68,9 +70,11 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
     let packages = packages(options)?;
     // Nothing is made before all can be, and nothing is written before all is made.
     let begun = packages.iter().map(|(_, options)| Begun::read(options)).collect::<Outcome<Vec<_>>>()?;
+    let needed = begun.iter().flat_map(Begun::needed).collect();
+    let depfile = Depfile::of(&packages, needed)?;
     let made = begun.into_iter().map(Begun::make).collect::<Outcome<Vec<_>>>()?;
     let done = made.into_iter().map(Made::publish).collect::<Outcome<Vec<Done>>>()?;
-    pipeline::write_depfile(options, &done)?;
+    depfile.map_or(Ok(()), |depfile| depfile.write())?;
     say(options, &packages, &done)?;
     if done.iter().any(|done| done.is_stale) {
         return Err(Failure::Verdict);
@@ -125,7 +129,8 @@ impl Emission {
 impl BakeOptions {
     /// The files of a package, as these options ask for them.
     pub(super) fn encoded(&self, package: &Package) -> Outcome<Encoded> {
-        let encoded = package.encode(if self.no_zstd { Compression::None } else { Compression::Zstd })?;
+        let compression = if self.no_zstd { Compression::None } else { Compression::Zstd };
+        let encoded = package.encode(compression)?.for_folder(&self.out);
         Ok(if self.hashed_names { encoded.with_hashed_names() } else { encoded })
     }
 }

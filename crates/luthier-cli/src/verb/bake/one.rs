@@ -62,8 +62,6 @@ pub(super) struct Done {
     pub(super) text: String,
     /// All files that the bake read.
     pub(super) read: Vec<PathBuf>,
-    /// These, and the lock.
-    pub(super) needed: Vec<PathBuf>,
     /// Whether `--check` found that a bake would change the folder.
     pub(super) is_stale: bool,
 }
@@ -95,6 +93,19 @@ impl<'a> Begun<'a> {
         }
         progress.ends("read");
         Ok(Self { options, files, lock, progress, found: Found::Set(Set { materials, surfaces, told }) })
+    }
+
+    /// The files that the bake reads.
+    fn read_files(&self) -> Vec<PathBuf> {
+        match &self.found {
+            Found::Current(kept) => kept.files(&self.files),
+            Found::Set(set) => pipeline::read_files(&self.files, &set.materials),
+        }
+    }
+
+    /// The files that the bake depends on: those that it reads, and the lock as it is found.
+    pub(super) fn needed(&self) -> Vec<PathBuf> {
+        self.read_files().into_iter().chain(self.lock.file().map(PathBuf::from)).collect()
     }
 
     /// Makes the package, or as much of it as the options ask for.
@@ -145,17 +156,16 @@ impl<'a> Begun<'a> {
 impl Made<'_> {
     /// Publishes the package, where one was made and is not only to be compared.
     pub(super) fn publish(self) -> Outcome<Done> {
+        let read = self.begun.read_files();
         let Self { begun: Begun { options, files, lock, progress, found }, encoded, said } = self;
         let set = match found {
             Found::Current(kept) => {
-                let read = kept.files(&files);
                 event("up-to-date", &options.out.join(MANIFEST));
                 let (json, text) = kept.say(options);
-                return Ok(Done { json, text, needed: needed(&read, &lock), read, is_stale: false });
+                return Ok(Done { json, text, read, is_stale: false });
             }
             Found::Set(set) => set,
         };
-        let read = pipeline::read_files(&files, &set.materials);
         let Some(encoded) = encoded else {
             let (json, text) = said.unwrap_or_default();
             return Ok(Done { json, text, read, ..Done::default() });
@@ -171,19 +181,13 @@ impl Made<'_> {
             complain(&why);
         }
         published(&options.out);
-        let told = [set.told, misses::name(manifest, options.quiet)?].concat();
-        let needed = needed(&read, &lock);
+        let told = [set.told, misses::name(manifest, &options.out, options.quiet)?].concat();
         let mut json = words::summary(options, manifest, &progress);
         json["diagnostics"] = diagnostics(&told);
         let text = if options.quiet { String::new() } else { words::text(options, manifest, &progress) };
         // The lock may be another one now.
         let lock = LockFile::beside(&options.sources.paths, false)?;
         Stamp::new(options, &files, lock.text()).keep(&encoded, &set.materials, &json, told.len());
-        Ok(Done { json, text, read, needed, is_stale: false })
+        Ok(Done { json, text, read, is_stale: false })
     }
-}
-
-/// The files that a bake depends on: those that it read, and the lock as it found it.
-fn needed(read: &[PathBuf], lock: &LockFile) -> Vec<PathBuf> {
-    read.iter().cloned().chain(lock.file().map(PathBuf::from)).collect()
 }

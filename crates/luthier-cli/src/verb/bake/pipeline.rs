@@ -1,11 +1,11 @@
 //! Questions of build pipelines about a bake: whether it is up to date, what it would do, what it depends on, a share of it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use luthier_bake::Share;
 use luthier_export::{Encoded, Folder, MANIFEST, Missing};
 use luthier_material::Material;
-use luthier_terminal::{Outcome, files};
+use luthier_terminal::Outcome;
 use serde_json::{Value, json};
 
 use super::one::Done;
@@ -28,21 +28,6 @@ impl Pipeline {
 /// All files that a bake of these materials reads.
 pub(super) fn read_files(files: &[PathBuf], materials: &[Material]) -> Vec<PathBuf> {
     files.iter().cloned().chain(all_named(materials)).collect()
-}
-
-/// Writes the files that all packages depend on, as a rule of Make, where it is asked for. Its target is the manifest of the first: Ninja wants
-/// no other.
-pub(super) fn write_depfile(options: &BakeOptions, done: &[Done]) -> Outcome {
-    let Some(path) = &options.pipeline.depfile else { return Ok(()) };
-    let needed: Vec<String> = done.iter().flat_map(|done| &done.needed).map(|path| escaped(path)).collect();
-    let rule = format!("{}: {}\n", escaped(&options.out.join(MANIFEST)), needed.join(" \\\n  "));
-    std::fs::write(path, rule).map_err(files(path, "write"))
-}
-
-/// A path in a rule of Make.
-fn escaped(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    text.replace('\\', "/").replace('$', "$$").replace('#', "\\#").replace(' ', "\\ ")
 }
 
 /// The files and materials of a folder that a bake would change.
@@ -91,14 +76,4 @@ pub(super) fn share(options: &BakeOptions, share: Share, progress: &BakeProgress
     let text = format!("share {} of {}: {run} jobs run, {found} were in the store", share.index, share.count);
     let json = json!({ "shard": [share.index, share.count], "jobs": run, "found": found, "seconds": seconds });
     (json, if options.quiet { String::new() } else { text })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_are_escaped_as_make_reads_them() {
-        assert_eq!(escaped(Path::new("a b/$x#.toml")), "a\\ b/$$x\\#.toml");
-    }
 }

@@ -1,6 +1,9 @@
 //! Stamps: what a bake read and wrote, so that the next one knows at once that nothing has changed.
 
-use std::path::PathBuf;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use luthier_bake::Key;
 use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
@@ -40,6 +43,27 @@ pub(super) struct Kept {
     summary: Value,
 }
 
+/// Dates the manifest in a folder now, in the stamp of the folder, too.
+pub(super) fn date(out: &Path) -> io::Result<()> {
+    let _lock = shared(out);
+    let manifest = out.join(MANIFEST);
+    let before = state(&manifest);
+    File::options().write(true).open(&manifest)?.set_modified(SystemTime::now())?;
+    let (Ok(Some(store)), Some(address)) = (disk(), address(out)) else { return Ok(()) };
+    let kept = store.bytes(KIND, address).and_then(|bytes| serde_json::from_slice::<Kept>(&bytes).ok());
+    let Some(mut kept) = kept else { return Ok(()) };
+    if let Some((_, then)) = kept.outputs.iter_mut().find(|(path, then)| path == MANIFEST && *then == before) {
+        *then = state(&manifest);
+        store.put_bytes(KIND, address, &serde_json::to_vec(&kept)?);
+    }
+    Ok(())
+}
+
+/// The address of the stamp of a folder.
+fn address(out: &Path) -> Option<Key> {
+    Some(Key::of(out.canonicalize().ok()?.to_string_lossy().as_bytes()))
+}
+
 impl Stamp {
     pub(super) fn new(options: &BakeOptions, files: &[PathBuf], lock: &str) -> Self {
         let BakeOptions { shading, limits, emission, no_zstd, hashed_names, .. } = options;
@@ -49,14 +73,9 @@ impl Stamp {
         Self { out: options.out.clone(), inputs: Key::of(format!("{decided} {}", hash(files)).as_bytes()).to_string() }
     }
 
-    /// The address of the stamp: one for each folder.
-    fn address(&self) -> Option<Key> {
-        Some(Key::of(self.out.canonicalize().ok()?.to_string_lossy().as_bytes()))
-    }
-
     /// The stamp of the last bake into the folder, where it read the same and all that it wrote is as it was.
     pub(super) fn current(&self) -> Option<Kept> {
-        let bytes = disk().ok()??.bytes(KIND, self.address()?)?;
+        let bytes = disk().ok()??.bytes(KIND, address(&self.out)?)?;
         let kept: Kept = serde_json::from_slice(&bytes).ok()?;
         let is_same = kept.inputs == self.inputs
             && kept.named_hash == hash(&kept.named)
@@ -67,7 +86,7 @@ impl Stamp {
 
     /// Keeps the stamp of a bake, if the folder still holds it and not one that another program has published since.
     pub(super) fn keep(&self, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
-        let (Ok(Some(store)), Some(address)) = (disk(), self.address()) else { return };
+        let (Ok(Some(store)), Some(address)) = (disk(), address(&self.out)) else { return };
         let _lock = shared(&self.out);
         if !encoded.is_in(&self.out) {
             return;

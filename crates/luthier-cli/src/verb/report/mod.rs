@@ -7,7 +7,7 @@ mod pictures;
 
 use std::path::Path;
 
-use luthier_export::{Folder, GENERATOR, REPORT_FILES, publish_beside, read_one, shared, source_hash};
+use luthier_export::{Folder, GENERATOR, REPORT_FILES, origin, publish_beside, read_one, shared, source_hash};
 use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, SurfaceMap, judge, limits};
@@ -26,7 +26,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let manifest = folder.manifest();
     let textures = folder.textures()?;
     let maps = maps(&folder)?;
-    let materials = materials(manifest)?;
+    let materials = materials(manifest, &options.out)?;
     let given = evidence::given(options)?;
     let device = device(&folder, options)?;
     drop(lock);
@@ -123,41 +123,43 @@ fn asked(options: &ReportOptions) -> Asked {
 }
 
 /// The materials of a bake, read again from their files: the judge takes nothing on trust.
-fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
+fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
     manifest
         .materials
         .iter()
         .enumerate()
         .map(|(number, entry)| {
-            let source = read_one(Path::new(&entry.source)).map_err(|error| match Failure::from(error) {
+            let file = origin(folder, &entry.source);
+            let source = read_one(&file).map_err(|error| match Failure::from(error) {
                 Failure::Files(error) => Failure::Files(error.context(format!(
                     "the bake was made from {}, which the judge reads again; run the report where the bake ran",
-                    entry.source
+                    file.display()
                 ))),
                 other => other,
             })?;
             let Ok(Parsed { mut material, .. }) = source.parsed else {
-                return Err(changed(&entry.source));
+                return Err(changed(&file));
             };
             material.bake.model = Some(entry.model);
             let (masking, reflectance) = entry.parts();
             material.bake.masking = entry.model.has_masking().then_some(masking);
             material.bake.reflectance = Some(reflectance);
             if source_hash(&material)? != entry.source_hash {
-                return Err(changed(&entry.source));
+                return Err(changed(&file));
             }
             // A scene may have left out parts of a material: the tables are of what is left.
             let choice = manifest.choice.as_ref().and_then(|choice| choice.materials.get(number));
             let left_out =
                 choice.and_then(|c| c.tried.get(c.chosen)).map(|c| c.left_out.as_slice()).unwrap_or_default();
             let parts: Option<Vec<LeaveOut>> = left_out.iter().map(|name| LeaveOut::from_name(name)).collect();
-            parts.and_then(|parts| simplified(&material, &parts)).ok_or_else(|| changed(&entry.source))
+            parts.and_then(|parts| simplified(&material, &parts)).ok_or_else(|| changed(&file))
         })
         .collect()
 }
 
-fn changed(source: &str) -> Failure {
-    let text = format!("{source} has changed since it was baked, or a file that it names; bake again");
+fn changed(file: &Path) -> Failure {
+    let file = file.display();
+    let text = format!("{file} has changed since it was baked, or a file that it names; bake again");
     Failure::Input(anyhow::anyhow!(text))
 }
 

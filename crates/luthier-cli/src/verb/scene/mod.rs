@@ -85,7 +85,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let encoded = options.encoded(&made.package)?;
     whole(&options.out, || encoded.write(&options.out))?;
     published(&options.out);
-    let missed = misses::name(&made.package.manifest, options.quiet)?;
+    let missed = misses::name(&made.package.manifest, Path::new(""), options.quiet)?;
     if options.json {
         let manifest = options.out.join(MANIFEST);
         let (bytes, cycles) = (made.bytes(), made.cycles());

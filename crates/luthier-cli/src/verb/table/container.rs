@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use luthier_lut::{Image, TexelFormat};
-use luthier_table::{Container, Stored, rgbd};
+use luthier_table::{Container, Preset, Stored, rgbd};
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::ktx2::{Levels, encode_levels};
 use luthier_texture::{Metadata, Texture, exr, png};
@@ -19,6 +19,25 @@ pub(super) fn by_ending(path: &Path) -> Outcome<(Container, Stored)> {
             path.display()
         ))),
     }
+}
+
+/// Refuses a file whose ending is not that of the container that the engine of a preset reads.
+pub(super) fn ending_of(preset: &Preset, path: &Path) -> Outcome {
+    let Preset { name, container, .. } = preset;
+    let (ending, what) = match container {
+        Container::Ktx2 => ("ktx2", "KTX2"),
+        Container::Png | Container::RgbdPng => ("png", "a PNG"),
+        Container::Raw => ("bin", "texels alone"),
+        Container::JavaScript => ("js", "a module of JavaScript"),
+        Container::Exr => ("exr", "OpenEXR"),
+    };
+    if path.extension().is_some_and(|found| found == ending) {
+        return Ok(());
+    }
+    Err(Failure::Usage(anyhow::anyhow!(
+        "{}: the ending tells the format: the table of {name} is {what}, .{ending}",
+        path.display()
+    )))
 }
 
 /// Key of the statement in the metadata of a file.

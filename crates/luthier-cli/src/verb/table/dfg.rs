@@ -15,7 +15,7 @@ use luthier_terminal::{Failure, Outcome, files};
 use luthier_texture::table;
 use serde_json::{Value as Json, json};
 
-use super::container::by_ending;
+use super::container::{by_ending, ending_of};
 use super::look_up;
 use super::product::{Product, Sampled, distribution, domain, error_facts, fact, nodes_name, sampled};
 use crate::cli::DfgOptions;
@@ -32,7 +32,10 @@ pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
         return closed(options);
     }
     let (Found { table, texels, error, .. }, container) = match options.preset {
-        Some(preset) => (of_preset(preset, options), preset.container),
+        Some(preset) => {
+            ending_of(preset, &options.delivery.output)?;
+            (of_preset(preset, options), preset.container)
+        }
         None => searched(options)?,
     };
     let from = [options.min_cos, options.min_alpha];

@@ -56,9 +56,9 @@ fn a_bake_is_what_its_manifest_says() {
 
     let manifest = workshop.json("out/manifest.json");
     assert_eq!(names(&manifest["materials"], "name"), ["film", "gold", "lacquer"], "by file name");
-    assert_eq!(names(&manifest["materials"], "source"), ["m/film.toml", "m/gold.toml", "m/lacquer.toml"]);
+    assert_eq!(names(&manifest["materials"], "source"), ["../m/film.toml", "../m/gold.toml", "../m/lacquer.toml"]);
     for material in manifest["materials"].as_array().unwrap() {
-        let source = workshop.text(material["source"].as_str().unwrap());
+        let source = workshop.text(&format!("out/{}", material["source"].as_str().unwrap()));
         assert_eq!(material["source_hash"], sha256(source.as_bytes()));
     }
     let kinds = ["fresnel", "distribution", "fgd", "phase", "thickness", "film"];
@@ -205,4 +205,45 @@ fn quiet_is_quiet() {
     let run = workshop.run(&["bake", "doubtful.toml"]).exits(0);
     assert!(run.stderr.contains("doubtful.toml:6:7"), "{}", run.stderr);
     assert!(run.stdout.contains("out/manifest.json"), "{}", run.stdout);
+}
+
+/// Two checkouts at different places, which a build system names by absolute paths from a folder of its own. The judge finds the files from anywhere.
+#[test]
+fn checkouts_give_the_same_bytes() {
+    let workshop = Workshop::new();
+    for checkout in ["one", "far/away/two"] {
+        workshop.write(&format!("{checkout}/m/gold.toml"), gold("gold"));
+        workshop.write(&format!("{checkout}/m/matte.toml"), matte("matte"));
+    }
+    let at = |path: &str| workshop.path(path).to_str().unwrap().to_owned();
+    for checkout in ["one", "far/away/two"] {
+        let (from, to) = (at(&format!("{checkout}/m")), at(&format!("{checkout}/build/luts")));
+        workshop.run(&["bake", &from, "--out", &to, "--quiet"]).exits(0);
+    }
+    let trees = ["one", "far/away/two"].map(|checkout| workshop.tree(&format!("{checkout}/build/luts")));
+    assert!(trees[0] == trees[1] && trees[0].len() > 3);
+    let manifest = workshop.json("one/build/luts/manifest.json");
+    assert_eq!(names(&manifest["materials"], "source"), ["../../m/gold.toml", "../../m/matte.toml"]);
+    // However the paths are written.
+    let before = workshop.tree("one/build/luts");
+    workshop.run(&["bake", "./one/../one/m", "--out", "one/m/../build/luts", "--quiet"]).exits(0);
+    assert!(workshop.tree("one/build/luts") == before);
+    std::fs::rename(workshop.path("far/away/two"), workshop.path("three")).unwrap();
+    for out in ["one/build/luts".to_owned(), at("three/build/luts")] {
+        workshop.run(&["report", "--no-device", "--pairs", "8", "--out", &out]).exits(0);
+    }
+}
+
+/// Names that mean something in a language, to the shaders themselves, or to a file system.
+#[test]
+fn names_are_free() {
+    let workshop = Workshop::new();
+    for name in ["words", "con", "float", "main", "layer-words"] {
+        workshop.write(&format!("m/{name}.toml"), matte(name));
+    }
+    workshop.run(&["check", "m"]).exits(0);
+    workshop.run(&["bake", "m", "--target", "wgsl,glsl450,glsl-es300,hlsl,msl,spirv", "--quiet"]).exits(0);
+    assert!(workshop.text("out/shaders/baked.wgsl").contains("const LUTHIER_MATERIAL_WORDS_ID: u32 = 4u;"));
+    workshop.write("m/id.toml", matte("words-id"));
+    workshop.run(&["check", "m"]).exits(1).says(&["`words` and `words-id`", "LUTHIER_MATERIAL_WORDS_ID"]);
 }

@@ -33,14 +33,14 @@ fn a_folder_inside_is_a_package_of_its_own() {
     let [outer, inner] = ["out/manifest.json", "out/papers/manifest.json"].map(|path| workshop.json(path));
     assert_eq!((names(&outer), names(&inner)), (vec!["matte"], vec!["gold", "matte"]));
     assert!(!workshop.path("out/scenes").exists() && !workshop.path("out/settings").exists());
-    let rule = "out/manifest.json: m/matte.toml \\\n  m/papers/gold.toml \\\n  m/papers/matte.toml\n";
+    let rule = "out/manifest.json: m/matte.toml \\\n  m/papers/gold.toml \\\n  m/papers/matte.toml \\\n  m/. \\\n  m/papers/.\n";
     assert_eq!(workshop.text("m.d"), rule, "one target");
 
     // The package is the one that its folder gives alone.
-    workshop.run(&["bake", "m/papers", "--out", "alone", "--quiet"]).exits(0);
+    workshop.run(&["bake", "m/papers", "--out", "other/alone", "--quiet"]).exits(0);
     for file in ["manifest.json", "materials.bin", "shaders/baked.wgsl", "tables/fresnel.ktx2"] {
         let read = |folder: &str| std::fs::read(workshop.path(&format!("{folder}/{file}"))).unwrap();
-        assert!(read("out/papers") == read("alone"), "{file}");
+        assert!(read("out/papers") == read("other/alone"), "{file}");
     }
 
     // A file has no folders inside, and a bake of the outer one leaves the inner one's package as it is.

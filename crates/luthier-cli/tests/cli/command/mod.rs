@@ -1,6 +1,7 @@
 //! The command as a whole: help, failures, streams, schemas, manual pages, and the crates that it is made of.
 
 mod crate_graph;
+mod destinations;
 mod failures;
 mod help;
 mod kinds;

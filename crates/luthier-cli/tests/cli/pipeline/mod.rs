@@ -1,5 +1,7 @@
 //! Build pipelines: the store of results, stamps, locks, shares, dependencies, watching.
 
+#[cfg(unix)]
+mod depfile;
 mod events;
 mod lock;
 mod readers;

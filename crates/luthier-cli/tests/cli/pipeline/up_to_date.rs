@@ -83,12 +83,12 @@ fn dependencies_are_a_rule_of_make() {
     picture(&workshop, "a b/map.png", 9);
     for _ in 0..2 {
         workshop.run(&["bake", "a b", "--depfile", "film.d", "--cache", "store", "--quiet"]).exits(0);
-        assert_eq!(workshop.text("film.d"), "out/manifest.json: a\\ b/film.toml \\\n  a\\ b/map.png\n");
+        assert_eq!(workshop.text("film.d"), "out/manifest.json: a\\ b/film.toml \\\n  a\\ b/map.png \\\n  a\\ b/.\n");
         std::fs::remove_file(workshop.path("film.d")).unwrap();
     }
     workshop.run(&["bake", "a b", "--relock", "--depfile", "film.d", "--cache", "store", "--quiet"]).exits(0);
     workshop.run(&["bake", "a b", "--depfile", "film.d", "--cache", "store", "--quiet"]).exits(0);
-    assert!(workshop.text("film.d").ends_with("a\\ b/luthier.lock\n"), "{}", workshop.text("film.d"));
+    assert!(workshop.text("film.d").ends_with("a\\ b/luthier.lock \\\n  a\\ b/.\n"), "{}", workshop.text("film.d"));
 }
 
 #[test]

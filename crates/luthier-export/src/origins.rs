@@ -1,0 +1,64 @@
+//! Where materials came from, as a manifest has it: paths from its folder, so that a package is the same in every checkout.
+
+use std::path::{Component, Path, PathBuf, absolute};
+
+use crate::Encoded;
+use crate::sources::{label, plain};
+
+impl Encoded {
+    /// The package as it is published in a folder: its manifest names files by their paths from there.
+    #[must_use]
+    pub fn for_folder(mut self, folder: &Path) -> Self {
+        let manifest = &mut self.manifest;
+        let materials = manifest.materials.iter_mut().map(|material| &mut material.source);
+        let surfaces = manifest.surfaces.iter_mut().map(|surface| &mut surface.source);
+        let scene = manifest.choice.iter_mut().map(|choice| &mut choice.source);
+        materials.chain(surfaces).chain(scene).for_each(|source| *source = from_folder(folder, source));
+        self
+    }
+}
+
+/// The path of a file from the current folder, where `source` is its path from the folder of a manifest.
+pub fn origin(folder: &Path, source: &str) -> PathBuf {
+    plain(&folder.join(source))
+}
+
+/// The path from a folder to a file. It stays as it is where there is none: to another drive.
+fn from_folder(folder: &Path, source: &str) -> String {
+    let (Ok(folder), Ok(file)) = (absolute(folder), absolute(source)) else { return source.to_owned() };
+    let (folder, file) = (plain(&folder), plain(&file));
+    let shared = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
+    if shared == 0 {
+        return source.to_owned();
+    }
+    let [up, down] = [&folder, &file].map(|path| path.components().skip(shared));
+    label(&up.map(|_| Component::ParentDir).chain(down).collect::<PathBuf>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_lead_from_a_folder_and_back() {
+        for (folder, file, expected) in [
+            ("out", "m/gold.toml", "../m/gold.toml"),
+            ("build/luts", "m/gold.toml", "../../m/gold.toml"),
+            ("m/out", "m/gold.toml", "../gold.toml"),
+            ("m", "m/gold.toml", "gold.toml"),
+            (".", "m/../n/gold.toml", "n/gold.toml"),
+            ("../out", "gold.toml", "../HERE/gold.toml"),
+            ("../out", "../m/gold.toml", "../m/gold.toml"),
+        ] {
+            let here = std::env::current_dir().unwrap();
+            let expected = expected.replace("HERE", here.file_name().unwrap().to_str().unwrap());
+            let absolute_file = here.join(file);
+            for file in [file, absolute_file.to_str().unwrap()] {
+                assert_eq!(from_folder(Path::new(folder), file), expected, "{folder} {file}");
+                assert_eq!(from_folder(&here.join(folder), file), expected, "{folder} {file}");
+            }
+            assert_eq!(plain(&here.join(origin(Path::new(folder), &expected))), plain(&absolute_file));
+        }
+        assert_eq!(origin(Path::new("out"), "../m/gold.toml"), Path::new("m/gold.toml"));
+    }
+}
