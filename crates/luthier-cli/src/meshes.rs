@@ -14,7 +14,11 @@ pub(crate) fn read(path: &Path) -> Outcome<Mesh> {
         |source: luthier_gpu::MeshError| Failure::Input(anyhow::Error::new(source).context(path.display().to_string()));
     let file = soup(&bytes, &|name| input::mesh(&folder.join(name))).map_err(unusable)?;
     if !file.left_out.is_empty() {
-        complain(&format!("warning: {} is not shown as it stands in the file: {}", path.display(), file.left_out.join("; ")));
+        complain(&format!(
+            "warning: {} is not shown as it stands in the file: {}",
+            path.display(),
+            file.left_out.join("; ")
+        ));
     }
     Mesh::new(file.soup).map_err(unusable)
 }

@@ -97,9 +97,6 @@ pub enum TextureError {
     /// A PNG file that does not decode.
     #[error("not a valid PNG file")]
     PngDecode(#[source] ::image::ImageError),
-    /// A Radiance file that does not decode.
-    #[error("not a valid Radiance HDR file")]
-    HdrDecode(#[source] ::image::ImageError),
     /// The PNG encoder refused.
     #[error("cannot encode PNG")]
     PngEncode(#[source] ::image::ImageError),
