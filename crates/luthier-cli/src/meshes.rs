@@ -6,7 +6,7 @@ use luthier_export::input;
 use luthier_gpu::{Mesh, soup};
 use luthier_terminal::{Failure, Outcome, complain, files};
 
-/// Reads a glTF file, with the buffers beside it. What of it is not shown is said.
+/// Reads a glTF file, with the buffers beside it. What is not shown as it stands in the file is told.
 pub(crate) fn read(path: &Path) -> Outcome<Mesh> {
     let bytes = input::mesh(path).map_err(files(path, "read"))?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -14,7 +14,11 @@ pub(crate) fn read(path: &Path) -> Outcome<Mesh> {
         |source: luthier_gpu::MeshError| Failure::Input(anyhow::Error::new(source).context(path.display().to_string()));
     let file = soup(&bytes, &|name| input::mesh(&folder.join(name))).map_err(unusable)?;
     if !file.left_out.is_empty() {
-        complain(&format!("warning: {} does not show all that it has: {}", path.display(), file.left_out.join("; ")));
+        complain(&format!(
+            "warning: {} is not shown as it stands in the file: {}",
+            path.display(),
+            file.left_out.join("; ")
+        ));
     }
     Mesh::new(file.soup).map_err(unusable)
 }

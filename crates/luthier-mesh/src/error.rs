@@ -9,9 +9,15 @@ pub enum MeshError {
     /// Bytes that are no glTF.
     #[error("no glTF 2.0 file: {0}")]
     Gltf(String),
+    /// Another version of glTF.
+    #[error("glTF {0}, of which nothing is read: export the mesh as glTF 2.0")]
+    Version(String),
     /// An extension without which the file means something else.
     #[error("the file needs the extension {0}, which is not supported: export the mesh without it")]
     Extension(String),
+    /// A compression of the numbers.
+    #[error("the mesh is compressed ({0}), which is not supported: export it without compression")]
+    Compressed(String),
     /// A buffer that cannot be read.
     #[error("buffer `{uri}`: {reason}")]
     Buffer {

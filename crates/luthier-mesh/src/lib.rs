@@ -9,18 +9,17 @@
 //! Simplifications: textures, materials, lights and cameras of a file are not read, but for the colour of parts whose material is named `plain`;
 //! openness is a number of a vertex, between vertices it is linear.
 
-mod accessor;
-mod buffers;
 mod bvh;
 mod error;
-mod gltf_file;
+mod gltf;
 mod mesh;
 pub mod model;
+mod normals;
 mod openness;
 mod tangents;
 mod vector;
 
 pub use bvh::{Bvh, Meeting, Node};
 pub use error::MeshError;
-pub use gltf_file::{File, soup};
+pub use gltf::{File, soup};
 pub use mesh::{Mesh, Soup, TRIANGLES_MAX, Triangle, Vertex};

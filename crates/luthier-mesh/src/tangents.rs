@@ -1,6 +1,6 @@
 //! Tangents from texture coordinates.
 
-use crate::vector::{V, across, along, cross, dot, sub, unit};
+use crate::vector::{V, across, along, angle, dot, sub, unit};
 use crate::{Soup, Vertex};
 
 /// Gives tangents to the vertices that have none: directions in which `u` grows, weighed by the angles at the corner, as MikkTSpace does it. A vertex
@@ -70,13 +70,6 @@ fn direction(corners: [&Vertex; 3]) -> V {
     let sign = if orientation(corners) < 0.0 { 1.0 } else { -1.0 };
     let sum = [0, 1, 2].map(|i| sign * (cv * ab[i] - bv * ac[i]));
     unit(sum).unwrap_or([0.0; 3])
-}
-
-/// The angle at a corner, radians.
-fn angle(at: V, b: V, c: V) -> f32 {
-    let (ab, ac) = (sub(b, at), sub(c, at));
-    let across = cross(ab, ac);
-    libm::atan2f(dot(across, across).sqrt(), dot(ab, ac))
 }
 
 #[cfg(test)]

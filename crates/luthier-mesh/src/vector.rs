@@ -32,3 +32,10 @@ pub(crate) fn across(n: V) -> V {
     let axis = if n[0].abs() > 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
     unit(cross(n, axis)).unwrap_or([1.0, 0.0, 0.0])
 }
+
+/// The angle at a corner, radians.
+pub(crate) fn angle(at: V, b: V, c: V) -> f32 {
+    let (ab, ac) = (sub(b, at), sub(c, at));
+    let across = cross(ab, ac);
+    libm::atan2f(dot(across, across).sqrt(), dot(ab, ac))
+}

@@ -114,9 +114,6 @@ pub enum TextureError {
     /// No picture of a format that maps are read from.
     #[error("{0}; PNG, JPEG and WebP are read")]
     NoPicture(&'static str),
-    /// A Radiance file that does not decode.
-    #[error("not a valid Radiance HDR file")]
-    HdrDecode(#[source] ::image::ImageError),
     /// The PNG encoder refused.
     #[error("cannot encode PNG")]
     PngEncode(#[source] ::image::ImageError),

@@ -7,10 +7,10 @@ use crate::TextureError;
 /// Longest side of an image, in texels: what current devices take at most.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// Most bytes that the texels of one image may take once decoded: 256 MiB, 4096 x 4096 of rgba32float.
-pub const MAX_BYTES: u64 = 1 << 28;
+/// Most bytes that the texels of one image may take as they are stored before compression: 512 MiB, 8192 x 4096 of rgba32float.
+pub const MAX_BYTES: u64 = 1 << 29;
 
-/// The bytes that an image takes.
+/// The bytes that an image takes, `texel_bytes` to a texel as it is stored.
 ///
 /// # Errors
 /// [`TextureError::Size`] beyond the limits, or when a side is 0.
@@ -24,6 +24,17 @@ pub(crate) fn checked_bytes(width: u32, height: u32, texel_bytes: u32) -> Result
         return Err(TextureError::Size { width, height });
     }
     Ok(bytes as usize)
+}
+
+/// Bytes that any file may ask for.
+const PLAUSIBLE: u64 = 64 << 20;
+
+/// Bytes that a byte of a file may ask for beyond these: deflate makes 1032 of one, and halves become twice as long.
+const EXPANSION: u64 = 4096;
+
+/// Whether a file may be as long as it is and have so many bytes of decoded texels.
+pub(crate) fn is_plausible(file: &[u8], bytes: u64) -> bool {
+    bytes <= PLAUSIBLE + EXPANSION * file.len() as u64
 }
 
 /// Checks that an image is what its fields say, and within the limits.
@@ -41,8 +52,8 @@ mod tests {
 
     #[test]
     fn limits_hold_without_overflow() {
-        assert_eq!(checked_bytes(4096, 4096, 16).unwrap(), 1 << 28);
-        for (width, height) in [(0, 1), (1, 0), (MAX_SIDE + 1, 1), (u32::MAX, u32::MAX), (4096, 4097)] {
+        assert_eq!(checked_bytes(8192, 4096, 16).unwrap(), 1 << 29);
+        for (width, height) in [(0, 1), (1, 0), (MAX_SIDE + 1, 1), (u32::MAX, u32::MAX), (8192, 4097)] {
             assert!(matches!(checked_bytes(width, height, 16), Err(TextureError::Size { .. })), "{width}x{height}");
         }
     }

@@ -85,9 +85,6 @@ fn source(options: &EnvironmentOptions) -> Outcome<(Environment, Value)> {
     }
     let path = options.picture.as_deref().unwrap_or(std::path::Path::new(""));
     let Surroundings { environment, sha256, size: [width, height], negative } = surroundings::read(path)?;
-    if negative > 0 {
-        complain(&format!("warning: {negative} values are below 0 and count as 0"));
-    }
     let name = path.file_name().map(|name| name.to_string_lossy());
     Ok((environment, json!({ "file": name, "sha256": sha256, "width": width, "height": height, "negative": negative })))
 }

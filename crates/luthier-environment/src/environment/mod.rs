@@ -61,13 +61,22 @@ impl Environment {
     /// # Errors
     /// [`EnvironmentError`] for another shape, and for radiance that is negative or not finite.
     pub fn new(map: Image) -> Result<Self, EnvironmentError> {
-        if map.channels != 3 || map.height < 2 || map.width != 2 * map.height {
+        if map.channels != 3 || map.height == 0 || map.width != 2 * map.height {
             let found = format!("{} x {} with {} channels", map.width, map.height, map.channels);
             return Err(setting("environment", found, "an RGB map is twice as wide as high"));
         }
-        if let Some(value) = map.data.iter().find(|v| !v.is_finite() || **v < 0.0) {
-            return Err(setting("environment", value.to_string(), "radiance is finite and not negative"));
+        if let Some(place) = map.data.iter().position(|v| !v.is_finite() || *v < 0.0) {
+            let (texel, value) = (place / 3, map.data[place]);
+            let [x, y] = [texel % map.width as usize, texel / map.width as usize];
+            let found = format!("{value} in column {x} of row {y}, counted from 0");
+            let allowed = if value.is_finite() {
+                "radiance is not negative"
+            } else {
+                "radiance is finite: paint such texels over, or clamp them when the map is written"
+            };
+            return Err(setting("environment", found, allowed));
         }
+        let map = if map.height == 1 { doubled(&map) } else { map };
         let mut levels = vec![if map.height > MAX_HEIGHT { shrunk(&map, MAX_HEIGHT) } else { map }];
         while let Some(height) = levels.last().map(|map| map.height / 2).filter(|&height| height > 0) {
             let next = shrunk(&levels[levels.len() - 1], height);
@@ -215,6 +224,13 @@ impl Environment {
         let far = bilinear(&self.levels[(low + 1).min(last)], at);
         [0, 1, 2].map(|c| near[c] + weight * (far[c] - near[c]))
     }
+}
+
+/// A map with each texel four times: levels and cubes want two rows.
+fn doubled(map: &Image) -> Image {
+    let texels = (0..2 * map.height).flat_map(|y| (0..2 * map.width).map(move |x| map.texel(x / 2, y / 2)));
+    let data = texels.flatten().copied().collect();
+    Image { width: 2 * map.width, height: 2 * map.height, channels: map.channels, data }
 }
 
 /// A map in parts of a fixed number of rows, or as it is where it has fewer.

@@ -134,3 +134,26 @@ fn maps_of_other_shapes_are_refused() {
     assert!(refused(Image { data: vec![-1.0; 96], ..Image::zeros(8, 4, 3) }));
     assert!(!refused(Image::zeros(2048, 1024, 3)));
 }
+
+/// A hemisphere that is bright and one that is dark.
+#[test]
+fn the_smallest_map_has_two_texels() {
+    let environment = map(1, |x, _| if x == 0 { [2.0; 3] } else { [0.0; 3] });
+    // -x is in the left half of a map, +x in the right one: a patch that faces one sees this half alone.
+    let [left, right] = [-1.0, 1.0].map(|x| environment.diffuse([x, 0.0, 0.0])[1]);
+    assert!((left - 2.0).abs() < 0.05 && right < 0.05, "{left} {right}");
+    assert_eq!(environment.levels(Layout::Equirect, 32).unwrap()[0].images[0].height, 32);
+}
+
+#[test]
+fn a_value_that_is_no_radiance_has_a_place() {
+    let with = |value: f32| {
+        let mut map = Image::zeros(8, 4, 3);
+        map.texel_mut(5, 2)[1] = value;
+        Environment::new(map).unwrap_err().to_string()
+    };
+    for (value, reason) in [(f32::INFINITY, "finite"), (f32::NAN, "finite"), (-1.0, "not negative")] {
+        let message = with(value);
+        assert!(message.contains("column 5 of row 2") && message.contains(reason), "{message}");
+    }
+}

@@ -71,9 +71,9 @@ fn round_trip(bytes: &[u8]) {
 
 /// A picture of an environment.
 pub(super) fn radiance(bytes: &[u8]) {
-    if let Some(image) = read(light::decode(bytes)) {
-        is_whole(&image);
-        assert_eq!(image.channels, 3);
+    if let Some(picture) = read(light::decode(bytes)) {
+        is_whole(&picture.image);
+        assert!(picture.image.channels == 3 && picture.notes.iter().all(|note| !note.is_empty()));
     }
 }
 

@@ -5,6 +5,7 @@
 
 pub(crate) mod dwa;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
@@ -159,7 +160,7 @@ fn read_metadata(header: &Header) -> Result<Metadata, TextureError> {
 }
 
 /// Sides beyond `u32` become its maximum, which no limit lets pass.
-fn side(length: usize) -> u32 {
+pub(crate) fn side(length: usize) -> u32 {
     u32::try_from(length).unwrap_or(u32::MAX)
 }
 
@@ -168,14 +169,18 @@ fn utf8(text: &str) -> Text {
     Text::from_slice_unchecked(text.as_bytes())
 }
 
-fn read_error(error: Error) -> TextureError {
+pub(crate) fn read_error(error: Error) -> TextureError {
     match error {
+        Error::NotSupported(what) if what.contains("subsampling") => {
+            unsupported("subsampled channels (luminance and chroma, Y, RY and BY, are to be saved as R, G and B)")
+        }
+        Error::NotSupported(what) if what.contains("deep data") => unsupported("deep data (it is to be flattened)"),
         Error::NotSupported(what) => TextureError::unsupported(Container::Exr, what),
         error => TextureError::ExrDecode(error),
     }
 }
 
-fn malformed(reason: &'static str) -> TextureError {
+pub(crate) fn malformed(reason: impl Into<Cow<'static, str>>) -> TextureError {
     TextureError::malformed(Container::Exr, reason)
 }
 

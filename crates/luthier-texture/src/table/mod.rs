@@ -10,7 +10,7 @@ use ::exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read as read_exr};
 use luthier_lut::Image;
 
 use crate::error::Container;
-use crate::limits::checked_bytes;
+use crate::limits::{checked_bytes, is_plausible};
 use crate::texels::{Samples, TexelLayout};
 use crate::{TextureError, dds, exr, ktx2, png, radiance};
 
@@ -23,6 +23,8 @@ pub struct Table {
     pub samples: Samples,
     /// The file format, and the texel format where it has a name.
     pub format: String,
+    /// What of the file was converted or left out: a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// Reads a table of any container but raw.
@@ -32,20 +34,20 @@ pub struct Table {
 pub fn read(file: &[u8]) -> Result<Table, TextureError> {
     if file.starts_with(b"DDS ") {
         let (layout, image) = dds::decode(file)?;
-        Ok(Table { image, samples: layout.samples, format: format!("DDS {layout}") })
+        Ok(Table { image, samples: layout.samples, format: format!("DDS {layout}"), notes: Vec::new() })
     } else if file.starts_with(b"\xabKTX 20\xbb\r\n\x1a\n") {
         let (layout, image) = ktx2::decode_table(file)?;
-        Ok(Table { image, samples: layout.samples, format: format!("KTX2 {layout}") })
+        Ok(Table { image, samples: layout.samples, format: format!("KTX2 {layout}"), notes: Vec::new() })
     } else if file.starts_with(b"\x89PNG") {
         let (image, bits) = png::decode_table(file)?;
         let samples = if bits == 16 { Samples::Unorm16 } else { Samples::Unorm8 };
-        Ok(Table { image, samples, format: format!("PNG, {bits} bits") })
+        Ok(Table { image, samples, format: format!("PNG, {bits} bits"), notes: Vec::new() })
     } else if file.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         exr_table(file)
     } else if file.starts_with(b"#?") {
-        let image = radiance::decode(file)?;
+        let radiance::Picture { image, notes } = radiance::decode(file)?;
         // Eight bits of mantissa.
-        Ok(Table { image, samples: Samples::Unorm8, format: "Radiance HDR".to_owned() })
+        Ok(Table { image, samples: Samples::Unorm8, format: "Radiance HDR".to_owned(), notes })
     } else {
         Err(TextureError::UnknownContainer)
     }
@@ -66,21 +68,26 @@ pub fn raw(file: &[u8], width: u32, height: u32, channels: u32, samples: Samples
         let bytes = layout.texel_bytes() as usize / channels as usize;
         return Err(TextureError::Length { found: file.len() / bytes, expected: expected / bytes });
     }
-    Ok(Table { image: layout.image(width, height, file), samples, format: format!("raw {layout}") })
+    Ok(Table { image: layout.image(width, height, file), samples, format: format!("raw {layout}"), notes: Vec::new() })
 }
 
 /// The first layer of an EXR file without deep data, of any compression. Channels are put in the order R, G, B, A where they are
 /// called so, X, Y, Z, V otherwise, or else by name.
 fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
     // All sizes are checked before anything is allocated for them.
-    let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(file), true).map_err(radiance::read_error)?;
+    let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(file), true).map_err(exr::read_error)?;
     for header in &meta.headers {
-        let side = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
-        let channels = u32::try_from(header.channels.list.len()).unwrap_or(u32::MAX);
+        let [width, height] = [header.layer_size.0, header.layer_size.1].map(exr::side);
+        let channels = exr::side(header.channels.list.len());
         if !(1..=4).contains(&channels) {
             return Err(TextureError::Channels(channels));
         }
-        checked_bytes(side(header.layer_size.0), side(header.layer_size.1), 4 * channels)?;
+        let stored = header.channels.list.iter().map(|channel| channel.sample_type.bytes_per_sample()).sum();
+        checked_bytes(width, height, exr::side(stored))?;
+        if !is_plausible(file, 4 * u64::from(channels) * u64::from(width) * u64::from(height)) {
+            let reason = format!("{} bytes are too short for {width} x {height} texels", file.len());
+            return Err(exr::malformed(reason));
+        }
     }
     exr::dwa::check(file)?;
     let image = read_exr()
@@ -91,7 +98,7 @@ fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(file))
-        .map_err(radiance::read_error)?;
+        .map_err(exr::read_error)?;
     let layer = image.layer_data;
     let (width, height) = (layer.size.0 as u32, layer.size.1 as u32);
     let mut planes: Vec<_> = layer.channel_data.list.into_iter().collect();
@@ -100,17 +107,20 @@ fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
     let half = planes.iter().all(|plane| matches!(plane.sample_data, FlatSamples::F16(_)));
     let mut data = vec![0.0; channels * texels];
     for (c, plane) in planes.iter().enumerate() {
-        let values: Vec<f32> = plane.sample_data.values_as_f32().collect();
-        if values.len() != texels {
+        if plane.sample_data.len() != texels {
             return Err(TextureError::unsupported(Container::Exr, "subsampled channels"));
         }
-        data.iter_mut().skip(c).step_by(channels).zip(values).for_each(|(place, value)| *place = value);
+        data.iter_mut()
+            .skip(c)
+            .step_by(channels)
+            .zip(plane.sample_data.values_as_f32())
+            .for_each(|(place, value)| *place = value);
     }
     let samples = if half { Samples::Half } else { Samples::Float };
     let names: Vec<String> = planes.iter().map(|plane| plane.name.to_string()).collect();
     let separator = if names.iter().all(|name| name.len() == 1) { "" } else { " " };
     let format = format!("EXR {}, {}", names.join(separator), if half { "half" } else { "float" });
-    Ok(Table { image: Image { width, height, channels: channels as u32, data }, samples, format })
+    Ok(Table { image: Image { width, height, channels: channels as u32, data }, samples, format, notes: Vec::new() })
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use luthier_export::input;
 use luthier_lut::Image;
 use luthier_report::{Audit, audit};
 use luthier_table::{Stored, rgbd};
-use luthier_terminal::{Failure, Outcome, files, print};
+use luthier_terminal::{Failure, Outcome, complain, files, print};
 use luthier_texture::{Samples, table};
 use serde_json::json;
 
@@ -21,6 +21,9 @@ pub(crate) fn run(options: &AuditOptions) -> Outcome {
     let mut table = read(options, &bytes)?;
     if options.preset.is_some_and(|preset| preset.stored == Stored::Rgbd) && table.format.starts_with("PNG") {
         table.image = rgbd::decode_image(&table.image);
+    }
+    for note in &table.notes {
+        complain(&format!("warning: {}: {note}", options.file.display()));
     }
     if let Some(crop) = &options.crop {
         table.image = cropped(&table.image, crop)?;

@@ -11,7 +11,7 @@ use luthier_table::{
     ClosedForm, Container, Cost, DfgTable, FittedForm, Found, Preset, SPLIT_SUM, Stored, rgbd, search,
     search_beside_form,
 };
-use luthier_terminal::{Failure, Outcome, files};
+use luthier_terminal::{Failure, Outcome, complain, files};
 use luthier_texture::table;
 use serde_json::{Value as Json, json};
 
@@ -295,6 +295,9 @@ fn maps(options: &DfgOptions, table: &DfgTable, texels: &Image, error: &ErrorSta
         let read =
             table::read(&bytes).map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())));
         let read = read?;
+        for note in &read.notes {
+            complain(&format!("warning: {}: {note}", path.display()));
+        }
         let is_encoded = table.stored == Stored::Rgbd && read.format.starts_with("PNG");
         let other = if is_encoded { rgbd::decode_image(&read.image) } else { read.image };
         let channels = table.values.len();

@@ -13,7 +13,7 @@ type Edges = BTreeMap<String, BTreeSet<String>>;
 const COMMANDS: [&str; 3] = ["luthier-cli", "luthier-lab", "luthier-terminal"];
 
 /// Crates that only some of ours may depend on, tests aside.
-const OWNERS: [(&str, &[&str]); 14] = [
+const OWNERS: [(&str, &[&str]); 13] = [
     ("ash", &["luthier-cost"]),
     ("toml", &["luthier-material"]),
     ("naga", &["luthier-shader"]),
@@ -21,7 +21,6 @@ const OWNERS: [(&str, &[&str]); 14] = [
     ("arboard", &["luthier-view"]),
     ("eframe", &["luthier-view"]),
     ("exr", &["luthier-texture"]),
-    ("gltf", &["luthier-mesh"]),
     ("image", &["luthier-texture"]),
     ("ktx2", &["luthier-texture"]),
     ("object_store", &["luthier-store"]),

@@ -89,3 +89,48 @@ fn what_is_no_environment() {
     workshop.run(&["environment", "--out", "no"]).exits(2).says(&["FILE"]);
     assert!(!workshop.path("no").exists());
 }
+
+/// What a file asks for is honoured and told; the environment is that of the values that the file stands for.
+#[test]
+fn what_was_converted_is_told() {
+    let workshop = Workshop::new();
+    let mean = |file: &str, told: &[&str]| {
+        let run = workshop.run(&["environment", file, "--out", "out", "--layout", "equirect"]).exits(0);
+        assert_eq!(run.stderr.lines().count(), told.len(), "{}", run.stderr);
+        assert!(told.iter().all(|part| run.stderr.contains(part) && run.stderr.contains(file)), "{}", run.stderr);
+        manifest(&workshop, "out")["textures"][0]["levels"][0]["mean"].clone()
+    };
+    let lines = |more: &str, texel: [u8; 4]| {
+        let file = hdr(texel);
+        let text = b"#?RADIANCE\n";
+        [&b"#?RGBE\n"[..], more.as_bytes(), &file[text.len()..]].concat()
+    };
+    workshop.write("even.hdr", hdr([128, 64, 32, 129]));
+    workshop.write("exposed.hdr", lines("EXPOSURE=4\n", [128, 64, 32, 131]));
+    workshop.write("wide.hdr", lines("PRIMARIES= .708 .292 .170 .797 .131 .046 .3127 .3290\n", [96, 96, 96, 129]));
+    assert_eq!(mean("even.hdr", &[]), mean("exposed.hdr", &[]));
+    let grey = mean("wide.hdr", &["Rec.709"]);
+    assert!(grey.as_array().unwrap().iter().all(|v| (v.as_f64().unwrap() - 0.75).abs() < 1e-3), "{grey}");
+}
+
+#[test]
+fn faults_of_pictures_have_a_place() {
+    let workshop = Workshop::new();
+    let refused = |name: &str, bytes: Vec<u8>, parts: &[&str]| {
+        workshop.write(name, bytes);
+        workshop.run(&["environment", name, "--out", "no"]).fails(1, parts);
+    };
+    let image = |values: Vec<f32>| luthier_lut::Image { width: 4, height: 2, channels: 3, data: values };
+    let mut values = vec![1.0; 24];
+    values[3 * 6 + 1] = f32::INFINITY;
+    let exr = luthier_texture::exr::encode(&image(values), &luthier_texture::exr::RGB, &Vec::new()).unwrap();
+    refused("inf.exr", exr, &["inf.exr", "column 2 of row 1", "clamp"]);
+    let depth = luthier_texture::exr::encode(&image(vec![1.0; 24]), &["N.X", "N.Y", "N.Z"], &Vec::new()).unwrap();
+    refused("normals.exr", depth, &["normals.exr", "`N.X`", "R, G and B"]);
+    let file = hdr([128; 4]);
+    refused("cut.hdr", file[..file.len() - 99].to_vec(), &["cut.hdr", "scanline 32 of 32"]);
+    assert!(!workshop.path("no").exists());
+    // Two texels are a sky.
+    workshop.write("two.hdr", b"#?RADIANCE\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x40\x40\x40\x81");
+    workshop.run(&["environment", "two.hdr", "--out", "two", "--layout", "equirect"]).exits(0);
+}

@@ -287,6 +287,25 @@ fn meshes_are_refused_with_a_reason() {
     workshop.run(&["preview", "matte.toml", "-o", "no.png", "--sky", "moon"]).fails(2, &["moon"]).says(&["clear-day"]);
 }
 
+/// What is not as it stands in the file is told, and the picture is made.
+#[test]
+fn meshes_of_other_programs_are_shown() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let corpus = root().join("crates/luthier-fuzz/corpus/gltf");
+    let text = std::fs::read_to_string(corpus.join("square.gltf")).unwrap();
+    let odd = text.replacen('{', r#"{"animations":[{"channels":[{"sampler":0,"target":{"path":"scale"}}]}],"#, 1);
+    workshop.write("odd.gltf", [b"\xef\xbb\xbf", odd.as_bytes()].concat());
+    workshop.write("sparse.gltf", std::fs::read(corpus.join("sparse.gltf")).unwrap());
+    for (mesh, told) in [("odd.gltf", "animations"), ("sparse.gltf", "no scene")] {
+        let run =
+            workshop.run(&["preview", "matte.toml", "-o", "mesh.png", "--size", "8", "--samples", "1", "--mesh", mesh]);
+        if run.lacks_adapter() {
+            return;
+        }
+        run.exits(0).says(&[mesh, told]);
+    }
+}
+
 const BRUSHED: &str = "schema = 1\nname = \"brushed\"\n[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nalpha_x = 0.1\nalpha_y = 0.3\n\
     [bake]\nmodel = \"elek\"\n";
 

@@ -127,7 +127,7 @@ fn refusals_name_the_cause() {
         (&b"\x76\x2f\x31\x01"[..], 0, &[0][..], "file identifier missing"),
         (b"\x76\x2f\x31\x01", 4, &[3], "versions other than 2"),
         (b"A\0\x02", 2, &[1], "not 32-bit float"),
-        (b"A\0\x02", 10, &[2], "subsampling"),
+        (b"A\0\x02", 10, &[2], "subsampled"),
         (b"compression\0compression\0", 28, &[4], "other than none and ZIP"),
         (b"dataWindow\0box2i\0", 21 + 10, &[1], "sides are 1 to"),
         (b"dataWindow\0box2i\0", 0, b"D", "missing or invalid data window"),

@@ -1,0 +1,50 @@
+//! glTF 2.0 files, text or binary.
+
+mod accessor;
+mod buffers;
+mod container;
+mod document;
+mod extensions;
+mod materials;
+mod reader;
+mod turn;
+
+use std::io;
+
+use buffers::Buffers;
+use document::Document;
+use reader::Reader;
+
+use crate::{MeshError, Soup};
+
+/// Contents of a glTF file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct File {
+    /// Its triangles.
+    pub soup: Soup,
+    /// Parts of it that are not shown, or not as they stand in the file: a phrase each, each once.
+    pub left_out: Vec<String>,
+}
+
+/// The triangles of the default scene of a glTF 2.0 file, binary or text. `files` reads buffers beside the file by their relative paths. Normals that are
+/// missing are those of the triangles. The material of the file does not count, but for parts whose material is named `plain`: these keep its base
+/// colour. Only what triangles are made of is read: the rest of the file may be anything.
+///
+/// # Errors
+/// [`MeshError`]: no glTF, extensions that the file cannot do without, buffers that cannot be read, numbers that do not fit, more than
+/// [`TRIANGLES_MAX`](crate::TRIANGLES_MAX) triangles.
+pub fn soup(bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<File, MeshError> {
+    let container = container::split(bytes)?;
+    let document = Document::parse(container.json)?;
+    let passed_over = extensions::passed_over(&document)?;
+    let buffers = Buffers::new(&document, container.blob, files);
+    let mut reader = Reader::new(&document, &buffers);
+    for name in passed_over {
+        reader.leave_out(format!("the extension {name}"));
+    }
+    if !document.animations.is_empty() {
+        reader.leave_out("animations");
+    }
+    reader.scene()?;
+    Ok(reader.finish())
+}

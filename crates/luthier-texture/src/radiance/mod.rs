@@ -1,0 +1,42 @@
+//! Pictures of radiance made by others: OpenEXR of any compression, 16 or 32 bits, and Radiance HDR (RGBE and XYZE). To read only.
+
+mod channels;
+mod hdr;
+mod header;
+mod open_exr;
+mod primaries;
+
+use luthier_lut::Image;
+
+use crate::TextureError;
+use crate::error::Container;
+
+const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// A picture of radiance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Three channels, linear Rec.709.
+    pub image: Image,
+    /// What of the file was converted or left out: a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Reads a Radiance HDR file, or the colours of an OpenEXR file: those of its first part that has any, at their largest resolution.
+///
+/// Colours are brought to linear Rec.709 where the file says that they are others (`PRIMARIES`, `32-bit_rle_xyze`, `chromaticities`), by
+/// Bradford's adaptation. Values of Radiance HDR are over `EXPOSURE` and `COLORCORR`. Of OpenEXR the picture is the display window; alpha is
+/// left out.
+///
+/// # Errors
+/// [`TextureError::Malformed`] and [`TextureError::ExrDecode`] for damaged and other files, [`TextureError::Unsupported`] for deep data,
+/// cubes and files without colours, [`TextureError::Size`].
+pub fn decode(file: &[u8]) -> Result<Picture, TextureError> {
+    if file.starts_with(&EXR_MAGIC) {
+        return open_exr::decode(file);
+    }
+    if file.starts_with(b"#?") {
+        return hdr::decode(file);
+    }
+    Err(TextureError::malformed(Container::Exr, "it is neither OpenEXR nor Radiance HDR"))
+}
