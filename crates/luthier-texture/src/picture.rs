@@ -11,18 +11,8 @@ use ::image::{DynamicImage, ImageDecoder, ImageError};
 use luthier_lut::{Picture, PictureSamples};
 
 use crate::error::Container;
-use crate::limits::checked_bytes;
+use crate::limits::{checked_bytes, is_plausible};
 use crate::{TextureError, png};
-
-/// Texels of a byte of JPEG at most: each block of 8 x 8 has a code of its own, of a bit at least (ITU T.81, annex F).
-const JPEG_TEXELS: u64 = 8 * 64;
-
-/// Texels of a byte of lossy WebP at most: a macroblock of 16 x 16 has modes, of more than half a bit by the fixed probabilities of key
-/// frames (RFC 6386, section 11.2).
-const WEBP_TEXELS: u64 = 4096;
-
-/// Texels that lossless WebP may have in any number of bytes: where all are equal, they take none.
-const EVEN_TEXELS: u64 = 1 << 24;
 
 /// A picture, and what its file says of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,11 +36,9 @@ pub fn decode(file: &[u8]) -> Result<Decoded, TextureError> {
         return Ok(Decoded { picture, container: Container::Png, says_srgb: png::says_srgb(file) });
     }
     let (container, read): (_, fn(&[u8]) -> Result<Picture, Fault>) = if file.starts_with(b"\xff\xd8\xff") {
-        (Container::Jpeg, |file| pixels(JpegDecoder::new(Cursor::new(file))?, JPEG_TEXELS * file.len() as u64))
+        (Container::Jpeg, |file| pixels(JpegDecoder::new(Cursor::new(file))?, file))
     } else if file.starts_with(b"RIFF") && file.get(8..12) == Some(b"WEBP") {
-        (Container::WebP, |file| {
-            pixels(WebPDecoder::new(Cursor::new(file))?, EVEN_TEXELS.max(WEBP_TEXELS * file.len() as u64))
-        })
+        (Container::WebP, |file| pixels(WebPDecoder::new(Cursor::new(file))?, file))
     } else {
         return Err(TextureError::NoPicture(kind(file)));
     };
@@ -75,11 +63,11 @@ impl From<ImageError> for Fault {
     }
 }
 
-/// The pixels of a decoder, upright. A file holds so many texels at most.
-fn pixels(mut decoder: impl ImageDecoder, most: u64) -> Result<Picture, Fault> {
+/// The pixels of the decoder of a file, upright.
+fn pixels(mut decoder: impl ImageDecoder, file: &[u8]) -> Result<Picture, Fault> {
     let (width, height) = decoder.dimensions();
-    checked_bytes(width, height, decoder.color_type().bytes_per_pixel().into()).map_err(Fault::Ours)?;
-    if u64::from(width) * u64::from(height) > most {
+    let bytes = checked_bytes(width, height, decoder.color_type().bytes_per_pixel().into()).map_err(Fault::Ours)?;
+    if !is_plausible(file, bytes as u64) {
         return Err(Fault::Short);
     }
     let orientation = decoder.orientation()?;
