@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range as Span;
 
+use luthier_optics::color::VISIBLE_NM;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Layer, Slab, Stack};
 
@@ -17,9 +18,6 @@ use crate::suggest::short;
 
 /// The line at which a single index is usually quoted.
 pub(crate) const SODIUM_D_NM: f64 = 589.3;
-
-/// Wavelengths that the colour integral needs.
-pub(crate) const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
 /// Smallest slope parameter that the real-time models tell from a smooth surface: layer records have it in place of less.
 pub const ALPHA_MIN: f64 = 1e-3;

@@ -10,7 +10,7 @@ mod surface;
 mod unit;
 
 pub(crate) use document::DOCUMENT;
-pub(crate) use layers::{INDEX, SAMPLED_NM};
+pub(crate) use layers::INDEX;
 pub(crate) use scene::SCENE;
 pub(crate) use surface::SURFACE;
 pub(crate) use unit::unit;
