@@ -113,7 +113,8 @@ fn sampled(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
 fn checked(ior: Result<Ior, IorError>, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<Ior> {
     ior.map_err(|error| {
         if !sink.has_error_in(&at.span) {
-            sink.error(at.value_span(key), error.to_string(), None);
+            let hint = matches!(error, IorError::NotPhysical { .. }).then(|| "vacuum has n = 1".to_owned());
+            sink.error(at.value_span(key), error.to_string(), hint);
         }
     })
     .ok()

@@ -65,7 +65,7 @@ pub(super) fn decode(
                 interface
             }
             "diffuse" => Base::Diffuse(Diffuse {
-                albedo: matrix.map(reradiation::albedo).or_else(|| at.rgb("albedo")).unwrap_or([0.0; 3]),
+                albedo: matrix.map(reradiation::albedo).or_else(|| at.reflectance("albedo")).unwrap_or([0.0; 3]),
                 sigma: at.number("sigma").unwrap_or(0.0),
             }),
             // The checker has reported it.

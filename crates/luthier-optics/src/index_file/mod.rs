@@ -33,4 +33,4 @@ pub const ROWS_MAX: usize = 100_000;
 pub const VALUE_MAX: f64 = 1e6;
 
 /// k down to which a negative value is noise of a measurement, and read as 0.
-pub const NOISE_K: f64 = -0.01;
+pub const NOISE_K: f64 = -0.02;
