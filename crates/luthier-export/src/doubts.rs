@@ -12,7 +12,9 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let model = asked.unwrap_or_else(|| material.model());
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
-    doubts.extend(material.unfit_for_lobes().filter(|_| asked.is_none()).map(|part| instead(material, &part)));
+    if asked.is_none() {
+        doubts.extend(material.unfit_for_lobes().iter().map(|part| instead(material, part)));
+    }
     // A model without the distribution of a layer is refused: an error says so.
     let dropped = dropped.iter().filter(|part| part.feature != Feature::Distribution);
     doubts.extend(dropped.map(|part| dropped_part(material, model, part)));

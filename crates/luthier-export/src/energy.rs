@@ -64,7 +64,7 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
     if !is_questionable(material, model) {
         return None;
     }
-    let stands_in = asked.is_none() && material.unfit_for_lobes().is_some();
+    let stands_in = asked.is_none() && !material.unfit_for_lobes().is_empty();
     // Stacks of named models are known to be off (`docs/pages/models.md`); a simulation says by how much where something is told.
     let is_compared = stands_in || material.stack.layers.len() == 1;
     let gains = !is_compared && albedos(material, model, false).iter().any(|found| found.model > ALL);

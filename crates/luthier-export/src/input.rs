@@ -42,8 +42,17 @@ pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
 /// # Errors
 /// Those of the system, and what is no regular file of bounded size in UTF-8.
 pub fn text(path: &Path) -> io::Result<String> {
-    let invalid = |source| io::Error::new(ErrorKind::InvalidData, source);
-    String::from_utf8(bytes(path)?).map_err(|_| invalid("the file is not UTF-8"))
+    String::from_utf8(bytes(path)?).map_err(|error| {
+        let (bytes, valid) = (error.as_bytes(), error.utf8_error().valid_up_to());
+        let reason = match bytes {
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "the file is UTF-16: save it as UTF-8".to_owned(),
+            _ => {
+                let line = bytes[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
+                format!("line {line} is not UTF-8: save the file as UTF-8")
+            }
+        };
+        io::Error::new(ErrorKind::InvalidData, reason)
+    })
 }
 
 fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {

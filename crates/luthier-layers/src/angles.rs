@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use glam::DVec3;
+use luthier_optics::rows::{Row, rows};
 
 /// Angle from the normal and around it, in degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +66,8 @@ impl FromStr for Angles {
     }
 }
 
-/// Pairs (wi, wo) of a CSV text, a pair in a line. Empty lines and lines that begin with `#` do not count.
+/// Pairs (wi, wo) of a CSV text, a pair in a row of `theta_i,phi_i,theta_o,phi_o`; a first row of names does not count.
+/// [`luthier_optics::rows`] has the separators.
 ///
 /// ```
 /// let pairs = luthier_layers::angles::pairs("# mirror\n30,0,30,180\n").unwrap();
@@ -75,40 +77,65 @@ impl FromStr for Angles {
 /// # Errors
 /// [`PairsError`], whose text continues the name of the file.
 pub fn pairs(text: &str) -> Result<Vec<[Angles; 2]>, PairsError> {
-    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
-    let pairs: Vec<_> = lines
-        .map(|(i, line)| pair(line).map_err(|reason| PairsError { line: Some(i + 1), reason }))
-        .collect::<Result<_, _>>()?;
+    let mut pairs = Vec::new();
+    for (count, row) in rows(text).enumerate() {
+        let wrong = |line: usize, reason: String| PairsError { line: Some(line), reason };
+        let row = row.map_err(|error| wrong(error.line, error.to_string()))?;
+        let is_header = count == 0 && row.cells.iter().map(|name| name.to_lowercase()).eq(COLUMNS);
+        if !is_header {
+            pairs.push(pair(&row).map_err(|reason| wrong(row.line, reason))?);
+        }
+    }
     if pairs.is_empty() {
         return Err(PairsError { line: None, reason: "no directions".to_owned() });
     }
     Ok(pairs)
 }
 
-fn pair(line: &str) -> Result<[Angles; 2], String> {
-    let fields: Vec<&str> = line.split(',').collect();
-    let [theta_i, phi_i, theta_o, phi_o] = fields[..] else {
-        return Err(format!("expected theta_i,phi_i,theta_o,phi_o, found {} fields", fields.len()));
-    };
-    let named = |which: &'static str| move |what: AnglesError| format!("{which}: {what}");
-    let wi = Angles::new(theta_i, phi_i).map_err(named("wi"))?;
-    Ok([wi, Angles::new(theta_o, phi_o).map_err(named("wo"))?])
+const COLUMNS: [&str; 4] = ["theta_i", "phi_i", "theta_o", "phi_o"];
+
+fn pair(row: &Row) -> Result<[Angles; 2], String> {
+    if row.cells.len() != COLUMNS.len() {
+        return Err(format!("expected {}, found {} fields", COLUMNS.join(","), row.cells.len()));
+    }
+    let mut angles = [0.0; 4];
+    for (i, angle) in angles.iter_mut().enumerate() {
+        *angle = row.number(i).ok_or_else(|| format!("{} is `{}`, expected degrees", COLUMNS[i], row.cells[i]))?;
+    }
+    for i in [0, 2] {
+        if !(0.0..=90.0).contains(&angles[i]) {
+            return Err(format!("{} is {}, expected 0 to 90 degrees", COLUMNS[i], angles[i]));
+        }
+    }
+    let [theta_i, phi_i, theta_o, phi_o] = angles;
+    Ok([[theta_i, phi_i], [theta_o, phi_o]].map(|[theta_deg, phi_deg]| Angles { theta_deg, phi_deg }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// As spreadsheets write them.
+    #[test]
+    fn lists_are_read_in_any_writing() {
+        for text in
+            ["\u{feff}30,0,45.5,180\r\n", "30;0;45,5;180\r", "Theta_i\tphi_i\ttheta_o\tphi_o\n30\t0\t45,5\t180\n"]
+        {
+            assert_eq!(pairs(text).unwrap()[0].map(Angles::to_array), [[30.0, 0.0], [45.5, 180.0]], "{text}");
+        }
+    }
+
     #[test]
     fn mistakes_are_pointed_at() {
         for (text, expected) in [
             ("# nothing\n", ": no directions"),
             ("\n30,0,30\n", ":2: expected theta_i,phi_i,theta_o,phi_o, found 3 fields"),
-            ("30,0,91,0\n", ":1: wo: theta is 91, expected 0 to 90 degrees"),
-            ("30,0,1,nan\n", ":1: wo: phi is `nan`, expected degrees"),
+            ("30,0,91,0\n", ":1: theta_o is 91, expected 0 to 90 degrees"),
+            ("30,0,1,nan\n", ":1: phi_o is `nan`, expected degrees"),
         ] {
             assert_eq!(pairs(text).unwrap_err().to_string(), expected);
         }
+        assert_eq!(pairs(&"1,".repeat(10_000)).unwrap_err().line, Some(1));
         assert_eq!("30".parse::<Angles>().unwrap_err().to_string(), "expected theta,phi in degrees, such as 30,0");
     }
 }

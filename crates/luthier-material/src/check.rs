@@ -7,7 +7,10 @@ use toml::de::DeValue;
 
 use crate::correct::corrected;
 use crate::diagnostic::Sink;
-use crate::grammar::{Alternatives, Key, Kind, NAME_MAX, PATH_MAX, Range, Table, TextForm};
+use crate::foreign;
+use crate::grammar::{
+    Alternatives, Key, Kind, NAME_MAX, PATH_MAX, REFLECTANCE_READ_MAX, REFLECTANCES, Range, Table, TextForm,
+};
 use crate::section::{Section, integer, number, section};
 use crate::suggest::{did_you_mean, one_of, short};
 
@@ -84,7 +87,17 @@ fn unknown_key(
         sink.error(span, "", None);
         return None;
     }
-    let nearest = did_you_mean(name, table.keys.iter().map(|k| k.name)).or_else(|| synonym(table, name));
+    let mut nearest = did_you_mean(name, table.keys.iter().map(|k| k.name)).or_else(|| synonym(table, name));
+    let advice = foreign::here(table, name).inspect(|_| nearest = None);
+    if let Some(advice) = advice.or_else(|| foreign::key(name).filter(|_| nearest.is_none())) {
+        sink.error(span, format!("unknown key `{name}` in {}", this(table)), Some(advice.to_owned()));
+        return None;
+    }
+    if nearest.is_none() && layers_of(table).any(|layer| layer.key(name).is_some()) {
+        let hint = format!("`{name}` is a key of layers: write it below a `[[layer]]`");
+        sink.error(span, format!("unknown key `{name}` outside the layers"), Some(hint));
+        return None;
+    }
     let owners: Vec<&str> = siblings.iter().filter(|t| t.key(name).is_some()).map(|t| t.name).collect();
     if !owners.is_empty() {
         let hint = match (nearest, table.name) {
@@ -102,13 +115,32 @@ fn unknown_key(
             format!("it takes {}", table.keys.iter().map(|k| format!("`{}`", k.name)).collect::<Vec<_>>().join(", "))
         }
     };
-    sink.error(span, format!("unknown key `{name}` in this {}", table.name), Some(hint));
+    sink.error(span, format!("unknown key `{name}` in {}", this(table)), Some(hint));
     nearest
+}
+
+/// A table in words; those of maps have names of the schema alone.
+fn this(table: &Table) -> String {
+    match table.name.strip_suffix("-maps") {
+        Some("metallic") => "the `maps` of a metallic-roughness layer".to_owned(),
+        Some(kind) => format!("the `maps` of a {kind} layer"),
+        None => format!("this {}", table.name),
+    }
+}
+
+/// The kinds of layers of a document.
+fn layers_of(table: &'static Table) -> impl Iterator<Item = &'static Table> {
+    let layers = table.key("layer").map(|key| &key.kind);
+    let variants = match layers {
+        Some(Kind::Tagged { variants, .. }) => *variants,
+        _ => &[],
+    };
+    variants.iter().copied()
 }
 
 /// Other words for some keys, from neighbouring tools and papers.
 fn synonym(table: &'static Table, name: &str) -> Option<&'static str> {
-    const SYNONYMS: [(&str, &str); 17] = [
+    const SYNONYMS: [(&str, &str); 28] = [
         ("color", "albedo"),
         ("colour", "albedo"),
         ("reflectance", "albedo"),
@@ -118,6 +150,17 @@ fn synonym(table: &'static Table, name: &str) -> Option<&'static str> {
         ("color", "base_color"),
         ("colour", "base_color"),
         ("albedo", "base_color"),
+        ("base_color", "albedo"),
+        ("base_color", "f0"),
+        ("color", "f0"),
+        ("diffuse", "albedo"),
+        ("diffuseColor", "albedo"),
+        ("baseColor", "base_color"),
+        ("baseColorFactor", "base_color"),
+        ("metallicFactor", "metallic"),
+        ("base_metalness", "metallic"),
+        ("roughnessFactor", "roughness"),
+        ("specular_roughness", "roughness"),
         ("metalness", "metallic"),
         ("metallicness", "metallic"),
         ("eta", "ior"),
@@ -150,6 +193,11 @@ fn check_value(
         }
         (Kind::Number(range), found @ (DeValue::Float(_) | DeValue::Integer(_))) => match number(found) {
             Some(v) if range.contains(v) => {}
+            Some(v) if REFLECTANCES.contains(&name) && v > range.max && v <= REFLECTANCE_READ_MAX => {
+                let message = format!("`{name}` is {}, more light than falls in: it is read as 1", short(v));
+                let hint = "colours of wide gamuts are above 1 in Rec.709; write 1 if that is meant".to_owned();
+                sink.warn(span, message, Some(hint));
+            }
             Some(v) => {
                 let message = format!("`{name}` must be {}, found {}", bounds(*range, v), short(v));
                 sink.error(span, message, corrected(name, *range, v, in_list));
@@ -240,10 +288,11 @@ fn check_tagged(
     match variants.iter().find(|v| v.name == text) {
         Some(variant) => check_table(variant, variants, &at, sink),
         None => {
-            let hint = did_you_mean(text, names.iter().copied()).map_or_else(
-                || format!("write {}", one_of(&names)),
-                |near| format!("did you mean `{tag} = \"{near}\"`?"),
-            );
+            let hint = match (did_you_mean(text, names.iter().copied()), foreign::kind(text)) {
+                (Some(near), _) => format!("did you mean `{tag} = \"{near}\"`?"),
+                (None, Some(advice)) if name == "layer" => advice.to_owned(),
+                (None, _) => format!("write {}", one_of(&names)),
+            };
             sink.error(given.span(), format!("`{text}` is no `{tag}` of a {name}"), Some(hint));
         }
     }

@@ -1,6 +1,6 @@
 //! Guesses at the number that one outside its range was probably meant to be.
 
-use crate::grammar::Range;
+use crate::grammar::{REFLECTANCES, Range};
 use crate::suggest::short;
 
 /// A hint with the corrected value of `name`, which is outside `range`. In a list the value stands alone.
@@ -14,9 +14,17 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
     if !value.is_finite() {
         return None;
     }
-    if value < 0.0 && range.contains(-value) {
-        let why = if name == "k" { "k > 0 absorbs (phase e^{+i beta}): " } else { "" };
-        return Some(format!("{why}write {}", write(-value)));
+    if value < 0.0 && range.min == 0.0 && !matches!(name, "n" | "ior") {
+        // A number without its sign is another one, which nothing in the file asks for.
+        return match name {
+            "k" if range.contains(-value) => {
+                Some(format!("k > 0 absorbs (phase e^{{+i beta}}): write {}", write(-value)))
+            }
+            _ if REFLECTANCES.contains(&name) => {
+                Some("the colour lies outside Rec.709: convert it to linear Rec.709, and clip it there".to_owned())
+            }
+            _ => Some("a minus makes no sense here: give the number that is meant".to_owned()),
+        };
     }
     match name {
         "n" | "ior" if value <= range.min => return Some(format!("vacuum has {}", write(1.0))),
@@ -30,9 +38,12 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
         "sigma" if value > 0.0 && value <= 90.0 => {
             return Some(format!("sigma is in radians: {} degrees is {}", short(value), write(value.to_radians())));
         }
-        "albedo" | "base_color" | "diffuse_albedo" | "f0" | "tarnish" if value > 1.5 && value <= 255.0 => {
-            let linear = write(srgb_to_linear(value / 255.0));
-            return Some(format!("linear reflectance is wanted: the 8-bit sRGB value {} is {linear}", short(value)));
+        "albedo" | "base_color" | "diffuse_albedo" | "f0" | "tarnish" if value >= 3.0 && value <= 255.0 => {
+            let (share, linear) = (short(value / 255.0), write(srgb_to_linear(value / 255.0)));
+            let value = short(value);
+            return Some(format!(
+                "divide by 255: {value} is {share}, and of an 8-bit sRGB picture {linear} in linear light"
+            ));
         }
         "wavelengths_nm" if value < 20.0 && range.contains(value * 1000.0) => {
             return Some(format!("wavelengths are in nm: {} um is {}", short(value), write(value * 1000.0)));
@@ -60,7 +71,6 @@ mod tests {
     #[test]
     fn hints_hold_the_corrected_value() {
         assert!(hint("k", NOT_NEGATIVE, -2.4).contains("`k = 2.4`"));
-        assert!(hint("thickness_um", NOT_NEGATIVE, -3.0).contains("`thickness_um = 3`"));
         assert!(hint("n", POSITIVE, 0.0).contains("`n = 1`"));
         assert!(hint("roughness", UNIT, 35.0).contains("`roughness = 0.35`"));
         assert!(hint("sigma", UNIT, 20.0).contains("`sigma = 0.34907`"));
@@ -74,6 +84,9 @@ mod tests {
         let below = std::f64::consts::FRAC_PI_2;
         assert!(hint("sigma", Range { max: below, ..UNIT }, 100.0).contains(&format!("`sigma = {below}`")));
         assert_eq!(corrected("alpha", UNIT, f64::NAN, false), None);
+        // No sign is dropped but that of k, which is a convention.
+        assert!(!hint("thickness_um", NOT_NEGATIVE, -3.0).contains('3'));
+        assert!(!hint("albedo", UNIT, -0.2775).contains("0.2775"));
         assert_eq!(corrected("albedo", UNIT, 1.2, true).as_deref(), Some("the nearest allowed is `1`"));
     }
 }

@@ -1,5 +1,7 @@
 //! The model of a material whose file names none.
 
+use std::collections::BTreeSet;
+
 use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_optics::stack::{Base, Layer, Surface};
 
@@ -46,10 +48,13 @@ impl Material {
         self.bake.model.unwrap_or_else(|| self.most_whole(CLOSED.iter()))
     }
 
-    /// The feature that keeps a material with something to simulate, whose file names no model, from the model `lobes`.
-    pub fn unfit_for_lobes(&self) -> Option<LeftOut> {
+    /// The features that keep a material with something to simulate, whose file names no model, from the model `lobes`; each once.
+    pub fn unfit_for_lobes(&self) -> Vec<LeftOut> {
         let is_open = self.bake.model.is_none() && self.has_further_bounces() && self.model() != ShadingModel::Lobes;
-        is_open.then(|| self.lacks(ShadingModel::Lobes).into_iter().next()).flatten()
+        let mut parts = if is_open { self.lacks(ShadingModel::Lobes) } else { Vec::new() };
+        let mut told = BTreeSet::new();
+        parts.retain(|part| told.insert(part.feature));
+        parts
     }
 
     /// Whether a model shows all that the file asks for, in a shader with tables.
@@ -194,10 +199,10 @@ mod tests {
         ] {
             let found = material(&body);
             assert_eq!([found.model(), found.model_without_fit()].map(ShadingModel::name), [model, without], "{body}");
-            assert_eq!(found.unfit_for_lobes().map(|part| part.key).as_deref(), cause, "{body}");
+            assert_eq!(found.unfit_for_lobes().first().map(|part| part.key.as_str()), cause, "{body}");
             let named = material(&(body + "[bake]\nmodel = \"phong\"\n"));
             assert_eq!([named.model(), named.model_without_fit()], [ShadingModel::Phong; 2]);
-            assert_eq!(named.unfit_for_lobes(), None);
+            assert_eq!(named.unfit_for_lobes(), []);
         }
     }
 

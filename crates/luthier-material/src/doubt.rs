@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range as Span;
 
+use luthier_optics::color::VISIBLE_NM;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Layer, Slab, Stack};
 
@@ -17,9 +18,6 @@ use crate::suggest::short;
 
 /// The line at which a single index is usually quoted.
 pub(crate) const SODIUM_D_NM: f64 = 589.3;
-
-/// Wavelengths that the colour integral needs.
-pub(crate) const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
 /// Smallest slope parameter that the real-time models tell from a smooth surface: layer records have it in place of less.
 pub const ALPHA_MIN: f64 = 1e-3;
@@ -92,7 +90,6 @@ pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<
     for (i, layer) in stack.layers.iter().enumerate() {
         let at = &At { places, layer: i };
         let is_last = i + 1 == stack.layers.len();
-        surface(layer, at, sink);
         smoother_than_above(layer, roughest, model, at, sink);
         films(layer, at, sink);
         match &layer.base {
@@ -154,18 +151,6 @@ fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut 
             let hint = format!("leave `\"{name}\"` out");
             sink.warn(at.clone(), format!("`{name}` tables would be empty: {reason}"), Some(hint));
         }
-    }
-}
-
-fn surface(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
-    if matches!(layer.base, Base::Diffuse(_)) {
-        return;
-    }
-    let alpha = layer.surface.alpha_isotropic();
-    if alpha > 0.0 && alpha < ALPHA_MIN {
-        let message = format!("alpha = {} is below {ALPHA_MIN}, which the real-time models use instead", short(alpha));
-        let hint = format!("write `smooth = true`, or {}", at.in_its_terms(ALPHA_MIN));
-        sink.warn(at.surface(), message, Some(hint));
     }
 }
 

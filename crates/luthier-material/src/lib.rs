@@ -21,6 +21,7 @@ mod default_model;
 mod diagnostic;
 mod doubt;
 mod effects;
+mod foreign;
 mod grammar;
 mod left_out;
 mod material;

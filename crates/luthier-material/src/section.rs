@@ -106,6 +106,11 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// A triple of reflectances. What is a little above 1 has been told, and counts as 1.
+    pub(crate) fn reflectance(&self, key: &str) -> Option<[f64; 3]> {
+        self.rgb(key).map(|rgb| rgb.map(|value| value.min(1.0)))
+    }
+
     /// A pair of whole numbers.
     pub(crate) fn pair(&self, key: &str) -> Option<[u32; 2]> {
         let items = self.array(key)?.iter().map(|v| u32::try_from(integer(v.get_ref())?).ok());

@@ -61,14 +61,6 @@ fn a_base_smoother_than_its_coat() {
 }
 
 #[test]
-fn surfaces_below_the_model() {
-    let metal = |alpha: &str| layer("conductor", &format!("ior = \"au\"\nalpha = {alpha}"));
-    assert!(warnings(&metal("0.0005")).contains("`alpha = 0.001`"));
-    assert_eq!(warnings(&metal("0.001")), "");
-    assert_eq!(warnings(&metal("0")), "");
-}
-
-#[test]
 fn interfaces_between_equal_media() {
     assert!(warnings(&format!("{COAT}{COAT}{DIFFUSE}")).contains("reflects nothing"));
     assert!(warnings(&format!("exterior = 1.5\n{COAT}{DIFFUSE}")).contains("reflects nothing"));

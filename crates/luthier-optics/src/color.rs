@@ -103,6 +103,9 @@ fn lump(nodes: &[WavelengthNode], kept: &[usize]) -> Vec<WavelengthNode> {
     lumped
 }
 
+/// First and last wavelength in nm that colours depend on: those of the observer's table.
+pub const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
+
 /// Relative luminance of linear Rec.709.
 pub fn luminance(rgb: Rgb) -> f64 {
     LUMINANCE[0] * rgb[0] + LUMINANCE[1] * rgb[1] + LUMINANCE[2] * rgb[2]

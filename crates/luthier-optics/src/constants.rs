@@ -1,15 +1,13 @@
-//! Built-in optical constants with their sources, and the CSV form of an index.
+//! Built-in optical constants with their sources.
 //!
-//! A file is `#` comment lines, a header `wavelength_nm,n,k`, then one row a wavelength, ascending. The built-in
-//! files lie in `data/`; their comment lines `# key: value` carry the citation.
+//! The files lie in `data/`, in the CSV form that [`crate::index_file`] reads; their comment lines `# key: value` carry the citation.
 //!
 //! Rows exist only where the source has data: nothing is extrapolated, [`Ior::at`] holds the end values.
 
 use std::sync::OnceLock;
 
-use thiserror::Error;
-
-use crate::ior::{Ior, IorError, IorSample};
+use crate::index_file::csv;
+use crate::ior::Ior;
 
 /// A built-in index of refraction and where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,72 +36,6 @@ pub struct Dataset {
     pub ior: Ior,
 }
 
-/// Why a text is not an index in CSV form.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum CsvError {
-    /// The first line that is no comment is not the header.
-    #[error("line {line}: the header must be `wavelength_nm,n,k` (or `wavelength_nm,n` for k = 0)")]
-    Header {
-        /// Line number, from 1.
-        line: usize,
-    },
-    /// A row with the wrong number of columns.
-    #[error("line {line}: {found} columns where the header has {expected}")]
-    Columns {
-        /// Line number, from 1.
-        line: usize,
-        /// Columns found.
-        found: usize,
-        /// Columns of the header.
-        expected: usize,
-    },
-    /// A cell that is no number.
-    #[error("line {line}: `{cell}` is not a number")]
-    Number {
-        /// Line number, from 1.
-        line: usize,
-        /// The cell.
-        cell: String,
-    },
-    /// The rows do not form an index.
-    #[error(transparent)]
-    Ior(#[from] IorError),
-}
-
-/// Reads an index from its CSV form (see the module). Wavelengths in nm, ascending; blank lines are skipped.
-///
-/// # Errors
-/// See [`CsvError`].
-pub fn parse_csv(text: &str) -> Result<Ior, CsvError> {
-    let mut columns = None;
-    let mut samples = Vec::new();
-    for (index, row) in text.lines().enumerate() {
-        let line = index + 1;
-        let row = row.trim();
-        if row.is_empty() || row.starts_with('#') {
-            continue;
-        }
-        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
-        let Some(expected) = columns else {
-            match cells.as_slice() {
-                ["wavelength_nm", "n", "k"] | ["wavelength_nm", "n"] => columns = Some(cells.len()),
-                _ => return Err(CsvError::Header { line }),
-            }
-            continue;
-        };
-        if cells.len() != expected {
-            return Err(CsvError::Columns { line, found: cells.len(), expected });
-        }
-        let mut values = [0.0; 3];
-        for (value, cell) in values.iter_mut().zip(&cells) {
-            *value = cell.parse().map_err(|_| CsvError::Number { line, cell: (*cell).to_owned() })?;
-        }
-        samples.push(IorSample { wavelength_nm: values[0], n: values[1], k: values[2] });
-    }
-    Ok(Ior::sampled(samples)?)
-}
-
 /// All built-in data sets, by id in alphabetical order.
 pub fn datasets() -> &'static [Dataset] {
     static DATASETS: OnceLock<Vec<Dataset>> = OnceLock::new();
@@ -117,8 +49,8 @@ pub fn dataset(id: &str) -> Option<&'static Dataset> {
 }
 
 fn load(id: &'static str, text: &'static str) -> Dataset {
-    let ior = match parse_csv(text) {
-        Ok(ior) => ior,
+    let ior = match csv(text) {
+        Ok(file) => file.ior,
         // Part of the program, not input: a unit test reads every file.
         Err(error) => unreachable!("built-in data set {id}: {error}"),
     };
@@ -277,20 +209,5 @@ mod tests {
     fn unknown_ids_are_none() {
         assert_eq!(dataset("unobtainium"), None);
         assert_eq!(dataset(""), None);
-    }
-
-    #[test]
-    fn csv_errors_name_the_line() {
-        assert_eq!(parse_csv("# a comment\nn,k\n"), Err(CsvError::Header { line: 2 }));
-        assert_eq!(parse_csv("wavelength_nm,n,k\n400,1\n"), Err(CsvError::Columns { line: 2, found: 2, expected: 3 }));
-        assert_eq!(
-            parse_csv("wavelength_nm,n\n400,1\n\n500,x\n"),
-            Err(CsvError::Number { line: 4, cell: "x".to_owned() })
-        );
-        assert_eq!(
-            parse_csv("wavelength_nm,n\n500,1\n400,1\n"),
-            Err(CsvError::Ior(IorError::NotAscending(500.0, 400.0)))
-        );
-        assert_eq!(parse_csv(""), Err(CsvError::Ior(IorError::Empty)));
     }
 }

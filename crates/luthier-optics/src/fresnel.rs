@@ -213,6 +213,20 @@ mod tests {
         coated(c(n1, 0.0), &films, n3, libm::cos(deg.to_radians()))
     }
 
+    /// Closed form: without a real part all light comes back, at any angle.
+    #[test]
+    fn a_metal_of_no_real_index_is_a_mirror() {
+        for k in [0.5, 2.0, 6.6] {
+            for cos in [0.0, 1e-3, 0.3, 0.7, 1.0] {
+                let found = interface(Complex64::ONE, Complex64::new(0.0, k), cos);
+                assert!(
+                    (found.refl_s - 1.0).abs() < 1e-12 && (found.refl_p - 1.0).abs() < 1e-12,
+                    "{k} {cos}: {found:?}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn airy_oracles() {
         // Oracle: Airy sums evaluated independently in two formulations that agree to ten digits.

@@ -11,7 +11,7 @@ use crate::Rgb;
 pub struct IorSample {
     /// Vacuum wavelength.
     pub wavelength_nm: f64,
-    /// Real part.
+    /// Real part, not negative; 0 in tables of some metals.
     pub n: f64,
     /// Extinction coefficient, not negative.
     pub k: f64,
@@ -27,8 +27,8 @@ pub enum IorError {
     /// A wavelength repeats or descends.
     #[error("wavelengths must ascend: {0} nm is followed by {1} nm")]
     NotAscending(f64, f64),
-    /// `n <= 0`, `k < 0`, or not finite.
-    #[error("the index {n} + {k}i at {wavelength_nm} nm is not physical: n must be positive, k must not be negative")]
+    /// `n < 0`, `k < 0`, both 0, or not finite.
+    #[error("the index {n} + {k}i at {wavelength_nm} nm is not physical: n and k must not be negative, nor both 0")]
     NotPhysical {
         /// Where.
         wavelength_nm: f64,
@@ -66,7 +66,7 @@ impl Ior {
     /// An index that is equal at every wavelength.
     ///
     /// # Errors
-    /// [`IorError::NotPhysical`] unless `n > 0`, `k >= 0` and both are finite.
+    /// [`IorError::NotPhysical`] unless `n >= 0`, `k >= 0`, one of them is positive and both are finite.
     pub fn constant(n: f64, k: f64) -> Result<Self, IorError> {
         Self::sampled(vec![IorSample { wavelength_nm: 550.0, n, k }])
     }
@@ -85,7 +85,7 @@ impl Ior {
             }
         }
         for s in &samples {
-            let physical = s.n > 0.0 && s.k >= 0.0 && s.n.is_finite() && s.k.is_finite();
+            let physical = s.n >= 0.0 && s.k >= 0.0 && s.n + s.k > 0.0 && s.n.is_finite() && s.k.is_finite();
             if !physical || !s.wavelength_nm.is_finite() {
                 return Err(IorError::NotPhysical { wavelength_nm: s.wavelength_nm, n: s.n, k: s.k });
             }

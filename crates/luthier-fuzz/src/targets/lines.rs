@@ -3,19 +3,28 @@
 use luthier_layers::angles::pairs;
 use luthier_layers::beam_fit::samples;
 use luthier_layers::reradiation::Matrix;
-use luthier_optics::constants::parse_csv;
+use luthier_optics::index_file::{IndexFile, IndexFileError, VALUE_MAX, csv, yaml};
 use luthier_table::{Layout, Nodes};
 
 /// A CSV file of optical constants.
 pub(super) fn index(bytes: &[u8]) {
-    let text = String::from_utf8_lossy(bytes);
-    match parse_csv(&text) {
-        Ok(ior) => {
+    check_index(csv(&String::from_utf8_lossy(bytes)));
+}
+
+/// A page of refractiveindex.info.
+pub(super) fn page(bytes: &[u8]) {
+    check_index(yaml(&String::from_utf8_lossy(bytes)));
+}
+
+fn check_index(read: Result<IndexFile, IndexFileError>) {
+    match read {
+        Ok(IndexFile { ior, notes }) => {
             let samples = ior.samples();
-            assert!(!samples.is_empty());
+            assert!(!samples.is_empty() && notes.iter().all(|note| !note.is_empty()));
             assert!(samples.is_sorted_by(|a, b| a.wavelength_nm < b.wavelength_nm));
             for sample in samples {
-                assert!([sample.wavelength_nm, sample.n, sample.k].into_iter().all(f64::is_finite), "{sample:?}");
+                assert!(sample.wavelength_nm.is_finite(), "{sample:?}");
+                assert!([sample.n, sample.k].into_iter().all(|value| (0.0..=VALUE_MAX).contains(&value)), "{sample:?}");
             }
             let ends = [samples[0].wavelength_nm, samples[samples.len() - 1].wavelength_nm];
             for nm in [0.0, 1.0, 380.0, 550.0, 780.0, 1e6, ends[0], ends[1], 0.5 * ends[0] + 0.5 * ends[1]] {
@@ -23,7 +32,7 @@ pub(super) fn index(bytes: &[u8]) {
                 assert!(index.re.is_finite() && index.im.is_finite(), "{index} at {nm} nm");
             }
         }
-        Err(error) => assert!(!error.to_string().is_empty()),
+        Err(error) => assert!(!error.to_string().is_empty() && !error.hint().is_empty() && error.line != Some(0)),
     }
 }
 

@@ -45,11 +45,19 @@ pub const TARGETS: [Target; 20] = [
     },
     Target {
         name: "index",
-        parser: "luthier_optics::constants::parse_csv",
+        parser: "luthier_optics::index_file::csv",
         reads: "CSV files of optical constants",
-        holds: "samples ascend and are finite; so is the index between them and beyond",
+        holds: "samples ascend, are finite and not negative; so is the index between them and beyond",
         folders: &["crates/luthier-optics/data"],
         run: lines::index,
+    },
+    Target {
+        name: "page",
+        parser: "luthier_optics::index_file::yaml",
+        reads: "pages of refractiveindex.info in YAML",
+        holds: "samples ascend, are finite and not negative; so is the index between them and beyond",
+        folders: &[],
+        run: lines::page,
     },
     Target {
         name: "axes",

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
+use luthier_optics::rows::{Row, rows};
 
 use crate::angles::Angles;
 
@@ -30,7 +31,7 @@ pub struct LobeError {
 const COLUMNS: [&str; 7] = ["theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b"];
 
 /// The samples of a CSV text, as `luthier eval` prints one: a line of names, `theta_i,phi_i,theta_o,phi_o,r,g,b`, then angles in degrees and
-/// f cos_theta_i in each. Other columns do not count, nor do empty lines and lines that begin with `#`.
+/// f cos_theta_i in each. Other columns do not count. [`luthier_optics::rows`] has the separators.
 ///
 /// ```
 /// let lobe = luthier_layers::beam_fit::samples("theta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,30,180,1,0.9,0.8\n").unwrap();
@@ -40,23 +41,24 @@ const COLUMNS: [&str; 7] = ["theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b
 /// # Errors
 /// [`LobeError`], whose text continues the name of the file.
 pub fn samples(text: &str) -> Result<Vec<Sample>, LobeError> {
-    let wrong = |line: usize, reason: String| LobeError { line: Some(line + 1), reason };
-    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.trim().starts_with('#'));
+    let wrong = |line: usize, reason: String| LobeError { line: Some(line), reason };
+    let mut rows = rows(text).map(|row| row.map_err(|error| wrong(error.line, error.to_string())));
     let empty = LobeError { line: None, reason: "no values".to_owned() };
-    let (first, names) = lines.next().ok_or_else(|| empty.clone())?;
-    let names: Vec<&str> = names.split(',').map(str::trim).collect();
+    let names = rows.next().ok_or_else(|| empty.clone())??;
     let mut places = [0; 7];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
-        let found = names.iter().position(|name| *name == column);
-        *place = found.ok_or_else(|| wrong(first, format!("no column `{column}`; expected {}", COLUMNS.join(","))))?;
+        let found = names.cells.iter().position(|name| name.to_lowercase() == column);
+        *place =
+            found.ok_or_else(|| wrong(names.line, format!("no column `{column}`; expected {}", COLUMNS.join(","))))?;
     }
-    let sample = |(number, line): (usize, &str)| {
-        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+    let sample = |row: Result<Row, LobeError>| {
+        let row = row?;
+        let number = row.line;
         let mut numbers = [0.0; 7];
         for ((number_here, place), column) in numbers.iter_mut().zip(places).zip(COLUMNS) {
-            let field = fields.get(place).copied().unwrap_or_default();
-            let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
-            *number_here = value.ok_or_else(|| wrong(number, format!("{column} is `{field}`, expected a number")))?;
+            let field = row.cells.get(place).map_or("", String::as_str);
+            *number_here =
+                row.number(place).ok_or_else(|| wrong(number, format!("{column} is `{field}`, expected a number")))?;
         }
         let [theta_i, phi_i, theta_o, phi_o, r, g, b] = numbers;
         for (name, theta) in [("theta_i", theta_i), ("theta_o", theta_o)] {
@@ -70,6 +72,6 @@ pub fn samples(text: &str) -> Result<Vec<Sample>, LobeError> {
         let direction = |theta_deg, phi_deg| Angles { theta_deg, phi_deg }.direction();
         Ok(Sample { wi: direction(theta_i, phi_i), wo: direction(theta_o, phi_o), value: [r, g, b] })
     };
-    let found: Vec<Sample> = lines.map(sample).collect::<Result<_, _>>()?;
+    let found: Vec<Sample> = rows.map(sample).collect::<Result<_, _>>()?;
     if found.is_empty() { Err(empty) } else { Ok(found) }
 }

@@ -1,16 +1,17 @@
-//! Decoder of indices: numbers, samples, CSV files and built-in data sets.
+//! Decoder of indices: numbers, samples, files and built-in data sets.
 
 use std::ops::Range as Span;
 
-use luthier_optics::constants::{dataset, datasets, parse_csv};
-use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::color::VISIBLE_NM;
+use luthier_optics::constants::{dataset, datasets};
+use luthier_optics::index_file::{IndexFile, IndexFileError, csv, yaml};
+use luthier_optics::ior::{Ior, IorError, IorSample};
 use toml::Spanned;
 use toml::de::DeValue;
 
 use super::Read;
 use crate::diagnostic::Sink;
-use crate::doubt::{Sources, VISIBLE_NM};
-use crate::grammar::{INDEX, SAMPLED_NM};
+use crate::doubt::Sources;
 use crate::section::{Numbers, Section, section};
 use crate::suggest::{did_you_mean, short};
 
@@ -33,6 +34,15 @@ pub(super) fn decode(
         sink.error(value.span(), message, Some(hint));
     }
     Some(ior)
+}
+
+/// Reports an index of 0, into whose medium no light is bent.
+pub(super) fn check_clear(ior: &Ior, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) {
+    if let Some(sample) = ior.samples().iter().find(|sample| sample.n == 0.0) {
+        let message =
+            format!("n is 0 at {} nm, which is that of a metal: no light enters", short(sample.wavelength_nm));
+        sink.error(at.value_span(key), message, Some("was `type = \"conductor\"` meant?".to_owned()));
+    }
 }
 
 /// The samples of a range this wide around the middle of the visible one stand for all of it.
@@ -72,7 +82,7 @@ fn sampled(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
         Some(Numbers::One(_)) => return None,
         None => {
             if let (Numbers::One(n), Numbers::One(k)) = (&n, &k) {
-                return Ior::constant(*n, *k).ok();
+                return checked(Ior::constant(*n, *k), at, "n", sink);
             }
             let list = if matches!(n, Numbers::Many(_)) { "n" } else { "k" };
             if !at.has("wavelengths_nm") {
@@ -96,15 +106,18 @@ fn sampled(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
         .map(|(&wavelength_nm, (&n, &k))| IorSample { wavelength_nm, n, k })
         .collect();
     samples.sort_by(|a, b| a.wavelength_nm.total_cmp(&b.wavelength_nm));
-    match Ior::sampled(samples) {
-        Ok(ior) => Some(ior),
-        Err(error) => {
-            if !sink.has_error_in(&at.span) {
-                sink.error(at.value_span("wavelengths_nm"), error.to_string(), None);
-            }
-            None
+    checked(Ior::sampled(samples), at, "wavelengths_nm", sink)
+}
+
+/// The index of a table, or an error at a key of it, unless one has been said.
+fn checked(ior: Result<Ior, IorError>, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<Ior> {
+    ior.map_err(|error| {
+        if !sink.has_error_in(&at.span) {
+            let hint = matches!(error, IorError::NotPhysical { .. }).then(|| "vacuum has n = 1".to_owned());
+            sink.error(at.value_span(key), error.to_string(), hint);
         }
-    }
+    })
+    .ok()
 }
 
 fn as_many(
@@ -125,35 +138,24 @@ fn as_many(
     }
 }
 
-/// Whether a sample is within the bounds of those that stand in material files.
-fn is_sample(sample: &IorSample) -> bool {
-    SAMPLED_NM.contains(sample.wavelength_nm) && [sample.n, sample.k].into_iter().all(|value| value <= INDEX.max)
-}
-
-/// A CSV file, or a built-in data set.
+/// A file, or a built-in data set.
 fn by_name(name: &str, span: Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
-    if name.to_ascii_lowercase().ends_with(".csv") {
-        return match read(name) {
-            Ok(text) => match parse_csv(&text) {
-                Ok(ior) => match ior.samples().iter().find(|s| !is_sample(s)) {
-                    None => Some(ior),
-                    Some(IorSample { wavelength_nm, n, k }) => {
-                        let [nm, n, k] = [*wavelength_nm, *n, *k].map(short);
-                        let message = format!("`{name}`: the index {n} + {k}i at {nm} nm is that of no medium");
-                        let [from, to, most] = [SAMPLED_NM.min, SAMPLED_NM.max, INDEX.max].map(short);
-                        let hint = format!("wavelengths are in nm, {from} to {to}; n and k are at most {most}");
-                        sink.error(span, message, Some(hint));
-                        None
-                    }
-                },
-                Err(error) => {
-                    sink.error(span, format!("`{name}`: {error}"), None);
-                    None
-                }
-            },
+    if let Some(parse) = reader(name) {
+        let text = match read(name) {
+            Ok(text) => text,
             Err(error) => {
                 let hint = "the path is relative to the material file".to_owned();
                 sink.error(span, format!("cannot read `{name}`: {error}"), Some(hint));
+                return None;
+            }
+        };
+        return match parse(&text) {
+            Ok(IndexFile { ior, notes }) => {
+                notes.iter().for_each(|note| sink.warn(span.clone(), format!("`{name}`: {note}"), None));
+                Some(ior)
+            }
+            Err(error) => {
+                sink.error(span, format!("`{name}`: {error}"), Some(error.hint()));
                 None
             }
         };
@@ -167,10 +169,22 @@ fn by_name(name: &str, span: Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -
     let hint = match nearest_dataset(name) {
         Some((id, called)) => format!("did you mean `\"{id}\"` ({called})?"),
         None if name.parse::<f64>().is_ok() => format!("write the number {} without quotes", short(name.parse().ok()?)),
-        None => "`luthier ior` lists the data sets; a path must end in `.csv`".to_owned(),
+        None => "`luthier ior` lists the data sets; a path must end in `.csv`, `.yml` or `.yaml`".to_owned(),
     };
     sink.error(span, format!("there is no data set `{name}`"), Some(hint));
     None
+}
+
+type Reader = fn(&str) -> Result<IndexFile, IndexFileError>;
+
+/// Reads the file that a path names, by its ending; `None` for the name of a data set.
+fn reader(name: &str) -> Option<Reader> {
+    let (_, ending) = name.rsplit_once('.')?;
+    match ending.to_ascii_lowercase().as_str() {
+        "csv" => Some(csv),
+        "yml" | "yaml" => Some(yaml),
+        _ => None,
+    }
 }
 
 /// The data set that a name probably means: by id, or by what people call it.

@@ -52,7 +52,11 @@ pub(super) fn decode(
                 let ior = at.has("ior").then(|| index(sink, sources));
                 Base::Dielectric { ior: schlick::dielectric(at, ior, above, sink), slab: slab(at) }
             }
-            "dielectric" => Base::Dielectric { ior: index(sink, sources), slab: slab(at) },
+            "dielectric" => {
+                let ior = index(sink, sources);
+                ior::check_clear(&ior, at, "ior", sink);
+                Base::Dielectric { ior, slab: slab(at) }
+            }
             "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at) },
             "conductor" => Base::Conductor { ior: index(sink, sources) },
             "metallic-roughness" => {
@@ -61,7 +65,7 @@ pub(super) fn decode(
                 interface
             }
             "diffuse" => Base::Diffuse(Diffuse {
-                albedo: matrix.map(reradiation::albedo).or_else(|| at.rgb("albedo")).unwrap_or([0.0; 3]),
+                albedo: matrix.map(reradiation::albedo).or_else(|| at.reflectance("albedo")).unwrap_or([0.0; 3]),
                 sigma: at.number("sigma").unwrap_or(0.0),
             }),
             // The checker has reported it.

@@ -83,6 +83,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
 /// The exterior medium. A trace of absorption in a data set is dropped; real absorption is an error.
 fn exterior(document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sources: &mut Sources) -> Ior {
     let Some(ior) = ior::decode(document, "exterior", read, sink, sources) else { return Ior::vacuum() };
+    ior::check_clear(&ior, document, "exterior", sink);
     let k_max = ior.samples().iter().fold(0.0, |k: f64, s| k.max(s.k));
     if k_max > TRANSPARENT_K {
         let span = document.value_span("exterior");

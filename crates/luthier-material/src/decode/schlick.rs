@@ -58,7 +58,7 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
 pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<'_>) -> (Base, Option<Diffuse>) {
-    let color = at.rgb("base_color").unwrap_or([0.0; 3]);
+    let color = at.reflectance("base_color").unwrap_or([0.0; 3]);
     // Textures make of it any other surface at a place; what is baked is that without metal.
     let metallic = if textured(at).is_some() { 0.0 } else { at.number("metallic").unwrap_or(0.0) };
     if metallic >= 1.0 {
@@ -83,7 +83,7 @@ pub(super) fn textured(at: &Section<'_>) -> Option<Metallic> {
     let maps = at.section("maps")?;
     let has_maps = maps.has("base_color") || maps.has("metallic");
     has_maps.then(|| Metallic {
-        base_color: at.rgb("base_color").unwrap_or([0.0; 3]),
+        base_color: at.reflectance("base_color").unwrap_or([0.0; 3]),
         metallic: at.number("metallic").unwrap_or(0.0),
     })
 }
@@ -117,7 +117,7 @@ pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Si
 }
 
 fn f0(at: &Section<'_>) -> Rgb {
-    at.rgb("f0").unwrap_or([0.0; 3])
+    at.reflectance("f0").unwrap_or([0.0; 3])
 }
 
 /// The largest real index of a medium.

@@ -7,14 +7,15 @@ use super::{
 };
 
 /// Wavelengths that samples of an index may have: far wider than what is seen, narrow enough to notice micrometres.
-pub(crate) const SAMPLED_NM: Range = Range { min: 100.0, max: 30_000.0, above: false };
+const SAMPLED_NM: Range = Range { min: 100.0, max: 30_000.0, above: false };
 
 /// Mean slopes of which the slope parameter, the tangent, stays within its domain.
 const SLOPE_DEG: Range = Range { min: 0.0, max: 45.0, above: false };
 
 /// Real part and extinction coefficient of an index: those of real media stay below 10, in the far infrared below 1000.
 pub(crate) const INDEX: Range = Range { min: 0.0, max: 1e6, above: true };
-const EXTINCTION: Range = Range { above: false, ..INDEX };
+/// Either part of a complex index.
+const PART: Range = Range { above: false, ..INDEX };
 
 /// Cells along one repeat, of the first of up to twelve octaves: the finest still has coordinates of whole numbers.
 const NOISE_FREQUENCY: Range = Range { min: 0.0, max: 65536.0, above: true };
@@ -30,7 +31,7 @@ const SAMPLES_MAX: usize = 1024;
 pub(super) const IOR: Kind = Kind::OneOf(&[
     Kind::Number(INDEX),
     Kind::Table(&IOR_TABLE),
-    // The name of a data set or the path of a CSV file; the decoder looks it up.
+    // The name of a data set or the path of a file; the decoder looks it up.
     Kind::Text(TextForm::Path),
 ]);
 
@@ -40,15 +41,12 @@ static IOR_TABLE: Table = Table {
     keys: &[
         Key::required(
             "n",
-            Kind::OneOf(&[Kind::Number(INDEX), Kind::List { item: &Kind::Number(INDEX), min: 1, max: SAMPLES_MAX }]),
-            "Real part: a number, or one for each wavelength.",
+            Kind::OneOf(&[Kind::Number(PART), Kind::List { item: &Kind::Number(PART), min: 1, max: SAMPLES_MAX }]),
+            "Real part: a number, or one for each wavelength. It is 0 in tables of some metals, whose k is not.",
         ),
         Key::with_default(
             "k",
-            Kind::OneOf(&[
-                Kind::Number(EXTINCTION),
-                Kind::List { item: &Kind::Number(EXTINCTION), min: 1, max: SAMPLES_MAX },
-            ]),
+            Kind::OneOf(&[Kind::Number(PART), Kind::List { item: &Kind::Number(PART), min: 1, max: SAMPLES_MAX }]),
             "0",
             "Extinction coefficient: a number, or one for each wavelength.",
         ),
@@ -62,7 +60,7 @@ static IOR_TABLE: Table = Table {
 };
 
 const IOR_DOC: &str = "Index of refraction: a number, a table { n, k, wavelengths_nm }, the name of a built-in data set, \
-                       or the path of a CSV file with the columns wavelength_nm, n, k.";
+                       or the path of a file: CSV with the columns wavelength_nm, n, k, or a page of refractiveindex.info (.yml).";
 
 const SURFACE: Alternatives = Alternatives {
     what: "surface",

@@ -11,7 +11,7 @@ mod surface;
 mod unit;
 
 pub(crate) use document::DOCUMENT;
-pub(crate) use layers::{INDEX, SAMPLED_NM};
+pub(crate) use layers::INDEX;
 pub(crate) use scene::SCENE;
 pub(crate) use surface::SURFACE;
 pub(crate) use unit::unit;
@@ -131,6 +131,12 @@ pub(crate) const NOT_NEGATIVE_RGB: Kind =
     Kind::OneOf(&[Kind::Number(NOT_NEGATIVE), Kind::List { item: &Kind::Number(NOT_NEGATIVE), min: 3, max: 3 }]);
 pub(crate) const UNIT_RGB: Kind =
     Kind::OneOf(&[Kind::Number(UNIT), Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 }]);
+
+/// Reflectances of which a little more than 1 is read as 1: colours of wide gamuts in Rec.709.
+pub(crate) const REFLECTANCES: [&str; 3] = ["albedo", "base_color", "f0"];
+/// Most of a reflectance that is read as 1: the primaries of ACEScg have up to 1.71 in Rec.709.
+pub(crate) const REFLECTANCE_READ_MAX: f64 = 2.0;
+
 pub(crate) const PATH: Kind = Kind::Text(TextForm::Path);
 
 impl Key {

@@ -2,10 +2,11 @@
 //!
 //! CSV: the first row has the wavelengths of the light, in nm, ascending, after a first field that is free; each row below
 //! has a wavelength that comes out, the same ones in the same order, and for each wavelength of the light the share of its power that
-//! comes out there. Shares are not negative; no column sums to more than 1. Empty lines and lines that begin with `#` do not
-//! count.
+//! comes out there. Shares are not negative; no column sums to more than 1. [`crate::rows`] has the separators.
 
 mod rgb;
+
+use crate::rows::{Row, rows};
 
 pub use self::rgb::rgb;
 
@@ -44,39 +45,40 @@ impl Matrix {
     /// [`MatrixError`], whose text continues the name of the file.
     pub fn parse(text: &str) -> Result<Self, MatrixError> {
         let whole = |reason: String| MatrixError { line: None, reason };
-        let lines = text.lines().map(str::trim).enumerate();
-        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).map(|(i, l)| (i + 1, l));
-        let (at, head) = lines.next().ok_or_else(|| whole("no matrix".to_owned()))?;
-        let wrong = |line: usize| move |reason: String| MatrixError { line: Some(line), reason };
-        let (_, head) = head
-            .split_once(',')
-            .ok_or_else(|| wrong(at)("expected the wavelengths of the light after a comma".to_owned()))?;
-        let wavelengths_nm = numbers(head).map_err(wrong(at))?;
+        let wrong = |line: usize, reason: String| MatrixError { line: Some(line), reason };
+        let mut rows = rows(text).map(|row| row.map_err(|error| wrong(error.line, error.to_string())));
+        let head = rows.next().ok_or_else(|| whole("no matrix".to_owned()))??;
+        let at = head.line;
+        if head.cells.len() < 2 {
+            return Err(wrong(at, "expected the wavelengths of the light after a comma".to_owned()));
+        }
+        let wavelengths_nm = numbers(&head, 1).map_err(|reason| wrong(at, reason))?;
         if !wavelengths_nm.is_sorted_by(|a, b| a < b) {
-            return Err(wrong(at)("wavelengths have to ascend".to_owned()));
+            return Err(wrong(at, "wavelengths have to ascend".to_owned()));
         }
         let bins = wavelengths_nm.len();
         // Grows with the rows: the head alone may promise a matrix that no memory holds.
         let mut shares = Vec::new();
-        for (row, (at, line)) in lines.enumerate() {
-            let fields = numbers(line).map_err(wrong(at))?;
-            match (fields.split_first(), wavelengths_nm.get(row)) {
+        for (number, row) in rows.enumerate() {
+            let row = row?;
+            let fields = numbers(&row, 0).map_err(|reason| wrong(row.line, reason))?;
+            match (fields.split_first(), wavelengths_nm.get(number)) {
                 (_, None) => {
-                    return Err(wrong(at)(format!("expected {bins} rows, as many as there are wavelengths")));
+                    return Err(wrong(row.line, format!("expected {bins} rows, as many as there are wavelengths")));
                 }
                 (Some((nm, _)), Some(expected)) if nm != expected => {
-                    return Err(wrong(at)(format!("the row is for {nm} nm, expected {expected} nm")));
+                    return Err(wrong(row.line, format!("the row is for {nm} nm, expected {expected} nm")));
                 }
-                (Some((_, row)), _) if row.len() == bins => {
-                    if let Some((from, share)) = row.iter().enumerate().find(|(_, share)| **share < 0.0) {
+                (Some((_, values)), _) if values.len() == bins => {
+                    if let Some((from, share)) = values.iter().enumerate().find(|(_, share)| **share < 0.0) {
                         let nm = wavelengths_nm[from];
-                        return Err(wrong(at)(format!("the share {share} of the light at {nm} nm is negative")));
+                        return Err(wrong(row.line, format!("the share {share} of the light at {nm} nm is negative")));
                     }
-                    shares.extend(row);
+                    shares.extend(values);
                 }
                 _ => {
                     let found = fields.len().saturating_sub(1);
-                    return Err(wrong(at)(format!("expected {bins} shares after the wavelength, found {found}")));
+                    return Err(wrong(row.line, format!("expected {bins} shares after the wavelength, found {found}")));
                 }
             }
         }
@@ -90,7 +92,7 @@ impl Matrix {
                 // Sums of decimals have more digits than a reader needs.
                 let power = (power * 1e6).round() / 1e6;
                 let reason = format!("{power} of the power of the light at {nm} nm comes out; it has to be 1 at most");
-                return Err(wrong(at)(reason));
+                return Err(wrong(at, reason));
             }
         }
         Ok(Self { wavelengths_nm, shares })
@@ -110,12 +112,10 @@ impl Matrix {
     }
 }
 
-fn numbers(line: &str) -> Result<Vec<f64>, String> {
-    let number = |field: &str| match field.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("`{}` is not a number", field.trim())),
-    };
-    line.split(',').map(number).collect()
+/// The numbers of a row from a cell on.
+fn numbers(row: &Row, first: usize) -> Result<Vec<f64>, String> {
+    let number = |cell| row.number(cell).ok_or_else(|| format!("`{}` is not a number", row.cells[cell]));
+    (first..row.cells.len()).map(number).collect()
 }
 
 #[cfg(test)]
@@ -153,11 +153,23 @@ mod tests {
         }
     }
 
-    /// A head of half a megabyte that promises eighty gigabytes.
+    /// A row of half a megabyte, and a head of eight thousand wavelengths that promises half a gigabyte.
     #[test]
     fn a_promise_takes_no_memory() {
-        let head: String = (1..=100_000).map(|nm| format!(",{nm}")).collect();
-        let error = Matrix::parse(&format!("nm{head}\n")).unwrap_err();
-        assert_eq!(error.reason, "expected 100000 rows, as many as there are wavelengths, found 0");
+        let head = |bins: usize| (1..=bins).fold("nm".to_owned(), |head, nm| format!("{head},{nm}"));
+        let error = Matrix::parse(&head(100_000)).unwrap_err();
+        assert_eq!(error.to_string(), ":1: more than 8192 cells in a row");
+        let error = Matrix::parse(&head(8000)).unwrap_err();
+        assert_eq!(error.reason, "expected 8000 rows, as many as there are wavelengths, found 0");
+    }
+
+    #[test]
+    fn a_matrix_is_read_in_any_writing() {
+        let expected = Matrix { wavelengths_nm: vec![530.0, 600.0], shares: vec![0.125, 0.0, 0.75, 0.25] };
+        for text in
+            ["\u{feff},530,600\r\n530,0.125,0,\r\n600,0.75,0.25,\r\n", "nm;530;600\r530;0,125;0\r600;0,75;0,25\r"]
+        {
+            assert_eq!(Matrix::parse(text).as_ref(), Ok(&expected), "{text}");
+        }
     }
 }

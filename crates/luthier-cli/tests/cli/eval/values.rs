@@ -103,8 +103,8 @@ fn lists_of_directions() {
     assert_eq!(String::from_utf8(piped(list).stdout).unwrap(), text);
     for (input, part) in [
         ("30,0,60,180\n30,0,60\n", "standard input:2: expected theta_i,phi_i,theta_o,phi_o, found 3 fields"),
-        ("30,0,120,0\n", "standard input:1: wo: theta is 120, expected 0 to 90 degrees"),
-        ("theta,0,0,0\n", "standard input:1: wi: theta is `theta`, expected degrees"),
+        ("30,0,120,0\n", "standard input:1: theta_o is 120, expected 0 to 90 degrees"),
+        ("theta,0,0,0\n", "standard input:1: theta_i is `theta`, expected degrees"),
         ("\n", "standard input: no directions"),
     ] {
         let output = piped(input);

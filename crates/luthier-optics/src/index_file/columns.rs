@@ -1,0 +1,121 @@
+//! Columns of a table of indices: what a header names them.
+
+use super::error::{IndexFileError, Reason};
+use crate::rows::Row;
+
+/// Nanometres in a unit of wavelength.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Unit(pub(super) f64);
+
+pub(super) const NM: Unit = Unit(1.0);
+pub(super) const UM: Unit = Unit(1e3);
+
+impl Unit {
+    /// A wavelength in nm, without the digits that the product of decimals adds.
+    pub(super) fn nm(self, value: f64) -> f64 {
+        if self == NM { value } else { (value * self.0 * 1e9).round() / 1e9 }
+    }
+}
+
+/// Which cell of a row has what.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Columns {
+    pub(super) wavelength: usize,
+    /// The unit, where the header names it.
+    pub(super) unit: Option<Unit>,
+    pub(super) n: Option<usize>,
+    pub(super) k: Option<usize>,
+    pub(super) count: usize,
+    /// Names of columns that are of no use here.
+    pub(super) others: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Role {
+    Wavelength(Option<Unit>),
+    Unit(Unit),
+    N,
+    K,
+    Energy,
+    Other,
+}
+
+impl Columns {
+    /// Those of rows without a header.
+    pub(super) fn plain(count: usize) -> Self {
+        Self { wavelength: 0, unit: None, n: Some(1), k: (count > 2).then_some(2), count, others: Vec::new() }
+    }
+
+    /// Those that a header names.
+    pub(super) fn named(row: &Row) -> Result<Self, IndexFileError> {
+        let mut names = row.cells.clone();
+        // A comma or a space before the unit makes two cells of `wavelength, um`.
+        let split = names
+            .windows(2)
+            .position(|pair| role(&pair[0]) == Role::Wavelength(None) && matches!(role(&pair[1]), Role::Unit(_)));
+        if let Some(at) = split {
+            let unit = names.remove(at + 1);
+            names[at] = format!("{} {unit}", names[at]);
+        }
+        let roles: Vec<Role> = names.iter().map(|name| role(name)).collect();
+        let first = |is: &dyn Fn(&Role) -> bool| roles.iter().position(is);
+        let header = |lacks| Reason::Header { found: clipped(&names.join(",")), lacks }.at(row.line);
+        let Some(wavelength) = first(&|role| matches!(role, Role::Wavelength(_) | Role::Unit(_))) else {
+            return Err(match first(&|role| *role == Role::Energy) {
+                Some(at) => Reason::Energy(clipped(&names[at])).in_column(row.line, at + 1),
+                None => header("wavelengths"),
+            });
+        };
+        let unit = match roles[wavelength] {
+            Role::Wavelength(unit) => unit,
+            Role::Unit(unit) => Some(unit),
+            _ => None,
+        };
+        let (n, k) = (first(&|role| *role == Role::N), first(&|role| *role == Role::K));
+        if n.is_none() && k.is_none() {
+            return Err(header("n or k"));
+        }
+        let is_used = |at: &usize| [Some(wavelength), n, k].contains(&Some(*at));
+        let others = (0..names.len()).filter(|at| !is_used(at)).map(|at| clipped(&names[at])).collect();
+        Ok(Self { wavelength, unit, n, k, count: names.len(), others })
+    }
+}
+
+/// Characters of a text of the file in messages.
+const QUOTED_MAX: usize = 60;
+
+pub(super) fn clipped(text: &str) -> String {
+    match text.char_indices().nth(QUOTED_MAX) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+fn role(name: &str) -> Role {
+    let plain = name.to_lowercase().replace(['\u{b5}', '\u{3bc}'], "u");
+    let words: Vec<&str> = plain.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let is_wavelength =
+        |word: &str| matches!(word, "wavelength" | "wavelengths" | "wl" | "wvl" | "wave" | "lambda" | "lam" | "λ");
+    match words.as_slice() {
+        ["n" | "ior" | "index" | "eta"] | ["refractive", "index"] | ["n", "real"] | ["re", "n"] => Role::N,
+        ["k" | "kappa" | "extinction"] | ["extinction", "coefficient"] | ["n", "imag"] | ["im", "n"] => Role::K,
+        [word, ..] if matches!(*word, "energy" | "ev" | "photon") || words.contains(&"ev") => Role::Energy,
+        [word] => match unit(word) {
+            Some(unit) => Role::Unit(unit),
+            None if is_wavelength(word) => Role::Wavelength(None),
+            None => Role::Other,
+        },
+        [word, .., last] if is_wavelength(word) => Role::Wavelength(unit(last)),
+        _ => Role::Other,
+    }
+}
+
+fn unit(word: &str) -> Option<Unit> {
+    match word {
+        "nm" | "nanometer" | "nanometers" | "nanometre" | "nanometres" => Some(NM),
+        "um" | "micron" | "microns" | "micrometer" | "micrometers" | "micrometre" | "micrometres" => Some(UM),
+        "å" | "angstrom" | "angstroms" | "ångström" => Some(Unit(0.1)),
+        "m" | "meter" | "metre" => Some(Unit(1e9)),
+        _ => None,
+    }
+}

@@ -1,0 +1,36 @@
+//! Indices in files of others: tables in CSV, and pages of the refractiveindex.info database in YAML.
+//!
+//! A file is read as far as the visible range needs it; what lies beyond is no reason to refuse it. What is not read as it stands is told in
+//! notes.
+
+mod columns;
+mod csv;
+mod curves;
+mod error;
+#[cfg(test)]
+mod tests;
+mod yaml;
+
+use crate::ior::Ior;
+
+pub use self::csv::csv;
+pub use error::{IndexFileError, Reason};
+pub use yaml::yaml;
+
+/// An index that a file gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IndexFile {
+    /// The index, over the visible range and one sample beyond each of its ends.
+    pub ior: Ior,
+    /// Sentences about what was not read as it stands.
+    pub notes: Vec<String>,
+}
+
+/// Rows of the longest table that is read.
+pub const ROWS_MAX: usize = 100_000;
+
+/// Largest n and k: those of real media stay below 10, in the far infrared below 1000.
+pub const VALUE_MAX: f64 = 1e6;
+
+/// k down to which a negative value is noise of a measurement, and read as 0.
+pub const NOISE_K: f64 = -0.02;
