@@ -128,8 +128,12 @@ pub enum TextureError {
 /// The decoder's reason, without the format's name, which stands before it.
 fn decoder_reason(error: &::image::ImageError) -> String {
     use std::error::Error;
-    let inner = error.source().map(ToString::to_string);
-    inner.unwrap_or_else(|| error.to_string())
+    let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+    match reason.as_str() {
+        sum if sum.starts_with("CRC error") => "the checksum of a chunk does not fit its data".to_owned(),
+        short if short.contains("Not enough bytes") || short.contains("unexpected EOF") => "it ends early".to_owned(),
+        _ => reason,
+    }
 }
 
 impl TextureError {

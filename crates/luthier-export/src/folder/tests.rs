@@ -113,7 +113,8 @@ fn manifests_of_another_schema_are_refused() {
 #[test]
 fn maps_have_the_size_that_the_manifest_states() {
     let (_around, folder) = bake();
-    let png = luthier_texture::png::encode_gray(&Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] }).unwrap();
+    let png =
+        luthier_texture::png::encode_gray(&Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] }).unwrap();
     std::fs::write(folder.join("map.png"), &png).unwrap();
     let map = |width| MapEntry {
         slot: MapSlot::Roughness,

@@ -57,7 +57,7 @@ fn a_curve_counts_where_a_place_is_evaluated() {
             "0,0",
             "--json",
         ]);
-        let value = run.exits(0).json()["values"][0]["rgb"][1].as_f64().unwrap() * std::f64::consts::PI / 0.9;
+        let value = run.exits(0).json()["values"][0]["value"][1].as_f64().unwrap() * std::f64::consts::PI / 0.9;
         assert!((value - expected).abs() < 1e-4, "{srgb}: {value}");
     }
 }
@@ -77,7 +77,7 @@ fn one_number_says_which_channel_it_takes() {
     let source = &workshop.json("out/manifest.json")["materials"][0]["maps"][0]["source"];
     assert_eq!(source, "packed.png, channel g");
     workshop.write("m.toml", coated("roughness = { image = 'packed.png', channel = 'a' }"));
-    workshop.run(&["check", "m.toml"]).fails(1, &["m.toml:8:22", "`a`", "no alpha"]);
+    workshop.run(&["check", "m.toml"]).exits(1).says(&["m.toml:8:22", "`a`", "no alpha"]);
 }
 
 /// Half of the scale is half of the texel; a transformation is two rows of the manifest.
@@ -114,7 +114,7 @@ fn what_no_texel_can_be_is_refused() {
         (coated("roughness = { channel = 'r' }"), ["`image` is missing from this picture", "add `image"]),
     ] {
         workshop.write("m.toml", text);
-        workshop.run(&["check", "m.toml"]).fails(1, &parts);
+        workshop.run(&["check", "m.toml"]).exits(1).says(&parts);
     }
 }
 
@@ -179,5 +179,5 @@ fn the_map_of_a_film_is_a_picture_as_others_are() {
     assert_eq!(plain, table("{ image = 'p.png', channel = 'g' }"));
     assert_ne!(plain, table("{ image = 'p.png', channel = 'r' }"));
     workshop.write("m.toml", film("{ image = 'p.png', transform = { offset = [0.5, 0] } }"));
-    workshop.run(&["check", "m.toml"]).fails(1, &["map of a film", "extent_um"]);
+    workshop.run(&["check", "m.toml"]).exits(1).says(&["map of a film", "extent_um"]);
 }
