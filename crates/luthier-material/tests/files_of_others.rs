@@ -80,7 +80,7 @@ fn endings_tell_how_a_file_of_an_index_is_read() {
     }
     let index = |text: &str| read(&layer("conductor", "ior = \"file.csv\"\nroughness = 0.3"), text);
     let warned = index("nm,n,k\n360,1.5,2\n830,1.5,-1e-5\n").unwrap().warnings;
-    assert!(words(&warned).starts_with("5:7 `file.csv`: k is negative in 1 rows"), "{}", words(&warned));
+    assert!(words(&warned).starts_with("5:7 `file.csv`: negative values of k, 1 in all"), "{}", words(&warned));
     let found = words(&index("nm,n,k\n360,1.5,2\n830,1.5,x\n").unwrap_err());
     assert!(found.starts_with("5:7 `file.csv`: line 3: column 3: `x` is not a number | "), "{found}");
     let found = words(&index("nm,n,k\n0.36,1.5,2\n0.83,1.5,0\n").unwrap_err());

@@ -52,7 +52,7 @@ pub(super) fn joined(n: Vec<Point>, k: Vec<Point>, notes: &mut Vec<String>) -> R
         Point { value, .. } => Ok(*value),
     })?;
     if let Some(least) = noise.iter().copied().min_by(f64::total_cmp) {
-        notes.push(format!("k is negative in {} rows, down to {least}: it is read as 0", noise.len()));
+        notes.push(format!("negative values of k, {} in all, down to {least}, are read as 0", noise.len()));
     }
     if let (Some(first), Some(last), [n_first, .., n_last]) = (k.first(), k.last(), n.as_slice()) {
         if first.nm > n_first.nm.max(VISIBLE_NM.0) || last.nm < n_last.nm.min(VISIBLE_NM.1) {
@@ -91,7 +91,7 @@ fn read(name: &str, mut points: Vec<Point>, notes: &mut Vec<String>) -> Result<V
     }
     if let Some(first) = averaged.first() {
         notes.push(format!(
-            "{} wavelengths have several values of {name}, {} nm is the first: the mean is taken",
+            "several values of {name} at one wavelength, {} in all, first at {} nm: the mean is taken",
             averaged.len(),
             plain(*first)
         ));
