@@ -6,8 +6,8 @@ use clap::ValueEnum;
 use luthier_environment::Environment;
 use luthier_export::input;
 use luthier_gpu::{Mesh, soup};
-use luthier_optics::constants::parse_csv;
-use luthier_texture::{png, radiance};
+use luthier_optics::index_file::{csv, yaml};
+use luthier_texture::{picture as pictures, radiance};
 
 /// A kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -78,20 +78,26 @@ fn mesh(path: &Path) -> Outcome {
 }
 
 fn sky(path: &Path) -> Outcome {
-    let mut map = radiance::decode(&input::image(path).map_err(words)?).map_err(words)?;
-    let negative = map.data.iter_mut().filter(|value| **value < 0.0).map(|value| *value = 0.0).count();
-    Environment::new(map).map_err(words)?;
-    Ok(if negative > 0 { vec![format!("{negative} values below 0")] } else { Vec::new() })
+    let radiance::Picture { mut image, mut notes } =
+        radiance::decode(&input::image(path).map_err(words)?).map_err(words)?;
+    let negative = image.data.iter_mut().filter(|value| **value < 0.0).map(|value| *value = 0.0).count();
+    if negative > 0 {
+        notes.push(format!("{negative} values below 0"));
+    }
+    Environment::new(image).map_err(words)?;
+    Ok(notes)
 }
 
 fn picture(path: &Path) -> Outcome {
-    png::decode(&input::image(path).map_err(words)?).map_err(words)?;
+    pictures::decode(&input::image(path).map_err(words)?).map_err(words)?;
     Ok(Vec::new())
 }
 
 fn index(path: &Path) -> Outcome {
-    parse_csv(&input::text(path).map_err(words)?).map_err(words)?;
-    Ok(Vec::new())
+    let is_page = path.extension().is_some_and(|ending| ending != "csv");
+    let text = input::text(path).map_err(words)?;
+    let file = if is_page { yaml(&text) } else { csv(&text) };
+    Ok(file.map_err(words)?.notes)
 }
 
 /// An error with its causes.
