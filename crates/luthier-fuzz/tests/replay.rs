@@ -189,6 +189,7 @@ tests_of_targets!(
     material,
     scene,
     index,
+    page,
     axes,
     directions,
     lobe,
