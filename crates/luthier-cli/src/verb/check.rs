@@ -8,7 +8,7 @@ use luthier_export::{
     refuse_surfaces, refuse_too_many,
 };
 use luthier_manifest::ShadingModel;
-use luthier_material::{Diagnostic, Surface, is_scene};
+use luthier_material::{Diagnostic, Severity, Surface, is_scene};
 use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
 use serde_json::{Value, json};
 
@@ -101,19 +101,25 @@ impl<'a> Set<'a> {
     }
 }
 
-fn count(diagnostics: &[Diagnostic], what: &str) -> String {
-    let n: usize = diagnostics.iter().map(|d| d.count).sum();
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+fn count(diagnostics: &[Diagnostic], severity: Severity) -> String {
+    let n: usize = diagnostics.iter().filter(|d| d.severity == severity).map(|d| d.count).sum();
+    format!("{n} {}{}", severity.name(), if n == 1 { "" } else { "s" })
 }
 
 /// The number of warnings, for the end of a line.
-fn warned(warnings: &[Diagnostic]) -> String {
-    if warnings.is_empty() { String::new() } else { format!(", {}", count(warnings, "warning")) }
+fn warned(diagnostics: &[Diagnostic]) -> String {
+    let has_warnings = diagnostics.iter().any(|d| d.severity == Severity::Warning);
+    if has_warnings { format!(", {}", count(diagnostics, Severity::Warning)) } else { String::new() }
+}
+
+/// The number of errors, and of warnings beside them.
+fn failed(diagnostics: &[Diagnostic]) -> String {
+    count(diagnostics, Severity::Error) + &warned(diagnostics)
 }
 
 fn line(source: &Source, model: Option<ShadingModel>) -> String {
     match &source.parsed {
-        Err(errors) => format!("{}: {}\n", source.label, count(errors, "error")),
+        Err(errors) => format!("{}: {}\n", source.label, failed(errors)),
         Ok(parsed) => {
             let class = parsed.material.class;
             let warnings = warned(&parsed.warnings);
@@ -125,7 +131,7 @@ fn line(source: &Source, model: Option<ShadingModel>) -> String {
 
 fn scene_line(scene: &SceneSource) -> String {
     match &scene.parsed {
-        Err(errors) => format!("{}: {}\n", scene.label, count(errors, "error")),
+        Err(errors) => format!("{}: {}\n", scene.label, failed(errors)),
         Ok(parsed) => {
             let broken = scene.materials.iter().filter(|source| source.parsed.is_err()).count();
             let verdict = if broken == 0 { "ok".to_owned() } else { format!("{broken} broken") };
@@ -136,7 +142,7 @@ fn scene_line(scene: &SceneSource) -> String {
 
 fn surface_line(surface: &SurfaceSource) -> String {
     match &surface.parsed {
-        Err(errors) => format!("{}: {}\n", surface.label, count(errors, "error")),
+        Err(errors) => format!("{}: {}\n", surface.label, failed(errors)),
         Ok(parsed) => format!("{}: ok, surface of {}{}\n", surface.label, listed(parsed), warned(&surface.warnings)),
     }
 }

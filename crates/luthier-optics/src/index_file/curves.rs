@@ -54,14 +54,11 @@ pub(super) fn joined(n: Vec<Point>, k: Vec<Point>, notes: &mut Vec<String>) -> R
     if let Some(least) = noise.iter().copied().min_by(f64::total_cmp) {
         notes.push(format!("negative values of k, {} in all, down to {least}, are read as 0", noise.len()));
     }
-    if let (Some(first), Some(last), [n_first, .., n_last]) = (k.first(), k.last(), n.as_slice()) {
-        if first.nm > n_first.nm.max(VISIBLE_NM.0) || last.nm < n_last.nm.min(VISIBLE_NM.1) {
-            notes.push(format!(
-                "k is given from {} to {} nm alone: outside, it is held constant",
-                plain(first.nm),
-                plain(last.nm)
-            ));
-        }
+    if let (Some(first), Some(last), [n_first, .., n_last]) = (k.first(), k.last(), n.as_slice())
+        && (first.nm > n_first.nm.max(VISIBLE_NM.0) || last.nm < n_last.nm.min(VISIBLE_NM.1))
+    {
+        let [first, last] = [first, last].map(|point| plain(point.nm));
+        notes.push(format!("k is given from {first} to {last} nm alone: outside, it is held constant"));
     }
     let mut samples: Vec<IorSample> = Vec::new();
     for (nm, line) in wavelengths(&n, &k) {
