@@ -7,7 +7,8 @@
 #   scripts/golden.sh --update            writes the lists anew, and says which have changed
 #   scripts/golden.sh --keep DIR          compares, and leaves the bakes in DIR, which does not exist before
 #   scripts/golden.sh --of DIR LISTS [--update]   makes no bakes: takes those in DIR, and lists in the folder LISTS
-# Text shaders count without comments and blank lines, manifests without hashes of shaders and classes of materials: words for readers may change.
+# Text shaders count without comments and blank lines, manifests without hashes of shaders, classes of materials and
+# paths of material files: words for readers may change, and these paths lead from the folder of the bake.
 # LUTHIER and LUTHIER_LAB name the programs. Takes half a minute of two cores in release.
 set -euo pipefail
 export LC_ALL=C
@@ -51,7 +52,7 @@ fi
 content() {
   case $1 in
     */shaders/*) sed -E 's,[[:space:]]*//.*$,,' "$1" | grep -v '^[[:space:]]*$' ;;
-    */manifest.json) sed '/"path": "shaders\//{n;d;};/^ *"class": /d' "$1" ;;
+    */manifest.json) sed '/"path": "shaders\//{n;d;};/^ *"class": /d;/^ *"source": ".*\.toml"/d' "$1" ;;
     *) cat "$1" ;;
   esac
 }
