@@ -1,4 +1,4 @@
-//! What luthier takes from the text of a glTF 2.0 file: meshes, the nodes that hold them, and the numbers that these are made of.
+//! The text of a glTF 2.0 file, as far as luthier reads it: meshes, the nodes that hold them, and the numbers that these are made of.
 //! All else is passed over, whatever it is.
 
 use std::collections::BTreeMap;

@@ -37,7 +37,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// That of the first texture of a material that has one.
+    /// The placement of the first texture of a material that has one.
     pub(super) fn of(material: &Value) -> Option<Self> {
         let placed = |texture: &&str| material.pointer(&format!("{texture}/extensions/KHR_texture_transform"));
         let placed = TEXTURES.iter().find_map(placed)?;

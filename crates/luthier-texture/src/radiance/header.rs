@@ -4,7 +4,7 @@ use super::primaries::Primaries;
 use crate::TextureError;
 use crate::error::Container;
 
-/// What the header says of the texels behind it.
+/// The statements of a header about the texels behind it.
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) width: u32,

@@ -18,7 +18,7 @@ const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 pub struct Picture {
     /// Three channels, linear Rec.709.
     pub image: Image,
-    /// What of the file was converted or left out: a sentence each.
+    /// A sentence for each thing of the file that was converted or left out.
     pub notes: Vec<String>,
 }
 

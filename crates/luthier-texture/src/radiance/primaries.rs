@@ -28,13 +28,22 @@ impl Primaries {
     pub(super) const XYZ: Self =
         Self { red: [1.0, 0.0], green: [0.0, 1.0], blue: [0.0, 0.0], white: [1.0 / 3.0, 1.0 / 3.0] };
 
+    /// Whether these are CIE XYZ, whose colours are those of any white.
+    pub(super) fn is_xyz(&self) -> bool {
+        self.near(&Self { white: self.white, ..Self::XYZ })
+    }
+
     fn coordinates(&self) -> [f64; 8] {
         let [[a, b], [c, d], [e, f], [g, h]] = [self.red, self.green, self.blue, self.white];
         [a, b, c, d, e, f, g, h]
     }
 
     pub(super) fn is_rec709(&self) -> bool {
-        self.coordinates().iter().zip(REC709.coordinates()).all(|(a, b)| (a - b).abs() <= NEAR)
+        self.near(&REC709)
+    }
+
+    fn near(&self, other: &Self) -> bool {
+        self.coordinates().iter().zip(other.coordinates()).all(|(a, b)| (a - b).abs() <= NEAR)
     }
 
     /// The matrix from these primaries to CIE XYZ, 1 of each being white of luminance 1.
@@ -62,6 +71,11 @@ impl Primaries {
         let adaptation = product(&inverse(&BRADFORD)?, &adapted);
         let matrix = product(&inverse(&REC709.to_xyz()?)?, &product(&adaptation, &self.to_xyz()?));
         matrix.iter().flatten().all(|v| v.is_finite()).then_some(matrix)
+    }
+
+    /// The matrix from these primaries to linear Rec.709 that keeps every colour, white included.
+    pub(super) fn to_rec709_unadapted(self) -> Option<Matrix> {
+        Some(product(&inverse(&REC709.to_xyz()?)?, &self.to_xyz()?))
     }
 
     /// As sentences have them.

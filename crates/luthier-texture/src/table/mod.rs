@@ -23,7 +23,7 @@ pub struct Table {
     pub samples: Samples,
     /// The file format, and the texel format where it has a name.
     pub format: String,
-    /// What of the file was converted or left out: a sentence each.
+    /// A sentence for each thing of the file that was converted or left out.
     pub notes: Vec<String>,
 }
 

@@ -107,7 +107,7 @@ fn display_windows_have_limits() {
     assert!(matches!(with((20_000, 1)), Err(crate::TextureError::Size { .. })));
 }
 
-/// Oracle: ITU-R BT.2087. White of XYZ is (1, 1, 1) of its channels.
+/// Oracles: ITU-R BT.2087; IEC 61966-2-1 for XYZ of red and of white, which XYZ does not adapt.
 #[test]
 fn chromaticities() {
     let of = |red, green, blue, white, channels: &Named<'_>| {
@@ -123,8 +123,12 @@ fn chromaticities() {
     }
     assert!(wide.notes[0].contains("0.7080, 0.2920"));
     let third = Vec2(1.0 / 3.0, 1.0 / 3.0);
-    let xyz = of(Vec2(1.0, 0.0), Vec2(0.0, 1.0), Vec2(0.0, 0.0), third, &colors);
-    assert!(xyz.image.texel(1, 0).iter().all(|v| (v - 0.5).abs() < 1e-5) && xyz.notes.len() == 1);
+    let red_and_d65 = [("R", vec![0.4124, 0.9505]), ("G", vec![0.2126, 1.0]), ("B", vec![0.0193, 1.089])];
+    let xyz = of(Vec2(1.0, 0.0), Vec2(0.0, 1.0), Vec2(0.0, 0.0), third, &red_and_d65);
+    for (found, expected) in xyz.image.data.iter().zip([1.0, 0.0, 0.0, 1.0, 1.0, 1.0]) {
+        assert!((found - expected).abs() < 1e-3, "{:?}", xyz.image.data);
+    }
+    assert!(xyz.notes[0].contains("CIE XYZ"));
     let usual = of(Vec2(0.64, 0.33), Vec2(0.3, 0.6), Vec2(0.15, 0.06), d65, &colors);
     assert!(usual.image.data == [1.0, 0.0, 0.0, 0.5, 0.5, 0.5] && usual.notes.is_empty());
     // Grey has no primaries.

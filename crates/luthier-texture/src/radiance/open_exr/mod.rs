@@ -185,9 +185,13 @@ fn to_rec709(header: &Header, colors: &Colors, image: &mut Image) -> Result<Opti
     if stated.is_rec709() {
         return Ok(None);
     }
-    let matrix = stated.to_rec709().ok_or_else(|| malformed("its chromaticities span no colours"))?;
-    primaries::convert(image, &matrix);
-    Ok(Some(format!("colours are converted to Rec.709 from the chromaticities of the file ({})", stated.words())))
+    let (matrix, from) = if stated.is_xyz() {
+        (stated.to_rec709_unadapted(), "CIE XYZ, which its chromaticities state, as they are".to_owned())
+    } else {
+        (stated.to_rec709(), format!("its chromaticities ({}), white to white", stated.words()))
+    };
+    primaries::convert(image, &matrix.ok_or_else(|| malformed("its chromaticities span no colours"))?);
+    Ok(Some(format!("colours are converted to Rec.709 from {from}")))
 }
 
 fn unsupported(what: String) -> TextureError {
