@@ -40,6 +40,8 @@ scenes() { luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >
 parity() { luthier-lab parity "${stacks[@]}" -o docs/pages/parity.md; }
 places() { luthier-lab places -o docs/pages/places.md; }
 textured() { luthier-lab textured "${stacks[@]}" -o docs/pages/textured.md; }
+# The page of foreign files, from the outcomes that are kept: `luthier-lab foreign --help` says how a collection at hand is tried.
+foreign() { luthier-lab foreign --data docs/measurements/foreign.json --page docs/pages/foreign.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
