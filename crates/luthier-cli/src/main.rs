@@ -1,7 +1,6 @@
 //! The `luthier` command: all that a user of luthier runs. What it has in common with `luthier-lab` is in luthier-terminal.
 
 mod cli;
-mod destinations;
 mod directions;
 #[cfg(feature = "gpu")]
 mod grid;

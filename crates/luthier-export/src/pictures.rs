@@ -17,7 +17,7 @@ pub(crate) struct Read {
     pub(crate) picture: Picture,
     /// The file.
     pub(crate) bytes: Vec<u8>,
-    /// What the file holds.
+    /// Content of the file.
     pub(crate) decoded: Decoded,
 }
 

@@ -57,7 +57,7 @@ fn add(source: &mut Source, found: Vec<Diagnostic>) {
     }
 }
 
-/// What is to be told of a picture that a material names: why it cannot be used, or what is doubtful about it.
+/// Diagnostics of a picture that a material names: why it cannot be used, or doubts about it.
 fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
     let NamedImage { key, picture, texels } = image;
     let path = &picture.path;

@@ -7,9 +7,8 @@ use toml::de::DeValue;
 
 use crate::correct::corrected;
 use crate::diagnostic::Sink;
-use crate::foreign;
 use crate::grammar::{
-    Alternatives, Key, Kind, NAME_MAX, PATH_MAX, REFLECTANCE_READ_MAX, REFLECTANCES, Range, Table, TextForm,
+    Alternatives, Key, Kind, NAME_MAX, PATH_MAX, REFLECTANCE_READ_MAX, REFLECTANCES, Range, Table, TextForm, foreign,
 };
 use crate::section::{Section, integer, number, section};
 use crate::suggest::{did_you_mean, one_of, short};

@@ -21,7 +21,6 @@ mod default_model;
 mod diagnostic;
 mod doubt;
 mod effects;
-mod foreign;
 mod grammar;
 mod left_out;
 mod material;

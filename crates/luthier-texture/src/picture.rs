@@ -83,7 +83,7 @@ fn pixels(mut decoder: impl ImageDecoder, file: &[u8]) -> Result<Picture, Fault>
     Ok(Picture { width, height, channels, is_srgb: false, samples: PictureSamples::Bits8(bytes) })
 }
 
-/// What a file that is no picture seems to be.
+/// Likely format of a file that is no picture.
 fn kind(file: &[u8]) -> &'static str {
     const SIGNATURES: [(&[u8], &str); 17] = [
         (b"GIF8", "it is a GIF"),

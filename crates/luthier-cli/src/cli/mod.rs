@@ -388,6 +388,7 @@ mod gallery;
 pub(crate) use gallery::GalleryOptions;
 
 mod audit;
+mod destinations;
 pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
 mod table;

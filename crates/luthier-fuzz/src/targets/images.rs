@@ -56,7 +56,7 @@ pub(super) fn picture(bytes: &[u8]) {
     round_trip(bytes);
 }
 
-/// What is read is written as PNG with the same samples.
+/// A picture that is read is written as PNG with the same samples.
 fn round_trip(bytes: &[u8]) {
     let Some(pictures::Decoded { picture, .. }) = read(pictures::decode(bytes)) else { return };
     let values = picture.texel_count() * picture.channels as usize;

@@ -22,7 +22,7 @@ pub(crate) enum Kind {
     Index,
 }
 
-/// What became of a file.
+/// Outcome of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Read {
     /// It is read, with notes on what of it is ignored.

@@ -48,7 +48,7 @@ fn describe(collection: &mut Collection, options: &ForeignOptions) -> Outcome {
     Ok(())
 }
 
-/// What became of every file of a kind below the folders, in the order of the folders and of names.
+/// Outcomes of every file of a kind below the folders, in the order of the folders and of names.
 fn tried(kind: Kind, folders: &[PathBuf]) -> Outcome<Vec<Tried>> {
     let mut all = Vec::new();
     for folder in folders {
@@ -71,7 +71,7 @@ fn tried(kind: Kind, folders: &[PathBuf]) -> Outcome<Vec<Tried>> {
     Ok(tried)
 }
 
-/// What a reader says; a panic is an outcome, too.
+/// Outcome of a reader; a panic is one, too.
 fn caught(read: impl FnOnce() -> Result<Vec<String>, String>) -> Read {
     match catch_unwind(AssertUnwindSafe(read)) {
         Ok(Ok(notes)) => Read::Whole(notes),

@@ -1,4 +1,4 @@
-//! What is kept of files that were tried, of all collections.
+//! Records of files that were tried, of all collections.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -4,6 +4,7 @@
 mod bake;
 mod document;
 mod effects;
+pub(crate) mod foreign;
 mod layers;
 mod picture;
 mod scene;

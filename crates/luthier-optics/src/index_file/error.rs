@@ -31,7 +31,7 @@ pub enum Reason {
     Header {
         /// The header.
         found: String,
-        /// What it lacks.
+        /// The part that is missing.
         lacks: &'static str,
     },
     /// Photon energies in place of wavelengths.
@@ -141,7 +141,7 @@ impl Reason {
 }
 
 impl IndexFileError {
-    /// What to do about it.
+    /// Advice to the author of the file.
     pub fn hint(&self) -> String {
         let (low, high) = VISIBLE_NM;
         match &self.reason {

@@ -46,7 +46,7 @@ fn headers_are_those_that_people_write() {
     assert_eq!(samples(&csv("nm,n\n400,1.5\n").unwrap()), [[400.0, 1.5, 0.0]]);
 }
 
-/// What is odd is read, and told.
+/// Odd files are read, and told.
 #[test]
 fn what_is_odd_is_told() {
     for (text, expected, note) in [

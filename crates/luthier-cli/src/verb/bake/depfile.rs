@@ -57,7 +57,7 @@ fn real(folder: &Path) -> Option<PathBuf> {
     folder.canonicalize().ok()
 }
 
-/// What a manifest depends on, and the rule that says so.
+/// Dependencies of a manifest, and the rule that states them.
 fn rule(manifest: &Path, files: Vec<PathBuf>, folders: Vec<PathBuf>) -> Outcome<(Vec<PathBuf>, String)> {
     let target = target(manifest)?;
     let mut names = files.iter().map(|path| dependency(path)).collect::<Outcome<Vec<_>>>()?;

@@ -14,12 +14,14 @@ const LAYERS: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nroughness = 0
                       roughness = 0.4\n";
 
 /// Files that samples name.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 8] = [
     ("rays.png", "rays.png"),
     ("circles.png", "circles.png"),
     ("dents.png", "bumps.png"),
     ("heights.png", "heights.png"),
     ("heat.png", "thickness.png"),
+    ("packed.png", "paint.png"),
+    ("wood.jpg", "paint.png"),
     ("dye.csv", "dye.csv"),
 ];
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use luthier_terminal::{Failure, Outcome, STDOUT};
 
-use crate::cli::{Function, TableOptions, Verb};
+use super::{Function, TableOptions, Verb};
 
 impl Verb {
     /// Refuses a folder in the place of a file, a file in that of a folder, and `-` where nothing goes to standard output.

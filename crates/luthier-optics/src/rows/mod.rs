@@ -40,7 +40,7 @@ impl Row {
     }
 }
 
-/// What keeps cells apart.
+/// Sign between cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Separator {
     Byte(u8),
@@ -48,7 +48,7 @@ enum Separator {
 }
 
 impl Separator {
-    /// That of a row: people who separate by semicolons or tabs may have commas in numbers and in names.
+    /// The separator of a row: people who separate by semicolons or tabs may have commas in numbers and in names.
     fn of(row: &str) -> Self {
         let found = [b';', b'\t', b','].into_iter().find(|byte| row.as_bytes().contains(byte));
         found.map_or(Self::Space, Self::Byte)
