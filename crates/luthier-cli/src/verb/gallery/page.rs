@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use luthier_export::{Bake, MANIFEST, Package, lit, of_domain, read};
+use luthier_export::{Bake, MANIFEST, Package, label, lit, of_domain, origin, read};
 use luthier_gallery::{Exhibit, Gallery, Look, Scenery, hidden_maps};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{CrossSection, Material, Severity};
@@ -34,8 +34,10 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     let mut gallery =
         Gallery { title: title(options), packages: Vec::new(), exhibits: Vec::new(), skies: SKIES.to_vec() };
     for folder in bakes {
-        let package = Package::read(folder)?;
-        for (number, entry) in (0..).zip(&package.manifest.materials) {
+        let mut package = Package::read(folder)?;
+        for (number, entry) in (0..).zip(&mut package.manifest.materials) {
+            // Pages name files as they are found from here.
+            entry.source = label(&origin(folder, &entry.source));
             let mut exhibit = Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]);
             exhibit.section = Some(CrossSection::recorded(entry));
             gallery.exhibits.push(exhibit);

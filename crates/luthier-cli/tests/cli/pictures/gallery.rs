@@ -99,7 +99,10 @@ fn a_page_warns_of_the_maps_that_it_does_not_show() {
     };
     let workshop = Workshop::with(&[
         ("plain.toml", &material("plain", "")),
-        ("bumpy.toml", &material("bumpy", "maps = { bumps = \"map.png\", alpha = \"map.png\" }\n")),
+        (
+            "bumpy.toml",
+            &material("bumpy", "maps = { bumps = \"map.png\", alpha = { image = \"map.png\", channel = \"r\" } }\n"),
+        ),
     ]);
     image::RgbImage::from_pixel(2, 2, image::Rgb([128, 128, 255])).save(workshop.path("map.png")).unwrap();
     let page = |file: &str| {
