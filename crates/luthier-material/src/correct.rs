@@ -38,7 +38,7 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
         "sigma" if value > 0.0 && value <= 90.0 => {
             return Some(format!("sigma is in radians: {} degrees is {}", short(value), write(value.to_radians())));
         }
-        "albedo" | "base_color" | "diffuse_albedo" | "f0" | "tarnish" if value >= 3.0 && value <= 255.0 => {
+        "albedo" | "base_color" | "diffuse_albedo" | "f0" | "tarnish" if (3.0..=255.0).contains(&value) => {
             let (share, linear) = (short(value / 255.0), write(srgb_to_linear(value / 255.0)));
             let value = short(value);
             return Some(format!(
