@@ -211,7 +211,8 @@ mod tests {
         let at = |number, c: &[f64], um| Formula::new(number, c.to_vec()).unwrap().at(um);
         // At sqrt(1.028) um, Herzberger's L is 1.
         let um = 1.028_f64.sqrt();
-        let herzberger = 3.0 + 0.2 + 0.1 + 0.01 * 1.028 - 0.001 * 1.028_f64.powi(2) + 0.0001 * 1.028_f64.powi(3);
+        let sq = 1.028;
+        let herzberger = 3.0 + 0.2 + 0.1 + 0.01 * sq - 0.001 * sq * sq + 0.0001 * sq * sq * sq;
         assert!((at(7, &[3.0, 0.2, 0.1, 0.01, -0.001, 0.0001], um) - herzberger).abs() < 1e-12);
         // (n^2 - 1)/(n^2 + 2) = 0.5 is n = 2.
         assert!((at(8, &[0.1, 0.3, 0.25, 0.0], 1.0) - 2.0).abs() < 1e-12);
