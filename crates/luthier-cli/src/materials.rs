@@ -45,7 +45,7 @@ impl Shading {
     /// Doubts about a material, those about its energy too, which take some hundredths of a second.
     pub(crate) fn doubts_and_energy(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
         let mut doubts = self.doubts(material, forms);
-        if doubts.iter().all(|doubt| doubt.severity != Severity::Error) {
+        if !doubts.iter().any(Diagnostic::is_error) {
             doubts.extend(of_energy(material, self.model_of(material, forms)));
         }
         doubts
@@ -126,7 +126,7 @@ pub(crate) fn shows_environment(material: &Material) -> bool {
 pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Option<Reflectance>) -> Outcome {
     material.bake.reflectance = fresnel.or(material.bake.reflectance);
     material.shade_by(model);
-    match of_parts(material, None).into_iter().find(|doubt| doubt.severity == Severity::Error) {
+    match of_parts(material, None).into_iter().find(Diagnostic::is_error) {
         Some(error) => Err(Failure::Input(anyhow::anyhow!("{}: {}", error.label, error.message))),
         None => Ok(()),
     }

@@ -15,7 +15,7 @@ use luthier_manifest::{
     FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, SurfaceEntry, TableEntry, Target,
     material_buffer,
 };
-use luthier_material::{Diagnostic, Material, Severity};
+use luthier_material::{Diagnostic, Material};
 use luthier_shader::{MaterialSet, ShaderError};
 use luthier_texture::{Texture, TextureError, png};
 use rayon::prelude::*;
@@ -287,7 +287,7 @@ pub fn unfitted(materials: &[Material]) -> Vec<Material> {
 /// Refuses materials outside the domain of their model, and parts that their model does not have.
 fn refuse_foreign(materials: &[Material]) -> Result<(), ExportError> {
     let doubts = materials.iter().flat_map(|material| [of_domain(material, None), of_parts(material, None)].concat());
-    let diagnostics: Vec<Diagnostic> = doubts.filter(|d| d.severity == Severity::Error).collect();
+    let diagnostics: Vec<Diagnostic> = doubts.filter(Diagnostic::is_error).collect();
     let Some(first) = diagnostics.first() else { return Ok(()) };
     Err(ExportError::Refused { sentence: format!("{}: {}", first.label, first.message), diagnostics })
 }

@@ -14,7 +14,7 @@ pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnost
     sources.par_iter_mut().for_each(|source| {
         let Ok(parsed) = &source.parsed else { return };
         let mut found = doubts(&parsed.material);
-        found.extend(parsed.material.images().iter().flat_map(|image| told(&parsed.material, image)));
+        found.extend(of_pictures(&parsed.material));
         add(source, found);
     });
     let Some(materials) = usable(sources) else { return };
@@ -43,18 +43,22 @@ fn usable(sources: &[Source]) -> Option<Vec<Material>> {
 }
 
 fn add(source: &mut Source, found: Vec<Diagnostic>) {
-    let is_error = |d: &Diagnostic| d.severity == Severity::Error;
     match &mut source.parsed {
         Ok(parsed) => {
             parsed.warnings.extend(found);
             parsed.warnings.sort_by_key(|d| (d.span.start, d.span.end));
-            if parsed.warnings.iter().any(is_error) {
+            if parsed.warnings.iter().any(Diagnostic::is_error) {
                 let all = std::mem::take(&mut parsed.warnings);
-                source.parsed = Err(all.into_iter().filter(is_error).collect());
+                source.parsed = Err(all.into_iter().filter(Diagnostic::is_error).collect());
             }
         }
         Err(errors) => errors.extend(found),
     }
+}
+
+/// Diagnostics of the pictures that a material names.
+pub(crate) fn of_pictures(material: &Material) -> Vec<Diagnostic> {
+    material.images().iter().flat_map(|image| told(material, image)).collect()
 }
 
 /// Diagnostics of a picture that a material names: why it cannot be used, or doubts about it.

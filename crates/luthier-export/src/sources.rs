@@ -8,7 +8,7 @@ use luthier_material::{Diagnostic, Material, Parsed, Severity};
 use rayon::prelude::*;
 
 use crate::make::file;
-use crate::{ExportError, input};
+use crate::{ExportError, input, refusals};
 
 /// A file that was read, and what became of it.
 #[derive(Debug, Clone)]
@@ -97,7 +97,19 @@ pub fn read_one(path: &Path) -> Result<Source, ExportError> {
 pub fn of_text(path: &Path, text: String) -> Source {
     let label = label(path);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let parsed = luthier_material::parse(&label, &text, &|name| input::text(&folder.join(name)));
+    let (material, mut diagnostics) =
+        luthier_material::parse_partly(&label, &text, &|name| input::text(&folder.join(name)));
+    let is_usable = !diagnostics.iter().any(Diagnostic::is_error);
+    let parsed = match material {
+        Some(material) if is_usable => Ok(Parsed { material, warnings: diagnostics }),
+        // Who mends the file hears of its pictures in the same run.
+        Some(material) => {
+            diagnostics.extend(refusals::of_pictures(&material).into_iter().filter(Diagnostic::is_error));
+            diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
+            Err(diagnostics)
+        }
+        None => Err(diagnostics),
+    };
     Source { label, text, parsed }
 }
 

@@ -51,6 +51,11 @@ const LISTED: usize = 20;
 const MESSAGE_CHARS: usize = 600;
 
 impl Diagnostic {
+    /// Whether it makes the file unusable.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+
     /// The diagnostic with the lines that it is about, as plain text. `text` is what was parsed.
     pub fn render(&self, text: &str) -> String {
         self.render_with(text, &Renderer::plain())
@@ -112,7 +117,7 @@ impl<'t> Sink<'t> {
     pub(crate) fn has_error_in(&self, span: &Range<usize>) -> bool {
         self.diagnostics
             .iter()
-            .any(|d| d.severity == Severity::Error && span.start <= d.span.start && d.span.end <= span.end)
+            .any(|d| d.is_error() && span.start <= d.span.start && d.span.end <= span.end)
     }
 
     /// The diagnostics in the order of the text, and how many more there are.

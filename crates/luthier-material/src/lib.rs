@@ -46,7 +46,7 @@ pub use doubt::ALPHA_MIN;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use left_out::{LeftOut, distribution_key, left_out};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, VariationSource};
-pub use parse::{Parsed, is_material, parse};
+pub use parse::{Parsed, is_material, parse, parse_partly};
 pub use picture::{Channel, PictureRef, TexelUse, UvTransform};
 pub use places::Places;
 pub use reference::{KeyReference, TableReference, reference};

@@ -65,28 +65,43 @@ pub fn parse(
     text: &str,
     read: &dyn Fn(&str) -> std::io::Result<String>,
 ) -> Result<Parsed, Vec<Diagnostic>> {
+    let (material, diagnostics) = parse_partly(label, text, read);
+    match material {
+        Some(material) if !diagnostics.iter().any(Diagnostic::is_error) => {
+            Ok(Parsed { material, warnings: diagnostics })
+        }
+        _ => Err(diagnostics),
+    }
+}
+
+/// As [`parse`], with what can be read of a file that has errors: enough to say what else is wrong, such as pictures that are not there.
+///
+/// Values with errors are left out or have defaults. There is no material where the file is not TOML, or is something else.
+pub fn parse_partly(
+    label: &str,
+    text: &str,
+    read: &dyn Fn(&str) -> std::io::Result<String>,
+) -> (Option<Material>, Vec<Diagnostic>) {
     let mut sink = Sink::new(label, text);
-    let Some(document) = parse_toml(text, &mut sink) else { return Err(sink.into_diagnostics()) };
+    let Some(document) = parse_toml(text, &mut sink) else { return (None, sink.into_diagnostics()) };
     let document = Section::document(&document);
     if document.has("scene") && !document.has("schema") {
         let hint = Some("bake it: `luthier bake SCENE.toml`; it names its materials itself".to_owned());
         sink.error(document.key_span("scene"), "this is a scene, not a material", hint);
-        return Err(sink.into_diagnostics());
+        return (None, sink.into_diagnostics());
     }
     if document.has("surface") && !document.has("schema") {
         let hint =
             Some("`check`, `bake`, `preview` and `eval` take surfaces; give other commands its materials".to_owned());
         sink.error(document.key_span("surface"), "this is a surface, not a material", hint);
-        return Err(sink.into_diagnostics());
+        return (None, sink.into_diagnostics());
     }
     check_key(&DOCUMENT, "schema", &document, &mut sink);
     if sink.has_errors() {
         // A file of another version has other rules: only that is worth saying.
-        return Err(sink.into_diagnostics());
+        return (None, sink.into_diagnostics());
     }
     check_table(&DOCUMENT, &[], &document, &mut sink);
     let material = decode(label, text, &document, read, &mut sink);
-    let failed = sink.has_errors();
-    let diagnostics = sink.into_diagnostics();
-    if failed { Err(diagnostics) } else { Ok(Parsed { material, warnings: diagnostics }) }
+    (Some(material), sink.into_diagnostics())
 }

@@ -8,7 +8,8 @@
 //! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
 //! allocated for them, and memory grows with the data found rather than with the data promised.
 //!
-//! The codecs are those of the `ktx2`, `ruzstd`, `exr`, `png` and `image` crates; that of Radiance HDR is our own.
+//! The codecs are those of the `ktx2`, `ruzstd`, `exr`, `png` and `image` crates; Radiance HDR and the headers of OpenEXR are read here, since
+//! their attributes and lines change values and places.
 //!
 //! Simplifications: textures that are written have one layer; EXR files are
 //! single-part scan-line images of 32-bit floats.

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use luthier_manifest::{ShadingModel, SwitchBy};
 use luthier_material::{
-    Diagnostic, Light, Material, Severity, SurfaceClass, is_material, is_scene, is_surface, left_out, parse,
-    parse_scene, parse_surface,
+    Diagnostic, Light, Material, SurfaceClass, is_material, is_scene, is_surface, left_out, parse,
+    parse_partly, parse_scene, parse_surface,
 };
 use luthier_optics::stack::{Base, Stack};
 
@@ -25,13 +25,24 @@ pub(super) fn material(bytes: &[u8]) {
         Ok(parsed) => {
             assert!(is_material(text), "a material that is not recognised");
             can_be_shown(&parsed.warnings, text);
-            assert!(parsed.warnings.iter().all(|d| d.severity == Severity::Warning));
+            assert!(!parsed.warnings.iter().any(Diagnostic::is_error));
             holds(&parsed.material);
             let again =
                 parse("m.toml", text, &read).unwrap_or_else(|errors| panic!("refused the second time: {errors:?}"));
             assert_eq!(again, parsed);
         }
-        Err(diagnostics) => refused(&diagnostics, text),
+        Err(diagnostics) => {
+            refused(&diagnostics, text);
+            can_be_told(text, &read);
+        }
+    }
+}
+
+/// The pictures of a file that has errors can be named where it names them.
+fn can_be_told(text: &str, read: &dyn Fn(&str) -> io::Result<String>) {
+    let Some(material) = parse_partly("m.toml", text, read).0 else { return };
+    for image in material.images() {
+        assert!(text.get(material.places.span(&image.key)).is_some(), "{}", image.key);
     }
 }
 
@@ -120,7 +131,7 @@ fn holds(material: &Material) {
 }
 
 fn refused(diagnostics: &[Diagnostic], text: &str) {
-    assert!(diagnostics.iter().any(|d| d.severity == Severity::Error), "refused without an error");
+    assert!(diagnostics.iter().any(Diagnostic::is_error), "refused without an error");
     can_be_shown(diagnostics, text);
 }
 

@@ -94,7 +94,7 @@ fn picture(path: &Path) -> Outcome {
 }
 
 fn index(path: &Path) -> Outcome {
-    let is_page = path.extension().is_some_and(|ending| ending != "csv");
+    let is_page = path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("csv"));
     let text = input::text(path).map_err(words)?;
     let file = if is_page { yaml(&text) } else { csv(&text) };
     Ok(file.map_err(words)?.notes)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use luthier_export::{Source, of_model, of_text};
 use luthier_manifest::{Form, Masking, ShadingModel};
-use luthier_material::{Diagnostic, Material, Severity, left_out};
+use luthier_material::{Diagnostic, Material, left_out};
 use luthier_terminal::{Outcome, valid};
 
 use super::samples::Sample;
@@ -108,5 +108,5 @@ fn is_refused(material: &Material, at: &str, model: ShadingModel) -> bool {
     let place = material.places.span(at);
     let is_there = |doubt: &Diagnostic| doubt.span.start < place.end && place.start < doubt.span.end;
     let doubts = of_model(material, Some(model));
-    material.places.has(at) && doubts.iter().any(|doubt| doubt.severity == Severity::Error && is_there(doubt))
+    material.places.has(at) && doubts.iter().any(|doubt| doubt.is_error() && is_there(doubt))
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use luthier_export::{Bake, MANIFEST, Package, label, lit, of_domain, origin, read};
 use luthier_gallery::{Exhibit, Gallery, Look, Scenery, hidden_maps};
 use luthier_manifest::{Form, ShadingModel};
-use luthier_material::{CrossSection, Material, Severity};
+use luthier_material::{CrossSection, Diagnostic, Material};
 use luthier_scene::CostTable;
 use luthier_terminal::{Failure, Outcome, complain, deliver};
 
@@ -137,7 +137,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
             let mut material = material.clone();
             shade_by(&mut material, model, options.shading.fresnel)?;
             if let Some(outside) =
-                of_domain(&material, None).into_iter().find(|doubt| doubt.severity == Severity::Error)
+                of_domain(&material, None).into_iter().find(Diagnostic::is_error)
             {
                 complain(&format!("warning: {} is left out of {}: {}", material.name, model.name(), outside.message));
                 continue;

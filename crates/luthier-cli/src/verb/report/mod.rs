@@ -7,7 +7,7 @@ mod pictures;
 
 use std::path::Path;
 
-use luthier_export::{Folder, GENERATOR, REPORT_FILES, origin, publish_beside, read_one, shared, source_hash};
+use luthier_export::{Folder, GENERATOR, REPORT_FILES, label, origin, publish_beside, read_one, shared, source_hash};
 use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, SurfaceMap, judge, limits};
@@ -45,6 +45,10 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let judging = device.as_ref().map(|d| d as &dyn Device);
     let mut report = judge(&subject, judging, &settings).map_err(Failure::input)?;
     drop(bar);
+    for material in &mut report.materials {
+        // Reports name files as they are found from here.
+        material.source = label(&origin(&options.out, &material.source));
+    }
 
     evidence::add(&mut report, &given, options, manifest, &materials)?;
     let pictures = pictures(&mut report, device.as_ref(), &subject, options)?;

@@ -72,7 +72,8 @@ fn files_that_pages_name_exist() {
     let mut bases: Vec<PathBuf> = crates.collect();
     bases.extend([root.clone(), root.join("crates")]);
     let mut count = 0;
-    for page in pages() {
+    // The page of foreign files names those of other repositories.
+    for page in pages().into_iter().filter(|page| page.name != "docs/pages/foreign.md") {
         let own = page.folder().to_owned();
         for name in named(&page).collect::<BTreeSet<_>>() {
             count += 1;

@@ -107,6 +107,10 @@ fn files_that_materials_name() {
             refused(&workshop, &["x.toml"], &[&format!("`{path}`: {why}"), &format!("x.toml:{line}:")]);
         }
     }
+    // What else is wrong with the file is said with it.
+    let both = coated("maps = { normal = \"maps/none.png\" }").replace("alpha = 0.2", "alpha = 7");
+    workshop.write("x.toml", both);
+    refused(&workshop, &["x.toml"], &["`maps/none.png`: no such file", "x.toml:6:", "x.toml:7:"]);
     workshop.write("maps/far.csv", "wavelength_nm,n,k\n400,1.5,0\n700,1e300,0\n");
     workshop.write("maps/infrared.csv", "wavelength_nm,n,k\n1400,1.5,0\n1700,1.4,0\n");
     for (path, words) in [
