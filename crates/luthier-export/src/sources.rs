@@ -104,7 +104,11 @@ pub fn of_text(path: &Path, text: String) -> Source {
         Some(material) if is_usable => Ok(Parsed { material, warnings: diagnostics }),
         // Who mends the file hears of its pictures in the same run.
         Some(material) => {
-            diagnostics.extend(refusals::of_pictures(&material).into_iter().filter(Diagnostic::is_error));
+            // A map that is wrong for another reason is said once.
+            let is_new = |found: &Diagnostic| found.is_error() && diagnostics.iter().all(|d| d.span != found.span);
+            let mut of_pictures = refusals::of_pictures(&material);
+            of_pictures.retain(is_new);
+            diagnostics.extend(of_pictures);
             diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
             Err(diagnostics)
         }

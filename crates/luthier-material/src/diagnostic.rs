@@ -115,9 +115,7 @@ impl<'t> Sink<'t> {
 
     /// Whether an error about a part of the span has been said already.
     pub(crate) fn has_error_in(&self, span: &Range<usize>) -> bool {
-        self.diagnostics
-            .iter()
-            .any(|d| d.is_error() && span.start <= d.span.start && d.span.end <= span.end)
+        self.diagnostics.iter().any(|d| d.is_error() && span.start <= d.span.start && d.span.end <= span.end)
     }
 
     /// The diagnostics in the order of the text, and how many more there are.

@@ -72,7 +72,8 @@ impl Normals {
                 let [[_, down], [right, _]] = [slope(normal(x + 1, y)), slope(normal(x, y + 1))];
                 let [here_right, here_down] = slope(here);
                 let (across, along) = (right - here_right, down - here_down);
-                all.curl = [all.curl[0] + (across - along).powi(2), all.curl[1] + (across + along).powi(2)];
+                let (up, down) = (across - along, across + along);
+                all.curl = [all.curl[0] + up * up, all.curl[1] + down * down];
             }
         }
         all
@@ -115,7 +116,7 @@ mod tests {
         let mut image = Image::zeros(64, 64, 3);
         for (x, y) in (0..64u32).flat_map(|y| (0..64).map(move |x| (x, y))) {
             let phase = std::f64::consts::TAU * (f64::from(x) + 2.0 * f64::from(y)) / 64.0;
-            let slope = 0.3 * phase.cos();
+            let slope = 0.3 * libm::cos(phase);
             let normal = [-slope, green * 2.0 * slope, 1.0];
             let length = normal.iter().map(|v| v * v).sum::<f64>().sqrt();
             image.texel_mut(x, y).copy_from_slice(&normal.map(|v| (0.5 + 0.5 * v / length) as f32));

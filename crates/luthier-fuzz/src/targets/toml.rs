@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use luthier_manifest::{ShadingModel, SwitchBy};
 use luthier_material::{
-    Diagnostic, Light, Material, SurfaceClass, is_material, is_scene, is_surface, left_out, parse,
-    parse_partly, parse_scene, parse_surface,
+    Diagnostic, Light, Material, SurfaceClass, is_material, is_scene, is_surface, left_out, parse, parse_partly,
+    parse_scene, parse_surface,
 };
 use luthier_optics::stack::{Base, Stack};
 

@@ -143,3 +143,33 @@ fn a_large_number_finds_its_own_rows() {
         }
     }
 }
+
+/// A row of a tall atlas holds nothing of the one beside it, beyond what f32 positions cost: 1/4096 of the difference. A step of an 8-bit weight would be 1/256.
+#[test]
+fn rows_of_tall_atlases_do_not_bleed() {
+    let Some(gpu) = gpu() else { return };
+    let columns = 2;
+    let pair = [([0.3f32, 0.0, 0.953_939_2], [-0.3f32, 0.0, 0.953_939_2])];
+    for rows in [1500, 3001, 5001] {
+        let tiles = rows * columns;
+        let layout = AtlasLayout { x: axis("cos_theta", 1.0, NODES, Mapping::Linear), columns, tiles, ..row_layout() };
+        // Dark and bright rows by turns.
+        let table = Table::new(TableKind::Fresnel, layout, TexelFormat::Rgba16Float, |tile, _| {
+            let value = if (tile / columns).is_multiple_of(2) { 0.125 } else { 0.875 };
+            [value, value, value, 1.0]
+        });
+        let metal = |tile: u32| {
+            let metal = conductor(0.2, [0.2, 0.5, 1.1], [3.0, 2.4, 1.9]);
+            vec![LayerRecord { tiles: metal.tiles.with([(TableKind::Fresnel, Some(tile))]), ..metal }]
+        };
+        let many = artefacts(Form::Baked, (0..tiles).map(metal).collect(), &[table]);
+        let scene = gpu.scene(&many, Form::Baked).unwrap();
+        let value = |row: u32| scene.evaluate(row * columns, &pair).unwrap()[0][0];
+        let expected = [value(0), value(1)];
+        for row in (0..rows).step_by(rows as usize / 100) {
+            let (found, expected) = (value(row), expected[row as usize % 2]);
+            let tolerance = (0.875 - 0.125) / 0.125 * expected / 4096.0;
+            assert!((found - expected).abs() <= tolerance, "row {row} of {rows}: {found} for {expected}");
+        }
+    }
+}

@@ -352,7 +352,8 @@ fn a_white_ball_is_exposed_just_below_one() {
 fn whoever_watches_is_told_of_every_pass() {
     let metal = tiled(conductor(0.2, [0.1; 3], [9.0; 3]), None);
     let Some(scene) = scene_of(vec![vec![metal]], &ggx_tables(0.1, 0.1)) else { return };
-    let settings = RenderSettings { size: 32, samples: 4, environment_samples: 32, ..dark() };
+    // More evaluations than any adapter makes in a pass.
+    let settings = RenderSettings { size: 64, samples: 4, environment_samples: 512, ..dark() };
     let settings = RenderSettings { environment: uniform(0.5), ..settings };
     let told = std::cell::RefCell::new(Vec::new());
     let tell = |done: usize, count: usize| {

@@ -83,10 +83,8 @@ pub(super) fn decode(
         maps::check(at, layers.len(), sink);
         let number = layers.len();
         let key = format!("layer.{number}");
-        if !sink.has_errors() {
-            sources.places.add(&key, at);
-            films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
-        }
+        sources.places.add(&key, at);
+        films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         let metallic = if kind == "metallic-roughness" { schlick::textured(at) } else { None };
         let extra = LayerExtras {
             reradiation: matrix,
@@ -102,9 +100,7 @@ pub(super) fn decode(
         extras.push(extra);
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
         if let Some(diffuse) = below {
-            if !sink.has_errors() {
-                sources.places.add(&format!("layer.{}", layers.len()), at);
-            }
+            sources.places.add(&format!("layer.{}", layers.len()), at);
             extras.push(LayerExtras::default());
             let base = Base::Diffuse(diffuse);
             layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });

@@ -41,9 +41,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     };
     let exterior = exterior(document, read, sink, &mut sources);
     let (layers, extras) = layers::decode(document, &exterior, read, sink, &mut sources);
-    if !sink.has_errors() {
-        sources.places.add("", document);
-    }
+    sources.places.add("", document);
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
     let is_fluorescent = extras.iter().any(|layer| layer.reradiation.is_some());

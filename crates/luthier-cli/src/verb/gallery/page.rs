@@ -136,9 +136,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
             }
             let mut material = material.clone();
             shade_by(&mut material, model, options.shading.fresnel)?;
-            if let Some(outside) =
-                of_domain(&material, None).into_iter().find(Diagnostic::is_error)
-            {
+            if let Some(outside) = of_domain(&material, None).into_iter().find(Diagnostic::is_error) {
                 complain(&format!("warning: {} is left out of {}: {}", material.name, model.name(), outside.message));
                 continue;
             }

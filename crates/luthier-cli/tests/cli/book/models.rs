@@ -39,11 +39,11 @@ fn the_glossary_and_the_guide_know_every_model() {
 fn times_of_the_guide_are_those_measured() {
     let measured: Value =
         serde_json::from_str(&fs::read_to_string(root().join("docs/measurements/bench-gpu.json")).unwrap()).unwrap();
-    assert_eq!(measured["adapter"]["name"], "NVIDIA H200");
+    assert_eq!(measured["adapter"]["name"], "NVIDIA H100 80GB HBM3");
     let guide = page("which-model.md");
     let head = row(&guide, "model");
     for (column, material) in [(2, "car-paint"), (3, "red-lacquer")] {
-        assert_eq!(head[column], format!("H200: `{material}`, ps"));
+        assert_eq!(head[column], format!("H100: `{material}`, ps"));
         for model in ShadingModel::ALL {
             let rows = measured["rows"].as_array().unwrap();
             let is_it =

@@ -35,19 +35,27 @@ pub fn decode(file: &[u8]) -> Result<Decoded, TextureError> {
         let picture = png::read(file)?;
         return Ok(Decoded { picture, container: Container::Png, says_srgb: png::says_srgb(file) });
     }
-    let (container, read): (_, fn(&[u8]) -> Result<Picture, Fault>) = if file.starts_with(b"\xff\xd8\xff") {
-        (Container::Jpeg, |file| pixels(JpegDecoder::new(Cursor::new(file))?, file))
+    let (container, picture) = if file.starts_with(b"\xff\xd8\xff") {
+        (Container::Jpeg, jpeg(file))
     } else if file.starts_with(b"RIFF") && file.get(8..12) == Some(b"WEBP") {
-        (Container::WebP, |file| pixels(WebPDecoder::new(Cursor::new(file))?, file))
+        (Container::WebP, webp(file))
     } else {
         return Err(TextureError::NoPicture(kind(file)));
     };
-    let picture = read(file).map_err(|fault| match fault {
+    let picture = picture.map_err(|fault| match fault {
         Fault::Codec(reason) => TextureError::PictureDecode { container, reason },
         Fault::Ours(error) => error,
         Fault::Short => TextureError::malformed(container, "it is too short for the size that it states"),
     })?;
     Ok(Decoded { picture, container, says_srgb: true })
+}
+
+fn jpeg(file: &[u8]) -> Result<Picture, Fault> {
+    pixels(JpegDecoder::new(Cursor::new(file))?, file)
+}
+
+fn webp(file: &[u8]) -> Result<Picture, Fault> {
+    pixels(WebPDecoder::new(Cursor::new(file))?, file)
 }
 
 /// Why a decoder has no picture.
