@@ -10,7 +10,7 @@ use crate::{
 ///
 /// Rows whose axis is [`Mapping::Apart`] are side by side, each with its own apron, and the height of the texture is a power of two. Samplers
 /// round positions: a part of a row beside it, however small, would count where numbers of two rows differ by thousands. For the same reason
-/// sides of many tiles are powers of two above 4096 texels: there, graphics hardware takes 1/256 of the row beside for one row in four.
+/// sides of many tiles are powers of two above 4096 texels: at other sizes there, graphics hardware takes 1/256 of the row beside for up to half of the rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AtlasLayout {
     /// Axis across a tile.

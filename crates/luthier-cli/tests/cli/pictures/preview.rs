@@ -287,7 +287,7 @@ fn meshes_are_refused_with_a_reason() {
     workshop.run(&["preview", "matte.toml", "-o", "no.png", "--sky", "moon"]).fails(2, &["moon"]).says(&["clear-day"]);
 }
 
-/// What is not as it stands in the file is told, and the picture is made.
+/// A mesh with a byte order mark and an animation, and one with sparse accessors and no scene, make a picture; what is left out is told.
 #[test]
 fn meshes_of_other_programs_are_shown() {
     let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
