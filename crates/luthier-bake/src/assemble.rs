@@ -173,7 +173,7 @@ pub fn check(materials: &[Material], options: &Options<'_>) -> Result<(), Vec<Ba
     errors.extend(budget(materials, &options.budget).err());
     let limits = [("max_lobe_err", options.budget.max_lobe_err), ("max_albedo_err", options.budget.max_albedo_err)];
     if let Some((name, _)) = limits.into_iter().find(|(_, limit)| limit.is_some())
-        && materials.iter().all(|material| material.model() != ShadingModel::Lobes)
+        && materials.iter().all(|material| !material.model().is_fitted())
     {
         errors.push(BakeError::NoLobes { name });
     }
@@ -219,7 +219,7 @@ fn baked_materials(
     settings: &Settings,
     results: &Results,
 ) -> Vec<BakedMaterial> {
-    let lobes = |m: &Material| (m.model() == ShadingModel::Lobes).then(|| lobes::record(m, settings, results));
+    let lobes = |m: &Material| m.model().is_fitted().then(|| lobes::record(m, settings, results));
     let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
         model: m.model(),
         color: color_mode(m),

@@ -2,6 +2,7 @@
 
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::phong::Coefficients;
+use luthier_manifest::ModelPart;
 use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord};
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
@@ -25,7 +26,7 @@ pub(crate) fn constants(
         internal_reflectance,
         upward_loss,
         lobes,
-        beams: material.beams().filter(|_| material.model().has_beams()),
+        beams: material.beams().filter(|_| material.model().takes(ModelPart::Beams)),
         flakes: flakes(&material.effects),
         patina: bare.and_then(|bare| patina(&material.effects, bare)),
         glitter: glitter(&material.effects),

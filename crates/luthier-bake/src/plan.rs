@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{Image, TableKind};
+use luthier_manifest::reads;
 use luthier_manifest::{ColorMode, Feature, Form, LayerRecord};
 use luthier_material::{LayerExtras, Material, PictureRef};
 use luthier_optics::interface::Interface;
@@ -174,7 +175,7 @@ impl Part {
             let wanted = TableKind::ALL.map(|kind| {
                 // Where some materials ask for D as a table, it is computed for the others.
                 let is_offered = kind != TableKind::Distribution || !settings.asked(kind).is_any();
-                material.bake.asks_for(kind) || is_offered && model.reads(kind, &records, i)
+                material.bake.asks_for(kind) || is_offered && reads(model, kind, &records, i)
             });
             let wants = |kind: TableKind| wanted[kind as usize];
             if wants(TableKind::Fresnel) || wants(TableKind::Film) {

@@ -1,11 +1,12 @@
 //! Layer records: what a shader needs of each layer.
 
-use luthier_layers::domain::INDEX_MAX;
 use luthier_layers::elek::{self, ALPHA_MIN, Below};
+use luthier_manifest::ModelPart;
 use luthier_manifest::{
     InternalReflection, LayerKind, LayerRecord, LowerReflectance, Masking, Reflectance, ReflectanceCurve,
 };
 use luthier_material::Material;
+use luthier_model::INDEX_MAX;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
@@ -39,10 +40,10 @@ impl Parts {
     pub(crate) fn of(material: &Material) -> Self {
         let (model, bake) = (material.model(), &material.bake);
         Self {
-            masking: bake.masking.filter(|_| model.has_masking()).unwrap_or_default(),
-            reflectance: bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default(),
-            internal_reflection: bake.internal_reflection.filter(|_| model.has_path()).unwrap_or_default(),
-            lower_reflectance: bake.lower_reflectance.filter(|_| model.has_path()).unwrap_or_default(),
+            masking: bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default(),
+            reflectance: bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default(),
+            internal_reflection: bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default(),
+            lower_reflectance: bake.lower_reflectance.filter(|_| model.is_path()).unwrap_or_default(),
             color: material.color(),
         }
     }

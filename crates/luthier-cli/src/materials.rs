@@ -34,7 +34,7 @@ impl Shading {
             chosen
         });
         let mut doubts = of_model(chosen.as_ref().unwrap_or(material), model);
-        if self.no_fit && model == Some(ShadingModel::Lobes) {
+        if self.no_fit && model.is_some_and(ShadingModel::is_fitted) {
             let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
             let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
             doubts.push(material.diagnostic(Severity::Error, "bake.model", message, Some(hint)));
@@ -119,7 +119,7 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
 /// Whether the form `baked` of a material shows the environment.
 pub(crate) fn shows_environment(material: &Material) -> bool {
     let is_interface = |layer: &Layer| !matches!(layer.base, Base::Diffuse(_));
-    material.model() == ShadingModel::Lobes && material.stack.layers.iter().any(is_interface)
+    material.model().is_fitted() && material.stack.layers.iter().any(is_interface)
 }
 
 /// Has a material shaded by one of several models that are compared: each with the parts that it has, of the file or the command line.
@@ -135,7 +135,7 @@ pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Op
 /// The models that are asked for, or all; without a fit, all but `lobes`.
 #[cfg(any(feature = "cost", feature = "gpu"))]
 pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> {
-    let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || *model != ShadingModel::Lobes).collect();
+    let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || !model.is_fitted()).collect();
     if asked.is_empty() { all() } else { asked.to_vec() }
 }
 

@@ -11,6 +11,7 @@ use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
 use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
 use luthier_material::{Effects, Material, PictureRef, TexelUse, left_out};
+use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
@@ -136,12 +137,13 @@ impl ModelInputs {
         }
         // As in the shaders: what lies below the first interface is theirs, and a particle's normal is anybody's.
         let effects = &material.effects;
-        let is_chain = ["elek", "weidlich-wilkie"].contains(&model.info().name);
-        let has_lobes = model.info().name == "lobes";
+        let shading = model.info().shading();
+        let is_path = shading.is_some_and(ShadingModel::is_path);
+        let has_lobes = shading.is_some_and(ShadingModel::is_fitted);
         let lacks_patina =
             || left_out(material, ShadingModel::Lobes).iter().any(|part| part.feature == Feature::Patina);
-        let has_flakes = is_chain || has_lobes;
-        let has_patina = is_chain || has_lobes && !lacks_patina();
+        let has_flakes = is_path || has_lobes;
+        let has_patina = is_path || has_lobes && !lacks_patina();
         let below =
             [("flakes", effects.flakes.is_some() && !has_flakes), ("patina", effects.patina.is_some() && !has_patina)];
         let dropped = below.into_iter().filter(|(_, is_dropped)| *is_dropped).map(|(name, _)| name).collect();
@@ -208,9 +210,10 @@ impl ModelInputs {
             (Input::Seed, self.seed.is_some()),
         ];
         let info = model.info();
-        let takes_base_color = |name: &str| ShadingModel::NAMES.contains(&name) && name != ShadingModel::Phong.name();
-        if self.base_color().is_some() && !takes_base_color(info.name) {
-            let takers: Vec<&str> = ShadingModel::NAMES.iter().copied().filter(|name| takes_base_color(name)).collect();
+        let takes_base_color = |model: ShadingModel| model.facts().family != Family::Coefficients;
+        if self.base_color().is_some() && !info.shading().is_some_and(takes_base_color) {
+            let takers = ShadingModel::ALL.into_iter().filter(|model| takes_base_color(*model)).map(ShadingModel::name);
+            let takers: Vec<&str> = takers.collect();
             return Err(Failure::Usage(anyhow::anyhow!(
                 "model `{}` does not take --base-color; those that do: {}",
                 info.name,

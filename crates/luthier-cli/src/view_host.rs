@@ -8,7 +8,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, of_text, read_one};
 use luthier_gpu::ToneMapping;
 use luthier_lut::Image;
-use luthier_manifest::{Reflectance, ShadingModel};
+use luthier_manifest::ModelPart;
+use luthier_manifest::Reflectance;
 use luthier_material::{Diagnostic, Material};
 use luthier_report::{PictureComparison, compare_pictures};
 use luthier_store::Layers;
@@ -45,7 +46,7 @@ impl ViewHost {
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
         let mut materials = lit(std::slice::from_ref(material));
-        let is_chosen = |material: &Material| self.fresnel.is_some() && material.model().has_reflectance();
+        let is_chosen = |material: &Material| self.fresnel.is_some() && material.model().takes(ModelPart::Reflectance);
         for material in materials.iter_mut().filter(|material| is_chosen(material)) {
             material.bake.reflectance = self.fresnel;
         }
@@ -76,7 +77,7 @@ impl Host for ViewHost {
     }
 
     fn bake(&self, material: &Material, form: Form) -> Result<Package, String> {
-        if !self.fits && material.model() == ShadingModel::Lobes {
+        if !self.fits && material.model().is_fitted() {
             return Err("the model `lobes` is fitted to a simulation, and --no-fit makes none".to_owned());
         }
         self.package(material, form).map_err(|failure| failure.sentence())

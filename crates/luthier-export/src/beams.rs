@@ -1,5 +1,6 @@
 //! Errors of the numbers of the model `granier-heidrich`: of files whose model is another, and of parts that a material does not have.
 
+use luthier_manifest::ModelPart;
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::Base;
@@ -19,7 +20,7 @@ pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnost
     let error = |key: &str, message: String, hint: &str| {
         material.diagnostic(Severity::Error, key, message, Some(hint.to_owned()))
     };
-    if !model.has_beams() {
+    if !model.takes(ModelPart::Beams) {
         let refused = |key: &'static str| {
             let name = key.rsplit_once('.').map_or(key, |(_, name)| name);
             let (what, hint) = match key {

@@ -1,9 +1,10 @@
 //! Doubts about the model that shades a material: parts that it leaves out, quantities outside its domain.
 
 use luthier_bake::{VARIED_LAYERS_MAX, is_too_deep};
-use luthier_layers::domain::{Outside, Quantity, outside};
+use luthier_layers::domain::{Outside, outside};
 use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::{Diagnostic, LeftOut, Material, Severity, left_out};
+use luthier_model::Quantity;
 
 use crate::parts::of_parts;
 
@@ -26,7 +27,7 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
 pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut found: Vec<Diagnostic> =
-        outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect();
+        outside(model, &material.stack).iter().map(|outside| domain(material, model, outside)).collect();
     let mut shaded = material.clone();
     shaded.bake.model = Some(model);
     found.extend(is_too_deep(&shaded).then(|| too_deep(material)));

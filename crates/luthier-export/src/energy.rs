@@ -14,6 +14,7 @@ use luthier_layers::layered_mc::ColorPaths;
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Metallic, Severity};
+use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
@@ -110,7 +111,7 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
 
 /// Whether albedos of a model may be wrong at all: those of `lobes` are simulated, and one bounce off a smooth interface or a base is exact.
 fn is_questionable(material: &Material, model: ShadingModel) -> bool {
-    model != ShadingModel::Lobes && (material.has_further_bounces() || model == ShadingModel::Phong)
+    !model.is_fitted() && (material.has_further_bounces() || model.facts().family == Family::Coefficients)
 }
 
 /// Albedos of a material in a model, angle by angle: at white texels of its maps, and where textures make a metal of it, without metal, too.
@@ -124,11 +125,11 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
     let is_simulated = is_compared && material.stack.layers.iter().all(has_walks);
     let nm = material.bake.wavelengths_nm();
     let color = Color::ThreeWavelengths(nm);
-    let reflecting = if model.has_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
+    let reflecting = if model.is_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
     let mut all = Vec::new();
     for place in places(material) {
         let paths = is_simulated.then(|| ColorPaths::new(&at(&material.stack, &place), &color));
-        let Some(shaded) = Shaded::with(model.name(), &reflecting, nm, color, &place, parts_of(material, model)) else {
+        let Some(shaded) = Shaded::with(model, &reflecting, nm, color, &place, parts_of(material, model)) else {
             continue;
         };
         for angle_deg in ANGLES_DEG {

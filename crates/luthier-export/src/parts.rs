@@ -3,10 +3,12 @@
 
 use luthier_layers::parts::Parts;
 use luthier_lut::TableKind;
+use luthier_manifest::ModelPart;
 use luthier_manifest::{
     BeamsRecord, Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel,
 };
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
+use luthier_model::Reach;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
 use luthier_optics::stack::{Stack, Surface};
@@ -33,11 +35,11 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
 /// The parts of a model that a material chooses, as f64 has them.
 pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let bake = &material.bake;
-    let masking = bake.masking.filter(|_| model.has_masking()).unwrap_or_default();
-    let reflectance = bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default();
-    let internal = bake.internal_reflection.filter(|_| model.has_path()).unwrap_or_default();
-    let parts = Parts::named(masking.name(), reflectance.name(), internal.name()).unwrap_or(Parts::PLAIN);
-    let beams = material.beams().filter(|_| model.has_beams());
+    let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
+    let reflectance = bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default();
+    let internal_reflection = bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default();
+    let parts = Parts { masking, reflectance, internal_reflection, ..Parts::PLAIN };
+    let beams = material.beams().filter(|_| model.takes(ModelPart::Beams));
     beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
         parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
     })
@@ -111,7 +113,7 @@ fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
 
 /// An error where a model, its masking or a table has no use for the distribution of a layer.
 fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
-    let is_read = |layers: usize| if model == ShadingModel::Microfacet { layers.min(1) } else { layers };
+    let is_read = |layers: usize| if model.facts().reach == Reach::First { layers.min(1) } else { layers };
     let layer = first_free(material, is_read(material.stack.layers.len()))?;
     let distribution = material.stack.layers[layer].surface.distribution;
     let (name, key) = (distribution.name(), format!("layer.{layer}.{}", distribution_key(distribution)));
@@ -119,7 +121,7 @@ fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnosti
         return Some(no_slopes(material, model.name(), layer));
     }
     let masking = material.bake.masking.unwrap_or_default();
-    if model.has_masking() && masking.needs_lambda() {
+    if model.takes(ModelPart::Masking) && masking.needs_lambda() {
         let is_named = material.bake.masking.is_some();
         let message = format!("the masking `{}` of the distribution `{name}` has no closed form", masking.name());
         let hint =
@@ -136,7 +138,7 @@ fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnosti
 
 fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Option<Diagnostic> {
     let (name, key) = (masking.name(), "bake.masking");
-    if !model.has_masking() {
+    if !model.takes(ModelPart::Masking) {
         let message =
             format!("the masking `{name}` is a part of the model `microfacet`, and this material has `{model}`");
         let hint = "leave it out, or write `[bake] model = \"microfacet\"`".to_owned();
@@ -167,7 +169,7 @@ fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Opt
 
 fn of_reflectance(material: &Material, model: ShadingModel, reflectance: Reflectance) -> Option<Diagnostic> {
     let (name, key) = (reflectance.name(), "bake.reflectance");
-    if !model.has_reflectance() {
+    if !model.takes(ModelPart::Reflectance) {
         let message = format!("the model `{model}` of this material has no reflectance `{name}`");
         let hint =
             "leave it out, or write `[bake] model = \"elek\"`, `\"weidlich-wilkie\"` or `\"microfacet\"`".to_owned();
@@ -177,7 +179,7 @@ fn of_reflectance(material: &Material, model: ShadingModel, reflectance: Reflect
         return None;
     }
     let layers = &material.stack.layers;
-    let read = if model == ShadingModel::Microfacet { layers.len().min(1) } else { layers.len() };
+    let read = if model.facts().reach == Reach::First { layers.len().min(1) } else { layers.len() };
     if let Some(layer) = layers[..read].iter().position(|layer| !layer.films.is_empty()) {
         let message = format!("the reflectance `{name}` knows of no films, and this interface has one");
         let hint = "leave the film out, or write `[bake] reflectance = \"exact\"` or `\"table\"`".to_owned();
@@ -198,7 +200,7 @@ fn of_internal_reflection(
     internal: InternalReflection,
 ) -> Option<Diagnostic> {
     let (name, key) = (internal.name(), "bake.internal_reflection");
-    if !model.has_path() {
+    if !model.is_path() {
         let message = format!("the model `{model}` of this material has no internal reflection `{name}`");
         let hint = "leave it out, or write `[bake] model = \"elek\"` or `\"weidlich-wilkie\"`".to_owned();
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
@@ -223,7 +225,7 @@ fn of_internal_reflection(
 
 fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerReflectance) -> Option<Diagnostic> {
     let (name, key) = (lower.name(), "bake.lower_reflectance");
-    if !model.has_path() {
+    if !model.is_path() {
         let message = format!("the model `{model}` of this material has no lower reflectance `{name}`");
         let hint = "leave it out, or write `[bake] model = \"elek\"` or `\"weidlich-wilkie\"`".to_owned();
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));

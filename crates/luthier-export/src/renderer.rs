@@ -2,7 +2,7 @@
 
 use luthier_bake::Store;
 use luthier_lut::TableKind;
-use luthier_manifest::{FunctionGroup, Functions, ShadingModel, SurfaceEntry};
+use luthier_manifest::{FunctionGroup, Functions, SurfaceEntry};
 use luthier_material::Material;
 
 use crate::{Bake, ExportError, Package};
@@ -48,7 +48,7 @@ pub fn lit(materials: &[Material]) -> Vec<Material> {
         |material: &Material| !material.model().is_statistical() && !material.bake.asks_for(TableKind::Fgd);
     let is_small = materials.iter().all(is_of_pictures);
     // Lobes have their own energies.
-    let of_layers = |material: &&mut Material| material.model() != ShadingModel::Lobes;
+    let of_layers = |material: &&mut Material| !material.model().is_fitted();
     for material in lit.iter_mut().filter(of_layers) {
         // Of facets without walks there are no albedos: renderers draw directions.
         let has_walks = material.stack.layers.iter().all(|layer| layer.surface.distribution.has_walks());

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use luthier_export::Package;
 use luthier_lut::TableKind;
+use luthier_manifest::reads;
 use luthier_manifest::{Form, LayerRecord, MaterialEntry};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -170,7 +171,7 @@ impl PageLook {
 /// The tiles of a kind that the shader of a material reads.
 fn tiles(entry: &MaterialEntry, kind: TableKind) -> Vec<usize> {
     let records: Vec<LayerRecord> = entry.records().cloned().collect();
-    let read = (0..records.len()).filter(|&i| entry.model.reads(kind, &records, i));
+    let read = (0..records.len()).filter(|&i| reads(entry.model, kind, &records, i));
     let mut tiles: Vec<usize> = read.filter_map(|i| records[i].tiles[kind]).map(|tile| tile as usize).collect();
     if kind == TableKind::Lobes {
         let lobes = entry.constants.lobes;

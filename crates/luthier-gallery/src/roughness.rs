@@ -1,6 +1,6 @@
 //! The factor on slopes that a page has for its large picture: which looks follow it, and places for their shaders.
 
-use luthier_manifest::{FileEntry, LayerKind, MapEntry, MapSlot, MaterialEntry, ShadingModel, VaryingFactor};
+use luthier_manifest::{FileEntry, LayerKind, MapEntry, MapSlot, MaterialEntry, VaryingFactor};
 use luthier_material::ALPHA_MIN;
 use serde::Serialize;
 
@@ -26,7 +26,7 @@ impl PageSlopes {
         if interfaces().all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= ALPHA_MIN) {
             return Self::Fixed("All interfaces of the material are smooth, and a factor leaves them so.");
         }
-        if entry.model != ShadingModel::Lobes {
+        if !entry.model.is_fitted() {
             return Self::Octaves(OCTAVES);
         }
         let varying = entry.constants.lobes.and_then(|lobes| lobes.varying);
@@ -57,7 +57,7 @@ pub(crate) fn with_places(materials: &mut [MaterialEntry]) {
 
 #[cfg(test)]
 mod tests {
-    use luthier_manifest::{LayerRecord, LobesRecord, MaterialConstants, VaryingRecord};
+    use luthier_manifest::{LayerRecord, LobesRecord, MaterialConstants, ShadingModel, VaryingRecord};
 
     use super::*;
 

@@ -1,76 +1,10 @@
-//! Domains of the shaders' models: ranges of index, slope, thickness and absorption within which they may be used.
-//!
-//! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier-lab stability` derives them
-//! anew, and a test of luthier-report compares. Between the values that the suite tries, the last that did not fail counts.
-//!
-//! A model may leave out parts of the light within its domain (bounces, blur, 1/n^2): `docs/pages/models.md` has their size.
+//! Stacks outside the domain of a model: the ranges are facts of the model ([`luthier_model::Facts::domain`]).
 
+use luthier_model::{Limit, Quantity, ShadingModel};
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
-use crate::elek::MODEL;
 use crate::refraction::REFRACTION_WAVELENGTH_NM;
-
-/// Quantity that a domain is a range of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// Index of a coat over that above it, at the wavelength that bends directions.
-    Index,
-    /// Slope parameter of an interface that is not smooth.
-    Alpha,
-    /// Largest thickness of a film, nm.
-    FilmNm,
-    /// Number of layers.
-    Layers,
-    /// Optical depth of a slab, of the channel that absorbs most.
-    OpticalDepth,
-    /// Largest extinction coefficient of a metal.
-    MetalK,
-}
-
-impl Quantity {
-    /// All, in the order of pages.
-    pub const ALL: [Self; 6] = [Self::Index, Self::Alpha, Self::FilmNm, Self::Layers, Self::OpticalDepth, Self::MetalK];
-
-    /// The name in reports and messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Index => "index ratio of the coat",
-            Self::Alpha => "alpha",
-            Self::FilmNm => "film thickness (nm)",
-            Self::Layers => "number of layers",
-            Self::OpticalDepth => "optical depth",
-            Self::MetalK => "k of the metal",
-        }
-    }
-
-    /// The value of an ordinary material, from which a domain is followed to both sides.
-    pub fn ordinary(self) -> f64 {
-        match self {
-            Self::Index => 1.5,
-            Self::Alpha => 0.1,
-            Self::FilmNm => 300.0,
-            Self::Layers => 2.0,
-            Self::OpticalDepth => 0.1,
-            Self::MetalK => 3.0,
-        }
-    }
-}
-
-/// A range of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
-    /// The quantity.
-    pub quantity: Quantity,
-    /// Smallest value.
-    pub least: f64,
-    /// Largest value.
-    pub most: f64,
-    /// Whether what is outside is wrong beyond use, not merely in doubt.
-    pub refuses: bool,
-    /// Fault outside the range, in words.
-    pub reason: &'static str,
-}
 
 /// A quantity outside the domain of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,72 +21,6 @@ impl Outside {
     /// The nearest value inside.
     pub fn nearest(&self) -> f64 {
         self.value.clamp(self.limit.least, self.limit.most)
-    }
-}
-
-const fn limit(quantity: Quantity, least: f64, most: f64, reason: &'static str) -> Limit {
-    Limit { quantity, least, most, refuses: false, reason }
-}
-
-/// Real part and k of an index that records hold; beyond it single precision has no fourth power.
-pub const INDEX_MAX: f64 = 1e4;
-
-/// Thickest film whose phase single precision resolves at all: 1 mm is 4000 waves, a phase error of 1e-3 turns.
-const FILM_BEYOND_USE_NM: f64 = 1e6;
-
-/// Limits of all models.
-const COMMON: &[Limit] = &[
-    limit(Quantity::MetalK, 0.0, INDEX_MAX, "it is stored as 10000, which reflects within 1e-4 of it"),
-    Limit {
-        quantity: Quantity::FilmNm,
-        least: 0.0,
-        most: FILM_BEYOND_USE_NM,
-        refuses: true,
-        reason: "its phase has no digits left in single precision, and no light is coherent over it",
-    },
-];
-
-/// Limit of the index of a coat over metal, of which 0.92 comes back: 1.9 is the last that the suite tried before the albedo of a coated
-/// metal is off by more than 1.
-const BRIGHT: Limit = limit(
-    Quantity::Index,
-    0.25,
-    1.9,
-    "the model lacks 1/n^2: what lies below is up to n^2 times too bright, by more light than falls on it",
-);
-
-/// Beams return all light, and the diffuse term of a base comes on top of them.
-const ONE_SURFACE: Limit = limit(
-    Quantity::Layers,
-    1.0,
-    1.0,
-    "the model adds the whole diffuse light of a base to beams that return all light, and leaves out absorption",
-);
-
-/// Fringes of a film on a row of phases.
-const FEW_NODES: Limit = limit(
-    Quantity::FilmNm,
-    0.0,
-    5000.0,
-    "the 256 nodes of its phase row are too few for the fringes: off by 0.57 at 20 um",
-);
-
-/// Rows on both sides of a critical angle: 0.5 gains 0.05, 0.667 is the last that does not gain.
-const BETWEEN_ROWS: Limit = limit(
-    Quantity::Index,
-    0.667,
-    4.0,
-    "rows of lobes are too far apart at the critical angle of a rough interface: up to 0.05 more light than falls on it",
-);
-
-/// The domain of a model, by name, beside what holds for all; nothing for one that fails nowhere, and for one without a shader. Slope
-/// parameters below [`crate::elek::ALPHA_MIN`] are raised to it by all.
-pub fn domain(model: &str) -> &'static [Limit] {
-    match model {
-        MODEL | "weidlich-wilkie" => &[BRIGHT],
-        "granier-heidrich" => &[ONE_SURFACE, FEW_NODES],
-        "lobes" => &[BETWEEN_ROWS],
-        _ => &[],
     }
 }
 
@@ -184,8 +52,9 @@ fn returned(stack: &Stack, layer: usize) -> f64 {
     (0..3).map(at).fold(0.0, f64::max)
 }
 
-/// Quantities of a stack outside the domain of a model.
-pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
+/// Quantities of a stack outside the domain of a model. Slope parameters below [`crate::elek::ALPHA_MIN`] count as inside: all models raise
+/// them to it.
+pub fn outside(model: ShadingModel, stack: &Stack) -> Vec<Outside> {
     let mut out = Vec::new();
     let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
     for (layer, here) in stack.layers.iter().enumerate() {
@@ -213,7 +82,7 @@ pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
             found.extend([surface.alpha_x, surface.alpha_y].map(|alpha| (Quantity::Alpha, alpha)));
         }
         for (quantity, value) in found {
-            let limits = COMMON.iter().chain(domain(model)).filter(|limit| limit.quantity == quantity);
+            let limits = model.limits().filter(|limit| limit.quantity == quantity);
             for limit in limits.filter(|limit| !(limit.least..=limit.most).contains(&value)) {
                 let new = Outside { layer, limit: *limit, value };
                 // One word for a stack with too many layers, and for both slope parameters.
@@ -255,16 +124,16 @@ mod tests {
 
     #[test]
     fn what_is_outside_is_named_once_and_where_it_is() {
-        let found = outside(MODEL, &on_white(vec![coat(1.5, None), coat(3.9, None)]));
+        let found = outside(ShadingModel::Elek, &on_white(vec![coat(1.5, None), coat(3.9, None)]));
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].layer, found[0].limit.quantity, found[0].nearest()), (1, Quantity::Index, 1.9));
         assert!((found[0].value - 2.6).abs() < 1e-12 && !found[0].limit.refuses);
-        assert!(outside("belcour", &on_white(vec![coat(3.9, None)])).is_empty());
+        assert!(outside(ShadingModel::Belcour, &on_white(vec![coat(3.9, None)])).is_empty());
         // The same coat over a dim base: what is too bright is little light.
         let mut dim = on_white(vec![coat(1.5, None), coat(3.9, None)]);
         dim.layers[2].base = Base::Diffuse(Diffuse { albedo: [0.3; 3], sigma: 0.0 });
-        assert!(outside(MODEL, &dim).is_empty());
-        let found = outside("granier-heidrich", &on_white(vec![coat(1.5, None), coat(1.4, None)]));
+        assert!(outside(ShadingModel::Elek, &dim).is_empty());
+        let found = outside(ShadingModel::GranierHeidrich, &on_white(vec![coat(1.5, None), coat(1.4, None)]));
         assert_eq!(found.iter().map(|o| o.layer).collect::<Vec<_>>(), [1]);
     }
 
@@ -272,13 +141,13 @@ mod tests {
     #[test]
     fn an_end_without_a_base_has_no_index_to_warn_of() {
         let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(3.9, None)] };
-        assert!(outside(MODEL, &stack).is_empty());
+        assert!(outside(ShadingModel::Elek, &stack).is_empty());
     }
 
     #[test]
     fn a_millimetre_is_no_film() {
-        let found = outside("phong", &on_white(vec![coat(1.5, Some(2e6))]));
+        let found = outside(ShadingModel::Phong, &on_white(vec![coat(1.5, Some(2e6))]));
         assert!(found.len() == 1 && found[0].limit.refuses, "{found:?}");
-        assert!(outside("phong", &on_white(vec![coat(1.5, Some(2e4))])).is_empty());
+        assert!(outside(ShadingModel::Phong, &on_white(vec![coat(1.5, Some(2e4))])).is_empty());
     }
 }

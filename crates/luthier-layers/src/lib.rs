@@ -44,6 +44,8 @@ pub mod registry;
 
 /// Vectors, for directions and places.
 pub use glam;
+/// Models by name, with their facts.
+pub use luthier_model;
 /// Descriptions of stacks, and the optics of their parts.
 pub use luthier_optics;
 /// Complex numbers, for indices.

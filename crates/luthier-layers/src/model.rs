@@ -1,6 +1,7 @@
 //! The `Model` trait: evaluation at one wavelength, and a description for listings.
 
 use glam::DVec3;
+use luthier_model::ShadingModel;
 use luthier_optics::Rgb;
 
 use crate::furnace;
@@ -25,6 +26,13 @@ pub struct ModelInfo {
     pub leaves_out: &'static str,
     /// Inputs that the model takes besides a stack and two directions.
     pub inputs: &'static [Input],
+}
+
+impl ModelInfo {
+    /// The model of a shader, where this is its f64 twin.
+    pub fn shading(&self) -> Option<ShadingModel> {
+        ShadingModel::from_name(self.name)
+    }
 }
 
 /// Sorts of models, in the order of listings.

@@ -1,6 +1,7 @@
 //! Registry of all models by name.
 
 use glam::DVec2;
+use luthier_model::InternalReflection;
 
 use crate::belcour::Belcour;
 use crate::closed_form::ClosedForm;
@@ -19,7 +20,7 @@ use crate::patina::PatinaAt;
 use crate::phong::Phong;
 use crate::random_walk::RandomWalk;
 use crate::statistics::evaluate::Follow;
-use crate::weidlich_wilkie::{InternalReflection, Refraction, WeidlichWilkie};
+use crate::weidlich_wilkie::{Refraction, WeidlichWilkie};
 use crate::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 use crate::yamaguchi::Yamaguchi;
 

@@ -1,5 +1,5 @@
 //! Names and records of a bake: the manifest, the records of layers that shaders and their f64 twins read, budgets of tables, choices of
-//! scenes; models, features, forms, targets and colour modes by name.
+//! scenes; targets and colour modes by name. Models, features and forms are those of [`luthier_model`].
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
@@ -10,15 +10,11 @@ mod choice;
 mod constants;
 mod distribution;
 mod error;
-mod feature;
-mod form;
 mod functions;
 mod limits;
 mod lock;
 mod manifest;
 mod map;
-mod model;
-mod parts;
 mod place;
 mod reads;
 mod record;
@@ -33,19 +29,20 @@ pub use constants::{
     PatinaRecord, VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
-pub use feature::Feature;
-pub use form::Form;
 pub use functions::{FunctionGroup, Functions};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
+pub use luthier_model::{
+    Feature, Form, InternalReflection, LowerReflectance, Masking, ModelPart, Reflectance, ReflectanceCurve,
+    ShadingModel,
+};
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{
     BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShaderEntry, TableEntry,
 };
 pub use map::{MapEntry, MapSlot};
-pub use model::ShadingModel;
-pub use parts::{InternalReflection, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
 pub use place::{LayerValues, PlaceValues};
+pub use reads::reads;
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};

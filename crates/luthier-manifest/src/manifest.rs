@@ -166,7 +166,7 @@ impl MaterialEntry {
 
     /// Whether it has lobes below an interface, which know their surroundings: those of `luthier_environment`.
     pub fn shows_lobes(&self) -> bool {
-        self.model == ShadingModel::Lobes && self.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
+        self.model.is_fitted() && self.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
     }
 
     /// The material with slopes widened by a light of this angular radius, in radians, which gives a highlight of a smooth surface a size: the squares

@@ -1,8 +1,9 @@
 //! Maps of materials: which quantity each varies, and for which layer.
 
+use luthier_model::Reach;
 use serde::{Deserialize, Serialize};
 
-use crate::{Feature, FileEntry, Form, MaterialEntry, ShadingModel};
+use crate::{Feature, FileEntry, Form, MaterialEntry};
 
 luthier_lut::named! {
     /// Quantity that a map varies.
@@ -84,10 +85,7 @@ impl MaterialEntry {
     /// Layers with maps of their own that the model shows, and quantities that these vary, in the order of the maps. `LuthierPlace` has
     /// values of these, that of an albedo as its `base_color`.
     pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
-        let reads_all = !matches!(
-            self.model,
-            ShadingModel::GranierHeidrich | ShadingModel::Microfacet | ShadingModel::Phong | ShadingModel::Lobes
-        );
+        let reads_all = self.model.facts().reach == Reach::All;
         self.maps.iter().filter_map(move |map| {
             let layer = map.layer?;
             let feature = map.slot.layer_feature(layer)?;

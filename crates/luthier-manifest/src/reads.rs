@@ -1,55 +1,33 @@
-//! Which tables the shader of a model reads: the one list that the baker, the emitter and the judge go by.
+//! Interfaces of a material for which the shader of its model reads a table: the one list that the baker, the emitter and the judge go by.
 
 use luthier_lut::TableKind;
+use luthier_model::{Reach, ReadWhen};
 
 use crate::{LayerKind, LayerRecord, Reflectance, ShadingModel};
 
-impl ShadingModel {
-    /// Whether the model follows light through the layers as statistics of lobes.
-    pub fn is_statistical(self) -> bool {
-        matches!(self, Self::Belcour | Self::Yamaguchi)
-    }
-
-    /// Whether its `baked` shader reads D from a table, where there is one.
-    pub fn reads_distribution(self) -> bool {
-        matches!(self, Self::Elek | Self::WeidlichWilkie | Self::Microfacet | Self::Lobes)
-    }
-
-    /// Whether the `baked` shader of the model reads a kind of table for a layer of a stack, by the layer's number. For layers without a
-    /// tile it does without the kinds that are optional.
-    pub fn reads(self, kind: TableKind, layers: &[LayerRecord], number: usize) -> bool {
-        let Some(layer) = layers.get(number).filter(|layer| layer.kind != LayerKind::Diffuse) else { return false };
+/// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by the layer's number. For layers without a tile it
+/// does without the kinds that are optional.
+pub fn reads(model: ShadingModel, kind: TableKind, layers: &[LayerRecord], number: usize) -> bool {
+    let Some(layer) = layers.get(number).filter(|layer| layer.kind != LayerKind::Diffuse) else { return false };
+    let facts = model.facts();
+    let is_reached = number == 0 || facts.reach == Reach::All;
+    let is_for = |when: ReadWhen| {
+        let is_tabled = layer.reflectance == Reflectance::Table;
         let has_film = layer.film_ior_n[0] > 0.0;
-        match self {
-            Self::Phong => false,
-            // They look at the first layer alone.
-            Self::Microfacet | Self::GranierHeidrich | Self::Lobes if number > 0 => false,
-            Self::Elek | Self::WeidlichWilkie | Self::Microfacet | Self::Lobes => match kind {
-                TableKind::Lobes => self == Self::Lobes,
-                TableKind::Fresnel | TableKind::Film if layer.reflectance != Reflectance::Table => false,
-                TableKind::Fresnel => !layer.varies(),
-                TableKind::Film => layer.varies(),
-                TableKind::Thickness => layer.varies() && number == 0,
-                TableKind::Distribution => true,
-                _ => false,
-            },
-            Self::Belcour | Self::Yamaguchi => match kind {
-                TableKind::Fgd => true,
-                // Part of the lobes of an interface below is totally reflected where it would leave a denser medium.
-                TableKind::Escape => {
-                    let is_below = layers.get(number + 1).is_some_and(|below| below.kind != LayerKind::Diffuse);
-                    layer.kind == LayerKind::Dielectric && layer.eta > 1.0 && is_below
-                }
-                _ => false,
-            },
-            // Transparent interfaces without a film are Schlick's form.
-            Self::GranierHeidrich => match kind {
-                TableKind::Phase | TableKind::Thickness => has_film,
-                TableKind::Fresnel => !has_film && layer.kind == LayerKind::Conductor,
-                _ => false,
-            },
+        match when {
+            ReadWhen::Always => true,
+            ReadWhen::Steady => is_tabled && !layer.varies(),
+            ReadWhen::Varying => is_tabled && layer.varies(),
+            ReadWhen::FirstVarying => layer.varies() && number == 0,
+            ReadWhen::Filmed => has_film,
+            ReadWhen::BareConductor => !has_film && layer.kind == LayerKind::Conductor,
+            ReadWhen::DenserCoat => {
+                let is_below = layers.get(number + 1).is_some_and(|below| below.kind != LayerKind::Diffuse);
+                layer.kind == LayerKind::Dielectric && layer.eta > 1.0 && is_below
+            }
         }
-    }
+    };
+    is_reached && facts.tables.iter().any(|table| table.kind == kind && is_for(table.when))
 }
 
 #[cfg(test)]
@@ -73,15 +51,15 @@ mod tests {
             let computed = |record: LayerRecord| LayerRecord { reflectance, ..record };
             let layers = [computed(layer(LayerKind::Dielectric, 1.5)), computed(layer(LayerKind::Conductor, 1.0))];
             for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
-                assert_eq!([0, 1].map(|number| read(model, &layers, number)), ["distribution"; 2]);
+                assert_eq!([0, 1].map(|number| read_by(model, &layers, number)), ["distribution"; 2]);
             }
         }
         let film = LayerRecord { reflectance: Reflectance::Exact, ..varying() };
-        assert_eq!(read(ShadingModel::Microfacet, &[film], 0), "distribution thickness");
+        assert_eq!(read_by(ShadingModel::Microfacet, &[film], 0), "distribution thickness");
     }
 
-    fn read(model: ShadingModel, layers: &[LayerRecord], number: usize) -> String {
-        let kinds = TableKind::ALL.into_iter().filter(|&kind| model.reads(kind, layers, number));
+    fn read_by(model: ShadingModel, layers: &[LayerRecord], number: usize) -> String {
+        let kinds = TableKind::ALL.into_iter().filter(|&kind| reads(model, kind, layers, number));
         kinds.map(TableKind::name).collect::<Vec<_>>().join(" ")
     }
 
@@ -113,13 +91,16 @@ mod tests {
             (&[GranierHeidrich], vec![coat(), varying()], ["", ""]),
         ] {
             for &model in models {
-                let found = [0, 1].map(|number| read(model, &layers, number));
+                let found = [0, 1].map(|number| read_by(model, &layers, number));
                 assert_eq!(found, expected, "{model} {layers:?}");
             }
         }
         for model in ShadingModel::ALL {
             assert_eq!(model.is_statistical(), statistical.contains(&model));
-            assert_eq!(model.reads_distribution(), [Elek, WeidlichWilkie, Microfacet, Lobes].contains(&model));
+            assert_eq!(
+                model.reads_some(TableKind::Distribution),
+                [Elek, WeidlichWilkie, Microfacet, Lobes].contains(&model)
+            );
         }
     }
 }

@@ -2,22 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use luthier_manifest::{Feature, Form, ShadingModel};
+use luthier_model::{DefaultFor, Feature, Form, ShadingModel};
 use luthier_optics::stack::{Base, Layer, Surface};
 
 use crate::doubt::SODIUM_D_NM;
 use crate::left_out::{LeftOut, left_out};
 use crate::material::Material;
-
-/// Models that follow light through several layers and return no more than falls in, the nearest to the simulation first
-/// (`docs/pages/lobes.md`, `docs/pages/models.md`).
-const OF_STACKS: [ShadingModel; 3] = [ShadingModel::Lobes, ShadingModel::Belcour, ShadingModel::Yamaguchi];
-
-/// Those that give one rough interface its further bounces.
-const OF_FACETS: [ShadingModel; 1] = [ShadingModel::Lobes];
-
-/// Closed forms: of one interface both are the same, and the first is the cheaper. The last shows all that a file can ask for.
-const CLOSED: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::WeidlichWilkie];
 
 /// Slope parameter up to which one bounce is all light of an interface: of a white one 0.01 is missing at 86 degrees, where GGX loses the most
 /// (`luthier-layers/tests/layers/bounces.rs`).
@@ -36,21 +26,21 @@ impl Material {
     /// all, the one that leaves the least out is.
     pub fn model(&self) -> ShadingModel {
         self.bake.model.unwrap_or_else(|| {
-            let open = if self.is_stack() { &OF_STACKS[..] } else { &OF_FACETS };
-            let open = if self.has_further_bounces() { open } else { &[] };
-            let closed = if self.covers_mirror() { &[][..] } else { &CLOSED };
-            self.most_whole(open.iter().chain(closed))
+            let kind = if self.is_stack() { DefaultFor::Stack } else { DefaultFor::Facets };
+            let open = kind.models().filter(|_| self.has_further_bounces());
+            let closed = DefaultFor::Closed.models().filter(|_| !self.covers_mirror());
+            self.most_whole(open.chain(closed))
         })
     }
 
     /// The model that shades it where nothing is simulated: the one that its file names, or else a closed form.
     pub fn model_without_fit(&self) -> ShadingModel {
-        self.bake.model.unwrap_or_else(|| self.most_whole(CLOSED.iter()))
+        self.bake.model.unwrap_or_else(|| self.most_whole(DefaultFor::Closed.models()))
     }
 
     /// The features that keep a material with something to simulate, whose file names no model, from the model `lobes`; each once.
     pub fn unfit_for_lobes(&self) -> Vec<LeftOut> {
-        let is_open = self.bake.model.is_none() && self.has_further_bounces() && self.model() != ShadingModel::Lobes;
+        let is_open = self.bake.model.is_none() && self.has_further_bounces() && !self.model().is_fitted();
         let mut parts = if is_open { self.lacks(ShadingModel::Lobes) } else { Vec::new() };
         let mut told = BTreeSet::new();
         parts.retain(|part| told.insert(part.feature));
@@ -97,8 +87,8 @@ impl Material {
     }
 
     /// The first model that shows the most of it.
-    fn most_whole<'a>(&self, models: impl Iterator<Item = &'a ShadingModel>) -> ShadingModel {
-        models.copied().min_by_key(|model| self.lacks(*model).len()).unwrap_or(CLOSED[CLOSED.len() - 1])
+    fn most_whole(&self, models: impl Iterator<Item = ShadingModel>) -> ShadingModel {
+        models.min_by_key(|model| self.lacks(*model).len()).unwrap_or_default()
     }
 
     /// The things that a shader with tables does not show of it.
@@ -204,12 +194,5 @@ mod tests {
             assert_eq!([named.model(), named.model_without_fit()], [ShadingModel::Phong; 2]);
             assert_eq!(named.unfit_for_lobes(), []);
         }
-    }
-
-    /// Whatever a file asks for, some model of the list shows it.
-    #[test]
-    fn the_last_model_shows_everything() {
-        let last = CLOSED[CLOSED.len() - 1];
-        assert!(Feature::ALL.into_iter().all(|feature| last.honours(feature, Form::Baked)));
     }
 }

@@ -95,7 +95,7 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             tell(feature, key.to_owned());
         }
     }
-    if let (ShadingModel::Lobes, Some(maps)) = (model, maps) {
+    if let Some(maps) = maps.filter(|_| model.is_fitted()) {
         // Rows are over one factor, over the amount of patina, or over the azimuth.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
         let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());

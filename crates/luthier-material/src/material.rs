@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use luthier_model::ModelPart;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -72,11 +73,11 @@ impl Material {
     /// Has the material shaded by a model, without the parts of others that its file chooses: for comparisons of models.
     pub fn shade_by(&mut self, model: ShadingModel) {
         self.bake.model = Some(model);
-        self.bake.masking = self.bake.masking.filter(|_| model.has_masking());
-        self.bake.reflectance = self.bake.reflectance.filter(|_| model.has_reflectance());
-        self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.has_path());
-        self.bake.lower_reflectance = self.bake.lower_reflectance.filter(|_| model.has_path());
-        if !model.has_beams() {
+        self.bake.masking = self.bake.masking.filter(|_| model.takes(ModelPart::Masking));
+        self.bake.reflectance = self.bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance));
+        self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.is_path());
+        self.bake.lower_reflectance = self.bake.lower_reflectance.filter(|_| model.is_path());
+        if !model.takes(ModelPart::Beams) {
             self.bake.beams = None;
             self.layers.iter_mut().for_each(|layer| layer.exponents = None);
         }

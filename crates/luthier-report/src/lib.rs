@@ -72,8 +72,8 @@ pub use models::{
 };
 pub use pages::chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use parity::{
-    AT_PLACES, KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict,
-    parity, tolerance,
+    AT_PLACES, KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Verdict, parity,
+    tolerance,
 };
 pub use picture::flip::lightness_chroma_hue;
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures, sheet};

@@ -115,7 +115,7 @@ impl Candidate {
         probes: &[Probe],
         footprint_deg: f64,
     ) -> (&[Rgb], Vec<Rgb>) {
-        if self.model == ShadingModel::Lobes {
+        if self.model.is_fitted() {
             let stack = &self.material.stack;
             let exact = self.sharp_values.get_or_init(|| self.values_of(stack, &self.exact(stack), probes));
             return (exact, self.values_of(stack, terms, probes));
@@ -127,15 +127,13 @@ impl Candidate {
     /// Values at probes of a stack, on some terms.
     fn values_of(&self, stack: &Stack, terms: &(impl ShaderTerms + Sync), probes: &[Probe]) -> Vec<Rgb> {
         let color = color_of(self.color, &self.material);
-        let twin = Twin::new(self.model.name(), stack, self.material.bake.wavelengths_nm(), color);
-        // Every model that ships has a twin; one that had none would be as wrong as can be.
-        let evaluate = |wi, wo| twin.as_ref().map_or([f64::NAN; 3], |twin| twin.eval(terms, wi, wo));
+        let twin = Twin::new(self.model, stack, self.material.bake.wavelengths_nm(), color);
         let value = |probe: &Probe| match *probe {
-            Probe::Pair { wi, wo } => evaluate(wi, wo),
+            Probe::Pair { wi, wo } => twin.eval(terms, wi, wo),
             Probe::Sky { wo } => {
                 let mut sum = [0.0; 3];
                 for (wi, weight) in hemisphere(wo) {
-                    let value = evaluate(wi, wo);
+                    let value = twin.eval(terms, wi, wo);
                     (0..3).for_each(|c| sum[c] += FRAC_1_PI * weight * value[c]);
                 }
                 sum

@@ -1,6 +1,7 @@
 //! Shapes of stacks, by which costs are looked up.
 
 use luthier_manifest::ShadingModel;
+use luthier_model::Reach;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Stack};
 
 /// The properties of a stack that decide which code its shader has, layer by layer from the top, joined by `/`.
@@ -20,24 +21,24 @@ pub fn shape(stack: &Stack) -> String {
 
 /// The part of a shape that a model looks at.
 pub fn shape_of(model: ShadingModel, shape: &str) -> String {
-    let first = || shape.split('/').next().unwrap_or_default().replace('x', "");
-    match model {
-        ShadingModel::Phong => String::new(),
-        ShadingModel::Microfacet => first(),
-        // Lobes are in axes as soon as any layer has some.
-        ShadingModel::Lobes => first().replace('a', "") + if shape.contains('a') { "a" } else { "" },
-        ShadingModel::GranierHeidrich => {
-            let base = shape.rsplit('/').next().filter(|base| base.starts_with(['l', 'o']));
-            [Some(first().replace('a', "")), base.map(|_| "l".to_owned())]
-                .into_iter()
-                .flatten()
-                .collect::<Vec<_>>()
-                .join("/")
-        }
-        // Isotropic models.
-        ShadingModel::Elek | ShadingModel::Belcour => shape.replace('a', ""),
-        ShadingModel::WeidlichWilkie | ShadingModel::Yamaguchi => shape.to_owned(),
+    let facts = model.facts();
+    let mut read = match facts.reach {
+        Reach::None => String::new(),
+        Reach::All => shape.to_owned(),
+        Reach::First | Reach::FirstAndBase => shape.split('/').next().unwrap_or_default().replace('x', ""),
+    };
+    let base = shape.rsplit('/').next().filter(|base| base.starts_with(['l', 'o']));
+    if facts.reach == Reach::FirstAndBase && base.is_some() {
+        read += "/l";
     }
+    // Lobes are in axes as soon as any layer has some.
+    if facts.is_isotropic || model.is_fitted() {
+        read = read.replace('a', "");
+    }
+    if model.is_fitted() && shape.contains('a') {
+        read.push('a');
+    }
+    read
 }
 
 fn code(layer: &Layer, has_slab: bool) -> String {

@@ -32,7 +32,7 @@ fn film(nm: f64) -> String {
 
 fn values(model: ShadingModel, material: &Material) -> Vec<f64> {
     let color = Color::ThreeWavelengths(material.bake.wavelengths_nm());
-    let twin = Twin::new(model.name(), &material.stack, material.bake.wavelengths_nm(), color).unwrap();
+    let twin = Twin::new(model, &material.stack, material.bake.wavelengths_nm(), color);
     let terms = Exact::new(&material.stack, color);
     let unit = |theta: f64, phi: f64| DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
     let pair = |i: u32| {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
 use luthier_manifest::{
     BUFFER_WORDS_MAX, BindingEntry, FunctionGroup, Functions, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS,
-    Manifest, MaterialEntry, ShadingModel, SurfaceEntry,
+    Manifest, MaterialEntry, ShadingModel, SurfaceEntry, reads,
 };
 
 use crate::{Form, ShaderError};
@@ -94,9 +94,8 @@ impl<'a> MaterialSet<'a> {
 
     /// Whether shaders of a form show the environment: where they were asked to, and some material has lobes.
     pub(crate) fn shows_environment(&self, form: Form) -> bool {
-        let has_lobes = |m: &MaterialEntry| {
-            m.model == ShadingModel::Lobes && m.layers.iter().any(|layer| layer.kind != LayerKind::Diffuse)
-        };
+        let has_lobes =
+            |m: &MaterialEntry| m.model.is_fitted() && m.layers.iter().any(|layer| layer.kind != LayerKind::Diffuse);
         form == Form::Baked && self.functions.has(FunctionGroup::Environment) && self.materials.iter().any(has_lobes)
     }
 
@@ -180,12 +179,12 @@ impl<'a> MaterialSet<'a> {
                 return Err(ShaderError::NoForm { material: material.name.clone(), model: material.model, form });
             }
             for (i, layer) in material.layers.iter().enumerate() {
-                self.check_layer(form, material, i, layer, |kind| material.model.reads(kind, &material.layers, i))?;
+                self.check_layer(form, material, i, layer, |kind| reads(material.model, kind, &material.layers, i))?;
             }
             if let Some(bare) = material.records().nth(material.layers.len()) {
                 // Tiles of the whole material are at its first layer.
                 let reads = |kind: TableKind| {
-                    kind.facts().slot.is_some() && material.model.reads(kind, std::slice::from_ref(bare), 0)
+                    kind.facts().slot.is_some() && reads(material.model, kind, std::slice::from_ref(bare), 0)
                 };
                 self.check_layer(form, material, material.layers.len(), bare, reads)?;
             }

@@ -16,7 +16,7 @@ impl MaterialSet<'_> {
 
 /// The style of a shader in words: `baked, closed D, constants`.
 pub fn style_name(model: ShadingModel, form: Form, closed: bool, constant: bool) -> String {
-    let d = if form == Form::Baked && closed && model.reads_distribution() { ", closed D" } else { "" };
+    let d = if form == Form::Baked && closed && model.reads_some(TableKind::Distribution) { ", closed D" } else { "" };
     let numbers = if constant { ", constants" } else { "" };
     format!("{form}{d}{numbers}")
 }

@@ -11,7 +11,7 @@ use luthier_lut::{
 };
 use luthier_manifest::{
     AxesRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, PaintedRecord,
-    Search, ShadingModel, VaryingFactor, VaryingRecord,
+    Search, VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
 use luthier_optics::color::Color;
@@ -93,13 +93,13 @@ pub const VARIED_LAYERS_MAX: usize = 16;
 /// Whether a material of the model `lobes` has more layers than are fitted.
 pub fn is_too_deep(material: &Material) -> bool {
     let is_varied = || Varied::tiles_of(&shown(&material.stack), varying(material)) > 1;
-    material.stack.layers.len() > VARIED_LAYERS_MAX && material.model() == ShadingModel::Lobes && is_varied()
+    material.stack.layers.len() > VARIED_LAYERS_MAX && material.model().is_fitted() && is_varied()
 }
 
 /// Whether rows of a material have the light of a diffuse base.
 fn has_base(material: &Material) -> bool {
     let is_under_patina = matches!(varying(material), Some(Varying::Patina(_)));
-    material.model() == ShadingModel::Lobes && !is_under_patina && base_below(&material.stack).is_some()
+    material.model().is_fitted() && !is_under_patina && base_below(&material.stack).is_some()
 }
 
 /// The shape of tiles for so many lobes, with the light of diffuse bases or without, with every so many of the rows.

@@ -2,6 +2,7 @@
 
 use luthier_export::{GENERATOR, Package, Shader, read};
 use luthier_gpu::{Gpu, Scene, Stopwatch};
+use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_report::{ParitySet, Spread};
@@ -124,7 +125,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
         let mut shaded = material.clone();
         shade_by(&mut shaded, model, options.fresnel)?;
         let mut package = Package::for_renderer(std::slice::from_ref(&shaded), store()?)?;
-        let reads_d = model.reads_distribution();
+        let reads_d = model.reads_some(TableKind::Distribution);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.
         let distinct = if reads_d { 3 } else { 2 };

@@ -103,7 +103,7 @@ impl Subject {
                 "the bake has its models already; name a .toml file to choose one"
             )));
         }
-        if options.no_fit && choice.model == Some(ShadingModel::Lobes) {
+        if options.no_fit && choice.model.is_some_and(ShadingModel::is_fitted) {
             return Err(Failure::Usage(anyhow::anyhow!("the model `lobes` is fitted: leave out --no-fit")));
         }
         let shading = Shading { model: choice.model, no_fit: options.no_fit, ..Shading::default() };

@@ -88,7 +88,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
                     let has_d = manifest.table(TableKind::Distribution).is_some();
-                    let has_table = form == Form::Baked && model.reads_distribution() && has_d;
+                    let has_table = form == Form::Baked && model.reads_some(TableKind::Distribution) && has_d;
                     if closed && !has_table && !options.closed {
                         continue;
                     }

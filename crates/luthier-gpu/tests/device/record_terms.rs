@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use luthier_layers::elek::{Below, Layer};
-use luthier_layers::parts::InternalReflection;
 use luthier_layers::terms::Terms;
+use luthier_manifest::InternalReflection;
 use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Diffuse, Distribution};

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use luthier_export::{Source, of_model, of_text};
+use luthier_manifest::ModelPart;
 use luthier_manifest::{Form, Masking, ShadingModel};
 use luthier_material::{Diagnostic, Material, left_out};
 use luthier_terminal::{Outcome, valid};
@@ -76,7 +77,7 @@ fn of_value(material: &Material, at: &str, model: ShadingModel) -> Shown {
     if at.split('|').any(|key| is_refused(material, key, model)) {
         let mut other = material.clone();
         other.bake.masking = Some(MASKING);
-        let takes = model.has_masking() && material.bake.masking.is_none();
+        let takes = model.takes(ModelPart::Masking) && material.bake.masking.is_none();
         return if takes && !is_refused(&other, at, model) { Shown::WithMasking } else { Shown::Refused };
     }
     match left_out(material, model).into_iter().find(|part| at.split('|').any(|key| hides(&part.key, key))) {

@@ -108,8 +108,7 @@ fn in_f64(spot: &Spot, materials: &[Material], model: ShadingModel, pairs: &[Pai
     let material = &materials[spot.material];
     let wavelengths_nm = material.bake.wavelengths_nm();
     let color = Color::ThreeWavelengths(wavelengths_nm);
-    let shaded =
-        Shaded::with(model.name(), &material.reflecting_stack(), wavelengths_nm, color, &spot.place, Parts::PLAIN);
+    let shaded = Shaded::with(model, &material.reflecting_stack(), wavelengths_nm, color, &spot.place, Parts::PLAIN);
     let Some(shaded) = shaded else { return Vec::new() };
     let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
     let value = |&(wi, wo): &Pair| match spot.light {

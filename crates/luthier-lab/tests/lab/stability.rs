@@ -1,6 +1,7 @@
 //! `stability`.
 
-use luthier_layers::domain::{Quantity, domain, outside};
+use luthier_layers::domain::outside;
+use luthier_layers::luthier_model::Quantity;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_report::stability::{Fault, Level, PITFALLS, Stability, Verdict, cases};
 use luthier_workshop::root;
@@ -59,9 +60,10 @@ fn holds(report: &Stability) {
         assert!(named.iter().all(is_covered) && (has_formulas || !named.is_empty()), "{row}");
     }
     // Where the index ends is the one limit that the sweep gives to the digit.
-    for model in ["elek", "weidlich-wilkie"] {
-        let limit = domain(model).iter().find(|limit| limit.quantity == Quantity::Index).unwrap();
-        let derived = report.domains.iter().find(|d| d.model == model && d.quantity == Quantity::Index.name()).unwrap();
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
+        let limit = model.facts().domain.iter().find(|limit| limit.quantity == Quantity::Index).unwrap();
+        let derived =
+            report.domains.iter().find(|d| d.model == model.name() && d.quantity == Quantity::Index.name()).unwrap();
         assert_eq!(derived.usable, Some([limit.least, limit.most]), "{model}");
     }
     for case in cases().iter().filter(|case| case.swept.is_some()) {
@@ -70,7 +72,7 @@ fn holds(report: &Stability) {
                 .cells
                 .iter()
                 .any(|c| c.case == case.id && c.method == model.name() && c.verdict == Verdict::Fails);
-            let warned = outside(model.name(), &case.stack);
+            let warned = outside(model, &case.stack);
             assert!(!fails || !warned.is_empty(), "{} fails on {} and is in its domain", model.name(), case.id);
         }
     }

@@ -10,8 +10,9 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
+use luthier_model::Masking;
 
-use crate::facets::{Facets, Masking};
+use crate::facets::Facets;
 use crate::inputs::Input;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};

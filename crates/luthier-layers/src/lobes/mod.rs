@@ -67,14 +67,14 @@ pub use shape::{Shape, TAIL_MIN, Wide};
 pub use varied::{Fit, Traced, Varied, Varying};
 
 use glam::DVec3;
+use luthier_model::{INDEX_MAX, Masking, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::ior::IorSample;
 use luthier_optics::stack::{Base, Diffuse, Layer, Stack};
 
-use crate::domain::INDEX_MAX;
-use crate::facets::{Facets, Masking};
+use crate::facets::Facets;
 use crate::model::{Claims, Kind, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;
@@ -173,12 +173,9 @@ const NORMALS: u32 = 4096;
 /// Intervals between the cosines at which its reflectance is computed, where there are no films.
 const INTERVALS: u32 = 256;
 
-/// The name of the model.
-pub const MODEL: &str = "lobes";
-
 /// The model, for listings.
 const INFO: ModelInfo = ModelInfo {
-    name: MODEL,
+    name: ShadingModel::Lobes.name(),
     kind: Kind::Layered,
     claims: Claims::ENERGY,
     source: "luthier: lobes fitted to layered-mc",

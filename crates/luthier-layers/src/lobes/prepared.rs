@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use luthier_model::Masking;
 use luthier_optics::Rgb;
 
 use super::{Below, Lobes};
-use crate::facets::Masking;
 
 /// The model as seen from a direction.
 #[derive(Debug, Clone)]

@@ -1,13 +1,13 @@
 //! Tests of the fit, and of values and samples of fitted lobes.
 
 use glam::DVec3;
+use luthier_model::Masking;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
 use super::{FirstInterface, FitSettings, Lobes, Simulation};
-use crate::facets::Masking;
 use crate::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 use crate::monochrome::Monochrome;
 

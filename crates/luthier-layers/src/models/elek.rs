@@ -18,6 +18,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use luthier_model::InternalReflection;
 use luthier_optics::Rgb;
 use luthier_optics::masking::v_cavity;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
@@ -25,15 +26,11 @@ use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 use crate::layer_sample::{off, onto};
 use crate::refraction::{REFRACTION_WAVELENGTH_NM, refract};
 use crate::terms::Terms;
-use crate::weidlich_wilkie::InternalReflection;
 use crate::{frame, oren_nayar};
 
 /// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
 /// below what one pixel or one light source resolves, and still safe in f32.
 pub const ALPHA_MIN: f64 = 1e-3;
-
-/// The model's name, as manifests and reports give it.
-pub const MODEL: &str = "elek";
 
 /// One layer as the model sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,7 @@
 //! Elek's model at one wavelength.
 
 use glam::DVec3;
+use luthier_model::{InternalReflection, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Diffuse;
 
@@ -9,7 +10,6 @@ use crate::inputs::Input;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::terms::Terms;
-use crate::weidlich_wilkie::InternalReflection;
 
 /// The real-time model of [`elek`] with exact terms at one wavelength: the index that bends the directions is the wavelength's
 /// own, where the colour form has one scalar.
@@ -22,7 +22,7 @@ pub struct Elek {
 impl Model for Elek {
     fn info(&self) -> ModelInfo {
         ModelInfo {
-            name: elek::MODEL,
+            name: ShadingModel::Elek.name(),
             kind: Kind::Layered,
             claims: Claims::RECIPROCAL,
             source: "Elek 2010, eq. 2-4 and Algorithm 1",

@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use luthier_model::Masking;
 use luthier_optics::masking::{self, Correlation};
 use luthier_optics::stack::{Distribution, Surface};
 use luthier_optics::{microfacet, visible_normals};
@@ -18,49 +19,29 @@ use crate::monochrome::Optics;
 /// way to show a mirror.
 pub const ALPHA_MIN: f64 = 1e-4;
 
-/// Masking and shadowing function; see [`luthier_optics::masking`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Masking {
-    /// Smith's, height-correlated: `1 / (1 + Lambda_i + Lambda_o)` (Heitz 2014, eq. 99).
-    Smith,
-    /// Smith's for each direction, multiplied.
-    SmithSeparable,
-    /// V-cavities (Torrance and Sparrow 1967; Cook and Torrance 1982, eq. 9).
-    VCavity,
-    /// Kelemen and Szirmay-Kalos 2001: V-cavities without their minimum.
-    Kelemen,
-    /// Schlick's fit to Smith's (1994), of the isotropic slope parameter.
-    SchlickSmith,
-    /// The masking that cancels the denominator: `cos_theta_i cos_theta_o` (Hoffman 2013).
-    Implicit,
-}
-
-impl Masking {
-    /// The lobe of facets of density D that reflect `wi` to `wo`; `None` unless both are above the horizon. `alpha` is the isotropic
-    /// slope parameter, `lambda` Smith's function of a direction.
-    pub(crate) fn lobe(
-        self,
-        [wi, wo]: [DVec3; 2],
-        alpha: f64,
-        density: impl Fn(DVec3) -> f64,
-        lambda: impl Fn(DVec3) -> f64,
-    ) -> Option<Lobe> {
-        if wi.z <= 0.0 || wo.z <= 0.0 {
-            return None;
-        }
-        let (wh, cos_theta_d) = half_vector(wi, wo)?;
-        let masking = match self {
-            Self::Smith => masking::smith(Correlation::Height, lambda(wi), lambda(wo)),
-            Self::SmithSeparable => masking::smith(Correlation::Separable, lambda(wi), lambda(wo)),
-            Self::VCavity => masking::v_cavity(wi.z, wo.z, wh.z, cos_theta_d),
-            Self::Kelemen => masking::kelemen(wi.z, wo.z, cos_theta_d),
-            Self::SchlickSmith => masking::schlick_smith(alpha, wi.z, wo.z),
-            Self::Implicit => masking::implicit(wi.z, wo.z),
-        };
-        Some(Lobe { cos_theta_d, masking, value: density(wh) * (masking / (4.0 * wo.z)) })
+/// The lobe of facets of density D that reflect `wi` to `wo`; `None` unless both are above the horizon. `alpha` is the isotropic
+/// slope parameter, `lambda` Smith's function of a direction.
+pub(crate) fn masked_lobe(
+    masking: Masking,
+    [wi, wo]: [DVec3; 2],
+    alpha: f64,
+    density: impl Fn(DVec3) -> f64,
+    lambda: impl Fn(DVec3) -> f64,
+) -> Option<Lobe> {
+    if wi.z <= 0.0 || wo.z <= 0.0 {
+        return None;
     }
+    let (wh, cos_theta_d) = half_vector(wi, wo)?;
+    let masked = match masking {
+        Masking::Smith => masking::smith(Correlation::Height, lambda(wi), lambda(wo)),
+        Masking::SmithSeparable => masking::smith(Correlation::Separable, lambda(wi), lambda(wo)),
+        Masking::VCavity => masking::v_cavity(wi.z, wo.z, wh.z, cos_theta_d),
+        Masking::Kelemen => masking::kelemen(wi.z, wo.z, cos_theta_d),
+        Masking::SchlickSmith => masking::schlick_smith(alpha, wi.z, wo.z),
+        Masking::Implicit => masking::implicit(wi.z, wo.z),
+    };
+    Some(Lobe { cos_theta_d, masking: masked, value: density(wh) * (masked / (4.0 * wo.z)) })
 }
-
 /// The micro-surface in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -125,14 +106,14 @@ impl Facets {
     /// The facets that reflect `wi` to `wo`; `None` unless both are above the horizon.
     pub fn lobe(&self, masking: Masking, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let alpha = libm::sqrt(self.alpha_x * self.alpha_y);
-        masking.lobe([wi, wo], alpha, |wh| self.density(wh), |w| self.lambda(w))
+        masked_lobe(masking, [wi, wo], alpha, |wh| self.density(wh), |w| self.lambda(w))
     }
 
     /// [`Facets::lobe`] with the distribution of a layer of [`Optics`].
     pub fn lobe_of(&self, optics: &impl Optics, layer: usize, masking: Masking, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let alpha = libm::sqrt(self.alpha_x * self.alpha_y);
         let scaled = |alpha, cos, sin_sq| optics.distribution(layer, alpha, cos, sin_sq);
-        masking.lobe([wi, wo], alpha, |wh| self.density_by(wh, scaled), |w| self.lambda(w))
+        masked_lobe(masking, [wi, wo], alpha, |wh| self.density_by(wh, scaled), |w| self.lambda(w))
     }
 
     /// The facets whose visible normals are drawn: its own, or GGX of its slope parameters in place of a distribution without visible normals

@@ -33,6 +33,7 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
+use luthier_model::ShadingModel;
 use luthier_optics::schlick::schlick_average;
 
 use crate::elek::ALPHA_MIN;
@@ -236,7 +237,7 @@ impl GranierHeidrich {
 impl Model for GranierHeidrich {
     fn info(&self) -> ModelInfo {
         ModelInfo {
-            name: "granier-heidrich",
+            name: ShadingModel::GranierHeidrich.name(),
             kind: Kind::Layered,
             claims: Claims::NONE,
             inputs: &[Input::InnerNormal],

@@ -1,10 +1,11 @@
 //! The model of Torrance and Sparrow for one rough interface and one bounce, by its components.
 
 use glam::DVec3;
+use luthier_model::{Masking, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 
-use crate::facets::{Facets, Masking};
+use crate::facets::Facets;
 use crate::frame::cos_theta_d;
 use crate::furnace;
 use crate::interface_fresnel::{Fresnel, LazanyiMemo};
@@ -38,7 +39,7 @@ pub const VARIANTS: [(&str, Components, &str); 18] = {
     const BECKMANN: Normals = Normals::Slopes(Distribution::Beckmann);
     const GGX: Normals = Normals::Slopes(Distribution::Ggx);
     [
-        ("microfacet", P, "Walter et al. 2007, eq. 20; masking of Heitz 2014, eq. 99"),
+        (ShadingModel::Microfacet.name(), P, "Walter et al. 2007, eq. 20; masking of Heitz 2014, eq. 99"),
         (
             "microfacet-beckmann",
             Components { normals: BECKMANN, ..P },

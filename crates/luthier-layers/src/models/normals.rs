@@ -1,11 +1,12 @@
 //! Distributions of facet normals by name: the surface's own, and those that need a slope parameter translated.
 
 use glam::DVec3;
+use luthier_model::Masking;
 use luthier_optics::masking::smith_g1_of;
 use luthier_optics::ndf::{Abc, BlinnPhong, Ndf, Sgd};
 use luthier_optics::stack::{Distribution, Surface};
 
-use crate::facets::{ALPHA_MIN, Facets, Lobe, Masking};
+use crate::facets::{ALPHA_MIN, Facets, Lobe, masked_lobe};
 use crate::memo::Memo;
 use crate::phong::exponent;
 
@@ -90,7 +91,7 @@ impl Normals {
             let key = [alpha.to_bits(), w.z.to_bits()];
             memo.lambdas.get(key, || 1.0 / smith_g1_of(&ndf, w.z) - 1.0)
         };
-        masking.lobe([wi, wo], alpha, |wh| ndf.density(wh.z, wh.x * wh.x + wh.y * wh.y), lambda)
+        masked_lobe(masking, [wi, wo], alpha, |wh| ndf.density(wh.z, wh.x * wh.x + wh.y * wh.y), lambda)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
+use luthier_model::ShadingModel;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -94,7 +95,7 @@ pub(crate) fn lobe(a: DVec3, b: DVec3, e: f64) -> f64 {
 impl Model for Phong {
     fn info(&self) -> ModelInfo {
         ModelInfo {
-            name: "phong",
+            name: ShadingModel::Phong.name(),
             kind: Kind::Surface,
             claims: Claims::NONE,
             source: "Phong 1975; the single-layer shader of Elek 2010, Table 1",

@@ -17,9 +17,10 @@
 //! both.
 
 use glam::DVec3;
+use luthier_model::{InternalReflection, Masking, ShadingModel};
 
 use crate::elek::Tilts;
-use crate::facets::{Facets, Masking};
+use crate::facets::Facets;
 use crate::frame;
 use crate::layer_sample::{off, onto};
 use crate::model::{Claims, Kind, Model, ModelInfo};
@@ -36,19 +37,6 @@ pub enum Refraction {
     /// The half vector: both rays pass the one facet that they have in common (the course's first simplification, read by the
     /// letter). The lower layer then sees the same half vector, whatever the index.
     Facet,
-}
-
-/// Light from below that an interface lets out, and the angles of T_12 and T_21.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum InternalReflection {
-    /// `t = (1 - G) + T_21 G`, both coefficients at the half vector, as in the course's shader.
-    #[default]
-    Facets,
-    /// `t = 1`: all of it comes out, as in the right half of the course's figure 3.7. T_12 is at the half vector.
-    None,
-    /// `t = T_21`, T_12 at the angle of `wi` and T_21 at that of `wo`, each with the normal: the physics of a smooth interface, which
-    /// hides nothing.
-    Directions,
 }
 
 /// The recursive model, faithful to the course.
@@ -79,7 +67,7 @@ impl Model for WeidlichWilkie {
         let at_directions = self.internal_reflection == InternalReflection::Directions;
         let (name, domain) = match (self.refraction, at_directions) {
             (Refraction::Surface, false) => {
-                ("weidlich-wilkie", "any stack; refraction at the surface normal; alpha from 1e-4")
+                (ShadingModel::WeidlichWilkie.name(), "any stack; refraction at the surface normal; alpha from 1e-4")
             }
             (Refraction::Surface, true) => {
                 ("weidlich-wilkie-directions", "any stack; transmission at the directions' own angles; alpha from 1e-4")

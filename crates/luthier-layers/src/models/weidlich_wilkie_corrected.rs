@@ -17,8 +17,9 @@
 //! surface that is exact (adding of powers, layer by layer), and the whole is reciprocal for any stack.
 
 use glam::DVec3;
+use luthier_model::Masking;
 
-use crate::facets::{Facets, Masking};
+use crate::facets::Facets;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;

@@ -2,13 +2,13 @@
 //! reflection, and the numbers of `granier-heidrich`.
 
 use glam::DVec3;
+use luthier_model::{InternalReflection, Masking, Reflectance};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::schlick::Lazanyi;
 use luthier_optics::stack::{Distribution, Stack};
 
-use crate::facets::Masking;
 use crate::granier_heidrich::GranierHeidrich;
 use crate::interface_fresnel::Fresnel;
 use crate::lobes::Below;
@@ -16,7 +16,6 @@ use crate::microfacet::Components;
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
 use crate::terms::{ShaderTerms, Terms};
-pub use crate::weidlich_wilkie::InternalReflection;
 
 /// Parts of the model of a shader; each is ignored by models that have no choice of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,64 +30,15 @@ pub struct Parts {
     pub beams: GranierHeidrich,
 }
 
-/// Computation of reflectances.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reflectance {
-    /// Those of the [`Terms`]: of a table, or exact ones.
-    Terms,
-    /// Fresnel's equations at the three wavelengths.
-    Exact,
-    /// Schlick's form through the reflectance at normal incidence: the `FresnelTermNP` of Elek 2010, appendix B.
-    Approximate,
-    /// Schlick's form less the correction of Lazanyi and Szirmay-Kalos 2005, fitted to the reflectance.
-    Lazanyi,
-}
-
 impl Parts {
     /// The parts of a material that chooses none.
     pub const PLAIN: Self = Self {
         masking: Masking::Smith,
-        reflectance: Reflectance::Terms,
+        reflectance: Reflectance::Table,
         internal_reflection: InternalReflection::Facets,
         beams: GranierHeidrich::PLAIN,
     };
 
-    /// The parts by their names in material files and manifests; `None` for an unknown name.
-    ///
-    /// ```
-    /// use luthier_layers::parts::Parts;
-    ///
-    /// assert_eq!(Parts::named("smith", "table", "facets"), Some(Parts::PLAIN));
-    /// assert_eq!(Parts::named("smith", "none", "facets"), None);
-    /// ```
-    pub fn named(masking: &str, reflectance: &str, internal_reflection: &str) -> Option<Self> {
-        let masking = match masking {
-            "smith" => Masking::Smith,
-            "smith-separable" => Masking::SmithSeparable,
-            "schlick-smith" => Masking::SchlickSmith,
-            "v-cavity" => Masking::VCavity,
-            "kelemen" => Masking::Kelemen,
-            "implicit" => Masking::Implicit,
-            _ => return None,
-        };
-        let reflectance = match reflectance {
-            "table" => Reflectance::Terms,
-            "exact" => Reflectance::Exact,
-            "approximate" => Reflectance::Approximate,
-            "lazanyi" => Reflectance::Lazanyi,
-            _ => return None,
-        };
-        let internal_reflection = match internal_reflection {
-            "facets" => InternalReflection::Facets,
-            "none" => InternalReflection::None,
-            "directions" => InternalReflection::Directions,
-            _ => return None,
-        };
-        Some(Self { masking, reflectance, internal_reflection, ..Self::PLAIN })
-    }
-}
-
-impl Parts {
     /// The parts with numbers of `granier-heidrich`: the slope parameter of the inner boundary over that of the outer one, the weights of the
     /// specular and the diffuse part, and the normal of the inner boundary.
     #[must_use]
@@ -103,7 +53,7 @@ impl Parts {
     /// The components of the model `microfacet`, for one wavelength.
     pub const fn components(self) -> Components {
         let fresnel = match self.reflectance {
-            Reflectance::Terms | Reflectance::Exact => Fresnel::Exact,
+            Reflectance::Table | Reflectance::Exact => Fresnel::Exact,
             Reflectance::Approximate => Fresnel::ComplexF0,
             Reflectance::Lazanyi => Fresnel::Lazanyi,
         };
@@ -142,7 +92,7 @@ impl Reflectances {
     pub fn of(stack: &Stack, wavelengths_nm: [f64; 3], color: Color, reflectance: Reflectance) -> Self {
         let bare = |interface: Interface| Interface { films: Vec::new(), ..interface }.sampled(&color);
         let own = |interface: Interface| match reflectance {
-            Reflectance::Terms => None,
+            Reflectance::Table => None,
             Reflectance::Exact => Some(Own::Exact(interface.sampled(&Color::ThreeWavelengths(wavelengths_nm)))),
             Reflectance::Approximate => Some(Own::Schlick(bare(interface).schlick())),
             Reflectance::Lazanyi => Some(Own::Corrected(bare(interface).lazanyi())),
@@ -202,6 +152,7 @@ impl<T: ShaderTerms> ShaderTerms for Chosen<'_, T> {
 
 #[cfg(test)]
 mod tests {
+    use luthier_model::ShadingModel;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Base, Layer, Surface};
 
@@ -240,12 +191,13 @@ mod tests {
             ("smith", "approximate", "microfacet-complex-f0"),
             ("smith", "lazanyi", "microfacet-lazanyi"),
         ] {
-            let parts = Parts::named(masking, reflectance, "facets").unwrap();
-            let twin = Twin::with("microfacet", &metal(), WAVELENGTHS_NM, color, parts).unwrap();
+            let (masking, reflectance) = (masking.parse().unwrap(), reflectance.parse().unwrap());
+            let parts = Parts { masking, reflectance, ..Parts::PLAIN };
+            let twin = Twin::with(ShadingModel::Microfacet, &metal(), WAVELENGTHS_NM, color, parts);
             let expected = registry::model(name).unwrap().eval(&Monochrome::new(&metal(), 525.0, 1), wi, wo);
             let found = twin.eval(&exact, wi, wo);
             assert!(expected > 1e-3 && found.iter().all(|f| (f / expected - 1.0).abs() < 1e-12), "{name}: {found:?}");
-            let plain = Twin::new("microfacet", &metal(), WAVELENGTHS_NM, color).unwrap().eval(&exact, wi, wo);
+            let plain = Twin::new(ShadingModel::Microfacet, &metal(), WAVELENGTHS_NM, color).eval(&exact, wi, wo);
             assert_eq!((plain[1] - found[1]).abs() < 1e-9, name == "microfacet", "{name}");
         }
     }

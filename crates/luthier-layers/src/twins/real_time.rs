@@ -10,6 +10,7 @@ use std::cell::RefCell;
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
+use luthier_model::{ModelPart, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
@@ -19,7 +20,7 @@ use crate::granier_heidrich::GranierHeidrich;
 use crate::lobes;
 use crate::microfacet::{Components, Microfacet};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
-use crate::parts::{Parts, Reflectance, Reflectances};
+use crate::parts::{Parts, Reflectances};
 use crate::phong::Coefficients;
 use crate::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::statistics::diffuse_base::DiffuseBase;
@@ -74,57 +75,44 @@ enum Kind {
 }
 
 impl Twin {
-    /// Names of the models that have a twin.
-    pub const MODELS: [&str; 8] = [
-        elek::MODEL,
-        "weidlich-wilkie",
-        "granier-heidrich",
-        "belcour",
-        "yamaguchi",
-        "phong",
-        "microfacet",
-        lobes::MODEL,
-    ];
-
-    /// The twin of the shader of a model, by the model's name; `None` for a model that has none. `wavelengths_nm` are those of the
-    /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
+    /// The twin of the shader of a model. `wavelengths_nm` are those of the three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
     /// material; the colour of everything else is that of the [`Terms`].
-    pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Option<Self> {
+    pub fn new(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Self {
         Self::with(model, stack, wavelengths_nm, color, Parts::PLAIN)
     }
 
     /// [`Twin::new`] with parts that a material chooses. `color` is that of curves that stand for reflectances, too.
-    pub fn with(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Option<Self> {
-        let has_choice = [elek::MODEL, "weidlich-wilkie", "microfacet"].contains(&model);
-        let is_chosen = has_choice && parts.reflectance != Reflectance::Terms;
+    pub fn with(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Self {
+        let is_chosen = model.takes(ModelPart::Reflectance) && parts.reflectance != Reflectance::Table;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
         let channels = || channels(stack, wavelengths_nm).map(|one| bend_alike(one, stack));
         let kind = match model {
-            elek::MODEL => {
+            ShadingModel::Elek => {
                 let one = |layer| elek::Layer { internal_reflection: parts.internal_reflection, ..layer };
                 Kind::Elek(elek::layers(stack).into_iter().map(one).collect())
             }
-            "weidlich-wilkie" => {
+            ShadingModel::WeidlichWilkie => {
                 let Parts { internal_reflection, .. } = parts;
                 Kind::WeidlichWilkie(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }, channels())
             }
-            "granier-heidrich" => Kind::GranierHeidrich(parts.beams, granier_channels(stack, wavelengths_nm)),
-            "phong" => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
-            "belcour" => Kind::Belcour(Layers::rgb(stack)),
-            "yamaguchi" => Kind::Yamaguchi(Layers::rgb(stack)),
-            "microfacet" => {
+            ShadingModel::GranierHeidrich => {
+                Kind::GranierHeidrich(parts.beams, granier_channels(stack, wavelengths_nm))
+            }
+            ShadingModel::Phong => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
+            ShadingModel::Belcour => Kind::Belcour(Layers::rgb(stack)),
+            ShadingModel::Yamaguchi => Kind::Yamaguchi(Layers::rgb(stack)),
+            ShadingModel::Microfacet => {
                 let components = Components { masking: parts.masking, ..Components::PLAIN };
                 Kind::Microfacet(Box::new((Microfacet::new(components), channels())))
             }
-            lobes::MODEL => {
+            ShadingModel::Lobes => {
                 let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
                 let first = self::channels(&lobes::shown(stack), wavelengths_nm);
                 let first = first.map(|one| bend_alike(one, stack));
                 Kind::Lobes(Box::new((Microfacet::new(Components::PLAIN), first)), is_interface)
             }
-            _ => return None,
         };
-        Some(Self { kind, reflectances, reradiation: None, normals: Vec::new() })
+        Self { kind, reflectances, reradiation: None, normals: Vec::new() }
     }
 
     /// The twin over a base that is fluorescent, if there are rows of a matrix from light to light (linear Rec.709,
@@ -434,9 +422,9 @@ mod tests {
             let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
             let grey = Grey(Prepared::new(&Monochrome::new(&stack, 550.0, 1)));
             let exact = Exact::new(&stack, color);
-            for name in ["belcour", "yamaguchi"] {
-                let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color).unwrap();
-                let model = registry::model(name).unwrap();
+            for name in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
+                let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color);
+                let model = registry::model(name.name()).unwrap();
                 for (wi, wo) in directions() {
                     let found = twin.eval(&grey, wi, wo);
                     let fine = twin.eval(&exact, wi, wo);
@@ -466,17 +454,17 @@ mod tests {
         let plain = Ior::constant(1.5, 0.0).unwrap();
         let dispersive_coat = stack(vec![coat(dispersive(1.5)), base.clone()]);
         let cases = [
-            ("elek", stack(vec![coat(plain.clone()), metal.clone()])),
-            ("weidlich-wilkie", stack(vec![coat(plain), metal])),
-            ("microfacet", stack(vec![filmed.clone()])),
-            ("microfacet", dispersive_coat.clone()),
-            ("granier-heidrich", stack(vec![filmed, base])),
-            ("granier-heidrich", dispersive_coat),
+            (ShadingModel::Elek, stack(vec![coat(plain.clone()), metal.clone()])),
+            (ShadingModel::WeidlichWilkie, stack(vec![coat(plain), metal])),
+            (ShadingModel::Microfacet, stack(vec![filmed.clone()])),
+            (ShadingModel::Microfacet, dispersive_coat.clone()),
+            (ShadingModel::GranierHeidrich, stack(vec![filmed, base])),
+            (ShadingModel::GranierHeidrich, dispersive_coat),
         ];
         for (name, stack) in cases {
             let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
-            let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color).unwrap();
-            let model = registry::model(name).unwrap();
+            let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color);
+            let model = registry::model(name.name()).unwrap();
             for (wi, wo) in directions() {
                 let found = twin.eval(&Exact::new(&stack, color), wi, wo);
                 for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
@@ -495,7 +483,7 @@ mod tests {
         let smooth = layer(Surface::isotropic(Distribution::Beckmann, 0.05), metal);
         let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5)), smooth] };
         let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
-        let twin = Twin::new("weidlich-wilkie", &stack, WAVELENGTHS_NM, color).unwrap();
+        let twin = Twin::new(ShadingModel::WeidlichWilkie, &stack, WAVELENGTHS_NM, color);
         let (wi, wo) = directions()[1];
         let found = twin.eval(&Exact::new(&stack, color), wi, wo);
         let own = WeidlichWilkie::default().eval(&Monochrome::new(&stack, 645.0, 0), wi, wo);
@@ -503,13 +491,5 @@ mod tests {
         let alike = bend_alike(Monochrome::new(&stack, 645.0, 0), &stack);
         assert!((alike.layers[0].eta() - dispersive(1.5).at(REFRACTION_WAVELENGTH_NM).re).abs() < 1e-15);
         assert_eq!(alike.layers[1].above, alike.layers[0].eta());
-    }
-
-    #[test]
-    fn a_model_without_a_shader_has_no_twin() {
-        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5))] };
-        let twin = |name| Twin::new(name, &stack, WAVELENGTHS_NM, Color::Spectral);
-        assert!(twin("layered-mc").is_none());
-        assert!(Twin::MODELS.into_iter().all(|name| twin(name).is_some()));
     }
 }

@@ -4,17 +4,18 @@ use std::cell::OnceCell;
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
+use luthier_model::{Family, ModelPart, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 
-use crate::elek::{self, ALPHA_MIN};
+use crate::elek::ALPHA_MIN;
 use crate::frame;
 use crate::layer_sample::LayerSample;
 use crate::lobes::{self, Below, Cover, Fit, Lobes, Varied, Varying};
-use crate::parts::{Chosen, Parts, Reflectance, Reflectances};
+use crate::parts::{Chosen, Parts, Reflectances};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
@@ -108,13 +109,19 @@ impl Shaded {
     ///
     /// Effects are those of the model's shader: flakes and patina in `elek`, `weidlich-wilkie` and `lobes`, deviated films in `granier-heidrich`. `lobes` has
     /// patina where its rows are over nothing else: no film varies, and no interface is anisotropic.
-    pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, place: &Place) -> Option<Self> {
+    pub fn new(
+        model: ShadingModel,
+        stack: &Stack,
+        wavelengths_nm: [f64; 3],
+        color: Color,
+        place: &Place,
+    ) -> Option<Self> {
         Self::fitted_by(&Varied::of, model, stack, wavelengths_nm, color, place)
     }
 
     /// [`Self::new`] with parts that a material chooses; curves that stand for reflectances are in `color`.
     pub fn with(
-        model: &str,
+        model: ShadingModel,
         stack: &Stack,
         wavelengths_nm: [f64; 3],
         color: Color,
@@ -127,7 +134,7 @@ impl Shaded {
     /// [`Self::new`] with the lobes of a function that fits them, where the model has some.
     pub fn fitted_by(
         fit: &Fit<'_>,
-        model: &str,
+        model: ShadingModel,
         stack: &Stack,
         wavelengths_nm: [f64; 3],
         color: Color,
@@ -138,7 +145,7 @@ impl Shaded {
 
     fn exact(
         fit: &Fit<'_>,
-        model: &str,
+        model: ShadingModel,
         stack: &Stack,
         wavelengths_nm: [f64; 3],
         color: Color,
@@ -146,11 +153,10 @@ impl Shaded {
         parts: Parts,
     ) -> Option<Self> {
         let ends: OnceCell<Vec<Lobes>> = OnceCell::new();
-        let is_statistical = ["belcour", "yamaguchi"].contains(&model);
         let terms = |part: Part, here: &Stack, whole: &Stack| {
-            if model != lobes::MODEL || part == Part::All && Interface::of(here, 0).is_none() {
+            if !model.is_fitted() || part == Part::All && Interface::of(here, 0).is_none() {
                 let terms = Exact::new(here, color);
-                return Some(if is_statistical { terms.veiled_by(stack) } else { terms });
+                return Some(if model.is_statistical() { terms.veiled_by(stack) } else { terms });
             }
             let lobes = match (part, place.patina) {
                 (Part::All, _) | (_, None) => fit(here, &color, None).nominal(),
@@ -172,31 +178,29 @@ impl<T: ShaderTerms> Shaded<T> {
     /// and that of all.
     pub fn of_terms(
         terms: impl Fn(Part, &Stack, &Stack) -> Option<T>,
-        model: &str,
+        model: ShadingModel,
         stack: &Stack,
         wavelengths_nm: [f64; 3],
         color: Color,
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
-        let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
-        let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
+        let is_shown = model.is_path() || model.is_fitted() && !is_over_another(stack);
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
         let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
         let whole = at(stack, model, place, patina);
         let layers = |part: Part, here: &Stack| {
             // Lobes are widened one by one, and the first interface beside them.
             let mut first = here.clone();
-            if model == lobes::MODEL {
+            if model.is_fitted() {
                 first.layers.iter_mut().for_each(|layer| widen(&mut layer.surface, &place.sample));
             }
             // Tarnish dims reflectances that are chosen, too: the twin takes them from its terms.
-            let facets = Parts { reflectance: Reflectance::Terms, ..parts };
+            let facets = Parts { reflectance: Reflectance::Table, ..parts };
             let normals = place.layers.iter().map(|layer| layer.normal).collect();
             let twin =
-                Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation).tilting(normals);
-            let has_choice = is_chain || model == "microfacet";
-            let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
+                Twin::with(model, &first, wavelengths_nm, color, facets).reradiating(reradiation).tilting(normals);
+            let reflectance = if model.takes(ModelPart::Reflectance) { parts.reflectance } else { Reflectance::Table };
             let reflectances = Reflectances::of(here, wavelengths_nm, color, reflectance);
             Some(Layers { twin, terms: terms(part, here, &whole)?, reflectances })
         };
@@ -206,7 +210,7 @@ impl<T: ShaderTerms> Shaded<T> {
         };
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let place = Place { patina, under, ..place.clone() };
-        Some(Self { place, layers: all, bare, has_lobes: model == lobes::MODEL })
+        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted() })
     }
 
     /// [`Shaded::eval`] times light of a colour, see [`Twin::eval_lit`]; a place with patina has no fluorescent base.
@@ -258,7 +262,7 @@ impl Place {
     /// The stack that a material file means at the place, without patina: factors on slope parameters, slab and film, and the albedo of a diffuse base. The
     /// simulation of it is what rows of lobes stand for.
     pub fn stack(&self, stack: &Stack) -> Stack {
-        let mut here = at(stack, lobes::MODEL, self, None);
+        let mut here = at(stack, ShadingModel::Lobes, self, None);
         let base = here.layers.last_mut().map(|layer| &mut layer.base);
         if let (Some(color), Some(Base::Diffuse(base))) = (self.base_color, base) {
             base.albedo = color;
@@ -283,9 +287,9 @@ fn widen(surface: &mut Surface, sample: &TextureSample) {
 }
 
 /// The stack as a model's shader has it at a place.
-fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stack {
+fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>) -> Stack {
     let factors = &place.sample;
-    if model == lobes::MODEL {
+    if model.is_fitted() {
         let mut here = Varying::Alpha.apply(&lobes::shown(stack), factors.alpha_factor);
         // A base alone has a closed form; below interfaces it is in the lobes.
         if let ([Layer { base: Base::Diffuse(base), .. }], Some(color)) = (here.layers.as_mut_slice(), place.base_color)
@@ -295,15 +299,17 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
     }
+    // Coefficients are those of the nominal stack.
+    let shows_place = model.facts().family != Family::Coefficients;
     let mut here = stack.clone();
     if let (Some(color), Some(Base::Diffuse(base))) =
         (place.base_color, here.layers.last_mut().map(|layer| &mut layer.base))
     {
-        base.albedo = if model == "phong" { base.albedo } else { color };
+        base.albedo = if shows_place { color } else { base.albedo };
     }
     for (i, layer) in here.layers.iter_mut().enumerate() {
         let base_alpha = patina.filter(|_| i == 1).and_then(|p| Some((p.base_alpha?, p.amount)));
-        let own = place.layers.get(i).filter(|_| model != "phong").unwrap_or(&LayerSample::NONE);
+        let own = place.layers.get(i).filter(|_| shows_place).unwrap_or(&LayerSample::NONE);
         own.apply(layer);
         if factors.alpha_factor == 1.0
             && factors.slope_variance == 0.0
@@ -312,7 +318,7 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
         {
             continue;
         }
-        if model == elek::MODEL {
+        if model == ShadingModel::Elek {
             layer.surface = Surface::isotropic(layer.surface.distribution, layer.surface.alpha_isotropic());
         }
         let one = own.alpha_factor();
@@ -325,8 +331,7 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
             }
         }
     }
-    // Phong's coefficients are those of the nominal thicknesses.
-    if let Some(layer) = here.layers.first_mut().filter(|_| model != "phong") {
+    if let Some(layer) = here.layers.first_mut().filter(|_| shows_place) {
         for film in &mut layer.films {
             film.thickness.min_nm *= factors.film_factor;
             film.thickness.max_nm *= factors.film_factor;
@@ -339,9 +344,8 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
 }
 
 /// Whether a model takes one slope parameter of a surface.
-fn is_isotropic(model: &str, surface: &Surface) -> bool {
-    let has_one = [elek::MODEL, "belcour", "granier-heidrich"].contains(&model);
-    has_one && surface.alpha_x == surface.alpha_y
+fn is_isotropic(model: ShadingModel, surface: &Surface) -> bool {
+    model.facts().is_isotropic && surface.alpha_x == surface.alpha_y
 }
 
 /// The stack with the indices that it has at one wavelength, at all of them: its shaders bend directions by those, and not by the common
@@ -430,7 +434,7 @@ mod tests {
     fn shaded(place: &Place, nm: f64) -> Rgb {
         let (wi, wo) = directions();
         let still = at_wavelength(&copper(), nm);
-        Shaded::new("elek", &still, [nm; 3], Color::ThreeWavelengths([nm; 3]), place).unwrap().eval(wi, wo)
+        Shaded::new(ShadingModel::Elek, &still, [nm; 3], Color::ThreeWavelengths([nm; 3]), place).unwrap().eval(wi, wo)
     }
 
     /// Oracle: the effects of Elek's model at one wavelength, which are written for a stack at one wavelength.
@@ -470,7 +474,9 @@ mod tests {
         let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
         let growth = Growth { amount: 0.0, diffuse_albedo: [0.3; 3], base_alpha: Some(0.4), tarnish: [0.6; 3] };
         let at = |stack: &Stack, patina: Option<Growth>| {
-            Shaded::new("lobes", stack, WAVELENGTHS_NM, color, &Place { patina, ..Place::NONE }).unwrap().eval(wi, wo)
+            Shaded::new(ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, &Place { patina, ..Place::NONE })
+                .unwrap()
+                .eval(wi, wo)
         };
         let mut painted = copper();
         painted.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.8, 0.5, 0.2], sigma: 0.0 });
@@ -502,8 +508,10 @@ mod tests {
             slope_variance: 0.02,
             ..TextureSample::NONE
         };
-        for name in ["elek", "weidlich-wilkie", "granier-heidrich", "microfacet"] {
-            let model = registry::model(name).unwrap();
+        for name in
+            [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::GranierHeidrich, ShadingModel::Microfacet]
+        {
+            let model = registry::model(name.name()).unwrap();
             let (nm, still) = (480.0, at_wavelength(&copper(), 480.0));
             for sample in [TextureSample::NONE, sample] {
                 let color = Color::ThreeWavelengths([nm; 3]);
@@ -516,6 +524,5 @@ mod tests {
                 }
             }
         }
-        assert!(Shaded::new("layered-mc", &copper(), WAVELENGTHS_NM, Color::Spectral, &Place::NONE).is_none());
     }
 }

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::elek_model::Elek;
-use luthier_layers::facets::{Facets, Masking};
+use luthier_layers::facets::Facets;
+use luthier_layers::luthier_model::{InternalReflection, Masking};
 use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::oren_nayar;
-use luthier_layers::weidlich_wilkie::{InternalReflection, Refraction, WeidlichWilkie};
+use luthier_layers::weidlich_wilkie::{Refraction, WeidlichWilkie};
 use luthier_layers::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 
 use crate::sphere::{albedo, at, mirrored};

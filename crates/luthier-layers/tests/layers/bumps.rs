@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::{DVec2, DVec3};
 use luthier_layers::layer_sample::LayerSample;
+use luthier_layers::luthier_model::ShadingModel;
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_layers::textured::TextureSample;
 use luthier_optics::color::Color;
@@ -11,7 +12,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
 const NM: [f64; 3] = [645.0, 525.0, 445.0];
-const MODELS: [&str; 2] = ["elek", "weidlich-wilkie"];
+const MODELS: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::WeidlichWilkie];
 
 fn layer(alpha: f64, base: Base) -> Layer {
     Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, alpha), base }
@@ -39,7 +40,7 @@ fn bumps(normals: &[DVec3]) -> Place {
     Place { layers, ..Place::NONE }
 }
 
-fn shaded(model: &str, stack: &Stack, place: &Place) -> Shaded {
+fn shaded(model: ShadingModel, stack: &Stack, place: &Place) -> Shaded {
     Shaded::new(model, stack, NM, Color::ThreeWavelengths(NM), place).unwrap()
 }
 
@@ -109,8 +110,8 @@ fn highlights_are_where_snell_sends_them() {
     let clear = stack(&[coat(1.5, 0.3, 0.0)]);
     for (top, base) in [(tilt, DVec3::Z), (DVec3::Z, tilt)] {
         let place = bumps(&[top, base]);
-        let value = shaded("weidlich-wilkie", &layers, &place);
-        let varnish = shaded("weidlich-wilkie", &clear, &place);
+        let value = shaded(ShadingModel::WeidlichWilkie, &layers, &place);
+        let varnish = shaded(ShadingModel::WeidlichWilkie, &clear, &place);
         let wo = unit(-0.3, 0.2, 0.9);
         let down = across(wo, top, 1.5);
         let mirrored = 2.0 * base.dot(down) * base - down;
@@ -151,7 +152,14 @@ fn factors_and_tangents_are_those_of_another_stack() {
         Layer { surface: Surface::isotropic(Distribution::Ggx, 0.21), ..inner(0.25) },
         brushed(metal(0.1), 0.1, 0.5, -1.1),
     ]);
-    for model in ["weidlich-wilkie", "yamaguchi", "elek", "belcour", "microfacet", "granier-heidrich"] {
+    for model in [
+        ShadingModel::WeidlichWilkie,
+        ShadingModel::Yamaguchi,
+        ShadingModel::Elek,
+        ShadingModel::Belcour,
+        ShadingModel::Microfacet,
+        ShadingModel::GranierHeidrich,
+    ] {
         let found = shaded(model, &given, &Place { layers: own.to_vec(), ..Place::NONE });
         let (expected, without) = (shaded(model, &other, &Place::NONE), shaded(model, &given, &Place::NONE));
         for (wi, wo) in directions() {

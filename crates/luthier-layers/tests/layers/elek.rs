@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::elek::{self, ALPHA_MIN, Below, Layer};
-use luthier_layers::parts::InternalReflection;
+use luthier_layers::luthier_model::InternalReflection;
 use luthier_layers::terms::{Exact, Terms};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use luthier_layers::luthier_model::ShadingModel;
 use luthier_layers::real_time::{Twin, Under};
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_layers::terms::Exact;
@@ -13,7 +14,7 @@ use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Sur
 
 const NM: [f64; 3] = [645.0, 525.0, 445.0];
 const ROWS: [Rgb; 3] = [[0.6, 0.3, 0.4], [0.02, 0.5, 0.1], [0.0, 0.03, 0.2]];
-const MODELS: [&str; 2] = ["elek", "weidlich-wilkie"];
+const MODELS: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::WeidlichWilkie];
 
 fn base(albedo: Rgb) -> Layer {
     Layer { films: Vec::new(), surface: Surface::smooth(), base: Base::Diffuse(Diffuse { albedo, sigma: 0.0 }) }
@@ -76,7 +77,7 @@ fn blue_light_goes_in_and_red_comes_out() {
     let stack = stack(vec![coat(depths), base([0.0; 3])]);
     for model in MODELS {
         let color = Color::ThreeWavelengths(NM);
-        let twin = Twin::new(model, &stack, NM, color).unwrap().reradiating(Some(ROWS));
+        let twin = Twin::new(model, &stack, NM, color).reradiating(Some(ROWS));
         let terms = Exact::new(&stack, color);
         for (wi, wo) in directions() {
             let wh = (wi + wo).normalize();
@@ -102,9 +103,9 @@ fn other_models_keep_the_albedo() {
     let color = Color::ThreeWavelengths(NM);
     let terms = Exact::new(&stack, color);
     let (wi, wo) = directions()[0];
-    for model in ["belcour", "granier-heidrich", "phong"] {
-        let plain = Twin::new(model, &stack, NM, color).unwrap();
-        let glowing = Twin::new(model, &stack, NM, color).unwrap().reradiating(Some(ROWS));
+    for model in [ShadingModel::Belcour, ShadingModel::GranierHeidrich, ShadingModel::Phong] {
+        let plain = Twin::new(model, &stack, NM, color);
+        let glowing = Twin::new(model, &stack, NM, color).reradiating(Some(ROWS));
         let expected = plain.eval(&terms, wi, wo);
         assert_eq!(glowing.eval(&terms, wi, wo), expected);
         assert_eq!(glowing.eval_lit(&terms, &Under::NONE, [2.0; 3], wi, wo), expected.map(|v| 2.0 * v));

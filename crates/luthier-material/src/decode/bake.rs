@@ -49,7 +49,7 @@ pub(super) fn budget(document: &Section<'_>) -> Budget {
 
 /// Limits on fitted lobes in a file whose model has none.
 pub(super) fn check_limits(material: &Material, document: &Section<'_>, sink: &mut Sink<'_>) {
-    let Some(at) = document.section("budget").filter(|_| material.model() != ShadingModel::Lobes) else { return };
+    let Some(at) = document.section("budget").filter(|_| !material.model().is_fitted()) else { return };
     for key in ["max_lobe_err", "max_albedo_err"].into_iter().filter(|key| at.number(key).is_some()) {
         let message =
             format!("`{key}` limits the model lobes, but the model of this material is {}", material.model().name());

@@ -120,7 +120,7 @@ pub fn judge(
         .iter()
         .zip(&subject.stacks)
         .map(|(material, stack)| References::new(stack, material))
-        .collect::<Result<_, _>>()?;
+        .collect();
     let total = u64::from(scan::STEPS) + (manifest.materials.len() * (DirectionSet::ALL.len() + 1)) as u64;
     let mut done = 0;
     let mut step = |subject: &str| {
@@ -330,22 +330,20 @@ pub(crate) struct References {
 }
 
 impl References {
-    pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Result<Self, ReportError> {
+    pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Self {
         let three = Color::ThreeWavelengths(material.wavelengths_nm);
         let color = color(material);
         let model = material.model;
         let varying = varying(material);
-        let twin = Twin::with(model.name(), stack, material.wavelengths_nm, color, parts(material));
-        Ok(Self {
+        let twin = Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
+        Self {
             layers: elek::layers(stack),
-            twin: twin
-                .ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?
-                .reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
+            twin: twin.reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
             spectral: Exact::varying(stack, Color::Spectral, varying),
             three: Exact::varying(stack, three, varying),
             level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
             color: material.color,
-        })
+        }
     }
 
     /// All that decides the fit of lobes.
@@ -370,8 +368,7 @@ impl References {
 /// The parts of a model that a material chooses.
 pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     let (masking, reflectance) = material.parts();
-    let parts = Parts::named(masking.name(), reflectance.name(), material.internal_reflection().name());
-    let parts = parts.unwrap_or(Parts::PLAIN);
+    let parts = Parts { masking, reflectance, internal_reflection: material.internal_reflection(), ..Parts::PLAIN };
     material.constants.beams.map_or(parts, |beams| {
         let weights = [beams.specular_weight, beams.diffuse_weight];
         parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)

@@ -162,7 +162,7 @@ pub(crate) fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use luthier_layers::elek::ALPHA_MIN;
-    use luthier_layers::parts::InternalReflection;
+    use luthier_manifest::InternalReflection;
     use luthier_optics::stack::Distribution;
 
     use super::*;

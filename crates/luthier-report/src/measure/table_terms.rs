@@ -9,6 +9,7 @@ use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
+use luthier_manifest::reads;
 use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
@@ -304,7 +305,7 @@ pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
 fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
     let kinds = TableKind::ALL.into_iter().filter(|kind| kind.facts().values != Values::Picture);
     let all = (0..entry.layers.len()).flat_map(move |layer| kinds.clone().map(move |kind| (layer, kind)));
-    all.filter(|&(layer, kind)| entry.model.reads(kind, &entry.layers, layer))
+    all.filter(|&(layer, kind)| reads(entry.model, kind, &entry.layers, layer))
 }
 
 impl Terms for TableTerms<'_> {

@@ -6,6 +6,7 @@ use glam::DVec3;
 use luthier_layers::layered_mc::ColorPaths;
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::Exact;
+use luthier_manifest::ShadingModel;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::quadrature::gauss_legendre;
@@ -168,9 +169,10 @@ impl ColorView {
 /// Energy by cell, and last that of grazing light, of what meets one facet of the first interface alone: the closed form, in the colour of the material.
 fn single(stack: &Stack, color: &Color, nm: [f64; 3], cells: &Cells) -> Vec<Rgb> {
     let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
-    let Some(twin) = Twin::new("microfacet", stack, nm, *color).filter(|_| is_interface) else {
+    if !is_interface {
         return vec![[0.0; 3]; CELLS + 1];
-    };
+    }
+    let twin = Twin::new(ShadingModel::Microfacet, stack, nm, *color);
     let terms = Exact::new(stack, *color);
     let values = |wi: DVec3| twin.eval(&terms, wi, cells.wo);
     let [r, g, b] = Energies::of_values(values, cells, is_isotropic(stack));

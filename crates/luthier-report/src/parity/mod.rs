@@ -21,7 +21,7 @@ use crate::{
 };
 
 pub use sets::{POLISHED_ALPHAS, ParitySet};
-pub use tolerances::{KNOWN, Known, Share, Tolerance, tolerance};
+pub use tolerances::{KNOWN, Known, Share, tolerance};
 
 use tolerances::known;
 
@@ -222,12 +222,12 @@ fn compare(
     let prepared: Vec<(u32, References)> = numbers
         .into_par_iter()
         .map(|number| {
-            let references = references(subject, number as usize)?;
+            let references = references(subject, number as usize);
             let model = subject.manifest.materials[number as usize].model;
             if model.is_statistical() {
                 references.baked().veil();
             }
-            if model == ShadingModel::Lobes {
+            if model.is_fitted() {
                 references.baked().lobes();
             }
             Ok((number, references))
@@ -294,7 +294,7 @@ fn compare(
     Ok(std::iter::once(baked).chain(full).collect())
 }
 
-fn references(subject: &Subject<'_>, material: usize) -> Result<References, ReportError> {
+fn references(subject: &Subject<'_>, material: usize) -> References {
     References::new(&subject.stacks[material], &subject.manifest.materials[material])
 }
 

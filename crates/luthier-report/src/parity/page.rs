@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use luthier_manifest::ShadingModel;
+use luthier_model::Tolerance;
 
-use super::tolerances::{KNOWN, Tolerance, tolerance};
+use super::tolerances::{KNOWN, tolerance};
 use super::{AT_PLACES, Parity, ParityRow, ParitySet, Share, Verdict};
 use crate::pages::format::{error, number};
 use crate::pages::page::{angles, cause};

@@ -147,7 +147,7 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     use super::*;
-    use luthier_layers::parts::InternalReflection;
+    use luthier_manifest::InternalReflection;
 
     fn layers() -> Vec<Layer> {
         let coat = Below::Dielectric { eta: 1.5, optical_depth: [0.0; 3] };

@@ -1,6 +1,7 @@
 //! Tolerances of the error of a shader against its twin, by model, and known reasons of larger errors.
 
 use luthier_manifest::ShadingModel;
+use luthier_model::{Family, Tolerance};
 use serde::{Deserialize, Serialize};
 
 use crate::judge::exceptions::Factor;
@@ -29,123 +30,15 @@ impl Share {
     }
 }
 
-/// The largest error of one share that a shader is held to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerance {
-    /// Its name.
-    pub name: &'static str,
-    /// Relative to max(brightest channel of the reference, [`crate::FLOOR`]).
-    pub limit: f64,
-    /// Reason for the limit.
-    pub reason: &'static str,
-}
-
-const LOBE_TABLE: Tolerance = Tolerance {
-    name: "LOBE_TABLE",
-    limit: 2.5e-3,
-    reason: "A Fresnel row is within 5e-4 of the reflectance F, and light of lower layers passes the interface twice, with a factor of 1 - F each time. \
-             If a material asks for a table of the distribution, that table is interpolated between slope parameters. The values at the foot \
-             of a lobe are then a few thousandths off, and still brighter than the floor.",
-};
-
-const PHASE_TABLE: Tolerance = Tolerance {
-    name: "PHASE_TABLE",
-    limit: 1.5e-3,
-    reason: "A phase row replaces a cosine by straight lines between 256 nodes, and stores it in half floats of up to 2.",
-};
-
-const ENERGY_TABLE: Tolerance = Tolerance {
-    name: "ENERGY_TABLE",
-    limit: 2.5e-3,
-    reason: "A lobe is a closed form times its energy, and the energy is a product of values from the `fgd` and `escape` tables. The tables have 64 nodes \
-             along each axis. An error of 1e-3 in one of the factors is an error of 1e-3 in the lobe.",
-};
-
-const ROW_TABLE: Tolerance = Tolerance {
-    name: "ROW_TABLE",
-    limit: 1e-2,
-    reason: "A Fresnel row is within 5e-4 of the reflectance F, which is 1% of 0.04. Rows of lobes are half floats, \
-             off by up to 2.4e-4 of themselves: at the foot of a Gaussian lobe a change of its width changes the value fifteen times as much.",
-};
-
-const NO_TABLE: Tolerance = Tolerance { name: "NO_TABLE", limit: 0.0, reason: "The shader reads no table." };
-
-const LOBE_READ: Tolerance = Tolerance {
-    name: "LOBE_READ",
-    limit: 2e-4,
-    reason: "The reason of `LAYERS_IN_F32` holds. In addition, a distribution table, where a material asks for one, stores sixteenth roots: \
-             a rounding error of the coordinate or of the filter grows sixteenfold.",
-};
-
-const LOBES_IN_F32: Tolerance = Tolerance {
-    name: "LOBES_IN_F32",
-    limit: 3.5e-4,
-    reason: "A sampler finds its place in a row in f32, to some millionths of the distance between rows. Where a lobe fades to almost nothing between the \
-             first two rows, beyond 88°, what is left of it is off by more than a hundred times as much. Elsewhere values are within 2e-4: a Gaussian \
-             lobe is a power with an exponent of up to 1025, which multiplies the rounding of its base.",
-};
-
-const LAYERS_IN_F32: Tolerance = Tolerance {
-    name: "LAYERS_IN_F32",
-    limit: 5e-5,
-    reason: "Every layer adds some tens of roundings of 6e-8 each. They enter an exponential, whose argument can reach ten or more \
-             before its value is below the floor.",
-};
-
-const BEAMS_IN_F32: Tolerance = Tolerance {
-    name: "BEAMS_IN_F32",
-    limit: 2e-5,
-    reason: "The rounding errors are those of one layer. The exponents of the lobes reach 2e6, but their bases are computed without cancellation.",
-};
-
-const STATISTICS_IN_F32: Tolerance = Tolerance {
-    name: "STATISTICS_IN_F32",
-    limit: 2e-5,
-    reason: "Every layer adds some tens of roundings of 6e-8 each, and two powers convert a slope parameter to a variance and back. No exponential \
-             and no root of a stored value makes the errors larger.",
-};
-
-const PHONG_IN_F32: Tolerance = Tolerance {
-    name: "PHONG_IN_F32",
-    limit: 1e-5,
-    reason: "The shader evaluates one exponential of a product whose factors have an error of 1e-7 each. The error of the value is that error times \
-             the argument, and beyond an argument of 1 the value falls faster than the error grows.",
-};
-
-const FILTERED_BY_HARDWARE: Tolerance = Tolerance {
-    name: "FILTERED_BY_HARDWARE",
-    limit: 4e-3,
-    reason: "A filter in hardware has weights of 8 bits, and f32 rounds a coordinate to one side or the other of a step: a part of 256 of the difference of two \
-             texels. A GPU was seen to round filtered half floats to half floats again, off by 2.4e-4 of themselves. Values are products of several.",
-};
-
-const FILTERED_BELOW_A_COAT: Tolerance = Tolerance {
-    name: "FILTERED_BELOW_A_COAT",
-    limit: 2e-2,
-    reason: "The reason of `FILTERED_BY_HARDWARE` holds. In addition, light of lower layers is multiplied by (1 - F)², which is small beyond 88° while F is near 1: \
-             as in `FRESNEL_UNDER_A_COAT`. Tables of the distribution store sixteenth roots, and a Gaussian lobe changes fifteen times as much as its width.",
-};
-
 /// The tolerance of a shader, whose device filters tables with some weights; `None` for a form without tables.
 pub fn tolerance(model: ShadingModel, form: Form, share: Share, weights: Option<Weights>) -> Tolerance {
-    let is_hardware = weights == Some(Weights::EightBit);
-    match (share, model) {
-        (Share::Table, ShadingModel::Phong) => NO_TABLE,
-        (Share::Table, _) if form == Form::Full => NO_TABLE,
-        (Share::Table, ShadingModel::GranierHeidrich) => PHASE_TABLE,
-        (Share::Table, ShadingModel::Belcour | ShadingModel::Yamaguchi) => ENERGY_TABLE,
-        (Share::Table, ShadingModel::Lobes) => ROW_TABLE,
-        (Share::Table, _) => LOBE_TABLE,
-        (Share::Arithmetic, ShadingModel::Phong) => PHONG_IN_F32,
-        (Share::Arithmetic, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Lobes) if is_hardware => {
-            FILTERED_BELOW_A_COAT
-        }
-        (Share::Arithmetic, _) if is_hardware => FILTERED_BY_HARDWARE,
-        (Share::Arithmetic, ShadingModel::GranierHeidrich) => BEAMS_IN_F32,
-        (Share::Arithmetic, ShadingModel::Belcour | ShadingModel::Yamaguchi) => STATISTICS_IN_F32,
-        (Share::Arithmetic, ShadingModel::Lobes) => LOBES_IN_F32,
-        (Share::Arithmetic, _) if form == Form::Baked => LOBE_READ,
-        (Share::Arithmetic, _) => LAYERS_IN_F32,
+    let of = &model.facts().tolerances;
+    match (share, form) {
+        (Share::Table, Form::Full) => Tolerance::NO_TABLE,
+        (Share::Table, Form::Baked) => of.table,
+        (Share::Arithmetic, _) if weights == Some(Weights::EightBit) => of.filtered,
+        (Share::Arithmetic, Form::Baked) => of.baked,
+        (Share::Arithmetic, Form::Full) => of.full,
     }
 }
 
@@ -154,8 +47,8 @@ pub fn tolerance(model: ShadingModel, form: Form, share: Share, weights: Option<
 pub struct Known {
     /// Its name.
     pub name: &'static str,
-    /// The models.
-    pub models: &'static [ShadingModel],
+    /// The models, by what they have in common.
+    pub families: &'static [Family],
     /// The share.
     pub share: Share,
     /// Factor that has to be at fault.
@@ -170,7 +63,7 @@ pub struct Known {
 pub const KNOWN: [Known; 6] = [
     Known {
         name: "FRESNEL_UNDER_A_COAT",
-        models: &[ShadingModel::Elek, ShadingModel::WeidlichWilkie],
+        families: &[Family::Path],
         share: Share::Table,
         factor: Factor::Fresnel,
         limit: 2e-2,
@@ -181,7 +74,7 @@ pub const KNOWN: [Known; 6] = [
     },
     Known {
         name: "DISTRIBUTION_FAR_OUT",
-        models: &[ShadingModel::Elek, ShadingModel::WeidlichWilkie],
+        families: &[Family::Path],
         share: Share::Table,
         factor: Factor::Distribution,
         limit: 1e-2,
@@ -190,7 +83,7 @@ pub const KNOWN: [Known; 6] = [
     },
     Known {
         name: "FILM_AT_GRAZING",
-        models: &[ShadingModel::Microfacet, ShadingModel::Lobes],
+        families: &[Family::Facets, Family::Lobes],
         share: Share::Table,
         factor: Factor::Fresnel,
         limit: 2e-2,
@@ -200,7 +93,7 @@ pub const KNOWN: [Known; 6] = [
     },
     Known {
         name: "FAINT_LOBES_IN_HALF_FLOATS",
-        models: &[ShadingModel::Lobes],
+        families: &[Family::Lobes],
         share: Share::Table,
         factor: Factor::Lobes,
         limit: 0.1,
@@ -210,7 +103,7 @@ pub const KNOWN: [Known; 6] = [
     },
     Known {
         name: "ESCAPE_OF_NARROW_LOBES",
-        models: &[ShadingModel::Belcour, ShadingModel::Yamaguchi],
+        families: &[Family::Statistics],
         share: Share::Table,
         factor: Factor::Escape,
         limit: 1e-2,
@@ -221,7 +114,7 @@ pub const KNOWN: [Known; 6] = [
     },
     Known {
         name: "ALBEDO_AT_GRAZING",
-        models: &[ShadingModel::Belcour, ShadingModel::Yamaguchi],
+        families: &[Family::Statistics],
         share: Share::Table,
         factor: Factor::Fgd,
         limit: 1e-2,
@@ -234,7 +127,7 @@ pub const KNOWN: [Known; 6] = [
 
 /// The known reason for a share of the error of a model that a factor is at fault for.
 pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option<&'static Known> {
-    KNOWN.iter().find(|k| k.models.contains(&model) && k.share == share && k.factor == factor)
+    KNOWN.iter().find(|k| k.families.contains(&model.facts().family) && k.share == share && k.factor == factor)
 }
 
 #[cfg(test)]

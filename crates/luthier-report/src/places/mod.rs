@@ -9,7 +9,7 @@ mod rows;
 mod simulated;
 
 use glam::DVec3;
-use luthier_manifest::{Form, PlaceValues, ShadingModel};
+use luthier_manifest::{Form, PlaceValues};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -168,7 +168,7 @@ pub fn at_places(
         None => None,
     };
     // Energies and lobes of each place would take seconds.
-    let is_closed = !(entry.model.is_statistical() || entry.model == ShadingModel::Lobes);
+    let is_closed = !(entry.model.is_statistical() || entry.model.is_fitted());
     let tables = is_closed.then(|| {
         let exact = |spot: &Spot| {
             let exact = rows::exact(subject, material, &spot.place);

@@ -43,8 +43,8 @@ impl<'a> Rows<'a> {
         TableTerms::new(subject, material, weights)?;
         let terms = |part: Part| TableTerms::at(subject, material, weights, place, part).ok();
         let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
-        let name = entry.model.name();
-        let shaded = Shaded::of_terms(|part, _, _| terms(part), name, stack, nm, color(entry), place, parts(entry));
+        let shaded =
+            Shaded::of_terms(|part, _, _| terms(part), entry.model, stack, nm, color(entry), place, parts(entry));
         let missing = || ReportError::Model { material: entry.name.clone(), model: entry.model };
         shaded.map(Self).ok_or_else(missing)
     }
@@ -59,7 +59,7 @@ impl<'a> Rows<'a> {
 pub(super) fn exact(subject: &Subject<'_>, material: usize, values: &PlaceValues) -> Option<Shaded<Exact>> {
     let entry = &subject.manifest.materials[material];
     let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
-    Shaded::with(entry.model.name(), stack, nm, color(entry), &place(values, entry), parts(entry))
+    Shaded::with(entry.model, stack, nm, color(entry), &place(values, entry), parts(entry))
 }
 
 /// The place of the f64 twin: exactly the numbers that the device gets.

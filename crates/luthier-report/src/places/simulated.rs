@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier_layers::lobes::{self, Lobes};
 use luthier_layers::shaded::Place;
-use luthier_manifest::{MaterialEntry, PlaceValues, ShadingModel};
+use luthier_manifest::{MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack};
@@ -136,7 +136,7 @@ pub fn simulated(
     settings: &SimulatedSettings,
 ) -> Result<Option<SimulatedErrors>, ReportError> {
     let entry = &subject.manifest.materials[material];
-    let Some(places) = Places::of(subject, material).filter(|_| entry.model == ShadingModel::Lobes) else {
+    let Some(places) = Places::of(subject, material).filter(|_| entry.model.is_fitted()) else {
         return Ok(None);
     };
     let stack = &subject.stacks[material];

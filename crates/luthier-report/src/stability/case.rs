@@ -1,7 +1,7 @@
 //! The stacks that methods are stressed on.
 
 use super::aim::Aim;
-use luthier_layers::domain::Quantity;
+use luthier_model::Quantity;
 use luthier_optics::Rgb;
 use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;

@@ -1,7 +1,7 @@
 //! Domains, derived from verdicts.
 
-use luthier_layers::domain::Quantity;
 use luthier_manifest::ShadingModel;
+use luthier_model::Quantity;
 use serde::{Deserialize, Serialize};
 
 use super::case::StressCase;

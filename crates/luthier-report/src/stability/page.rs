@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use luthier_layers::domain::Quantity;
+use luthier_model::Quantity;
 
 use super::explain::EXPLANATIONS;
 use super::{Cell, FAILS, HOLDS, HOLDS_ALBEDO, Level, PITFALLS, Stability, Verdict};

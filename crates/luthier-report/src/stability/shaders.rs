@@ -40,7 +40,7 @@ pub fn shader_cells(
         .map(|number| {
             let (stack, entry) = (&cases[number].stack, &subject.manifest.materials[number]);
             let pairs = cases[number].aim.pairs(&elek::layers(stack));
-            let references = References::new(stack, entry)?;
+            let references = References::new(stack, entry);
             let twin = &references.twin;
             let terms = TableTerms::new(subject, number, Weights::EightBit)?;
             let baked = evaluate(twin, references.baked(), &pairs);

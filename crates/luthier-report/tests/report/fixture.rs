@@ -244,8 +244,8 @@ impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S>
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
         let stack = &self.subject.stacks[material as usize];
         let entry = &self.subject.manifest.materials[material as usize];
-        let (model, constants) = (entry.model.name(), &entry.constants);
-        let twin = Twin::new(model, stack, WAVELENGTHS_NM, Color::Spectral).ok_or("no twin")?;
+        let (model, constants) = (entry.model, &entry.constants);
+        let twin = Twin::new(model, stack, WAVELENGTHS_NM, Color::Spectral);
         let tables = TableTerms::new(&self.subject, material as usize, Weights::Exact).map_err(|e| e.to_string())?;
         let spectral = Exact::new(stack, Color::Spectral);
         let veil = Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] };

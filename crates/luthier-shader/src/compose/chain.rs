@@ -10,11 +10,6 @@ use crate::compose::features::Features;
 use crate::compose::function;
 use crate::languages::text::rename;
 
-/// Whether a model goes through the layers one by one.
-pub(crate) fn is_chain(model: ShadingModel) -> bool {
-    matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie)
-}
-
 /// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
     let name = function(model);

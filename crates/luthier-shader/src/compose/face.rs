@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+use luthier_model::Family;
 
 use crate::MaterialSet;
 use crate::compose::features::Features;
@@ -32,13 +33,13 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         modules.push(module(include_str!("../wgsl/face/path_part.wgsl")));
     }
     for model in set.models() {
-        modules.push(match model {
-            ShadingModel::Elek | ShadingModel::WeidlichWilkie => module(&chain::parts(set, model, features)),
-            ShadingModel::Belcour | ShadingModel::Yamaguchi => module(&statistics::parts(set, model)),
-            ShadingModel::GranierHeidrich => module(include_str!("../wgsl/face/granier_heidrich.wgsl")),
-            ShadingModel::Phong => module(include_str!("../wgsl/face/phong.wgsl")),
-            ShadingModel::Microfacet => module(include_str!("../wgsl/face/microfacet.wgsl")),
-            ShadingModel::Lobes => module(include_str!("../wgsl/face/lobes.wgsl")),
+        modules.push(match model.facts().family {
+            Family::Path => module(&chain::parts(set, model, features)),
+            Family::Statistics => module(&statistics::parts(set, model)),
+            Family::Beams => module(include_str!("../wgsl/face/granier_heidrich.wgsl")),
+            Family::Coefficients => module(include_str!("../wgsl/face/phong.wgsl")),
+            Family::Facets => module(include_str!("../wgsl/face/microfacet.wgsl")),
+            Family::Lobes => module(include_str!("../wgsl/face/lobes.wgsl")),
         });
     }
     modules.extend([module(&prepare(set, features, parts)), module(&light(set, features))]);
@@ -69,23 +70,19 @@ fn count(set: &MaterialSet<'_>, features: &Features) -> usize {
     let is_interface = |layer: &LayerRecord| layer.kind != LayerKind::Diffuse;
     let of = |material: &MaterialEntry| {
         let first = material.layers.first();
-        match material.model {
-            ShadingModel::Lobes => 0,
-            ShadingModel::Phong => 1,
-            ShadingModel::Microfacet => usize::from(first.is_some_and(is_interface)),
-            ShadingModel::GranierHeidrich => match first {
+        match material.model.facts().family {
+            Family::Lobes => 0,
+            Family::Coefficients => 1,
+            Family::Facets => usize::from(first.is_some_and(is_interface)),
+            Family::Beams => match first {
                 Some(layer) if layer.kind == LayerKind::Diffuse => 0,
                 Some(_) if !features.has("granier_transparent") => 1,
                 // With a tilted inner boundary the beams of the channels part.
                 _ if features.has("granier_tilted") => 4,
                 _ => 2,
             },
-            ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
-                chain::parts_count(set, material.model, features.has("chain_patina"))
-            }
-            ShadingModel::Belcour | ShadingModel::Yamaguchi => {
-                material.layers.iter().rposition(is_interface).map_or(0, |i| i + 1)
-            }
+            Family::Path => chain::parts_count(set, material.model, features.has("chain_patina")),
+            Family::Statistics => material.layers.iter().rposition(is_interface).map_or(0, |i| i + 1),
         }
     };
     set.materials.iter().map(of).max().unwrap_or(0)
@@ -156,9 +153,9 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     let place = if features.has("place") { "prepared.place, " } else { "" };
     let lit = if features.has("fluorescent") { light_of_a_colour(set, &out, place, wi) } else { String::new() };
     let eval = |model| format!("return {}({place}prepared.material, {wi}, prepared.wo);", function(model));
-    let call = |model: ShadingModel| match model {
-        ShadingModel::Lobes if features.has("lobes") => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
-        ShadingModel::Belcour | ShadingModel::Yamaguchi if !statistics::is_bare(set, model) => {
+    let call = |model: ShadingModel| match model.facts().family {
+        Family::Lobes if features.has("lobes") => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
+        Family::Statistics if !statistics::is_bare(set, model) => {
             let light = function(model).replace("luthier_eval", "luthier_light");
             format!("return {light}(prepared, {place}prepared.material, {wi}, prepared.wo);")
         }
@@ -187,7 +184,7 @@ fn light_of_a_colour(set: &MaterialSet<'_>, light: &str, place: &str, wi: &str) 
     out.extend(light.lines().skip(2).flat_map(|line| [line, "\n"]));
     let models: Vec<ShadingModel> = set.models().collect();
     let is_alone = models.len() == 1;
-    for model in models.into_iter().filter(|&model| chain::is_chain(model)) {
+    for model in models.into_iter().filter(|model| model.is_path()) {
         let call = format!("return {}_lit({place}prepared.material, {wi}, prepared.wo, light);", function(model));
         if is_alone {
             return format!("{out}    {call}\n}}\n");

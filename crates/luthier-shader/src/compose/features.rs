@@ -7,6 +7,7 @@ use luthier_manifest::{
     FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, MapSlot, Masking, MaterialEntry,
     PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
 };
+use luthier_model::{Family, Reach};
 
 use crate::compose::masking;
 use crate::{Form, MaterialSet};
@@ -63,13 +64,13 @@ impl Features {
         if switches.any(|switch| matches!(switch.by, SwitchBy::Noise { .. })) {
             names.insert("noise");
         }
-        if [ShadingModel::Belcour, ShadingModel::Yamaguchi].into_iter().any(|model| has_base(set, model)) {
+        if set.models().any(|model| model.is_statistical() && has_base(set, model)) {
             names.insert("statistics_base");
         }
         if set.models().any(|model| is_mixed(set, model)) {
             names.insert("mixed");
         }
-        if [ShadingModel::Elek, ShadingModel::WeidlichWilkie].into_iter().any(|model| ends_early(set, model)) {
+        if set.models().any(|model| model.is_path() && ends_early(set, model)) {
             names.insert("conductor");
         }
         if set.functions.has(FunctionGroup::Surface) {
@@ -212,24 +213,21 @@ pub(crate) fn feature(table: TableKind) -> &'static str {
 fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     let mut names = BTreeSet::new();
     let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
-    let layers = match material.model {
-        ShadingModel::Phong => {
+    let facts = material.model.facts();
+    let layers = match facts.reach {
+        Reach::None => {
             names.insert("phong");
             return names;
         }
-        ShadingModel::Microfacet | ShadingModel::GranierHeidrich | ShadingModel::Lobes => {
-            &material.layers[..material.layers.len().min(1)]
-        }
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Belcour | ShadingModel::Yamaguchi => {
-            material.layers.as_slice()
-        }
+        Reach::First | Reach::FirstAndBase => &material.layers[..material.layers.len().min(1)],
+        Reach::All => material.layers.as_slice(),
     };
-    let is_chain = matches!(material.model, ShadingModel::Elek | ShadingModel::WeidlichWilkie);
+    let is_path = material.model.is_path();
     let is_covered = is_under_patina(material);
-    let shows_patina = is_chain || is_covered;
+    let shows_patina = is_path || is_covered;
     let bare = material.constants.patina.as_ref().filter(|_| shows_patina).map(|patina| &patina.bare);
     for layer in layers.iter().chain(bare) {
-        if is_diffuse(layer) && material.model == ShadingModel::GranierHeidrich {
+        if is_diffuse(layer) && facts.reach == Reach::FirstAndBase {
             continue;
         }
         if is_diffuse(layer) {
@@ -237,7 +235,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             if layer.sigma != 0.0 {
                 names.insert("oren_nayar");
             }
-            if layer.reradiation.is_some() && is_chain {
+            if layer.reradiation.is_some() && is_path {
                 names.insert("fluorescent");
             }
             continue;
@@ -258,25 +256,25 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         if layer.critical_cot_sq > 0.0 {
             names.insert("total_reflection");
         }
-        if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|l| l.critical_cot_sq > 0.0) {
+        let rows = material.constants.lobes.filter(|_| material.model.is_fitted());
+        if rows.is_some_and(|rows| rows.critical_cot_sq > 0.0) {
             names.insert("critical_view");
         }
-        if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|lobes| lobes.axes.is_some()) {
+        if rows.is_some_and(|rows| rows.axes.is_some()) {
             names.insert("lobes_axes");
         }
-        if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|lobes| is_over_film(&lobes)) {
+        if rows.is_some_and(|rows| is_over_film(&rows)) {
             names.insert("lobes_film");
         }
-        if material.model.reads_distribution() && layer.tiles[TableKind::Distribution].is_none() {
+        if material.model.reads_some(TableKind::Distribution) && layer.tiles[TableKind::Distribution].is_none() {
             names.insert("closed");
         }
-        if layer.kind == LayerKind::Conductor && !is_chain {
+        if layer.kind == LayerKind::Conductor && !is_path {
             names.insert("conductor");
         }
-        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
         let turns = [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent];
         let is_turned = material.maps.iter().any(|map| turns.contains(&map.slot));
-        if !is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned) {
+        if !facts.is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned) {
             names.insert("anisotropic");
         }
     }
@@ -289,9 +287,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         }
     }
     let (has_interface, has_diffuse) = (names.contains("interface"), names.contains("diffuse"));
-    match material.model {
-        ShadingModel::Microfacet if has_interface => names.insert("smith"),
-        ShadingModel::Lobes if has_interface => {
+    match facts.family {
+        Family::Facets if has_interface => names.insert("smith"),
+        Family::Lobes if has_interface => {
             if material.constants.flakes.is_some() && has_coat(material) {
                 names.extend(["flakes", "lobes_tilted"]);
             }
@@ -303,11 +301,11 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             }
             names.insert("coat")
         }
-        ShadingModel::Lobes => names.insert("lobes_diffuse"),
-        ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
+        Family::Lobes => names.insert("lobes_diffuse"),
+        Family::Facets => names.insert("microfacet_diffuse"),
         // Beside a coat it is a step of the chain; alone in its set it needs none.
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie if !has_interface => names.insert("chain_diffuse"),
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
+        Family::Path if !has_interface => names.insert("chain_diffuse"),
+        Family::Path => {
             if has_diffuse {
                 names.insert("chain_diffuse");
             }
@@ -323,8 +321,8 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             }
             names.insert("chain")
         }
-        ShadingModel::Belcour | ShadingModel::Yamaguchi if has_interface => names.insert("statistics"),
-        ShadingModel::GranierHeidrich => {
+        Family::Statistics if has_interface => names.insert("statistics"),
+        Family::Beams => {
             let first = &material.layers[0];
             let has_film = first.film_ior_n[0] > 0.0;
             if has_film {
@@ -357,7 +355,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
 
 /// Whether rows are over the amount of patina, so that the layer below it is seen bare.
 fn is_under_patina(material: &MaterialEntry) -> bool {
-    let lobes = material.constants.lobes.filter(|_| material.model == ShadingModel::Lobes);
+    let lobes = material.constants.lobes.filter(|_| material.model.is_fitted());
     lobes.and_then(|lobes| lobes.varying).is_some_and(|varying| varying.factor == VaryingFactor::Patina)
         && material.constants.patina.is_some()
 }
@@ -384,8 +382,7 @@ fn is_bare_base(material: &MaterialEntry) -> bool {
 
 /// Whether lobes come from below a slab, in which what is there may be tilted.
 fn has_coat(material: &MaterialEntry) -> bool {
-    material.model == ShadingModel::Lobes
-        && material.layers.first().is_some_and(|first| first.kind == LayerKind::Dielectric)
+    material.model.is_fitted() && material.layers.first().is_some_and(|first| first.kind == LayerKind::Dielectric)
 }
 
 /// Whether an interface is smoother than one above it.
@@ -412,10 +409,10 @@ fn has_base(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
 /// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.
 fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     let layers = || set.materials.iter().filter(|m| m.model == model).map(|m| &m.layers);
-    let depth = match model {
-        ShadingModel::Phong => 0,
-        ShadingModel::Microfacet | ShadingModel::Lobes => 1,
-        _ => layers().map(Vec::len).max().unwrap_or(0),
+    let depth = match model.facts().reach {
+        Reach::None => 0,
+        Reach::First => 1,
+        Reach::FirstAndBase | Reach::All => layers().map(Vec::len).max().unwrap_or(0),
     };
     (0..depth).any(|i| {
         let kinds = || layers().filter_map(|layers| layers.get(i)).map(|layer| layer.kind == LayerKind::Diffuse);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use luthier_manifest::{LayerKind, Masking, ShadingModel};
+use luthier_manifest::{LayerKind, Masking, ModelPart};
 
 use crate::MaterialSet;
 use crate::compose::features::Features;
@@ -22,7 +22,7 @@ pub(crate) fn word(masking: Masking) -> &'static str {
 
 /// The maskings of the lobes of a set.
 pub(crate) fn used(set: &MaterialSet<'_>) -> BTreeSet<Masking> {
-    let materials = set.materials.iter().filter(|material| material.model == ShadingModel::Microfacet);
+    let materials = set.materials.iter().filter(|material| material.model.takes(ModelPart::Masking));
     let first = materials.filter_map(|material| material.layers.first());
     first.filter(|layer| layer.kind != LayerKind::Diffuse).map(|layer| layer.masking).collect()
 }
@@ -62,6 +62,8 @@ mod tests {
     use luthier_manifest::{LayerRecord, Manifest, MaterialEntry, Reflectance, ReflectanceCurve};
 
     use crate::{Form, MaterialSet, Target, emit};
+
+    use luthier_manifest::ShadingModel;
 
     use super::*;
 

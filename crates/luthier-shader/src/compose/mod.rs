@@ -300,7 +300,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     let call = |model: ShadingModel| {
         let name = function(model);
         let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
-        match (features.has("fluorescent"), chain::is_chain(model)) {
+        match (features.has("fluorescent"), model.is_path()) {
             (false, _) => format!("{name}({arguments})"),
             (true, true) => format!("{name}_lit({arguments}, light)"),
             (true, false) => format!("light * {name}({arguments})"),

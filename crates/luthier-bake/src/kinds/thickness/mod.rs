@@ -5,7 +5,6 @@ pub(crate) mod relief;
 use std::sync::Arc;
 
 use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
-use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -56,7 +55,7 @@ impl Kind for Table {
 /// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
 fn default_format(materials: &[Material]) -> TexelFormat {
     let reads_slopes = |material: &Material| {
-        material.model() == ShadingModel::GranierHeidrich || material.bake.asks_for(TableKind::Thickness)
+        material.model().reads_some(TableKind::Phase) || material.bake.asks_for(TableKind::Thickness)
     };
     if materials.iter().any(reads_slopes) { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
 }

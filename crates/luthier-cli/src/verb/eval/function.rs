@@ -10,7 +10,9 @@ use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::{Reflectance, ShadingModel};
+use luthier_manifest::ModelPart;
+use luthier_manifest::Reflectance;
+use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -175,34 +177,30 @@ impl<'a> Function<'a> {
 
 /// The parts of its shader's model that the file chooses, as far as the model that is evaluated has them.
 pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
-    let Some(model) = ShadingModel::from_name(subject.model.info().name) else {
+    let Some(model) = subject.model.info().shading() else {
         return (Parts::PLAIN, Reflectance::default());
     };
-    let reflectance = subject.material.bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default();
+    let reflectance =
+        subject.material.bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default();
     (parts_of(&subject.material, model), reflectance)
 }
 
 /// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
 /// energies take seconds in colour, and effects are none of theirs.
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
-    let (name, place) = (subject.model.info().name, &subject.place);
-    let is_path = ShadingModel::from_name(name).is_some_and(ShadingModel::has_path);
+    let (model, place) = (subject.model.info().shading()?, &subject.place);
     let material = &subject.material;
-    let stack = if is_path { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
+    let stack = if model.is_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
     let stack = stack.as_ref();
     let fit = subject.fit.as_ref();
     let (parts, reflectance) = parts(subject);
     let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts == Parts::PLAIN {
-        true => Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place),
-        false => Shaded::with(name, stack, wavelengths_nm, color, place, parts),
+        true => Shaded::fitted_by(fit, model, stack, wavelengths_nm, color, place),
+        false => Shaded::with(model, stack, wavelengths_nm, color, place, parts),
     };
     match *kind {
         Kind::Reradiated(_) => None,
-        Kind::Wavelength(_)
-            if ["belcour", "yamaguchi"].contains(&name) && place.base_color.is_none() && place.layers.is_empty() =>
-        {
-            None
-        }
+        Kind::Wavelength(_) if model.is_statistical() && place.base_color.is_none() && place.layers.is_empty() => None,
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
             let shaded = made(&at_wavelength(stack, nm), [nm; 3], color)?;
@@ -210,8 +208,8 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
         }
         Kind::Color(color) => {
             let wavelengths_nm = subject.material.bake.wavelengths_nm();
-            // Phong's coefficients and curves of reflectances are in the material's colour, in both forms of its shader.
-            let is_own = name == "phong" || reflectance.is_fitted();
+            // Coefficients of a stack and curves of reflectances are in the material's colour, in both forms of its shader.
+            let is_own = model.facts().family == Family::Coefficients || reflectance.is_fitted();
             let color = if is_own { subject.material.color() } else { color };
             Some(How::Shader(Box::new(made(stack, wavelengths_nm, color)?), 0))
         }

@@ -13,11 +13,12 @@ use glam::{DVec2, DVec3};
 use luthier_bake::fitted;
 use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::layered_mc::Estimate;
-use luthier_layers::lobes::{self, Fit, Fitted, Varied};
-use luthier_layers::model::Model;
+use luthier_layers::lobes::{Fit, Fitted, Varied};
+use luthier_layers::model::{Model, ModelInfo};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
 use luthier_layers::shaded::Place;
+use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
 use luthier_optics::stack::Stack;
@@ -111,12 +112,17 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
     if let Some(folder) = &options.out {
         return shipped::shipped(&subject, folder, &pairs, options.json);
     }
-    if name == lobes::MODEL && subject.place != luthier_layers::shaded::Place::NONE {
+    if is_fitted(&subject.model.info()) && subject.place != luthier_layers::shaded::Place::NONE {
         let what = "fitted to the stack at this place; `--out FOLDER` reads the rows that a bake ships";
         complain(&format!("note: lobes are {what}"));
     }
     let kind = Kind::asked(options, &subject).unwrap_or_else(|| Kind::Color(subject.material.color()));
     values(&subject, kind, &pairs, options.json)
+}
+
+/// Whether a model is fitted to a simulation of the stack.
+fn is_fitted(model: &ModelInfo) -> bool {
+    model.shading().is_some_and(ShadingModel::is_fitted)
 }
 
 fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
@@ -127,7 +133,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     let inputs = &options.inputs;
     let (mut materials, picked) = materials(options)?;
     let mut fit: Arc<Fit<'static>> = Arc::new(Varied::of);
-    if name == lobes::MODEL {
+    if is_fitted(&known.info()) {
         let store = store()?;
         fit = Arc::new(|stack, color, varying| fitted(stack, color, varying, store));
         known = Box::new(Fitted::by(fit.clone()));

@@ -5,6 +5,7 @@ use std::path::Path;
 use luthier_export::{Folder, shared, source_hash};
 use luthier_layers::layered_mc::Estimate;
 use luthier_manifest::ColorMode;
+use luthier_manifest::ModelPart;
 use luthier_optics::color::Color;
 use luthier_report::{Rows, Subject as Judged, Weights};
 use luthier_terminal::{Failure, Outcome};
@@ -32,7 +33,7 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
     let mut same = material.clone();
     same.bake.model = Some(entry.model);
     let (masking, reflectance) = entry.parts();
-    same.bake.masking = entry.model.has_masking().then_some(masking);
+    same.bake.masking = entry.model.takes(ModelPart::Masking).then_some(masking);
     same.bake.reflectance = Some(reflectance);
     if source_hash(&same)? != entry.source_hash {
         return Err(missing(format!(

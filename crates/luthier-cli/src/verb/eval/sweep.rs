@@ -49,9 +49,10 @@ pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
 /// The model with the parts that the file chooses, where it chooses some.
 fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
     let (parts, reflectance) = parts(subject);
-    let name = subject.model.info().name;
+    let info = subject.model.info();
+    let (name, Some(model)) = (info.name, info.shading()) else { return Ok(None) };
     let lower = subject.material.bake.lower_reflectance.unwrap_or_default();
-    if lower == LowerReflectance::InAir && ShadingModel::from_name(name).is_some_and(ShadingModel::has_path) {
+    if lower == LowerReflectance::InAir && model.is_path() {
         let text = format!(
             "`--furnace` of `{name}` has interfaces in their places, and the file chooses `lower_reflectance = \"{lower}\"`: leave that out"
         );
@@ -60,28 +61,21 @@ fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
     if parts == Parts::PLAIN {
         return Ok(None);
     }
-    if name == ShadingModel::Microfacet.name() {
-        let model = Box::new(Microfacet::new(parts.components()));
-        return Ok(Some(ModelInputs::textured(subject.place.sample, model)));
-    }
-    let at_place = |model: Box<dyn Model>| Ok(Some(ModelInputs::textured(subject.place.sample, model)));
-    if name == ShadingModel::GranierHeidrich.name() {
-        return at_place(Box::new(parts.beams.leaning(subject.place.under.inner_normal)));
-    }
-    if reflectance.is_fitted() {
+    if reflectance.is_fitted() && model.is_path() {
         let text = format!(
             "`--furnace` of `{name}` has Fresnel's equations, and the file chooses `{reflectance}`: leave that out"
         );
         return Err(Failure::Input(anyhow::anyhow!(text)));
     }
     let Parts { internal_reflection, .. } = parts;
-    if name == ShadingModel::Elek.name() {
-        return at_place(Box::new(Elek { internal_reflection }));
-    }
-    if name == ShadingModel::WeidlichWilkie.name() {
-        return at_place(Box::new(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }));
-    }
-    Ok(None)
+    let model: Box<dyn Model> = match model {
+        ShadingModel::Microfacet => Box::new(Microfacet::new(parts.components())),
+        ShadingModel::GranierHeidrich => Box::new(parts.beams.leaning(subject.place.under.inner_normal)),
+        ShadingModel::Elek => Box::new(Elek { internal_reflection }),
+        ShadingModel::WeidlichWilkie => Box::new(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }),
+        ShadingModel::Belcour | ShadingModel::Yamaguchi | ShadingModel::Phong | ShadingModel::Lobes => return Ok(None),
+    };
+    Ok(Some(ModelInputs::textured(subject.place.sample, model)))
 }
 
 /// Prints a table.

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use luthier_export::{Folder, GENERATOR, REPORT_FILES, label, origin, publish_beside, read_one, shared, source_hash};
 use luthier_manifest::Manifest;
+use luthier_manifest::ModelPart;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, SurfaceMap, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
@@ -146,7 +147,7 @@ fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
             };
             material.bake.model = Some(entry.model);
             let (masking, reflectance) = entry.parts();
-            material.bake.masking = entry.model.has_masking().then_some(masking);
+            material.bake.masking = entry.model.takes(ModelPart::Masking).then_some(masking);
             material.bake.reflectance = Some(reflectance);
             if source_hash(&material)? != entry.source_hash {
                 return Err(changed(&file));

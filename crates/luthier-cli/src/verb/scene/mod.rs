@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use luthier_export::{
     MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, plain, read_one, refuse,
 };
-use luthier_manifest::{MaterialChoice, SceneChoice, ShadingModel};
+use luthier_manifest::{MaterialChoice, SceneChoice};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
 use luthier_terminal::{Broken, Failure, Outcome, bytes, files, print, print_diagnostics, valid};
@@ -80,7 +80,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let (scene, materials) = read(path, options.quiet)?;
     let mut director = director(options, &scene, &materials)?;
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
-    let is_shown = made.package.manifest.materials.iter().any(|m| m.model == ShadingModel::Lobes);
+    let is_shown = made.package.manifest.materials.iter().any(|m| m.model.is_fitted());
     refuse_environment(&options.emission.functions, is_shown)?;
     let encoded = options.encoded(&made.package)?;
     whole(&options.out, || encoded.write(&options.out))?;

@@ -6,6 +6,7 @@ mod failures;
 mod help;
 mod kinds;
 mod manual;
+mod models;
 #[cfg(unix)]
 mod nightly;
 mod pipes;

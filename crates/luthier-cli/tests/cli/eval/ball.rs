@@ -47,7 +47,7 @@ fn a_path_traced_ball_converges_to_the_picture_in_f64() {
         let wavelengths_nm = material.bake.wavelengths_nm();
         let is_spectral = material.bake.color != Some(ColorMode::ThreeWavelengths);
         let color = if is_spectral { Color::Spectral } else { Color::ThreeWavelengths(wavelengths_nm) };
-        let twin = Shaded::new("lobes", &material.stack, wavelengths_nm, color, &Place::NONE).unwrap();
+        let twin = Shaded::new(ShadingModel::Lobes, &material.stack, wavelengths_nm, color, &Place::NONE).unwrap();
         let mut errors = [0.0; 3];
         let mut brightness = 0.0;
         let pixels = pixels();

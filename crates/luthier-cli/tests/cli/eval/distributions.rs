@@ -7,6 +7,7 @@ use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_layers::textured::TextureSample;
 use luthier_lut::TableKind;
+use luthier_manifest::Masking;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
@@ -56,7 +57,8 @@ fn materials(model: &str) -> Vec<Material> {
 }
 
 fn parts(model: &str) -> Parts {
-    Parts::named(if model == "microfacet" { "v-cavity" } else { "smith" }, "table", "facets").unwrap()
+    let masking = if model == "microfacet" { Masking::VCavity } else { Masking::Smith };
+    Parts { masking, ..Parts::PLAIN }
 }
 
 /// Each surface in a set of its own and all in one: the shaders differ.
@@ -66,8 +68,15 @@ fn the_device_agrees_with_f64() {
     let three = [645.0, 525.0, 445.0];
     for model in ["elek", "weidlich-wilkie", "microfacet"] {
         compare_sets(&gpu, model, &materials(model), |material| {
-            Shaded::with(model, &material.stack, three, Color::ThreeWavelengths(three), &Place::NONE, parts(model))
-                .unwrap()
+            Shaded::with(
+                model.parse().unwrap(),
+                &material.stack,
+                three,
+                Color::ThreeWavelengths(three),
+                &Place::NONE,
+                parts(model),
+            )
+            .unwrap()
         });
     }
 }
@@ -94,8 +103,14 @@ fn roughness_maps_scale_all_of_them() {
         let sample = TextureSample { alpha_factor: factor, slope_variance: variance, ..TextureSample::NONE };
         let place = Place { sample, ..Place::NONE };
         for (number, material) in (0..).zip(&materials) {
-            let twin =
-                Shaded::new("weidlich-wilkie", &material.stack, three, Color::ThreeWavelengths(three), &place).unwrap();
+            let twin = Shaded::new(
+                ShadingModel::WeidlichWilkie,
+                &material.stack,
+                three,
+                Color::ThreeWavelengths(three),
+                &place,
+            )
+            .unwrap();
             for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number, &pairs).unwrap()) {
                 let expected = twin.eval(wide(wi), wide(wo));
                 let error = error(found, expected);
@@ -132,7 +147,9 @@ fn tables_hold_them() {
     for (number, material) in (0..).zip(&materials) {
         let surface = material.stack.layers[0].surface;
         let color = Color::ThreeWavelengths(material.bake.wavelengths_nm());
-        let twin = Shaded::new("elek", &material.stack, material.bake.wavelengths_nm(), color, &Place::NONE).unwrap();
+        let twin =
+            Shaded::new(ShadingModel::Elek, &material.stack, material.bake.wavelengths_nm(), color, &Place::NONE)
+                .unwrap();
         let peak = 1.0 / (PI * surface.alpha_x * surface.alpha_x);
         let stated = table.tiles[tiles[number as usize] as usize].error.max_abs_err;
         for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number, &pairs).unwrap()) {

@@ -91,7 +91,9 @@ fn device_and_twin_agree_for_lights_of_all_colours() {
 
                 let nm = material.bake.wavelengths_nm();
                 let place = Place { reradiation: material.reradiation(), ..Place::NONE };
-                let twin = Shaded::new(model, &material.stack, nm, Color::ThreeWavelengths(nm), &place).unwrap();
+                let twin =
+                    Shaded::new(model.parse().unwrap(), &material.stack, nm, Color::ThreeWavelengths(nm), &place)
+                        .unwrap();
                 for (&(wi, wo), found) in pairs.iter().zip(found) {
                     let [wi, wo] = [wi, wo].map(|w| DVec3::from(w.map(f64::from)));
                     let expected = twin.eval_lit(light.map(f64::from), wi, wo);
@@ -130,7 +132,8 @@ fn a_fluorescent_base_goes_from_file_to_pixel() {
     let found = workshop.run(&eval).exits(0).json();
     let nm = material("elek", COAT).bake.wavelengths_nm();
     let place = Place { reradiation: Some(rows), ..Place::NONE };
-    let twin = Shaded::new("elek", &material("elek", COAT).stack, nm, Color::ThreeWavelengths(nm), &place).unwrap();
+    let twin = Shaded::new(ShadingModel::Elek, &material("elek", COAT).stack, nm, Color::ThreeWavelengths(nm), &place)
+        .unwrap();
     let at = |theta: f64, sign: f64| {
         let (sin, cos) = libm::sincos(theta.to_radians());
         DVec3::new(sign * sin, 0.0, cos)

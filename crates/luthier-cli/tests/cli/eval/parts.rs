@@ -71,8 +71,8 @@ fn of_beams(parts: Parts, beams: &BeamsRecord) -> Parts {
 fn parts(material: &Material) -> (Parts, Reflectance) {
     let (masking, reflectance) =
         (material.bake.masking.unwrap_or_default(), material.bake.reflectance.unwrap_or_default());
-    let internal = material.bake.internal_reflection.unwrap_or_default();
-    let parts = Parts::named(masking.name(), reflectance.name(), internal.name()).unwrap();
+    let internal_reflection = material.bake.internal_reflection.unwrap_or_default();
+    let parts = Parts { masking, reflectance, internal_reflection, ..Parts::PLAIN };
     (material.beams().map_or(parts, |beams| of_beams(parts, &beams)), reflectance)
 }
 
@@ -98,7 +98,8 @@ fn compare(materials: &[Material], worst: &mut f64) {
             let color = if is_spectral { Color::Spectral } else { Color::ThreeWavelengths(wavelengths_nm) };
             let model = material.model().name();
             let stack = material.reflecting_stack();
-            let twin = Shaded::with(model, &stack, wavelengths_nm, color, &Place::NONE, parts).unwrap();
+            let twin =
+                Shaded::with(model.parse().unwrap(), &stack, wavelengths_nm, color, &Place::NONE, parts).unwrap();
             let found = scene.evaluate(number, &pairs).unwrap();
             let mut most: f64 = 0.0;
             for (&(wi, wo), found) in pairs.iter().zip(found) {
@@ -166,7 +167,8 @@ fn what_is_not_reflected_inside_is_that_of_the_twin() {
     let nm = plain.bake.wavelengths_nm();
     let value = |parts| {
         let color = Color::ThreeWavelengths(nm);
-        Shaded::with("weidlich-wilkie", &plain.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)[1]
+        Shaded::with(ShadingModel::WeidlichWilkie, &plain.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)
+            [1]
     };
     let (facets, none) = (value(Parts::PLAIN), value(parts(&materials[0]).0));
     assert!(none > 1.01 * facets, "{none} {facets}");
@@ -194,7 +196,8 @@ fn ways_through_interfaces_are_those_of_the_twin() {
         let nm = material.bake.wavelengths_nm();
         let (color, stack) = (Color::ThreeWavelengths(nm), material.reflecting_stack());
         let model = material.model().name();
-        Shaded::with(model, &stack, nm, color, &Place::NONE, parts(material).0).unwrap().eval(wi, wo)[1]
+        Shaded::with(model.parse().unwrap(), &stack, nm, color, &Place::NONE, parts(material).0).unwrap().eval(wi, wo)
+            [1]
     };
     let plain = passing("");
     for i in 0..plain.len() {
@@ -268,7 +271,7 @@ fn places_roughen_and_tilt_both_boundaries() {
         place.under.inner_normal = lean;
         let nm = own.bake.wavelengths_nm();
         let color = Color::ThreeWavelengths(nm);
-        let twin = Shaded::with("granier-heidrich", &own.stack, nm, color, &place, parts(&own).0).unwrap();
+        let twin = Shaded::with(ShadingModel::GranierHeidrich, &own.stack, nm, color, &place, parts(&own).0).unwrap();
         for ((wi, wo), found) in pairs().into_iter().zip(found) {
             let expected = twin.eval(wide(wi), wide(wo));
             assert!(error(found, expected) < TOLERANCE, "{}: {wi:?} {wo:?} {found:?} {expected:?}", own.name);
@@ -332,7 +335,7 @@ fn tarnish_dims_chosen_reflectances() {
         };
         let place = Place { patina: Some(growth), ..Place::NONE };
         let stack = grown.reflecting_stack();
-        let twin = Shaded::with("elek", &stack, wavelengths_nm, color, &place, parts).unwrap();
+        let twin = Shaded::with(ShadingModel::Elek, &stack, wavelengths_nm, color, &place, parts).unwrap();
         for ((wi, wo), found) in pairs().into_iter().zip(found) {
             let expected = twin.eval(wide(wi), wide(wo));
             assert!(error(found, expected) < 5.0 * TOLERANCE, "{reflectance}: {found:?} {expected:?}");
@@ -363,7 +366,7 @@ fn a_masking_changes_what_is_seen() {
         let (parts, _) = parts(material);
         let nm = material.bake.wavelengths_nm();
         let color = Color::ThreeWavelengths(nm);
-        Shaded::with("microfacet", &material.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)[1]
+        Shaded::with(ShadingModel::Microfacet, &material.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)[1]
     };
     let values: Vec<f64> = materials.iter().step_by(2).map(value).collect();
     for (i, a) in values.iter().enumerate() {

@@ -57,7 +57,7 @@ fn the_device_agrees_with_f64_in_every_model() {
         // Phong's coefficients are in the material's own colour.
         let color = if model == "phong" { Color::Spectral } else { Color::ThreeWavelengths(three) };
         compare_sets(&gpu, model, &materials(model), |material| {
-            Shaded::new(model, &material.stack, three, color, &Place::NONE).unwrap()
+            Shaded::new(model.parse().unwrap(), &material.stack, three, color, &Place::NONE).unwrap()
         });
     }
 }

@@ -149,7 +149,8 @@ fn every_shipped_material_agrees_with_its_full_shaders() {
             // Phong's coefficients are in the material's own colour in both forms.
             let is_spectral = material.bake.color != Some(ColorMode::ThreeWavelengths);
             let color = if model == "phong" && is_spectral { Color::Spectral } else { color };
-            let twin = Shaded::new(model, &material.stack, wavelengths_nm, color, &Place::NONE).unwrap();
+            let twin =
+                Shaded::new(model.parse().unwrap(), &material.stack, wavelengths_nm, color, &Place::NONE).unwrap();
             let found = scene.evaluate(number as u32, &pairs).unwrap();
             for (&(wi, wo), found) in pairs.iter().zip(found) {
                 let expected = twin.eval(wide(wi), wide(wo));

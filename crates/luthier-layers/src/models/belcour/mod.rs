@@ -17,6 +17,8 @@
 //! - *Energy*: following the eye at most 1. At the half vector lobes carry the energy of another angle: at grazing angles a white
 //!   mirror of alpha 0.3 below a coat of alpha 0.05 returns 1.15 (89 degrees).
 
+use luthier_model::ShadingModel;
+
 use crate::statistics::evaluate::Follow;
 use crate::statistics::model::Statistical;
 
@@ -32,7 +34,7 @@ impl Belcour {
             follow,
             match follow {
                 Follow::Eye => [
-                    "belcour",
+                    ShadingModel::Belcour.name(),
                     "Belcour 2018, sec. 3-5 (atomic operators, adding, total reflection)",
                     domain,
                     "reciprocity, anisotropy, shear and skew of lobes, light that lobes lose to masking, scattering media",

@@ -3,13 +3,14 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
+use luthier_model::Masking;
 
 use super::adding::add;
 use super::diffuse_base::{DiffuseBase, Veil};
 use super::energy::{Energy, ExactEnergy, FacetCache};
 use super::layers::Layers;
 use super::spread::Spread;
-use crate::facets::{Facets, Masking};
+use crate::facets::Facets;
 use crate::frame::cos_theta_d;
 use crate::monochrome::Monochrome;
 

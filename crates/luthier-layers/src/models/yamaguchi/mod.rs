@@ -15,6 +15,8 @@
 //! light that enters, sigma/eta in eq. 2, is backwards; as in Belcour's adding, spreads grow by
 //! `j = n12 cos theta_t / cos theta_i` on the way out.
 
+use luthier_model::ShadingModel;
+
 use crate::statistics::evaluate::Follow;
 use crate::statistics::model::Statistical;
 use crate::statistics::spread::Covariance;
@@ -31,7 +33,7 @@ impl Yamaguchi {
             follow,
             match follow {
                 Follow::Eye => [
-                    "yamaguchi",
+                    ShadingModel::Yamaguchi.name(),
                     "Yamaguchi et al. 2019, eq. 1-5 and sec. 2.1, with the adding of Belcour 2018",
                     domain,
                     "reciprocity, anisotropy of energies, shear and skew of lobes, light that lobes lose to masking",

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Form;
-
 luthier_lut::named! {
     /// A reflectance model that shaders evaluate.
     #[derive(Default, Serialize, Deserialize)]
@@ -31,33 +29,8 @@ luthier_lut::named! {
 }
 
 impl ShadingModel {
-    /// Name and source, for headers and reports.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Elek => "elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010)",
-            Self::WeidlichWilkie => {
-                "weidlich-wilkie (A. Weidlich, A. Wilkie, Arbitrarily layered micro-facet surfaces, GRAPHITE 2007)"
-            }
-            Self::GranierHeidrich => {
-                "granier-heidrich (X. Granier, W. Heidrich, A Simple Layered RGB BRDF Model, Graphical Models 2003)"
-            }
-            Self::Belcour => "belcour (L. Belcour, Efficient Rendering of Layered Materials, SIGGRAPH 2018)",
-            Self::Yamaguchi => {
-                "yamaguchi (T. Yamaguchi et al., Layered Materials with Anisotropic Normal Distributions, SIGGRAPH Asia 2019)"
-            }
-            Self::Phong => "phong (B. T. Phong, Illumination for computer generated pictures, 1975)",
-            Self::Microfacet => "microfacet (K. Torrance, E. Sparrow 1967; masking of E. Heitz 2014)",
-            Self::Lobes => "lobes (luthier's own: lobes fitted to a simulation of the stack)",
-        }
-    }
-
-    /// Whether its shader has a form: what is read from tables alone has no other.
-    pub fn has(self, form: Form) -> bool {
-        form == Form::Baked || self != Self::Lobes
-    }
-
     /// Its number in the material buffer.
-    pub fn number(self) -> u32 {
+    pub const fn number(self) -> u32 {
         self as u32
     }
 }

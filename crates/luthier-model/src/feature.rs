@@ -1,7 +1,5 @@
 //! Features of a material that a model may leave out.
 
-use crate::{Form, ShadingModel};
-
 /// A feature that a material file can ask for and a model can leave out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
@@ -115,53 +113,10 @@ impl Feature {
     }
 }
 
-impl ShadingModel {
-    /// Whether the shader of a form of this model shows a feature where a material has it. Tests of luthier-shader and luthier-scene
-    /// compare every entry with what shaders and their f64 twins do.
-    ///
-    /// Phong's coefficients are computed from the stack at normal incidence: what changes these is not left out.
-    pub fn honours(self, feature: Feature, form: Form) -> bool {
-        let is_chain = matches!(self, Self::Elek | Self::WeidlichWilkie);
-        let is_statistical = self.is_statistical();
-        match feature {
-            Feature::NormalMap | Feature::RoughnessMap | Feature::Glitter | Feature::Films => true,
-            Feature::InnerInterface | Feature::Absorption => {
-                is_chain || is_statistical || matches!(self, Self::Phong | Self::Lobes)
-            }
-            // Phong's diffuse coefficient is the base's albedo, less what interfaces reflect.
-            Feature::BaseAbsorption => is_chain || is_statistical || self == Self::Lobes,
-            Feature::Base => self != Self::Microfacet,
-            // Records have one film of an interface; tables and Phong's coefficients are made of all.
-            Feature::InnerFilms => {
-                matches!(self, Self::Phong | Self::Lobes) || form == Form::Baked && self != Self::GranierHeidrich
-            }
-            // Albedos are tabulated at the nominal thickness.
-            Feature::FilmVariation => !(self == Self::Phong || is_statistical && form == Form::Baked),
-            Feature::DiffuseSlopes => is_chain || is_statistical || matches!(self, Self::Microfacet | Self::Lobes),
-            Feature::Anisotropy => {
-                matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet | Self::Lobes)
-            }
-            Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
-            Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
-            Feature::Bumps => is_chain,
-            Feature::LayerAlpha => !matches!(self, Self::Phong | Self::Lobes),
-            // Rows of lobes are over azimuths against axes that stay.
-            Feature::Tangents => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
-            Feature::InnerThickness => is_chain || is_statistical,
-            Feature::AlbedoMap => self != Self::Phong,
-            // Rows of lobes are tabulated for one F0; of energies, what is not reflected is in proportion to 1 - F0.
-            Feature::MetallicMap => is_chain || is_statistical || self == Self::Microfacet,
-            Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
-            Feature::Reradiation => is_chain,
-            // V-cavities and the other maskings without Smith's Lambda need no more than D.
-            Feature::Distribution => is_chain || self == Self::Microfacet,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Form, ShadingModel};
 
     /// One column for each of [`Feature::ALL`]: `#` where both forms show the feature, `b` the baked one only, `f` the full one only.
     #[test]

@@ -3,7 +3,20 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::ShadingModel;
+/// A part of a model that a material may choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelPart {
+    /// Masking and shadowing, by [`Masking`].
+    Masking,
+    /// Computation of reflectances, by [`Reflectance`].
+    Reflectance,
+    /// Light from below that an interface lets out, by [`InternalReflection`].
+    InternalReflection,
+    /// Reflectance of interfaces below the first, by [`LowerReflectance`].
+    LowerReflectance,
+    /// Exponents, weights and a lean of the inner boundary of a film.
+    Beams,
+}
 
 luthier_lut::named! {
     /// Masking and shadowing of the model `microfacet`.
@@ -154,29 +167,6 @@ pub struct ReflectanceCurve {
     pub weight: [f64; 3],
     /// Exponent of the correction, at least 1.
     pub exponent: [f64; 3],
-}
-
-impl ShadingModel {
-    /// Whether a material may choose the masking of the model.
-    pub fn has_masking(self) -> bool {
-        self == Self::Microfacet
-    }
-
-    /// Whether a material may choose how the model computes reflectances.
-    pub fn has_reflectance(self) -> bool {
-        matches!(self, Self::Elek | Self::WeidlichWilkie | Self::Microfacet)
-    }
-
-    /// Whether a material may give exponents, weights and a lean of the inner boundary.
-    pub fn has_beams(self) -> bool {
-        self == Self::GranierHeidrich
-    }
-
-    /// Whether the model goes down a path of refracted directions. A material may choose the term of internal reflection, `t = (1 - G) +
-    /// T_21 G` (Elek 2010, eq. 4; the course, eq. 3.3), and the reflectance of lower interfaces.
-    pub fn has_path(self) -> bool {
-        matches!(self, Self::Elek | Self::WeidlichWilkie)
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,58 @@
+//! Models in the sources: crates ask a model for its facts, and few files name single models.
+
+use std::collections::BTreeSet;
+
+use super::sources::sources;
+
+/// Files that name single models, tests and the project's own pages apart.
+const NAMING: [(&str, &str); 22] = [
+    ("cli/src/model_inputs.rs", "names the model that could show what another drops"),
+    ("cli/src/simulated.rs", "takes the cheapest model where only stacks count"),
+    ("cli/src/verb/bench.rs", "times everything over Phong's model"),
+    ("cli/src/verb/eval/sweep.rs", "makes models with the parts of a file"),
+    ("cli/src/verb/gallery/page.rs", "shows a second model beside that of the file"),
+    ("export/src/energy.rs", "names the model that returns what the simulation does"),
+    ("layers/src/lobes/mod.rs", "is the model"),
+    ("layers/src/models/belcour/mod.rs", "is the model"),
+    ("layers/src/models/elek_model.rs", "is the model"),
+    ("layers/src/models/granier_heidrich.rs", "is the model"),
+    ("layers/src/models/microfacet.rs", "is the model"),
+    ("layers/src/models/phong.rs", "is the model"),
+    ("layers/src/models/weidlich_wilkie.rs", "is the model"),
+    ("layers/src/models/yamaguchi/mod.rs", "is the model"),
+    ("layers/src/twins/real_time.rs", "makes the twin of each model"),
+    ("layers/src/twins/shaded.rs", "has Elek's mean of slope parameters, and rows of lobes at a place"),
+    ("material/src/doubt.rs", "says what two models do with a smooth layer below a rough one"),
+    ("report/src/models/colored.rs", "takes one facet for the first bounce"),
+    ("scene/src/director.rs", "leaves costs out where rows are not baked"),
+    ("shader/src/compose", "puts the modules of each model together"),
+    ("model/src/rows.rs", "has the facts"),
+    ("model/src/shading.rs", "has the names"),
+];
+
+/// Whether code of a file, tests apart, names a single model.
+fn names_a_model(text: &str) -> bool {
+    let code = text.split("#[cfg(test)]").next().unwrap();
+    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let single = |rest: &str| {
+        let word: String = rest.chars().take_while(|c| c.is_alphanumeric()).collect();
+        let model = luthier_manifest::ShadingModel::ALL.into_iter().find(|model| format!("{model:?}") == word);
+        model.is_some()
+    };
+    lines.into_iter().any(|line| line.split("ShadingModel::").skip(1).any(single))
+}
+
+#[test]
+fn few_files_name_single_models() {
+    let is_test = |name: &str| name.ends_with("/tests.rs") || name.ends_with("_tests.rs");
+    let all = sources().into_iter().filter(|(name, _)| !name.starts_with("crates/luthier-lab/") && !is_test(name));
+    let found: BTreeSet<String> =
+        all.filter(|(_, text)| names_a_model(text)).map(|(name, _)| name.replace("crates/luthier-", "")).collect();
+    for name in &found {
+        let is_listed = NAMING.iter().any(|(listed, _)| name.starts_with(listed));
+        assert!(is_listed, "{name} names single models: ask `ShadingModel::facts`, or say here what it is");
+    }
+    for (listed, _) in NAMING {
+        assert!(found.iter().any(|name| name.starts_with(listed)), "{listed} names no model any more");
+    }
+}

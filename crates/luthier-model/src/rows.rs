@@ -1,0 +1,359 @@
+//! The rows of facts, one for each model.
+
+use luthier_lut::TableKind;
+
+use crate::domain::{BETWEEN_ROWS, BRIGHT, FEW_NODES, ONE_SURFACE};
+use crate::facts::{Facts, Family, Reach, ReadWhen, Shows, TableRead};
+use crate::tolerance::{
+    BEAMS_IN_F32, ENERGY_TABLE, FILTERED_BELOW_A_COAT, FILTERED_BY_HARDWARE, LAYERS_IN_F32, LOBE_READ, LOBE_TABLE,
+    LOBES_IN_F32, PHASE_TABLE, PHONG_IN_F32, ROW_TABLE, STATISTICS_IN_F32, Tolerance, Tolerances,
+};
+use crate::{DefaultFor, Feature::*, Form, ModelPart, ShadingModel};
+
+const fn read(kind: TableKind, when: ReadWhen) -> TableRead {
+    TableRead { kind, when }
+}
+
+/// A path with one slope parameter per interface, and Elek's clamp.
+const ELEK: Facts = Facts {
+    title: "elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010)",
+    family: Family::Path,
+    reach: Reach::All,
+    is_isotropic: true,
+    forms: &[Form::Baked, Form::Full],
+    // Records have one film of an interface; tables are made of all.
+    shows: Shows {
+        always: &[
+            InnerInterface,
+            Base,
+            Absorption,
+            BaseAbsorption,
+            Films,
+            FilmVariation,
+            DiffuseSlopes,
+            Beckmann,
+            NormalMap,
+            RoughnessMap,
+            ThicknessMap,
+            Bumps,
+            LayerAlpha,
+            InnerThickness,
+            AlbedoMap,
+            MetallicMap,
+            Flakes,
+            Patina,
+            Glitter,
+            Reradiation,
+            Distribution,
+        ],
+        baked: &[InnerFilms],
+        full: &[],
+    },
+    tables: &[
+        read(TableKind::Fresnel, ReadWhen::Steady),
+        read(TableKind::Film, ReadWhen::Varying),
+        read(TableKind::Thickness, ReadWhen::FirstVarying),
+        read(TableKind::Distribution, ReadWhen::Always),
+    ],
+    parts: &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance],
+    domain: &[BRIGHT],
+    tolerances: Tolerances {
+        table: LOBE_TABLE,
+        baked: LOBE_READ,
+        full: LAYERS_IN_F32,
+        filtered: FILTERED_BELOW_A_COAT,
+    },
+    default_for: &[(DefaultFor::Closed, 0)],
+};
+
+/// A path with both slope parameters.
+const WEIDLICH_WILKIE: Facts = Facts {
+    title: "weidlich-wilkie (A. Weidlich, A. Wilkie, Arbitrarily layered micro-facet surfaces, GRAPHITE 2007)",
+    family: Family::Path,
+    reach: Reach::All,
+    is_isotropic: false,
+    forms: &[Form::Baked, Form::Full],
+    shows: Shows {
+        always: &[
+            InnerInterface,
+            Base,
+            Absorption,
+            BaseAbsorption,
+            Films,
+            FilmVariation,
+            DiffuseSlopes,
+            Anisotropy,
+            Beckmann,
+            NormalMap,
+            RoughnessMap,
+            ThicknessMap,
+            Bumps,
+            LayerAlpha,
+            Tangents,
+            InnerThickness,
+            AlbedoMap,
+            MetallicMap,
+            Flakes,
+            Patina,
+            Glitter,
+            Reradiation,
+            Distribution,
+        ],
+        baked: &[InnerFilms],
+        full: &[],
+    },
+    tables: &[
+        read(TableKind::Fresnel, ReadWhen::Steady),
+        read(TableKind::Film, ReadWhen::Varying),
+        read(TableKind::Thickness, ReadWhen::FirstVarying),
+        read(TableKind::Distribution, ReadWhen::Always),
+    ],
+    parts: &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance],
+    domain: &[BRIGHT],
+    tolerances: Tolerances {
+        table: LOBE_TABLE,
+        baked: LOBE_READ,
+        full: LAYERS_IN_F32,
+        filtered: FILTERED_BELOW_A_COAT,
+    },
+    default_for: &[(DefaultFor::Closed, 1)],
+};
+
+/// Beams of one film over a base.
+const GRANIER_HEIDRICH: Facts = Facts {
+    title: "granier-heidrich (X. Granier, W. Heidrich, A Simple Layered RGB BRDF Model, Graphical Models 2003)",
+    family: Family::Beams,
+    reach: Reach::FirstAndBase,
+    is_isotropic: true,
+    forms: &[Form::Baked, Form::Full],
+    shows: Shows {
+        always: &[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter],
+        baked: &[],
+        full: &[],
+    },
+    tables: &[
+        // Transparent interfaces without a film are Schlick's form.
+        read(TableKind::Phase, ReadWhen::Filmed),
+        read(TableKind::Thickness, ReadWhen::Filmed),
+        read(TableKind::Fresnel, ReadWhen::BareConductor),
+    ],
+    parts: &[ModelPart::Beams],
+    domain: &[ONE_SURFACE, FEW_NODES],
+    tolerances: Tolerances {
+        table: PHASE_TABLE,
+        baked: BEAMS_IN_F32,
+        full: BEAMS_IN_F32,
+        filtered: FILTERED_BY_HARDWARE,
+    },
+    default_for: &[],
+};
+
+/// Statistics with one variance.
+const BELCOUR: Facts = Facts {
+    title: "belcour (L. Belcour, Efficient Rendering of Layered Materials, SIGGRAPH 2018)",
+    family: Family::Statistics,
+    reach: Reach::All,
+    is_isotropic: true,
+    forms: &[Form::Baked, Form::Full],
+    // Albedos are tabulated at the nominal thickness of a film.
+    shows: Shows {
+        always: &[
+            InnerInterface,
+            Base,
+            Absorption,
+            BaseAbsorption,
+            Films,
+            DiffuseSlopes,
+            NormalMap,
+            RoughnessMap,
+            ThicknessMap,
+            LayerAlpha,
+            InnerThickness,
+            AlbedoMap,
+            MetallicMap,
+            Glitter,
+        ],
+        baked: &[InnerFilms],
+        full: &[FilmVariation],
+    },
+    tables: &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)],
+    parts: &[],
+    domain: &[],
+    tolerances: Tolerances {
+        table: ENERGY_TABLE,
+        baked: STATISTICS_IN_F32,
+        full: STATISTICS_IN_F32,
+        filtered: FILTERED_BY_HARDWARE,
+    },
+    default_for: &[(DefaultFor::Stack, 1)],
+};
+
+/// Statistics with a matrix of covariances.
+const YAMAGUCHI: Facts = Facts {
+    title: "yamaguchi (T. Yamaguchi et al., Layered Materials with Anisotropic Normal Distributions, SIGGRAPH Asia 2019)",
+    family: Family::Statistics,
+    reach: Reach::All,
+    is_isotropic: false,
+    forms: &[Form::Baked, Form::Full],
+    shows: Shows {
+        always: &[
+            InnerInterface,
+            Base,
+            Absorption,
+            BaseAbsorption,
+            Films,
+            DiffuseSlopes,
+            Anisotropy,
+            NormalMap,
+            RoughnessMap,
+            ThicknessMap,
+            LayerAlpha,
+            Tangents,
+            InnerThickness,
+            AlbedoMap,
+            MetallicMap,
+            Glitter,
+        ],
+        baked: &[InnerFilms],
+        full: &[FilmVariation],
+    },
+    tables: &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)],
+    parts: &[],
+    domain: &[],
+    tolerances: Tolerances {
+        table: ENERGY_TABLE,
+        baked: STATISTICS_IN_F32,
+        full: STATISTICS_IN_F32,
+        filtered: FILTERED_BY_HARDWARE,
+    },
+    default_for: &[(DefaultFor::Stack, 2)],
+};
+
+/// One lobe of a power over one diffuse term.
+const PHONG: Facts = Facts {
+    title: "phong (B. T. Phong, Illumination for computer generated pictures, 1975)",
+    family: Family::Coefficients,
+    reach: Reach::None,
+    is_isotropic: false,
+    forms: &[Form::Baked, Form::Full],
+    // Coefficients are computed from the stack at normal incidence: what changes these is not left out. The diffuse one is the albedo of
+    // the base, less what interfaces reflect.
+    shows: Shows {
+        always: &[InnerInterface, Base, Absorption, Films, InnerFilms, NormalMap, RoughnessMap, Glitter],
+        baked: &[],
+        full: &[],
+    },
+    tables: &[],
+    parts: &[],
+    domain: &[],
+    tolerances: Tolerances {
+        table: Tolerance::NO_TABLE,
+        baked: PHONG_IN_F32,
+        full: PHONG_IN_F32,
+        filtered: PHONG_IN_F32,
+    },
+    default_for: &[],
+};
+
+/// The facets of the first interface.
+const MICROFACET: Facts = Facts {
+    title: "microfacet (K. Torrance, E. Sparrow 1967; masking of E. Heitz 2014)",
+    family: Family::Facets,
+    reach: Reach::First,
+    is_isotropic: false,
+    forms: &[Form::Baked, Form::Full],
+    // V-cavities and the other maskings without Smith's Lambda need no more than D of a distribution.
+    shows: Shows {
+        always: &[
+            Films,
+            FilmVariation,
+            DiffuseSlopes,
+            Anisotropy,
+            Beckmann,
+            NormalMap,
+            RoughnessMap,
+            LayerAlpha,
+            Tangents,
+            AlbedoMap,
+            MetallicMap,
+            Glitter,
+            Distribution,
+        ],
+        baked: &[InnerFilms],
+        full: &[],
+    },
+    tables: &[
+        read(TableKind::Fresnel, ReadWhen::Steady),
+        read(TableKind::Film, ReadWhen::Varying),
+        read(TableKind::Thickness, ReadWhen::FirstVarying),
+        read(TableKind::Distribution, ReadWhen::Always),
+    ],
+    parts: &[ModelPart::Masking, ModelPart::Reflectance],
+    domain: &[],
+    tolerances: Tolerances { table: LOBE_TABLE, baked: LOBE_READ, full: LAYERS_IN_F32, filtered: FILTERED_BY_HARDWARE },
+    default_for: &[],
+};
+
+/// The facets of the first interface over rows of lobes.
+const LOBES: Facts = Facts {
+    title: "lobes (luthier's own: lobes fitted to a simulation of the stack)",
+    family: Family::Lobes,
+    reach: Reach::First,
+    is_isotropic: false,
+    forms: &[Form::Baked],
+    // Rows are over azimuths against axes that stay, and for one F0; the light of a base, which is in proportion to its albedo, is a part of
+    // its own.
+    shows: Shows {
+        always: &[
+            InnerInterface,
+            Base,
+            Absorption,
+            BaseAbsorption,
+            Films,
+            InnerFilms,
+            FilmVariation,
+            DiffuseSlopes,
+            Anisotropy,
+            Beckmann,
+            NormalMap,
+            RoughnessMap,
+            ThicknessMap,
+            AlbedoMap,
+            Flakes,
+            Patina,
+            Glitter,
+        ],
+        baked: &[],
+        full: &[],
+    },
+    tables: &[
+        read(TableKind::Fresnel, ReadWhen::Steady),
+        read(TableKind::Film, ReadWhen::Varying),
+        read(TableKind::Thickness, ReadWhen::FirstVarying),
+        read(TableKind::Distribution, ReadWhen::Always),
+        read(TableKind::Lobes, ReadWhen::Always),
+    ],
+    parts: &[],
+    domain: &[BETWEEN_ROWS],
+    tolerances: Tolerances {
+        table: ROW_TABLE,
+        baked: LOBES_IN_F32,
+        full: LOBES_IN_F32,
+        filtered: FILTERED_BELOW_A_COAT,
+    },
+    default_for: &[(DefaultFor::Stack, 0), (DefaultFor::Facets, 0)],
+};
+
+/// The row of a model.
+pub(crate) const fn row(model: ShadingModel) -> &'static Facts {
+    match model {
+        ShadingModel::Elek => &ELEK,
+        ShadingModel::WeidlichWilkie => &WEIDLICH_WILKIE,
+        ShadingModel::GranierHeidrich => &GRANIER_HEIDRICH,
+        ShadingModel::Belcour => &BELCOUR,
+        ShadingModel::Yamaguchi => &YAMAGUCHI,
+        ShadingModel::Phong => &PHONG,
+        ShadingModel::Microfacet => &MICROFACET,
+        ShadingModel::Lobes => &LOBES,
+    }
+}
