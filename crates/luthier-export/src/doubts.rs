@@ -23,7 +23,7 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts
 }
 
-/// Doubts about a material of a scene, whose model is chosen by what it leaves out: only quantities outside its domain.
+/// Warnings for a material in a scene: only values outside the model's domain. The scene picks the model, so missing features are not reported.
 pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut found: Vec<Diagnostic> =

@@ -24,8 +24,8 @@ impl Outside {
     }
 }
 
-/// Light that comes back through a coat from below it, times the ratio of indices, up to which that ratio is no matter: the excess of the
-/// models is about such a multiple. The metal of the suite is off by 1.0, 1.24 and 1.35 at ratios of 2, 2.5 and 4, where this is 1.45, 1.53
+/// Limit of the light that comes back through a coat from below it, times the ratio of indices. Below it the missing 1/n^2 is too faint to warn about.
+/// A larger limit would leave out coats that are too bright; a smaller one would warn of dim bases. The metal of the suite is off by 1.0, 1.24 and 1.35 at ratios of 2, 2.5 and 4, where this is 1.45, 1.53
 /// and 1.50.
 const DIM: f64 = 1.0;
 

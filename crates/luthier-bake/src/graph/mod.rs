@@ -178,7 +178,7 @@ impl Graph {
         (entry.job.as_ref() as &dyn Any).downcast_ref()
     }
 
-    /// The jobs that would run: those without a result that something needs which has none. Results that a store has are fetched.
+    /// The jobs that must run: no stored result, and needed by another job that must run. Fetches the results that the store has.
     fn missing(&self, store: &dyn Store, results: &mut Results, observer: &dyn Observer) -> BTreeSet<(Place, Key)> {
         let inner = self.inner();
         let mut missing: BTreeSet<(Place, Key)> = BTreeSet::new();
@@ -209,8 +209,7 @@ impl Graph {
         missing
     }
 
-    /// Runs everything on the rayon pool that has no result yet, and of which the result is wanted: all but that of a job which only others need whose results
-    /// the store has. Kinds run in their order, which puts dependencies first; jobs of one kind run side by side.
+    /// Runs every job without a result on the rayon pool, except jobs whose dependants are all stored already. Kinds run in their order, which puts dependencies first; jobs of one kind run side by side.
     pub(crate) fn run(mut self, observer: &dyn Observer, store: &dyn Store, mut results: Results) -> Results {
         let missing = self.missing(store, &mut results, observer);
         for (&place, jobs) in &mut self.jobs {

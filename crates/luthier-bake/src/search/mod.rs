@@ -46,11 +46,11 @@ pub(crate) struct Found {
     pub(crate) confirmed: Vec<bool>,
     /// Tiles, by number, that no candidate serves and that the others do not wait for.
     pub(crate) left_out: Vec<usize>,
-    /// Whether they were measured at all that the bake measures; otherwise what is missed is missed by about the same factor in all.
+    /// True if every tile was measured; otherwise the other candidates' errors are scaled by the ratio found for one.
     pub(crate) is_whole: bool,
 }
 
-/// Budgets that no file or option states may be missed by this factor: four times 5e-4 is half a step of eight bits. Beyond it some
+/// The default budget (5e-4) may be exceeded fourfold: 2e-3 is half an 8-bit step. Beyond it some
 /// interface is one that no table serves (the fringes of a thick film, total reflection by what absorbs), and the choice would be the best
 /// for it alone.
 const NEAR: f64 = 4.0;
@@ -77,7 +77,7 @@ impl Found {
         self
     }
 
-    /// Whether the bake's own measurement of a candidate is no worse than that of the search; the worse counts from now on.
+    /// Records the bake's measured error if it is larger. Returns true if the search's estimate held.
     pub(crate) fn confirm(&mut self, choice: usize, exact: f64) -> bool {
         let found = self.candidates[choice].error.max_abs;
         let is_new = !std::mem::replace(&mut self.confirmed[choice], true);

@@ -18,8 +18,8 @@ pub enum Varying {
     Slab,
     /// The thickness of the top film of the first interface, between the factors on its nominal thickness that are given: the greatest and the least.
     Film([f64; 2]),
-    /// The amount of the first layer, a patina. A factor is that amount in 0..=1; the first node, where all layers are there without the numbers of the
-    /// patina, is one step beyond 1, or 1 where there are none.
+    /// The amount of the first layer, a patina. A factor is the amount of patina in 0..=1. Node 0 (all layers, no patina parameters) lies one step above 1, or
+    /// at 1 if the patina has no parameters.
     Patina(Cover),
 }
 

@@ -1,4 +1,4 @@
-//! Members of structures that a set leaves out: what assigns them goes with them, so that conditions stand at the members alone.
+//! Assignments to members of structures that were compiled out: they are removed, so that only the member needs a condition.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -20,3 +20,4 @@ mod pages;
 mod paper;
 mod scenes;
 mod statistics;
+mod words;

@@ -1,0 +1,97 @@
+//! Questions about models, which their rows of facts answer.
+
+use luthier_lut::TableKind;
+
+use crate::domain::COMMON;
+use crate::facts::{Facts, Family, Shows};
+use crate::rows::row;
+use crate::{DefaultFor, Feature, Form, Limit, ModelPart, ShadingModel};
+
+impl ShadingModel {
+    /// Its row of facts.
+    pub const fn facts(self) -> &'static Facts {
+        row(self)
+    }
+
+    /// Name and source, for headers and reports.
+    pub const fn title(self) -> &'static str {
+        self.facts().title
+    }
+
+    /// Whether its shader has a form: what is read from tables alone has no other.
+    pub fn has(self, form: Form) -> bool {
+        self.facts().forms.contains(&form)
+    }
+
+    /// Whether the shader of a form shows a feature where a material has it. Tests of luthier-shader and luthier-scene compare every
+    /// entry with what shaders and their f64 twins do.
+    pub fn honours(self, feature: Feature, form: Form) -> bool {
+        let Shows { always, baked, full } = &self.facts().shows;
+        let in_form = if form == Form::Baked { baked } else { full };
+        always.contains(&feature) || in_form.contains(&feature)
+    }
+
+    /// Whether it goes down a path of refracted directions, layer by layer.
+    pub fn is_path(self) -> bool {
+        self.facts().family == Family::Path
+    }
+
+    /// Whether it follows light through the layers as statistics of lobes.
+    pub fn is_statistical(self) -> bool {
+        self.facts().family == Family::Statistics
+    }
+
+    /// Whether its light from below the first interface is simulated and fitted.
+    pub fn is_fitted(self) -> bool {
+        self.facts().family == Family::Lobes
+    }
+
+    /// Whether a material may choose a part of it.
+    pub fn takes(self, part: ModelPart) -> bool {
+        self.facts().takes(part)
+    }
+
+    /// Whether its `baked` shader reads a kind of table for some interface.
+    pub fn reads_some(self, kind: TableKind) -> bool {
+        self.facts().tables.iter().any(|table| table.kind == kind)
+    }
+
+    /// The ranges within which it may be used: those of all models, and its own.
+    pub fn limits(self) -> impl Iterator<Item = &'static Limit> {
+        COMMON.iter().chain(self.facts().domain)
+    }
+}
+
+impl DefaultFor {
+    /// The models to choose among, the first choice first.
+    pub fn models(self) -> impl Iterator<Item = ShadingModel> {
+        let rank = move |model: &ShadingModel| {
+            model.facts().default_for.iter().find(|(of, _)| *of == self).map(|(_, rank)| (*rank, *model))
+        };
+        let mut ranked: Vec<(u8, ShadingModel)> = ShadingModel::ALL.iter().filter_map(rank).collect();
+        ranked.sort_unstable();
+        ranked.into_iter().map(|(_, model)| model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Feature, Form};
+
+    #[test]
+    fn ranks_are_places_of_a_list() {
+        for of in [DefaultFor::Stack, DefaultFor::Facets, DefaultFor::Closed] {
+            let ranks = |model: ShadingModel| model.facts().default_for.iter().find(|(other, _)| *other == of);
+            let places: Vec<usize> = of.models().map(|model| usize::from(ranks(model).unwrap().1)).collect();
+            assert!(!places.is_empty() && places.iter().copied().eq(0..places.len()), "{of:?}: {places:?}");
+        }
+    }
+
+    /// Whatever a file asks for, some model of the list shows it.
+    #[test]
+    fn the_last_closed_form_shows_everything() {
+        let last = DefaultFor::Closed.models().last().unwrap();
+        assert!(Feature::ALL.into_iter().all(|feature| last.honours(feature, Form::Baked)));
+    }
+}
