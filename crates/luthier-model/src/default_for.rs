@@ -1,6 +1,6 @@
 //! Defaults: the models of materials whose files name none.
 
-/// What a material is, as far as the choice of its default model asks.
+/// Kind of material, for the choice of its default model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DefaultFor {
     /// Several layers: models that follow light through them and return no more than falls in, the nearest to the simulation first

@@ -12,7 +12,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// That of a shader without tables.
+    /// The tolerance of a shader without tables.
     pub const NO_TABLE: Self = Self { name: "NO_TABLE", limit: 0.0, reason: "The shader reads no table." };
 }
 

@@ -3,6 +3,7 @@
 use luthier_material::Material;
 use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
+use luthier_optics::sampling::split_mix::SplitMix64;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 use luthier_report::ModelSubject;
 
@@ -12,20 +13,16 @@ const WAVELENGTHS_NM: [f64; 3] = [630.0, 532.0, 465.0];
 /// Conductors of random stacks.
 const METALS: [&str; 7] = ["au", "ag", "cu", "al", "cr", "ti", "fe"];
 
-/// Numbers from a seed: SplitMix64 (Steele, Lea and Flood 2014).
-struct Draw(u64);
+/// Numbers from a seed.
+struct Draw(SplitMix64);
 
 impl Draw {
     fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.unit()
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
+        self.0.between([low, high])
     }
 
     fn chance(&mut self, probability: f64) -> bool {
@@ -60,7 +57,7 @@ pub(crate) fn of(material: &Material, is_twin: bool) -> ModelSubject {
 /// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has an index below
 /// that of what is above it.
 pub(crate) fn random(seed: u64) -> ModelSubject {
-    let mut draw = Draw(seed.wrapping_mul(0x5851_f42d_4c95_7f2d));
+    let mut draw = Draw(SplitMix64::new(seed.wrapping_mul(0x5851_f42d_4c95_7f2d)));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
     let mut name = format!("{seed} {}:", distribution.name());
     let mut layers = Vec::new();
@@ -98,7 +95,7 @@ pub(crate) fn random(seed: u64) -> ModelSubject {
 
 /// A coat over a metal or a diffuse base, one of them or both brushed; for odd seeds both, along other axes.
 pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
-    let mut draw = Draw((seed + 1).wrapping_mul(0x9fb2_1c65_1e98_df25));
+    let mut draw = Draw(SplitMix64::new((seed + 1).wrapping_mul(0x9fb2_1c65_1e98_df25)));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
     let mut name = format!("{seed} {}:", distribution.name());
     let surface = |draw: &mut Draw, is_brushed: bool, rotation_deg: f64| {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64};
+
 /// Metals and semiconductors by the names of their data sets.
 const METALS: [&str; 12] = ["ag", "al", "au", "brass_70_30", "co", "cr", "cu", "fe", "ni", "steel_316", "ti", "w"];
 
@@ -16,7 +18,7 @@ pub(crate) struct Library {
 impl Library {
     /// The file of a material.
     pub(crate) fn material(&self, number: u32) -> String {
-        let mut random = Random(self.seed ^ u64::from(number).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut random = Random(SplitMix64::new(self.seed ^ u64::from(number).wrapping_mul(GOLDEN)));
         let mut out = format!("schema = 1\nname = \"material-{number:05}\"\n");
         for _ in 0..random.below(4) {
             self.film(&mut random, &mut out);
@@ -74,22 +76,15 @@ fn surface(random: &mut Random, out: &mut String, [least, most]: [f64; 2]) {
     }
 }
 
-/// SplitMix64.
-struct Random(u64);
+/// Random choices.
+struct Random(SplitMix64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
     fn below(&mut self, end: u32) -> u32 {
-        (((self.next() >> 32) * u64::from(end)) >> 32) as u32
+        (((self.0.bits() >> 32) * u64::from(end)) >> 32) as u32
     }
 
     fn between(&mut self, least: f64, most: f64) -> f64 {
-        least + (most - least) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.between([least, most])
     }
 }

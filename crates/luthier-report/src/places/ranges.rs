@@ -7,6 +7,7 @@ use luthier_layers::flakes::Flakes;
 use luthier_layers::patina::Patina;
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
+use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};
 
 use crate::Subject;
 
@@ -33,35 +34,8 @@ pub struct Places {
 }
 
 /// Random numbers of a place: a function of a seed, of its number, and of how many were drawn before.
-struct Numbers {
-    counter: u64,
-}
-
-impl Numbers {
-    fn new(seed: u64, place: u64) -> Self {
-        Self { counter: mixed(mixed(seed) ^ place.wrapping_mul(GOLDEN)) }
-    }
-
-    /// Uniform in 0..1.
-    fn unit(&mut self) -> f64 {
-        self.counter = self.counter.wrapping_add(GOLDEN);
-        (mixed(self.counter) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Uniform between two numbers.
-    fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
-
-/// 2^64 over the golden ratio.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
-fn mixed(mut x: u64) -> u64 {
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
+fn numbers(seed: u64, place: u64) -> SplitMix64 {
+    SplitMix64::new(mix(mix(seed) ^ place.wrapping_mul(GOLDEN)))
 }
 
 /// Greatest tangent of a normal that a texel means: flatter normals are turned up.
@@ -108,7 +82,7 @@ impl Places {
 
     /// The n-th random place of a seed.
     pub fn place(&self, seed: u64, n: u64) -> PlaceValues {
-        let mut numbers = Numbers::new(seed, n);
+        let mut numbers = numbers(seed, n);
         let mut place = PlaceValues::NONE;
         let constants = &self.entry.constants;
         let (mut color, mut metal) = (None, None);
@@ -231,7 +205,7 @@ mod tests {
     #[test]
     fn numbers_are_uniform_and_depend_on_their_place_alone() {
         let drawn = |n: u64| {
-            let mut numbers = Numbers::new(3, n);
+            let mut numbers = numbers(3, n);
             [numbers.unit(), numbers.unit()]
         };
         assert_eq!(drawn(7), drawn(7));

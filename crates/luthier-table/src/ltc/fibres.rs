@@ -204,6 +204,7 @@ fn fibre_distribution(sigma: f64, cos_h_sq: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use luthier_optics::sampling::split_mix::SplitMix64;
 
     use super::super::sheen::ordinates;
     use super::*;
@@ -215,26 +216,13 @@ mod tests {
         (FibreLayer::new(&rules, sigma, all), row)
     }
 
-    /// Numbers in 0..1: a counter, hashed (SplitMix64).
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = self.0;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        }
-    }
-
     /// Where a random walk leaves the layer, if above, and whether within so many bounces.
-    fn walk(numbers: &mut Numbers, sigma: f64, cos: f64) -> Option<(DVec3, u32)> {
+    fn walk(numbers: &mut SplitMix64, sigma: f64, cos: f64) -> Option<(DVec3, u32)> {
         let mut direction = DVec3::new(-libm::sqrt(1.0 - cos * cos), 0.0, -cos);
         let mut depth = 0.0;
         for bounce in 0.. {
             let area = projected_area(sigma, direction.z.abs().min(1.0));
-            depth -= direction.z * -libm::log(1.0 - numbers.next()) / area;
+            depth -= direction.z * -libm::log(1.0 - numbers.unit()) / area;
             if depth < 0.0 {
                 return Some((direction, bounce));
             }
@@ -244,7 +232,7 @@ mod tests {
             // A visible normal: a cosine about the direction, in the space of a sphere (Heitz et al. 2015, section 4).
             let seen = DVec3::new(-direction.x, -direction.y, -direction.z * sigma).normalize();
             let (along, across) = seen.any_orthonormal_pair();
-            let (radius_sq, phi) = (numbers.next(), 2.0 * PI * numbers.next());
+            let (radius_sq, phi) = (numbers.unit(), 2.0 * PI * numbers.unit());
             let radius = libm::sqrt(radius_sq);
             let n = seen * libm::sqrt(1.0 - radius_sq)
                 + along * (radius * libm::cos(phi))
@@ -260,7 +248,7 @@ mod tests {
     fn agrees_with_random_walks() {
         let walks = 200_000;
         for (sigma, cos) in [(1.0, 0.5), (0.25, 0.1), (0.25, 0.6), (0.0625, 0.06), (0.0166, 0.129), (0.002, 0.02)] {
-            let mut numbers = Numbers(7);
+            let mut numbers = SplitMix64::new(7);
             let [mut above, mut back, mut weight] = [0.0; 3];
             for _ in 0..walks {
                 if let Some((direction, _)) = walk(&mut numbers, sigma, cos) {

@@ -1,9 +1,7 @@
 //! Random numbers as a function of a seed, a path and a count.
 
 use glam::DVec2;
-
-/// Increment of the counter: 2^64 over the golden ratio, odd.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+use luthier_optics::sampling::split_mix::{GOLDEN, mix};
 
 /// The numbers of one path: the k-th is a hash of (seed, path, k), whatever other paths do. The first numbers of an even stream are those of a
 /// sequence instead.
@@ -93,14 +91,6 @@ impl Stream {
             }
         }
     }
-}
-
-/// Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators": the finaliser of SplitMix64
-/// (Stafford's variant 13).
-fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 //!
 //! All densities are per solid angle of the light's direction `wi`, given the eye's direction `wo`; both local, +z the normal.
 
+pub mod split_mix;
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
