@@ -45,7 +45,7 @@ fn rendered(path: &Path) -> String {
     }
 }
 
-/// What is expected of the text alone: without the messages about pictures that are not there.
+/// Expected messages of the text alone, without those about pictures that are not there.
 fn of_the_text(expected: &str) -> String {
     let mut is_of_text = true;
     let lines = expected.split_inclusive('\n').filter(|line| {

@@ -14,6 +14,33 @@ const fn read(kind: TableKind, when: ReadWhen) -> TableRead {
     TableRead { kind, when }
 }
 
+/// Tables of models that take the facets of interfaces as they are.
+const FACET_TABLES: &[TableRead] = &[
+    read(TableKind::Fresnel, ReadWhen::Steady),
+    read(TableKind::Film, ReadWhen::Varying),
+    read(TableKind::Thickness, ReadWhen::FirstVarying),
+    read(TableKind::Distribution, ReadWhen::Always),
+];
+
+/// Tables of models that follow statistics of lobes.
+const STATISTICS_TABLES: &[TableRead] =
+    &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
+
+/// Parts of models that go down a path.
+const PATH_PARTS: &[ModelPart] = &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance];
+
+/// Tolerances of models that go down a path.
+const PATH_TOLERANCES: Tolerances =
+    Tolerances { table: LOBE_TABLE, baked: LOBE_READ, full: LAYERS_IN_F32, filtered: FILTERED_BELOW_A_COAT };
+
+/// Tolerances of models that follow statistics of lobes.
+const STATISTICS_TOLERANCES: Tolerances = Tolerances {
+    table: ENERGY_TABLE,
+    baked: STATISTICS_IN_F32,
+    full: STATISTICS_IN_F32,
+    filtered: FILTERED_BY_HARDWARE,
+};
+
 /// A path with one slope parameter per interface, and Elek's clamp.
 const ELEK: Facts = Facts {
     title: "elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010)",
@@ -49,20 +76,10 @@ const ELEK: Facts = Facts {
         baked: &[InnerFilms],
         full: &[],
     },
-    tables: &[
-        read(TableKind::Fresnel, ReadWhen::Steady),
-        read(TableKind::Film, ReadWhen::Varying),
-        read(TableKind::Thickness, ReadWhen::FirstVarying),
-        read(TableKind::Distribution, ReadWhen::Always),
-    ],
-    parts: &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance],
+    tables: FACET_TABLES,
+    parts: PATH_PARTS,
     domain: &[BRIGHT],
-    tolerances: Tolerances {
-        table: LOBE_TABLE,
-        baked: LOBE_READ,
-        full: LAYERS_IN_F32,
-        filtered: FILTERED_BELOW_A_COAT,
-    },
+    tolerances: PATH_TOLERANCES,
     default_for: &[(DefaultFor::Closed, 0)],
 };
 
@@ -102,20 +119,10 @@ const WEIDLICH_WILKIE: Facts = Facts {
         baked: &[InnerFilms],
         full: &[],
     },
-    tables: &[
-        read(TableKind::Fresnel, ReadWhen::Steady),
-        read(TableKind::Film, ReadWhen::Varying),
-        read(TableKind::Thickness, ReadWhen::FirstVarying),
-        read(TableKind::Distribution, ReadWhen::Always),
-    ],
-    parts: &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance],
+    tables: FACET_TABLES,
+    parts: PATH_PARTS,
     domain: &[BRIGHT],
-    tolerances: Tolerances {
-        table: LOBE_TABLE,
-        baked: LOBE_READ,
-        full: LAYERS_IN_F32,
-        filtered: FILTERED_BELOW_A_COAT,
-    },
+    tolerances: PATH_TOLERANCES,
     default_for: &[(DefaultFor::Closed, 1)],
 };
 
@@ -176,15 +183,10 @@ const BELCOUR: Facts = Facts {
         baked: &[InnerFilms],
         full: &[FilmVariation],
     },
-    tables: &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)],
+    tables: STATISTICS_TABLES,
     parts: &[],
     domain: &[],
-    tolerances: Tolerances {
-        table: ENERGY_TABLE,
-        baked: STATISTICS_IN_F32,
-        full: STATISTICS_IN_F32,
-        filtered: FILTERED_BY_HARDWARE,
-    },
+    tolerances: STATISTICS_TOLERANCES,
     default_for: &[(DefaultFor::Stack, 1)],
 };
 
@@ -217,15 +219,10 @@ const YAMAGUCHI: Facts = Facts {
         baked: &[InnerFilms],
         full: &[FilmVariation],
     },
-    tables: &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)],
+    tables: STATISTICS_TABLES,
     parts: &[],
     domain: &[],
-    tolerances: Tolerances {
-        table: ENERGY_TABLE,
-        baked: STATISTICS_IN_F32,
-        full: STATISTICS_IN_F32,
-        filtered: FILTERED_BY_HARDWARE,
-    },
+    tolerances: STATISTICS_TOLERANCES,
     default_for: &[(DefaultFor::Stack, 2)],
 };
 
@@ -282,12 +279,7 @@ const MICROFACET: Facts = Facts {
         baked: &[InnerFilms],
         full: &[],
     },
-    tables: &[
-        read(TableKind::Fresnel, ReadWhen::Steady),
-        read(TableKind::Film, ReadWhen::Varying),
-        read(TableKind::Thickness, ReadWhen::FirstVarying),
-        read(TableKind::Distribution, ReadWhen::Always),
-    ],
+    tables: FACET_TABLES,
     parts: &[ModelPart::Masking, ModelPart::Reflectance],
     domain: &[],
     tolerances: Tolerances { table: LOBE_TABLE, baked: LOBE_READ, full: LAYERS_IN_F32, filtered: FILTERED_BY_HARDWARE },

@@ -19,13 +19,13 @@ impl Tolerance {
 /// The tolerances of a model, by the source of the error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerances {
-    /// Of the values in tables.
+    /// Tolerance of the error that tables bring.
     pub table: Tolerance,
-    /// Of f32 arithmetic in the form `baked`, where a sampler filters exactly.
+    /// Tolerance of f32 arithmetic in the form `baked`, where a sampler filters exactly.
     pub baked: Tolerance,
-    /// Of f32 arithmetic in the form `full`.
+    /// Tolerance of f32 arithmetic in the form `full`.
     pub full: Tolerance,
-    /// Of f32 arithmetic in the form `baked`, where a sampler has weights of 8 bits.
+    /// Tolerance of f32 arithmetic in the form `baked`, where a sampler has weights of 8 bits.
     pub filtered: Tolerance,
 }
 

@@ -20,4 +20,3 @@ mod pages;
 mod paper;
 mod scenes;
 mod statistics;
-mod words;

@@ -1,5 +1,7 @@
 //! The parts of the written pages that are made from the code. To write them anew, run with `LUTHIER_ACCEPT=1`.
 
+mod words;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
