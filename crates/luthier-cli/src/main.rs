@@ -11,7 +11,6 @@ mod materials;
 mod memory_bake;
 #[cfg(feature = "gpu")]
 mod meshes;
-mod misses;
 mod model_inputs;
 #[cfg(feature = "gpu")]
 mod picture;

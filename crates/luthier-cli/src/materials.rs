@@ -1,82 +1,38 @@
 //! Materials and surfaces that a command works on.
 
-use std::path::PathBuf;
-
-use luthier_export::{
-    Source, SurfaceSource, gather, of_energy, of_function, of_model, of_parts, read_all, refuse, refuse_surfaces,
-};
-use luthier_manifest::{Form, FunctionGroup, Reflectance, ShadingModel, SurfaceEntry};
-use luthier_material::{Diagnostic, Material, Severity};
+use luthier::refusals::{misses, of_function, of_parts};
+use luthier::{Files, Source, Sources, SurfaceSource, refuse};
+use luthier_manifest::{Form, FunctionGroup, Manifest, Reflectance, ShadingModel, SurfaceEntry};
+use luthier_material::{Diagnostic, Material};
 use luthier_optics::stack::{Base, Layer};
 use luthier_terminal::{Broken, Failure, Outcome, complain, print_diagnostics, valid};
 
 use crate::cli::Shading;
 
 impl Shading {
-    /// The model by which the command line has a material shaded in some forms, unless that is the material's own. The form `full` computes all
-    /// terms, so that it takes a model that is not fitted.
-    fn model_of(&self, material: &Material, forms: &[Form]) -> Option<ShadingModel> {
-        let is_closed = self.no_fit || forms.contains(&Form::Full);
-        self.model.or_else(|| is_closed.then(|| material.model_without_fit()))
-    }
-
-    /// The model by which a material is shaded.
-    pub(crate) fn model(&self, material: &Material) -> ShadingModel {
-        self.model_of(material, &[]).unwrap_or_else(|| material.model())
-    }
-
-    /// Doubts about a material in some forms, and refusals.
-    pub(crate) fn doubts(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
-        let model = self.model_of(material, forms);
-        let chosen = self.fresnel.map(|_| {
-            let mut chosen = material.clone();
-            chosen.bake.reflectance = self.fresnel;
-            chosen
-        });
-        let mut doubts = of_model(chosen.as_ref().unwrap_or(material), model);
-        if self.no_fit && model.is_some_and(ShadingModel::is_fitted) {
-            let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
-            let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
-            doubts.push(material.diagnostic(Severity::Error, "bake.model", message, Some(hint)));
-        }
-        doubts
-    }
-
-    /// Doubts about a material, those about its energy too, which take some hundredths of a second.
-    pub(crate) fn doubts_and_energy(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
-        let mut doubts = self.doubts(material, forms);
-        if !doubts.iter().any(Diagnostic::is_error) {
-            doubts.extend(of_energy(material, self.model_of(material, forms)));
-        }
-        doubts
+    /// These options for shaders of some forms; none stands for all.
+    pub(crate) fn in_forms(&self, forms: &[Form]) -> luthier::Shading {
+        let Self { model, no_fit, fresnel: reflectance, tables } = self.clone();
+        luthier::Shading { model, no_fit, reflectance, tables, forms: forms.to_vec() }
     }
 }
 
-/// The materials that can be baked, shaded by the model that the command line asks for; or, when anything is refused, its diagnostics
-/// and a failure.
-pub(crate) fn bakeable(
-    mut sources: Vec<Source>,
-    shading: &Shading,
-    forms: &[Form],
-    quiet: bool,
-) -> Outcome<Vec<Material>> {
-    refuse(&mut sources, |material| shading.doubts(material, forms));
-    Ok(shaded(valid(sources, quiet)?, shading, forms))
+/// The materials that can be baked, shaded as the command line asks for; or, when anything is refused, its diagnostics and a failure.
+pub(crate) fn bakeable(mut sources: Vec<Source>, shading: &luthier::Shading, quiet: bool) -> Outcome<Vec<Material>> {
+    refuse(&mut sources, |material| shading.doubts(material));
+    Ok(shading.shaded(valid(sources, quiet)?))
 }
 
 /// The materials and surfaces of files that can be baked, or a failure, as `bakeable` has it; the materials of surfaces are among them.
 pub(crate) fn bakeable_with_surfaces(
-    files: &[PathBuf],
-    shading: &Shading,
-    forms: &[Form],
+    files: Files,
+    shading: &luthier::Shading,
     quiet: bool,
 ) -> Outcome<(Vec<Material>, Vec<SurfaceEntry>)> {
-    let mut found = gather(files)?;
-    let mut sources = read_all(&found.materials)?;
-    refuse(&mut sources, |material| shading.doubts(material, forms));
-    refuse_surfaces(&mut found.surfaces, &sources);
-    let surfaces = valid_surfaces(&found.surfaces)?;
-    Ok((shaded(valid(sources, quiet)?, shading, forms), surfaces))
+    let mut sources = Sources::of(files.without_scenes());
+    sources.refuse(shading);
+    let surfaces = valid_surfaces(&sources.surfaces)?;
+    Ok((shading.shaded(valid(sources.materials, quiet)?), surfaces))
 }
 
 /// The surfaces of all files; or, when any is invalid, its diagnostics and a failure.
@@ -95,14 +51,14 @@ pub(crate) fn valid_surfaces(surfaces: &[SurfaceSource]) -> Outcome<Vec<SurfaceE
     Err(Failure::input(Broken { sentence, diagnostics }))
 }
 
-/// The materials, shaded by the model that the command line asks for, with its tables.
-pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading, forms: &[Form]) -> Vec<Material> {
-    for material in &mut materials {
-        material.bake.model = shading.model_of(material, forms).or(material.bake.model);
-        material.bake.reflectance = shading.fresnel.or(material.bake.reflectance);
-        material.bake.tables.extend(&shading.tables);
+/// A warning for every layer of a bake that reads a tile which misses its aim; unless quiet, they are printed.
+pub(crate) fn tell_misses(manifest: &Manifest, materials: &[Material], quiet: bool) -> Vec<Diagnostic> {
+    let warnings = misses(manifest, materials);
+    for warning in warnings.iter().filter(|_| !quiet) {
+        let material = materials.iter().find(|material| material.source == warning.label);
+        print_diagnostics([warning], material.map_or("", |material| &material.text));
     }
-    materials
+    warnings
 }
 
 /// Refuses functions of the environment where no shader has them.

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use luthier_export::{Package, lit, read_one};
+use luthier::{Bake, Files, Source, TomlFile, lit};
+use luthier_export::Package;
 use luthier_gpu::Shown;
 use luthier_manifest::Form;
 use luthier_terminal::{Failure, Outcome};
@@ -15,9 +16,11 @@ use crate::store::store;
 pub(crate) fn shown(subject: &str, shading: &Shading, out: &Path) -> Outcome<(Package, Shown)> {
     let file = Path::new(subject);
     if file.extension().is_some_and(|e| e == "toml") {
-        let (materials, surfaces) = bakeable_with_surfaces(&[file.to_owned()], shading, &[], false)?;
+        let (materials, surfaces) =
+            bakeable_with_surfaces(Files::of(vec![TomlFile::read(file)?]), &shading.in_forms(&[]), false)?;
         let shown = if surfaces.is_empty() { Shown::Material(0) } else { Shown::Surface(0) };
-        return Ok((Package::of_surfaces(&lit(&materials), surfaces, store()?)?, shown));
+        let bake = Bake { surfaces, ..Bake::lit() };
+        return Ok((bake.package(&lit(&materials), store()?)?, shown));
     }
     let package = Package::read(out)?;
     if let Some(number) = package.manifest.surface_index(subject) {
@@ -31,8 +34,8 @@ pub(crate) fn shown(subject: &str, shading: &Shading, out: &Path) -> Outcome<(Pa
 pub(crate) fn find(material: &str, shading: &Shading, forms: &[Form], out: &Path) -> Outcome<(Package, u32)> {
     let file = Path::new(material);
     if file.extension().is_some_and(|e| e == "toml") {
-        let materials = bakeable(vec![read_one(file)?], shading, forms, false)?;
-        return Ok((Package::for_renderer(&lit(&materials), store()?)?, 0));
+        let materials = bakeable(vec![Source::read(file)?], &shading.in_forms(forms), false)?;
+        return Ok((Bake::lit().package(&lit(&materials), store()?)?, 0));
     }
     let package = Package::read(out)?;
     let number = package.manifest.material_index(material).ok_or_else(|| {

@@ -2,7 +2,7 @@
 
 use std::env::{self, VarError};
 
-use luthier_export::Store;
+use luthier::Store;
 use luthier_terminal::{Failure, Outcome};
 
 #[cfg(feature = "remote")]

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use luthier_export::{Package, gather, read_one, refuse};
+use luthier::{Bake, Source, TomlFile, refuse};
+use luthier_export::Package;
 use luthier_gpu::{Gpu, RenderSettings, Shown, SimulationSettings};
 use luthier_lut::Image;
 use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
-use luthier_material::{Diagnostic, Material, Severity, distribution_key};
+use luthier_material::{Diagnostic, FileKind, Material, Severity, distribution_key};
 use luthier_terminal::{Bar, Failure, Outcome, valid};
 
 use crate::cli::Shading;
@@ -19,11 +20,12 @@ pub(crate) fn find(material: &str, out: &Path) -> Outcome<(Package, u32)> {
     if file.extension().is_none_or(|e| e != "toml") {
         return memory_bake::find(material, &Shading::default(), &[], out);
     }
-    if !gather(&[file.to_owned()])?.surfaces.is_empty() {
+    let file = TomlFile::read(file)?;
+    if file.kind() == FileKind::Surface {
         let text = format!("{material} is a surface; the simulation on the device takes one of its materials");
         return Err(Failure::Input(anyhow::anyhow!(text)));
     }
-    let mut sources = vec![read_one(file)?];
+    let mut sources = vec![Source::of(file)];
     refuse(&mut sources, beyond);
     Ok((package(valid(sources, false)?)?, 0))
 }
@@ -34,7 +36,7 @@ pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
         material.shade_by(ShadingModel::Phong);
         material.bake.tables.clear();
     }
-    Ok(Package::for_renderer(&materials, store()?)?)
+    Ok(Bake::lit().package(&materials, store()?)?)
 }
 
 /// Reasons why a material is not simulated, each with its file and line; none where it is.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::Args;
-use luthier_export::{MemoryStore, Store};
+use luthier::{MemoryStore, Store};
 use luthier_store::DiskStore;
 use luthier_terminal::{Failure, Outcome, complain};
 

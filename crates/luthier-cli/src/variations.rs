@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use luthier_export::{Source, of_text, read_one};
+use luthier::Source;
 use luthier_terminal::{Failure, Outcome};
 use toml_edit::{DocumentMut, Formatted, Item, TableLike, Value};
 
@@ -46,7 +46,7 @@ impl Range {
 /// # Errors
 /// The file cannot be read, or has no place for a key.
 pub(crate) fn variations(file: &Path, ranges: [&Range; 2], steps: u32) -> Outcome<Vec<(String, Source)>> {
-    let original = read_one(file)?;
+    let original = Source::read(file)?;
     let Ok(parsed) = &original.parsed else { return Ok(vec![(String::new(), original)]) };
     let document: DocumentMut = original.text.parse().map_err(|error| Failure::Input(anyhow::anyhow!("{error}")))?;
     let mut variations = Vec::new();
@@ -58,7 +58,7 @@ pub(crate) fn variations(file: &Path, ranges: [&Range; 2], steps: u32) -> Outcom
             set(&mut document, &range.key, number)
                 .map_err(|why| Failure::Input(anyhow::anyhow!("{}: {why}", original.label)))?;
         }
-        let source = of_text(file, document.to_string());
+        let source = Source::of_text(file, document.to_string());
         let title = numbers.map(rounded).join(" ");
         if source.parsed.is_err() {
             return Ok(vec![(title, source)]);

@@ -5,7 +5,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, of_text, read_one};
+use luthier::{Bake, MemoryStore, Source, find, lit};
+use luthier_export::Package;
 use luthier_gpu::ToneMapping;
 use luthier_lut::Image;
 use luthier_manifest::ModelPart;
@@ -51,7 +52,7 @@ impl ViewHost {
             material.bake.reflectance = self.fresnel;
         }
         let store = Layers(&[&self.store, store()?]);
-        let package = Package::new(&materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[form]) }, &store)?;
+        let package = Bake::lit().in_forms(&[form]).package(&materials, &store)?;
         self.store.sweep();
         Ok(package)
     }
@@ -92,7 +93,7 @@ impl Host for ViewHost {
     }
 
     fn parsed(&self, label: &str, text: &str) -> Result<Material, String> {
-        let Source { text, parsed, .. } = of_text(Path::new(label), text.to_owned());
+        let Source { text, parsed, .. } = Source::of_text(Path::new(label), text.to_owned());
         parsed.map(|parsed| parsed.material).map_err(|diagnostics| rendered(&diagnostics, &text))
     }
 
@@ -120,7 +121,7 @@ impl Host for ViewHost {
 
 /// A material file as it is now.
 fn file(path: &Path) -> MaterialFile {
-    let Source { label, text, parsed } = match read_one(path) {
+    let Source { label, text, parsed } = match Source::read(path) {
         Ok(source) => source,
         Err(error) => {
             let label = path.to_string_lossy().into_owned();

@@ -6,6 +6,7 @@ use std::path::Path;
 use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, Tile, Values};
 use luthier_manifest::{FileEntry, Manifest, ShaderEntry, TableEntry, material_buffer};
 use luthier_texture::{Metadata, exr, ktx2, png};
+use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::{GENERATOR, MANIFEST, Package, PackageError, Shader, Table, publish};
@@ -38,8 +39,8 @@ impl Package {
         let mut manifest = self.manifest.clone();
         let mut files = Files::default();
         let parts = self.tables.iter().flat_map(|table| Part::ALL.map(|part| (table, part))).collect::<Vec<_>>();
-        let encoded = each(&parts, |&(table, part)| self.encode_part(table, part, compression));
-        let mut encoded = encoded.into_iter();
+        let encoded = parts.par_iter().map(|&(table, part)| self.encode_part(table, part, compression));
+        let mut encoded = encoded.collect::<Vec<_>>().into_iter();
         for entry in &mut manifest.tables {
             let TableEntry { kind, texture, truth, picture, .. } = entry;
             for ((part, file), bytes) in Part::ALL.into_iter().zip([texture, truth, picture]).zip(&mut encoded) {
@@ -172,18 +173,6 @@ impl Files {
         self.0.push((path, bytes));
         entry
     }
-}
-
-/// The results of a function of some values, side by side where threads are at hand.
-#[cfg(feature = "bake")]
-fn each<T: Sync, U: Send>(values: &[T], f: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
-    use rayon::prelude::*;
-    values.par_iter().map(f).collect()
-}
-
-#[cfg(not(feature = "bake"))]
-fn each<T, U>(values: &[T], f: impl Fn(&T) -> U) -> Vec<U> {
-    values.iter().map(f).collect()
 }
 
 /// Metadata of the unquantised values of a table.

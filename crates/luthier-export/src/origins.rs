@@ -1,9 +1,28 @@
 //! Where materials came from, as a manifest has it: paths from its folder, so that a package is the same in every checkout.
 
-use std::path::{Component, Path, PathBuf, absolute};
+use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf, absolute};
 
 use crate::Encoded;
-use crate::sources::{label, plain};
+
+/// A path as messages and manifests have it: with forward slashes everywhere.
+pub fn label(path: &Path) -> String {
+    path.to_string_lossy().replace(MAIN_SEPARATOR, "/")
+}
+
+/// A path without the folders that `..` leaves again.
+pub fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        let leaves =
+            part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
+        if leaves {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
+    }
+    plain
+}
 
 impl Encoded {
     /// The package as it is published in a folder: its manifest names files by their paths from there.

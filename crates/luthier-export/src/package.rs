@@ -6,7 +6,7 @@ use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{Form, Manifest, MapSlot, MaterialEntry, Target};
 use luthier_texture::Texture;
 
-use crate::{Folder, PackageError, publish};
+use crate::{Compression, Folder, PackageError, publish};
 
 /// A bake in memory: the manifest, the texels of its tables, its shaders, the maps of its materials.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +78,15 @@ impl Package {
     pub fn read(folder: &Path) -> Result<Self, PackageError> {
         let _lock = publish::shared(folder);
         Folder::open(folder)?.package()
+    }
+
+    /// Publishes the package in a folder as `luthier bake` does: texels compressed, sources named by their paths from the folder. The folder changes
+    /// at once or not at all.
+    ///
+    /// # Errors
+    /// Those of [`Package::encode`] and [`Encoded::write`](crate::Encoded::write).
+    pub fn write(&self, folder: &Path) -> Result<(), PackageError> {
+        self.encode(Compression::Zstd)?.for_folder(folder).write(folder)
     }
 
     /// A package of parts in memory, without maps. Tables may come in any order.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use glam::DVec3;
-use luthier_export::read;
+use luthier::read_materials;
 use luthier_layers::lobes::Lobes;
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
@@ -35,7 +35,7 @@ struct Judged {
 
 /// Fits and judges, as a page.
 pub(crate) fn run(options: &AnisotropicOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, false)?;
+    let materials = valid(read_materials(&options.sources.paths)?, false)?;
     let is_anisotropic = |subject: &ModelSubject| {
         subject.stack.layers.iter().any(|layer| layer.surface.alpha_x != layer.surface.alpha_y)
     };

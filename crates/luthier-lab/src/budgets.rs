@@ -7,7 +7,7 @@ use luthier_lut::{Axis, Mapping, RowBase, TableKind};
 use luthier_manifest::CandidateForm;
 use luthier_material::{BakeSettings, Material};
 
-use luthier_export::{read, read_image};
+use luthier::{read_image, read_materials};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
 
 use crate::cli::BudgetsOptions;
@@ -91,7 +91,8 @@ fn open(mut material: Material) -> Material {
 
 /// Measures what searches reach, as a page.
 pub(crate) fn run(options: &BudgetsOptions) -> Outcome {
-    let materials: Vec<Material> = valid(read(&options.sources.paths)?, false)?.into_iter().map(open).collect();
+    let materials: Vec<Material> =
+        valid(read_materials(&options.sources.paths)?, false)?.into_iter().map(open).collect();
     let page = page(&goals(&materials, &read_image).map_err(Failure::input)?);
     deliver(&page, options.destination.output.as_deref())
 }

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use glam::DVec3;
+use luthier::{Bake, MemoryStore, lit, read_materials};
 use luthier_environment::{Environment, Scenery};
-use luthier_export::{MemoryStore, Package, lit, read};
 use luthier_gpu::{Camera, Gpu, RenderSettings, Scene, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -26,7 +26,7 @@ const SKIES: [Scenery; 3] = [Scenery::CloudySun, Scenery::StripStudio, Scenery::
 /// Compares pictures of materials.
 pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     let gpu = open(options.adapter.name.as_deref())?;
-    let materials = valid(read(&options.sources.paths)?, false)?;
+    let materials = valid(read_materials(&options.sources.paths)?, false)?;
     let skies: Vec<Arc<Environment>> = SKIES
         .into_iter()
         .map(|scenery| scenery.environment(options.rows).map(Arc::new))
@@ -137,7 +137,7 @@ impl Pictures {
     ) -> Outcome<Self> {
         let mut shaded = material.clone();
         shaded.bake.model = Some(model);
-        let package = Package::for_renderer(&lit(&[shaded]), &MemoryStore::default())?;
+        let package = Bake::lit().package(&lit(&[shaded]), &MemoryStore::default())?;
         let scene = gpu.scene(&package, Form::Baked)?;
         let mut shown = Vec::new();
         for sky in skies {

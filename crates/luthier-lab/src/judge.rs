@@ -1,6 +1,6 @@
 //! The reflectance models against the reference, on materials.
 
-use luthier_export::read;
+use luthier::read_materials;
 use luthier_report::{ModelSettings, ModelSubject, judge_models};
 use luthier_terminal::{Bar, Failure, Outcome, print, valid};
 
@@ -8,7 +8,7 @@ use crate::cli::{JUDGE_SAMPLES, JudgeOptions};
 
 /// Judges every model on materials.
 pub(crate) fn run(options: &JudgeOptions) -> Outcome {
-    let subjects: Vec<ModelSubject> = valid(read(&options.sources.paths)?, false)?
+    let subjects: Vec<ModelSubject> = valid(read_materials(&options.sources.paths)?, false)?
         .into_iter()
         .map(|material| ModelSubject {
             wavelengths_nm: material.bake.wavelengths_nm(),

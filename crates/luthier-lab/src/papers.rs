@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
+use luthier::{Bake, MemoryStore, outline, read_materials};
 use luthier_bake::Options;
 use luthier_cost::{CostReport, Counts, Family, Harness, Kernel, Style, compile_apart};
-use luthier_export::{GENERATOR, MemoryStore, Package, Shader, outline, read};
+use luthier_export::{GENERATOR, Shader};
 use luthier_lut::TexelFormat;
 use luthier_manifest::{ColorMode, Manifest, ShadingModel};
 use luthier_material::{FresnelMapping, FresnelSettings, Material};
@@ -23,7 +24,7 @@ const GOAL: (f64, f64, f64) = (0.40, 1.5, 0.01);
 
 /// Counts the shaders of the papers, as a page.
 pub(crate) fn run(options: &PapersOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, true)?;
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let cases = of_tables(&materials)?.into_iter().map(case).collect::<Outcome<Vec<PaperCase>>>()?;
     let empty = |harness| Kernel::empty(harness).map_err(Failure::input);
     let mut kernels = vec![empty(Harness::Bare)?, empty(Harness::NormalMapped)?];
@@ -152,7 +153,7 @@ const PAIRS: u32 = 20_000;
 /// [`FLOOR`] where that is darker. Nothing where there is no device.
 fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     let Ok(gpu) = luthier_gpu::Gpu::open() else { return Ok(vec![None; texts.len()]) };
-    let mut package = Package::for_renderer(std::slice::from_ref(material), &MemoryStore::default())?;
+    let mut package = Bake::lit().package(std::slice::from_ref(material), &MemoryStore::default())?;
     // Phong's shader would read another buffer.
     let is_elek = |text: &&String| text.contains("fn luthier_eval_elek");
     let pairs: Vec<Pair> = ParitySet::ALL

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use luthier_export::{Bake, GENERATOR, MemoryStore, Package, read};
+use luthier::{Bake, MemoryStore, of_materials, read_materials};
+use luthier_export::{GENERATOR, Package};
 use luthier_gpu::Gpu;
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{Manifest, ShadingModel};
@@ -18,14 +19,14 @@ const ALPHA_MIN: f64 = luthier_layers::elek::ALPHA_MIN;
 
 /// Compares every shader with its f64 twin.
 pub(crate) fn run(options: &ParityOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, true)?;
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let models = models(options);
     let all: Vec<Material> =
         models.iter().flat_map(|model| materials.iter().flat_map(|m| variants(m, *model))).collect();
     let baking = Bar::new("baking");
     // Shaders are compared within the domains of their models and beyond.
     let bake = Bake { refuses: false, ..Bake::wgsl(&[]) };
-    let package = Package::new(&all, &bake, &MemoryStore::default())?;
+    let package = bake.package(&all, &MemoryStore::default())?;
     drop(baking);
     let bar = Bar::new("comparing");
     let gpu = open(options.adapter.name.as_deref())?;
@@ -135,7 +136,7 @@ pub(crate) struct Compiled {
 
 impl Compiled {
     pub(crate) fn new(gpu: &Gpu, package: &Package, numbers: Range<usize>, stacks: Vec<Stack>) -> Outcome<Self> {
-        let package = package.of_materials(numbers)?;
+        let package = of_materials(package, numbers)?;
         let shaders = Shaders::new(gpu, &package)?;
         let maps = surface_maps(&package);
         Ok(Self { textures: package.textures()?, manifest: package.manifest, stacks, maps, shaders })

@@ -1,8 +1,8 @@
 //! The table by which scenes choose models: costs by shape of the surface.
 
+use luthier::{MemoryStore, outline, read_materials};
 use luthier_bake::Options;
 use luthier_cost::{Family, Harness, Kernel, Style, compile_apart};
-use luthier_export::{MemoryStore, outline, read};
 use luthier_manifest::ShadingModel;
 use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
@@ -11,7 +11,7 @@ use crate::cli::ShapesOptions;
 
 /// Costs of every shape that the materials have, whole or without some of their parts: what scenes choose by.
 pub(crate) fn run(options: &ShapesOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, true)?;
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let family = Family::Rdna2;
     let simpler = || materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material);
     let mut keys: Vec<(ShadingModel, Form, String)> = Vec::new();

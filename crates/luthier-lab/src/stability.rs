@@ -1,7 +1,8 @@
 //! `stability`: every method where methods fail.
 
+use luthier::{Bake, MemoryStore};
 use luthier_bake::Options;
-use luthier_export::{Bake, GENERATOR, MemoryStore, Package};
+use luthier_export::GENERATOR;
 use luthier_gpu::Gpu;
 use luthier_lut::{RowBase, TexelFormat};
 use luthier_manifest::{Budget, ColorMode, ShadingModel};
@@ -92,7 +93,7 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
         let materials: Vec<Material> =
             models.iter().flat_map(|model| (0..).zip(cases).map(|(n, case)| material(n, case, *model))).collect();
         let bake = Bake { options: *options, refuses: false, ..Bake::wgsl(&[]) };
-        let package = Package::new(&materials, &bake, &MemoryStore::default())?;
+        let package = bake.package(&materials, &MemoryStore::default())?;
         for first in (0..materials.len()).step_by(cases.len()) {
             let stacks = cases.iter().map(|case| case.stack.clone()).collect();
             let compiled = Compiled::new(gpu, &package, first..first + cases.len(), stacks)?;

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use luthier_export::{GENERATOR, MemoryStore, Package, Shader, read};
+use luthier::{Bake, MemoryStore, read_materials};
+use luthier_export::{GENERATOR, Shader};
 use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_material::Material;
 use luthier_report::{Pair, ParitySet, Spread};
@@ -42,7 +43,7 @@ impl Time {
 /// Times the shaders of the papers, as a page.
 pub(crate) fn run(options: &ThroughputOptions) -> Outcome {
     let gpu = open(options.adapter.name.as_deref())?;
-    let materials = valid(read(&options.sources.paths)?, true)?;
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let chosen = of_tables(&materials)?;
     let bar = Bar::new("timing");
     let mut rows = Vec::new();
@@ -61,7 +62,7 @@ fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome
     let layers = luthier_layers::elek::layers(&material.stack);
     let pairs: Vec<Pair> =
         [ParitySet::Uniform, ParitySet::NearSpecular].iter().flat_map(|set| set.pairs(PAIRS / 2, &layers)).collect();
-    let package = |material: &Material| Package::for_renderer(std::slice::from_ref(material), &MemoryStore::default());
+    let package = |material: &Material| Bake::lit().package(std::slice::from_ref(material), &MemoryStore::default());
     let [of_elek, of_phong] = of_models(material);
     let (mut of_elek, mut of_phong) = (package(&of_elek)?, package(&of_phong)?);
     let mut scenes: Vec<(&'static str, Role, bool, Scene)> = Vec::new();

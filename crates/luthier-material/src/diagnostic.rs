@@ -1,5 +1,6 @@
 //! Diagnostics: a message, its place in the file, and a hint.
 
+use std::fmt;
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -49,6 +50,15 @@ const LISTED: usize = 20;
 
 /// Characters of a message or a hint: what they quote may be as long as the file.
 const MESSAGE_CHARS: usize = 600;
+
+/// One line: place, severity, message, and the hint in parentheses.
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { label, line, column, message, .. } = self;
+        write!(f, "{label}:{line}:{column}: {}: {message}", self.severity.name())?;
+        self.hint.as_ref().map_or(Ok(()), |hint| write!(f, " ({hint})"))
+    }
+}
 
 impl Diagnostic {
     /// Whether it makes the file unusable.

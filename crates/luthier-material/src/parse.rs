@@ -1,7 +1,5 @@
 //! Parser of a material file: text to material, warnings and errors.
 
-use toml::de::DeTable;
-
 use crate::check::{check_key, check_table};
 use crate::decode::decode;
 use crate::diagnostic::{Diagnostic, Sink};
@@ -16,21 +14,6 @@ pub struct Parsed {
     pub material: Material,
     /// Warnings in the order of the text.
     pub warnings: Vec<Diagnostic>,
-}
-
-/// Whether a text is meant to be a material: it has the key `schema` of material files, or layers, and is no scene.
-///
-/// ```
-/// use luthier_material::is_material;
-///
-/// assert!(is_material("schema = 1\nname = \"gilding\""));
-/// assert!(!is_material("scene = 1") && !is_material("[package]"));
-/// ```
-pub fn is_material(text: &str) -> bool {
-    let (document, _) = DeTable::parse_recoverable(text);
-    let table = document.get_ref();
-    let has = |key: &str| table.get(key).is_some();
-    has("schema") || has("layer") && !has("scene")
 }
 
 /// Reads a material file.

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use luthier_lut::{FormatSet, TexelFormat};
 use luthier_manifest::SceneBudget;
-use toml::de::DeTable;
 
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
@@ -88,14 +87,6 @@ pub struct SceneTarget {
     pub max_cost: Option<f64>,
     /// Texel formats that tables may have.
     pub formats: Option<FormatSet>,
-}
-
-/// Whether a text is meant to be a scene: it has the key `scene` of scene files, or their lights, and no layers.
-pub fn is_scene(text: &str) -> bool {
-    let (document, _) = DeTable::parse_recoverable(text);
-    let table = document.get_ref();
-    let has = |key: &str| table.get(key).is_some();
-    has("scene") || has("light") && !has("layer")
 }
 
 /// Reads a scene file. `label` names it in diagnostics. The materials that it names are not read.
@@ -214,6 +205,7 @@ fn range(at: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::FileKind;
 
     const SHELF: &str = "scene = 1\nname = \"shelf\"\n\n[[material]]\nfile = \"a.toml\"\nbudget = { delta_e = 2 }\n\n\
                          [[light]]\ntype = \"point\"\nfrom_eye_deg = [20, 60]\n\n[[light]]\ntype = \"environment\"\n\n\
@@ -229,7 +221,7 @@ mod tests {
         assert_eq!((scene.target.max_bytes, scene.target.max_cost), (Some(4096), Some(200.0)));
         assert_eq!(scene.target.formats, Some([TexelFormat::Rgba8Unorm].into_iter().collect()));
         assert_eq!(scene.budget.max_rel, Some(0.1));
-        assert!(is_scene(SHELF) && !is_scene("schema = 1\nname = \"a\"\n[[layer]]\ntype = \"diffuse\"\n"));
+        assert_eq!(FileKind::of(SHELF), FileKind::Scene);
     }
 
     #[test]

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use luthier_manifest::SwitchBy;
-use toml::de::DeTable;
 
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
@@ -102,14 +101,6 @@ impl Surface {
         let hint = Some("give one of the two another name".to_owned());
         Sink::one(&self.source, &self.text, Severity::Error, self.name_span.clone(), message.into(), hint)
     }
-}
-
-/// Whether a text is meant to be a surface: it has the key `surface` of surface files, or their cells, and no layers.
-pub fn is_surface(text: &str) -> bool {
-    let (document, _) = DeTable::parse_recoverable(text);
-    let table = document.get_ref();
-    let has = |key: &str| table.get(key).is_some();
-    !has("schema") && (has("surface") || has("cells") && !has("layer") && !has("scene"))
 }
 
 /// Reads a surface file. `label` names it in diagnostics. The materials that it names are not read.
@@ -211,6 +202,7 @@ fn cells_of(at: &Section<'_>, frequency: f64) -> SurfaceCells {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::FileKind;
 
     const MICA: &str = "surface = 1\nname = \"mica\"\n\n[cells]\nseed = 3\nfrequency = 40\nmaterials = [\"a.toml\", \
                         \"b.toml\", \"a.toml\"]\n\n[glitter]\nfilled = 0.2\ntilt_deg = 20\nmaterials = [\"c.toml\"]\n";
@@ -283,8 +275,7 @@ mod tests {
 
     #[test]
     fn files_say_what_they_are() {
-        assert!(is_surface(MICA) && is_surface("surface = 2") && is_surface("[cells]"));
-        assert!(!is_surface("schema = 1\nsurface = 1") && !is_surface("") && !crate::is_scene(MICA));
+        assert_eq!(FileKind::of(MICA), FileKind::Surface);
         let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
         let found = crate::parse("mica.toml", MICA, &no_files).unwrap_err();
         assert_eq!((found.len(), found[0].line), (1, 1));

@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use luthier_material::{Severity, is_surface, parse, parse_surface};
+use luthier_material::{FileKind, Severity, parse, parse_surface};
 
 /// All files of both folders.
 fn files() -> impl Iterator<Item = PathBuf> {
@@ -31,9 +31,9 @@ fn nothing_to_read(_: &str) -> io::Result<String> {
 fn rendered(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap();
     let label = path.file_name().unwrap().to_str().unwrap();
-    let found = match is_surface(&text) {
-        true => parse_surface(label, &text).err(),
-        false => parse(label, &text, &nothing_to_read).err(),
+    let found = match FileKind::of(&text) {
+        FileKind::Surface => parse_surface(label, &text).err(),
+        _ => parse(label, &text, &nothing_to_read).err(),
     };
     match found {
         None => panic!("{label} parses"),

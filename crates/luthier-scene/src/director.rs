@@ -1,7 +1,8 @@
 //! Bakes of scenes: a model for each material, and only the code and the tables that these models need.
 
+use luthier::{Bake, Error, Shading};
 use luthier_bake::{BakeError, Options, Store};
-use luthier_export::{Bake, ExportError, Package, PackageError, sha256};
+use luthier_export::{Package, PackageError, sha256};
 use luthier_lut::{FormatSet, TexelFormat};
 use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target};
 use luthier_material::{Material, Scene};
@@ -73,7 +74,7 @@ pub enum SceneFailure {
     },
     /// The chosen models cannot be baked.
     #[error(transparent)]
-    Export(#[from] ExportError),
+    Export(#[from] Error),
     /// Texels that cannot be read back.
     #[error(transparent)]
     Package(#[from] PackageError),
@@ -187,9 +188,15 @@ impl<'a> Director<'a> {
             .collect();
         // The judges know the domain of a model better: they have its error.
         let (targets, functions) = (self.targets.clone(), self.functions.clone());
-        let bake = Bake { targets, forms: vec![form], functions, refuses: false, ..Bake::default() };
+        let bake = Bake {
+            targets,
+            shading: Shading { forms: vec![form], ..Shading::default() },
+            functions,
+            refuses: false,
+            ..Bake::default()
+        };
         let package = match form {
-            Form::Full => Package::new(&materials, &bake, self.store)?,
+            Form::Full => bake.package(&materials, self.store)?,
             Form::Baked => {
                 let formats = scene.target.formats.unwrap_or(FormatSet::CORE);
                 let bake = Bake { options: Options { formats, ..bake.options }, ..bake };
@@ -246,9 +253,9 @@ fn tables(
     while let Some(level) = levels.pop() {
         let budget = Budget { max_abs: level, ..Budget::default() };
         let bake = Bake { options: Options { budget, ..bake.options }, ..bake.clone() };
-        let package = match Package::new(materials, &bake, store) {
+        let package = match bake.package(materials, store) {
             // Tighter ones cannot be held either.
-            Err(ExportError::Bake(BakeError::Budget { .. })) if level.is_some() => {
+            Err(Error::Bake(BakeError::Budget { .. })) if level.is_some() => {
                 levels = vec![None];
                 continue;
             }

@@ -6,10 +6,10 @@ use std::f64::consts::{PI, TAU};
 use std::io;
 
 use glam::DVec3;
-use luthier_export::left_out;
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::Exact;
 use luthier_manifest::{Feature, Form, ShadingModel};
+use luthier_material::left_out;
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 use luthier_scene::{LeaveOut, simplified};

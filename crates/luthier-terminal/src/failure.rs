@@ -4,7 +4,8 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
-use luthier_export::{ExportError, PackageError};
+use luthier::Error;
+use luthier_export::PackageError;
 use luthier_material::{Diagnostic, did_you_mean};
 use serde_json::{Value, json};
 
@@ -86,7 +87,7 @@ impl Failure {
             Self::Device(error) => (4, "device", error),
         };
         let broken = error.downcast_ref::<Broken>().map(|broken| &broken.diagnostics);
-        let refused = error.downcast_ref::<ExportError>().map(ExportError::diagnostics);
+        let refused = error.downcast_ref::<Error>().map(Error::diagnostics);
         let diagnostics = broken.map(Vec::as_slice).or(refused).unwrap_or_default();
         let diagnostics: Vec<Value> = diagnostics.iter().map(diagnostic).collect();
         Some(json!({"code": code, "kind": kind, "message": sentence(error), "diagnostics": diagnostics}))
@@ -171,11 +172,11 @@ impl From<io::Error> for Failure {
     }
 }
 
-impl From<ExportError> for Failure {
-    fn from(error: ExportError) -> Self {
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
         match error {
-            ExportError::Package(error) => error.into(),
-            ExportError::File { .. } => Self::Files(error.into()),
+            Error::Package(error) => error.into(),
+            Error::File { .. } => Self::Files(error.into()),
             _ => Self::Input(error.into()),
         }
     }

@@ -1,6 +1,6 @@
 //! Materials of files that a command line names.
 
-use luthier_export::Source;
+use luthier::Source;
 use luthier_material::{Diagnostic, Material};
 
 use crate::{Broken, Failure, Outcome, complain, diagnostic as as_json, has_colour, has_events, tell};

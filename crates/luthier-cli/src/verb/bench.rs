@@ -1,6 +1,7 @@
 //! `bench`: shaders timed on the adapter at hand.
 
-use luthier_export::{GENERATOR, Package, Shader, read};
+use luthier::{Bake, read_materials};
+use luthier_export::{GENERATOR, Package, Shader};
 use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
@@ -61,7 +62,7 @@ struct Row {
 
 /// Times shaders on the adapter at hand.
 pub(crate) fn run(options: &BenchOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, true)?;
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let gpu = open(options.adapter.as_deref())?;
     let bar = Bar::new("timing");
     let mut rows = Vec::new();
@@ -124,7 +125,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
     for model in models.into_iter().filter(|&model| is_shaded_by(material, model, &options.model)) {
         let mut shaded = material.clone();
         shade_by(&mut shaded, model, options.fresnel)?;
-        let mut package = Package::for_renderer(std::slice::from_ref(&shaded), store()?)?;
+        let mut package = Bake::lit().package(std::slice::from_ref(&shaded), store()?)?;
         let reads_d = model.reads_some(TableKind::Distribution);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.

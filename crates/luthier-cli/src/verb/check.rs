@@ -1,89 +1,66 @@
 //! `check`: what is wrong with files, without a bake.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
-use luthier_export::{
-    Gathered, Source, SurfaceSource, doubt_surfaces, find, gather, inner_packages, input, read_all, refuse,
-    refuse_surfaces, refuse_too_many,
-};
+use luthier::{Files, SceneSource, Source, Sources, SurfaceSource};
 use luthier_manifest::ShadingModel;
-use luthier_material::{Diagnostic, Severity, Surface, is_scene};
-use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
+use luthier_material::{Diagnostic, Severity, Surface};
+use luthier_terminal::{Failure, Outcome, diagnostic, print, print_diagnostics};
 use serde_json::{Value, json};
 
-use crate::cli::{CheckOptions, Shading};
-use crate::materials::shaded;
-use crate::misses;
-use crate::verb::scene::SceneSource;
+use crate::cli::CheckOptions;
 
 /// Validates files, materials of one package as one set; diagnostics go to standard error, one line per file to standard output.
 pub(crate) fn run(options: &CheckOptions) -> Outcome {
-    let mut sets = vec![Set::read(&options.sources.paths, &options.shading)?];
+    let mut packages = Files::packages(&options.sources.paths)?;
     // A bake of scenes has no other packages.
-    if sets[0].scenes.is_empty() {
-        for paths in inner_packages(&options.sources.paths)?.values() {
-            sets.push(Set::read(paths, &options.shading)?);
-        }
+    if !packages[0].2.scenes.is_empty() {
+        packages.truncate(1);
     }
+    let shading = options.shading.in_forms(&[]);
+    let sets: Vec<Set> = packages.into_iter().map(|(_, _, files)| Set::of(files, shading.clone())).collect();
     if options.json {
         print(&format!("{:#}", sets.iter().flat_map(Set::entries).collect::<Value>()))?;
     } else {
         print(&sets.iter().map(Set::lines).collect::<String>())?;
     }
-    if sets.iter().all(Set::is_usable) { Ok(()) } else { Err(Failure::Verdict) }
+    if sets.iter().all(|set| set.sources.is_usable()) { Ok(()) } else { Err(Failure::Verdict) }
 }
 
 /// Files that are baked together, with all that is wrong with them.
-struct Set<'a> {
-    shading: &'a Shading,
-    scenes: Vec<SceneSource>,
-    surfaces: Vec<SurfaceSource>,
-    materials: Vec<Source>,
+struct Set {
+    shading: luthier::Shading,
+    sources: Sources,
 }
 
-impl<'a> Set<'a> {
-    fn read(paths: &[PathBuf], shading: &'a Shading) -> Outcome<Self> {
-        let (mut others, mut scenes) = (Vec::new(), Vec::new());
-        for path in find(paths)? {
-            let bytes = input::bytes(&path).map_err(files(&path, "read"))?;
-            if is_scene(&String::from_utf8_lossy(&bytes)) {
-                scenes.push(SceneSource::read(&path)?);
-            } else {
-                others.push(path);
-            }
-        }
-        let Gathered { materials, mut surfaces, .. } = gather(&others)?;
-        let mut materials = read_all(&materials)?;
-        refuse(&mut materials, |material| shading.doubts_and_energy(material, &[]));
-        refuse_surfaces(&mut surfaces, &materials);
-        doubt_surfaces(&mut surfaces);
-        refuse_too_many(&mut materials, |materials| shaded(materials, shading, &[]));
-        misses::foresee(&mut materials);
-        Ok(Self { shading, scenes, surfaces, materials })
+impl Set {
+    fn of(files: Files, shading: luthier::Shading) -> Self {
+        let mut sources = Sources::of(files);
+        sources.check(&shading);
+        Self { shading, sources }
     }
 
     /// All materials, and their models: those of a scene are the scene's to choose.
     fn all(&self) -> impl Iterator<Item = (&Source, Option<ShadingModel>)> {
         let model = |source: &Source| source.parsed.as_ref().ok().map(|p| self.shading.model(&p.material));
-        let of_scenes = self.scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
-        self.materials.iter().map(move |source| (source, model(source))).chain(of_scenes)
+        let of_scenes = self.sources.scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
+        self.sources.materials.iter().map(move |source| (source, model(source))).chain(of_scenes)
     }
 
     fn entries(&self) -> Vec<Value> {
-        let scenes = self.scenes.iter().map(scene_entry);
-        let surfaces = self.surfaces.iter().map(surface_entry);
+        let scenes = self.sources.scenes.iter().map(scene_entry);
+        let surfaces = self.sources.surfaces.iter().map(surface_entry);
         scenes.chain(surfaces).chain(self.all().map(|(source, model)| entry(source, model))).collect()
     }
 
     /// A line for each file. The diagnostics go to standard error.
     fn lines(&self) -> String {
         let mut lines = String::new();
-        for scene in &self.scenes {
-            scene.print_diagnostics();
+        for scene in &self.sources.scenes {
+            print_diagnostics(scene.parsed.as_ref().err().into_iter().flatten(), &scene.text);
             lines.push_str(&scene_line(scene));
         }
-        for surface in &self.surfaces {
+        for surface in &self.sources.surfaces {
             print_diagnostics(surface.diagnostics(), &surface.text);
             lines.push_str(&surface_line(surface));
         }
@@ -92,12 +69,6 @@ impl<'a> Set<'a> {
             lines.push_str(&line(source, model));
         }
         lines
-    }
-
-    fn is_usable(&self) -> bool {
-        self.materials.iter().all(|s| s.parsed.is_ok())
-            && self.surfaces.iter().all(|s| s.parsed.is_ok())
-            && self.scenes.iter().all(SceneSource::is_usable)
     }
 }
 

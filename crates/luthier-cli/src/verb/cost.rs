@@ -1,8 +1,9 @@
 //! `cost`: shaders compiled for GPUs that are not here.
 
+use luthier::{outline, read_materials};
 use luthier_bake::Options;
 use luthier_cost::{CostReport, CostRow, Family, Harness, Kernel, Style, assembly_apart, compile_apart};
-use luthier_export::{GENERATOR, outline, read};
+use luthier_export::GENERATOR;
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
@@ -15,7 +16,7 @@ use crate::store::store;
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
 pub(crate) fn run(options: &CostOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, true)?;
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let variants = variants(options, &materials)?;
     if options.assembly {
         return match (variants.as_slice(), options.family.as_slice()) {

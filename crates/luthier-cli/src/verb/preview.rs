@@ -1,6 +1,7 @@
 //! `preview`: a picture of one material, or of the grid.
 
-use luthier_export::{Package, lit};
+use luthier::{Bake, lit};
+use luthier_export::Package;
 use luthier_gpu::{RenderSettings, Shape, Shown};
 use luthier_lut::Image;
 use luthier_manifest::Form;
@@ -21,7 +22,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let shape = options.shape.unwrap_or(ShapeName::Model);
     let (package, parts): (Package, Vec<Shown>) = match (&options.material, shape) {
         (None, ShapeName::Grid) => {
-            let package = Package::for_renderer(&lit(&grid::materials()?), store()?)?;
+            let package = Bake::lit().package(&lit(&grid::materials()?), store()?)?;
             let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
             (package, parts)
         }

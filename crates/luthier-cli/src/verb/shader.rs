@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use luthier::{Files, outline};
 use luthier_bake::Options;
-use luthier_export::{find, outline};
 use luthier_manifest::Form;
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
 use luthier_terminal::{Failure, Outcome, STDOUT, files, print_bytes};
@@ -17,8 +17,8 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     if let Some(path) = &options.output {
         refuse_ending(path, options.target)?;
     }
-    let found = find(&options.sources.paths)?;
-    let (materials, surfaces) = bakeable_with_surfaces(&found, &options.shading, &[options.form], false)?;
+    let found = Files::read(&options.sources.paths)?;
+    let (materials, surfaces) = bakeable_with_surfaces(found, &options.shading.in_forms(&[options.form]), false)?;
     let is_shown = materials.iter().any(shows_environment) && options.form == Form::Baked;
     refuse_environment(&options.functions, is_shown)?;
     let mut manifest = outline(&materials, &Options::default(), store()?)?;

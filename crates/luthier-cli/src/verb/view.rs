@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luthier_export::read;
+use luthier::read_materials;
 use luthier_gpu::{Scenery, model};
 use luthier_terminal::{Failure, Outcome, open};
 use luthier_view::{Against, Comparison, Options, Shots, ViewError};
@@ -24,7 +24,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         return Err(Failure::Input(anyhow::anyhow!("cannot write {}: screenshots are .png", path.display())));
     }
     // A path that is none is a mistake of the command line; what is in the files is shown in the window.
-    read(&options.sources.paths)?;
+    read_materials(&options.sources.paths)?;
     let look = &options.look;
     let mut settings = settings(look, shape, options.mesh.as_deref(), 1)?;
     // The window may come to it.

@@ -29,7 +29,7 @@ pub struct Target {
 pub const TARGETS: [Target; 21] = [
     Target {
         name: "material",
-        parser: "luthier_material::parse, is_material",
+        parser: "luthier_material::parse, FileKind::of",
         reads: "material files, and the index files that they name",
         holds: "diagnostics lie in the text and can be shown; slopes, films and bases keep their ranges; reading again gives an equal material",
         folders: &["materials", "materials/papers", "materials/scenes/still-life", "tests/broken"],
@@ -37,7 +37,7 @@ pub const TARGETS: [Target; 21] = [
     },
     Target {
         name: "scene",
-        parser: "luthier_material::parse_scene, is_scene, parse_surface, is_surface",
+        parser: "luthier_material::parse_scene, parse_surface, FileKind::of",
         reads: "scene files and surface files",
         holds: "diagnostics lie in the text and can be shown; a scene or surface is recognised as one; angles, budgets and shares keep their ranges",
         folders: &["materials/scenes", "materials/surfaces", "tests/broken-surfaces"],

@@ -5,8 +5,7 @@ use std::ops::RangeInclusive;
 
 use luthier_manifest::{ShadingModel, SwitchBy};
 use luthier_material::{
-    Diagnostic, Light, Material, SurfaceClass, is_material, is_scene, is_surface, left_out, parse, parse_partly,
-    parse_scene, parse_surface,
+    Diagnostic, FileKind, Light, Material, SurfaceClass, left_out, parse, parse_partly, parse_scene, parse_surface,
 };
 use luthier_optics::stack::{Base, Stack};
 
@@ -23,7 +22,7 @@ pub(super) fn material(bytes: &[u8]) {
     let read = |_: &str| if csv.is_empty() { Err(io::Error::other("none")) } else { Ok(csv.to_owned()) };
     match parse("m.toml", text, &read) {
         Ok(parsed) => {
-            assert!(is_material(text), "a material that is not recognised");
+            assert!(FileKind::of(text) == FileKind::Material, "a material that is not recognised");
             can_be_shown(&parsed.warnings, text);
             assert!(!parsed.warnings.iter().any(Diagnostic::is_error));
             holds(&parsed.material);
@@ -50,7 +49,7 @@ fn can_be_told(text: &str, read: &dyn Fn(&str) -> io::Result<String>) {
 pub(super) fn scene(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     surface(&text);
-    let claims = is_scene(&text);
+    let claims = FileKind::of(&text) == FileKind::Scene;
     match parse_scene("s.toml", &text) {
         Ok(scene) => {
             assert!(claims, "a scene that is not recognised");
@@ -75,7 +74,7 @@ pub(super) fn scene(bytes: &[u8]) {
 
 /// A surface file.
 fn surface(text: &str) {
-    let claims = is_surface(text);
+    let claims = FileKind::of(text) == FileKind::Surface;
     match parse_surface("s.toml", text) {
         Ok(surface) => {
             assert!(claims, "a surface that is not recognised");

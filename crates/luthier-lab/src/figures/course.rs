@@ -1,7 +1,7 @@
 //! Figures of the course of Weidlich and Wilkie.
 
-use luthier_export::MemoryStore;
-use luthier_gpu::{Package, RenderSettings, Shape};
+use luthier::{Bake, MemoryStore};
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
@@ -160,7 +160,7 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
-    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+    let package = Bake::lit().package(&materials, &MemoryStore::default())?;
     let look = |n: usize, settings: &mut RenderSettings| {
         settings.exposure = exposure(CLASSES[n].0);
     };

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
-use luthier_export::{MemoryStore, Package, SurfaceSource, gather, lit, read_all, surface_map};
+use luthier::{Bake, MemoryStore, Sources, SurfaceSource, lit, surface_map};
 use luthier_gpu::{Camera, Light, RenderSettings, Shape, Shown};
 use luthier_lut::Image;
 use luthier_manifest::{CellsRecord, Form, ParticlesRecord, SurfaceEntry};
@@ -110,9 +110,9 @@ const STONES: [&str; 2] = ["sunstone", "lepidolite"];
 /// The materials and the surface of a file of the repository.
 fn stone(name: &str) -> Outcome<(Vec<Material>, SurfaceEntry)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../materials/surfaces/{name}.toml"));
-    let found = gather(&[path])?;
-    let materials = valid(read_all(&found.materials)?, true)?;
-    let surface = found.surfaces.first().and_then(SurfaceSource::entry);
+    let sources = Sources::read([path])?;
+    let surface = sources.surfaces.first().and_then(SurfaceSource::entry);
+    let materials = valid(sources.materials, true)?;
     Ok((materials, surface.ok_or_else(|| Failure::Input(anyhow::anyhow!("{name} is no surface")))?))
 }
 
@@ -123,7 +123,8 @@ fn pictures(
     surfaces: &[SurfaceEntry],
     settings: impl Fn(usize) -> Outcome<RenderSettings>,
 ) -> Outcome<Vec<Image>> {
-    let package = Package::of_surfaces(&lit(materials), surfaces.to_vec(), &MemoryStore::default())?;
+    let bake = Bake { surfaces: surfaces.to_vec(), ..Bake::lit() };
+    let package = bake.package(&lit(materials), &MemoryStore::default())?;
     let scene = studio.gpu()?.scene(&package, Form::Baked)?;
     (0..surfaces.len()).map(|n| Ok(scene.render_shown(&[Shown::Surface(n as u32)], &settings(n)?)?)).collect()
 }

@@ -1,6 +1,6 @@
 //! Figures of Elek 2010 with examples: against the simulation, edges of patina, car paint, lacquers, concrete.
 
-use luthier_export::{MemoryStore, Package, lit};
+use luthier::{Bake, MemoryStore, lit};
 use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
@@ -144,7 +144,7 @@ fn edges(studio: &Studio) -> Outcome<Made> {
         patina.map = VariationSource::Image(PictureRef::plain("patina.png"));
         materials.push(mapped(stage));
     }
-    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
+    let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let mut pictures: Labelled = Vec::new();
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::Patina) {
         pictures.push(("map".to_owned(), scaled(&map.picture.image(), 2 * studio.size)));
@@ -242,7 +242,7 @@ fn examples(studio: &Studio) -> Outcome<Made> {
     let smooth = studio.pictures(&[smooth], Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
     made.measure("the same paint without flakes: sparkles", sparkles(&smooth));
     for (label, lacquered) in &all[1..3] {
-        let package = Package::for_renderer(&lit(std::slice::from_ref(lacquered)), &MemoryStore::default())?;
+        let package = Bake::lit().package(&lit(std::slice::from_ref(lacquered)), &MemoryStore::default())?;
         let square = from_above(studio, &package)?.swap_remove(0);
         let map = package.maps.iter().find(|map| map.slot == MapSlot::Thickness).map(|map| map.picture.image());
         let thickness: Vec<f64> = map

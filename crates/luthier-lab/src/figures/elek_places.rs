@@ -1,6 +1,7 @@
 //! Figures of Elek 2010 about surfaces that vary.
 
-use luthier_export::{MemoryStore, Package, lit};
+use luthier::{Bake, MemoryStore, lit};
+use luthier_export::Package;
 use luthier_gpu::{RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
@@ -114,7 +115,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     };
     let near = f64::from(DISTANCES[0]);
     let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
-    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
+    let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let mut rows = [Vec::new(), Vec::new()];
     let mut noises = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
@@ -194,7 +195,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         (patina.extent, patina.transition, patina.map) = (extent, TRANSITION, map());
         materials.push(mapped(stage));
     }
-    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
+    let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let level = from_above(studio, &package)?;
     let dark = darkness(&package, level.first());
     for (extent, picture) in EXTENTS.iter().zip(&level) {

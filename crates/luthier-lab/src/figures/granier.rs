@@ -1,8 +1,8 @@
 //! Figures of Granier and Heidrich 2003.
 
 use glam::DVec3;
-use luthier_export::MemoryStore;
-use luthier_gpu::{Package, RenderSettings, Shape};
+use luthier::{Bake, MemoryStore};
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_layers::granier_heidrich::Film;
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
@@ -189,7 +189,7 @@ fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
     let coatings: Vec<Coating> = MESH_RANGES_NM.into_iter().enumerate().map(coating).collect();
     let tables = "phase = { size = 256 }\nthickness = { size = 256 }\n";
     let materials = coatings.iter().map(|coating| coating.with_tables(tables)).collect::<Outcome<Vec<_>>>()?;
-    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+    let package = Bake::lit().package(&materials, &MemoryStore::default())?;
     let look = |settings: &mut RenderSettings| {
         settings.environment_samples = 8;
         settings.exposure = 0.8;

@@ -1,6 +1,6 @@
 //! The exercise of Palubicki's lecture: 25 balls.
 
-use luthier_export::{MemoryStore, Package, lit};
+use luthier::{Bake, MemoryStore, lit};
 use luthier_gpu::{GRID_SIDE, Shape};
 use luthier_lut::Image;
 use luthier_manifest::Form;
@@ -79,7 +79,7 @@ fn balls(studio: &Studio) -> Outcome<Made> {
             materials.push(material);
         }
     }
-    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
+    let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let scene = studio.gpu()?.scene(&package, Form::Baked)?;
     let mut settings = studio.settings(Shape::Grid)?;
     // One picture holds all balls.

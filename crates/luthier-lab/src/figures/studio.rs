@@ -4,7 +4,8 @@ use std::cell::OnceCell;
 use std::io::ErrorKind;
 use std::sync::Arc;
 
-use luthier_export::{MemoryStore, Package};
+use luthier::{Bake, MemoryStore};
+use luthier_export::Package;
 use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, Simulated, SimulationSettings, model};
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::registry;
@@ -100,7 +101,7 @@ impl Studio {
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
-        self.rendered(&Package::for_renderer(materials, &MemoryStore::default())?, form, shape, adjust)
+        self.rendered(&Bake::lit().package(materials, &MemoryStore::default())?, form, shape, adjust)
     }
 
     /// Renders each material of a bake, linear.
@@ -135,7 +136,7 @@ impl Studio {
         plain.effects = Effects::default();
         plain.bake.tables.clear();
         plain.bake.color = Some(ColorMode::ThreeWavelengths);
-        let package = Package::for_renderer(std::slice::from_ref(&plain), &MemoryStore::default())?;
+        let package = Bake::lit().package(std::slice::from_ref(&plain), &MemoryStore::default())?;
         let scene = self.gpu()?.scene(&package, Form::Baked)?;
         render_ball_of(&LIGHTS, self.size, |pairs| {
             let pairs: Vec<_> =

@@ -1,6 +1,6 @@
 //! Figures with textures of single layers: crossed tangents, bumps of one interface, flakes of a height field, colours and metal.
 
-use luthier_export::{MemoryStore, Package};
+use luthier::{Bake, MemoryStore};
 use luthier_gpu::{RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
@@ -181,7 +181,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
         "[effects.flakes]\nheight_map = { image = \"heights.png\", height = 0.03 }\ntiling = 2\nfade_start = 1000\n";
     let coat = lacquer("[0.02, 0.2, 0.6]");
     let with = mapped(layered("flakes", &(coat.clone() + CHROMIUM + heights), ShadingModel::Elek)?);
-    let package = Package::for_renderer(&[with], &MemoryStore::default())?;
+    let package = Bake::lit().package(&[with], &MemoryStore::default())?;
     let ball = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
     let plain = layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?;
     let plain = pictures(studio, vec![plain], Form::Full, Shape::Sphere)?.swap_remove(0);

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use luthier_export::{Source, of_model, of_text};
+use luthier::Source;
+use luthier::refusals::of_model;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{Form, Masking, ShadingModel};
 use luthier_material::{Diagnostic, Material, left_out};
@@ -13,7 +14,7 @@ use super::samples::Sample;
 /// The materials of a sample, by value. Maps are those of the lab.
 pub(crate) fn materials(sample: &Sample) -> Outcome<Vec<Material>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
-    let sources: Vec<Source> = sample.texts().into_iter().map(|text| of_text(&path, text)).collect();
+    let sources: Vec<Source> = sample.texts().into_iter().map(|text| Source::of_text(&path, text)).collect();
     valid(sources, true)
 }
 

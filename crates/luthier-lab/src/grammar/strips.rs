@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use luthier_export::{MemoryStore, Package, Source, SurfaceSource, gather, read_all, refuse, sha256};
+use luthier::{Bake, MemoryStore, Source, Sources, refuse};
+use luthier_export::sha256;
 use luthier_gpu::{Gpu, RenderSettings, Shape, Shown, ToneMapping};
 use luthier_lut::Image;
 use luthier_manifest::Form;
@@ -78,10 +79,10 @@ fn balls(sample: &Sample, gpu: &Gpu, size: u32) -> Outcome<Vec<Image>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
     let mut pictures = Vec::new();
     for text in sample.texts() {
-        let mut sources: Vec<Source> = vec![luthier_export::of_text(&path, text)];
-        refuse(&mut sources, |material| luthier_export::of_model(material, None));
+        let mut sources: Vec<Source> = vec![luthier::Source::of_text(&path, text)];
+        refuse(&mut sources, |material| luthier::refusals::of_model(material, None));
         let materials = valid(sources, true)?;
-        let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+        let package = Bake::lit().package(&materials, &MemoryStore::default())?;
         pictures.push(gpu.scene(&package, Form::Baked)?.render(&[0], &settings(size)?)?);
     }
     Ok(pictures)
@@ -93,10 +94,9 @@ fn surfaces(sample: &Sample, gpu: &Gpu, size: u32, work: &Path) -> Outcome<Vec<I
     let mut pictures = Vec::new();
     for text in sample.texts() {
         std::fs::write(&path, text).map_err(files(&path, "write"))?;
-        let found = gather(std::slice::from_ref(&path))?;
-        let materials = valid(read_all(&found.materials)?, true)?;
-        let entries = found.surfaces.iter().filter_map(SurfaceSource::entry).collect();
-        let package = Package::of_surfaces(&materials, entries, &MemoryStore::default())?;
+        let sources = Sources::read([&path])?;
+        let bake = Bake { surfaces: sources.surface_entries(), ..Bake::lit() };
+        let package = bake.package(&valid(sources.materials, true)?, &MemoryStore::default())?;
         pictures.push(gpu.scene(&package, Form::Baked)?.render_shown(&[Shown::Surface(0)], &settings(size)?)?);
     }
     Ok(pictures)

@@ -6,7 +6,7 @@ mod stacks;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use luthier_export::read;
+use luthier::read_materials;
 use luthier_layers::lobes::{EXCESS, FitSettings, Lobes, Simulation, most_lobes, shown};
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
@@ -103,7 +103,7 @@ struct Group {
 
 /// Fits and judges, as a page.
 pub(crate) fn run(options: &LobesOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, false)?;
+    let materials = valid(read_materials(&options.sources.paths)?, false)?;
     let groups: [(&str, Choice, Vec<ModelSubject>); 3] = [
         ("Materials", Choice::Beyond, materials.iter().map(|material| stacks::of(material, false)).collect()),
         (

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use luthier_export::surface_map;
+use luthier::surface_map;
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::Map;
 use luthier_layers::layer_sample::LayerSample;

@@ -4,7 +4,8 @@ mod cases;
 mod page;
 
 use glam::DVec3;
-use luthier_export::{Bake, GENERATOR, MemoryStore, Package, Shader};
+use luthier::{Bake, MemoryStore};
+use luthier_export::{GENERATOR, Shader};
 use luthier_gpu::Gpu;
 use luthier_layers::elek;
 use luthier_layers::parts::Parts;
@@ -135,7 +136,7 @@ fn on_device(
     }
     let functions: Functions = [FunctionGroup::Eval, FunctionGroup::Surface].into_iter().collect();
     let bake = Bake { refuses: false, surfaces: case.surfaces(), functions, ..Bake::wgsl(&[form]) };
-    let mut package = Package::new(&all, &bake, &MemoryStore::default())?;
+    let mut package = bake.package(&all, &MemoryStore::default())?;
     let places: String =
         (0..).zip(spots).map(|(n, spot): (u32, _)| format!("        case {n}u: {{ {} }}\n", spot.make)).collect();
     let (eval, light) = match spots[0].light {

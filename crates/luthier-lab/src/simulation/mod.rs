@@ -5,8 +5,9 @@ mod page;
 use std::sync::Arc;
 use std::time::Instant;
 
+use luthier::{Bake, MemoryStore, lit, read_materials};
 use luthier_environment::{Environment, Scenery};
-use luthier_export::{GENERATOR, MemoryStore, Package, lit, read};
+use luthier_export::GENERATOR;
 use luthier_gpu::{Facets, Gpu, RenderSettings, Scene, Shape, Shown, SimulationSettings};
 use luthier_lut::Image;
 use luthier_manifest::{ColorMode, Form, ShadingModel};
@@ -65,7 +66,7 @@ struct Subject {
 /// Measures materials.
 pub(crate) fn run(options: &SimulationOptions) -> Outcome {
     let gpu = open(options.adapter.name.as_deref())?;
-    let materials = valid(read(&options.sources.paths)?, false)?;
+    let materials = valid(read_materials(&options.sources.paths)?, false)?;
     let skies = skies()?;
     let bar = Bar::new("simulation");
     let (mut times, mut errors) = (Vec::new(), Vec::new());
@@ -105,7 +106,7 @@ impl Subject {
             shaded.shade_by(model);
             // Those of the simulation.
             shaded.bake.color = Some(ColorMode::ThreeWavelengths);
-            let package = Package::for_renderer(&lit(&[shaded]), &MemoryStore::default())?;
+            let package = Bake::lit().package(&lit(&[shaded]), &MemoryStore::default())?;
             Ok(gpu.scene(&package, Form::Baked)?)
         };
         let models = MODELS.iter().map(|model| scene(*model)).collect::<Outcome<_>>()?;

@@ -3,7 +3,8 @@
 mod cases;
 mod page;
 
-use luthier_export::{Bake, GENERATOR, MemoryStore, Package, read};
+use luthier::{Bake, MemoryStore, read_materials};
+use luthier_export::GENERATOR;
 use luthier_gpu::Gpu;
 use luthier_layers::lobes::Lobes;
 use luthier_manifest::ShadingModel;
@@ -44,7 +45,7 @@ impl Judged {
 pub(crate) fn run(options: &TexturedOptions) -> Outcome {
     let mut materials = Vec::new();
     if !options.paths.is_empty() {
-        for material in valid(read(&options.paths)?, true)?.into_iter().filter(varies) {
+        for material in valid(read_materials(&options.paths)?, true)?.into_iter().filter(varies) {
             materials.extend(as_by_default(&material));
             materials.push(material);
         }
@@ -87,7 +88,7 @@ fn as_by_default(material: &Material) -> Option<Material> {
 
 fn judge(material: &Material, gpu: &Gpu, options: &TexturedOptions) -> Outcome<Option<Judged>> {
     let bake = Bake { refuses: false, ..Bake::wgsl(&[]) };
-    let package = Package::new(std::slice::from_ref(material), &bake, &MemoryStore::default())?;
+    let package = bake.package(std::slice::from_ref(material), &MemoryStore::default())?;
     let shaders = Shaders::new(gpu, &package)?;
     let subject = Subject {
         manifest: &package.manifest,

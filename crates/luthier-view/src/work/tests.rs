@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::Context;
-use luthier_export::MemoryStore;
+use luthier::{Bake, MemoryStore};
 use luthier_gpu::{Gpu, GpuError, Package, RenderSettings, Shape, ToneMapping};
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
@@ -70,7 +70,7 @@ fn package(film: &str, model: ShadingModel) -> Arc<Package> {
     let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let mut material = luthier_material::parse("m.toml", &text, &no_files).unwrap().material;
     material.shade_by(model);
-    Arc::new(Package::for_renderer(&[material], &MemoryStore::default()).unwrap())
+    Arc::new(Bake::lit().package(&[material], &MemoryStore::default()).unwrap())
 }
 
 /// A painter, and the orders to it.

@@ -11,7 +11,8 @@ mod words;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use luthier_export::{Bake, Compression, Encoded, Package, inner_packages};
+use luthier::{Bake, Files};
+use luthier_export::{Compression, Encoded, Package};
 use luthier_manifest::Functions;
 use luthier_shader::{Form, Target};
 use luthier_terminal::{Failure, Outcome, Sources, print};
@@ -53,23 +54,30 @@ fn need_store(user: &str) -> Outcome {
 
 /// Bakes once; the files that the bake read.
 fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
-    if let Some(scenes) = scene::find(&options.sources.paths)? {
+    let mut found = Files::packages(&options.sources.paths)?;
+    let outer = &mut found[0].2;
+    if !outer.scenes.is_empty() {
+        scene::refuse_mixture(outer)?;
         if options.pipeline.is_any() {
             return Err(Failure::Usage(anyhow::anyhow!(
                 "--check, --depfile, --dry-run, --relock, --shard and --watch are for materials, not for scenes"
             )));
         }
-        scene::run(options, &scenes)?;
-        return Ok(scenes);
+        let scenes = std::mem::take(&mut outer.scenes);
+        let read = scenes.iter().map(|scene| scene.path.clone()).collect();
+        scene::run(options, scenes)?;
+        return Ok(read);
     }
     if options.allow_miss || !options.budgets.is_empty() {
         return Err(Failure::Usage(anyhow::anyhow!(
             "--allow-miss and --budgets are for scenes (docs/pages/scenes.md)"
         )));
     }
-    let packages = packages(options)?;
+    let (packages, files): (Vec<(String, BakeOptions)>, Vec<Files>) =
+        found.into_iter().map(|(name, paths, files)| (package(options, name, paths), files)).unzip();
     // Nothing is made before all can be, and nothing is written before all is made.
-    let begun = packages.iter().map(|(_, options)| Begun::read(options)).collect::<Outcome<Vec<_>>>()?;
+    let begun = packages.iter().zip(files).map(|((_, options), files)| Begun::read(options, files));
+    let begun = begun.collect::<Outcome<Vec<_>>>()?;
     let needed = begun.iter().flat_map(Begun::needed).collect();
     let depfile = Depfile::of(&packages, needed)?;
     let made = begun.into_iter().map(Begun::make).collect::<Outcome<Vec<_>>>()?;
@@ -82,14 +90,10 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
     Ok(done.into_iter().flat_map(|done| done.read).collect())
 }
 
-/// The bakes that a command asks for: that of its paths, and, with their names, those of the packages inside its folders.
-fn packages(options: &BakeOptions) -> Outcome<Vec<(String, BakeOptions)>> {
-    let mut all = vec![(String::new(), options.clone())];
-    for (name, paths) in inner_packages(&options.sources.paths)? {
-        let out = options.out.join(&name);
-        all.push((name, BakeOptions { sources: Sources { paths }, out, ..options.clone() }));
-    }
-    Ok(all)
+/// The bake of one package: that of the command's paths, or with its name that of folders inside.
+fn package(options: &BakeOptions, name: String, paths: Vec<PathBuf>) -> (String, BakeOptions) {
+    let out = if name.is_empty() { options.out.clone() } else { options.out.join(&name) };
+    (name, BakeOptions { sources: Sources { paths }, out, ..options.clone() })
 }
 
 /// Says what became of the packages. As JSON the others are in the object of the first, by their names.

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use luthier::{Bake, Files, Source, Sources};
 use luthier_bake::{Observer, Silent};
-use luthier_export::{Bake, Encoded, MANIFEST, Package, Source, find, gather, read_all, refuse, refuse_surfaces};
+use luthier_export::{Encoded, MANIFEST};
 use luthier_manifest::SurfaceEntry;
 use luthier_material::{Diagnostic, Material};
 use luthier_shader::Form;
@@ -15,8 +16,7 @@ use super::stamp::{Kept, Stamp};
 use super::{pipeline, words};
 use crate::cli::BakeOptions;
 use crate::interrupt::whole;
-use crate::materials::{refuse_environment, shaded, shows_environment, valid_surfaces};
-use crate::misses;
+use crate::materials::{refuse_environment, shows_environment, tell_misses, valid_surfaces};
 use crate::progress::{BakeProgress, event, published};
 use crate::store::store;
 use crate::verb::check::diagnostics;
@@ -26,6 +26,7 @@ pub(super) struct Begun<'a> {
     options: &'a BakeOptions,
     /// The files that are found, before those that materials name.
     files: Vec<PathBuf>,
+    stamp: Stamp,
     lock: LockFile,
     progress: BakeProgress,
     found: Found,
@@ -67,23 +68,25 @@ pub(super) struct Done {
 }
 
 impl<'a> Begun<'a> {
-    /// Reads the files of a package, and refuses what cannot be baked.
-    pub(super) fn read(options: &'a BakeOptions) -> Outcome<Self> {
+    /// Parses the files of a package, and refuses what cannot be baked.
+    pub(super) fn read(options: &'a BakeOptions, found: Files) -> Outcome<Self> {
         let progress = BakeProgress::new();
-        let mut found = gather(&find(&options.sources.paths)?)?;
-        let files = [found.materials.as_slice(), &found.surface_files].concat();
+        let found = found.without_scenes();
+        let files = found.paths().map(PathBuf::from).collect();
         let lock = LockFile::beside(&options.sources.paths, options.pipeline.relock)?;
-        let kept = Stamp::new(options, &files, lock.text()).current();
-        if let Some(kept) = kept.filter(|_| options.pipeline.takes_stamp()) {
-            return Ok(Self { options, files, lock, progress, found: Found::Current(kept) });
+        let stamp = Stamp::new(options, &found);
+        let kept = stamp.current(lock.text()).filter(|_| options.pipeline.takes_stamp());
+        if let Some(kept) = kept {
+            return Ok(Self { options, files, stamp, lock, progress, found: Found::Current(kept) });
         }
         let forms = options.emission.forms();
-        let mut sources = read_all(&found.materials)?;
-        refuse(&mut sources, |material| options.shading.doubts_and_energy(material, &forms));
-        let told = sources.iter().flat_map(Source::diagnostics).cloned().collect();
-        refuse_surfaces(&mut found.surfaces, &sources);
-        let surfaces = valid_surfaces(&found.surfaces)?;
-        let materials = shaded(valid(sources, options.quiet)?, &options.shading, &forms);
+        let shading = options.shading.in_forms(&forms);
+        let mut sources = Sources::of(found);
+        sources.refuse(&shading);
+        sources.doubt_energy(&shading);
+        let told = sources.materials.iter().flat_map(Source::diagnostics).cloned().collect();
+        let surfaces = valid_surfaces(&sources.surfaces)?;
+        let materials = shading.shaded(valid(sources.materials, options.quiet)?);
         let is_shown = materials.iter().any(shows_environment) && forms != [Form::Full];
         refuse_environment(&options.emission.functions, is_shown)?;
         if forms == [Form::Full] && !options.limits.options().budget.is_empty() {
@@ -92,7 +95,7 @@ impl<'a> Begun<'a> {
             )));
         }
         progress.ends("read");
-        Ok(Self { options, files, lock, progress, found: Found::Set(Set { materials, surfaces, told }) })
+        Ok(Self { options, files, stamp, lock, progress, found: Found::Set(Set { materials, surfaces, told }) })
     }
 
     /// The files that the bake reads.
@@ -122,7 +125,7 @@ impl<'a> Begun<'a> {
         let bake = Bake {
             options: luthier_bake::Options { locked: lock.decisions(), ..options.limits.options() },
             targets: options.emission.targets(),
-            forms: options.emission.forms(),
+            shading: options.shading.in_forms(&options.emission.forms()),
             functions: options.emission.functions(),
             surfaces: set.surfaces.clone(),
             observer,
@@ -139,11 +142,11 @@ impl<'a> Begun<'a> {
         }
         let store = store()?;
         let encoded = pool.install(|| {
-            let mut package = Package::new(materials, &bake, store)?;
+            let mut package = bake.package(materials, store)?;
             // A bake that writes a lock is the bake that the lock gives: the next one finds nothing to do.
             if let Some(next) = lock.next(&package.manifest) {
                 let locked = luthier_bake::Options { locked: &next.decisions, ..bake.options };
-                package = Package::new(materials, &Bake { options: locked, ..bake.clone() }, store)?;
+                package = Bake { options: locked, ..bake.clone() }.package(materials, store)?;
             }
             progress.ends("make");
             options.encoded(&package)
@@ -157,7 +160,7 @@ impl Made<'_> {
     /// Publishes the package, where one was made and is not only to be compared.
     pub(super) fn publish(self) -> Outcome<Done> {
         let read = self.begun.read_files();
-        let Self { begun: Begun { options, files, lock, progress, found }, encoded, said } = self;
+        let Self { begun: Begun { options, stamp, lock, progress, found, .. }, encoded, said } = self;
         let set = match found {
             Found::Current(kept) => {
                 event("up-to-date", &options.out.join(MANIFEST));
@@ -181,13 +184,13 @@ impl Made<'_> {
             complain(&why);
         }
         published(&options.out);
-        let told = [set.told, misses::name(manifest, &options.out, options.quiet)?].concat();
+        let told = [set.told, tell_misses(manifest, &set.materials, options.quiet)].concat();
         let mut json = words::summary(options, manifest, &progress);
         json["diagnostics"] = diagnostics(&told);
         let text = if options.quiet { String::new() } else { words::text(options, manifest, &progress) };
         // The lock may be another one now.
         let lock = LockFile::beside(&options.sources.paths, false)?;
-        Stamp::new(options, &files, lock.text()).keep(&encoded, &set.materials, &json, told.len());
+        stamp.keep(lock.text(), &encoded, &set.materials, &json, told.len());
         Ok(Done { json, text, read, is_stale: false })
     }
 }

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use luthier::Missing;
 use luthier_bake::Share;
-use luthier_export::{Encoded, Folder, MANIFEST, Missing};
+use luthier_export::{Encoded, Folder, MANIFEST};
 use luthier_material::Material;
 use luthier_terminal::Outcome;
 use serde_json::{Value, json};

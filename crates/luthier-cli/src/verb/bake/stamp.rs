@@ -1,10 +1,12 @@
 //! Stamps: what a bake read and wrote, so that the next one knows at once that nothing has changed.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use luthier::Files;
 use luthier_bake::Key;
 use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
 use luthier_material::Material;
@@ -26,7 +28,7 @@ const LEFT: [&str; 2] = [".luthier-new", ".luthier-ready"];
 /// The inputs of a bake, and the place of its stamp.
 pub(super) struct Stamp {
     out: PathBuf,
-    /// The options, the program, the lock, and the hash of each material file.
+    /// The options, the program, and the hash of each file.
     inputs: String,
 }
 
@@ -65,19 +67,26 @@ fn address(out: &Path) -> Option<Key> {
 }
 
 impl Stamp {
-    pub(super) fn new(options: &BakeOptions, files: &[PathBuf], lock: &str) -> Self {
+    pub(super) fn new(options: &BakeOptions, files: &Files) -> Self {
         let BakeOptions { shading, limits, emission, no_zstd, hashed_names, .. } = options;
         let program = std::env::current_exe().ok().and_then(|path| state(&path));
-        let decided =
-            format!("{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {no_zstd} {hashed_names} {lock}");
-        Self { out: options.out.clone(), inputs: Key::of(format!("{decided} {}", hash(files)).as_bytes()).to_string() }
+        let decided = format!("{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {no_zstd} {hashed_names}");
+        let materials = files.materials.par_iter().map(|file| hashed(&file.path, Key::of(&file.bytes)));
+        let surfaces = files.surfaces.iter().map(|file| hashed(&file.path, Key::of(file.text.as_bytes())));
+        let hashes: Vec<String> = materials.collect::<Vec<_>>().into_iter().chain(surfaces).collect();
+        Self { out: options.out.clone(), inputs: format!("{decided} {}", hashes.concat()) }
+    }
+
+    /// The inputs with a lock as it is, as stamps have them.
+    fn inputs(&self, lock: &str) -> String {
+        Key::of(format!("{} {lock}", self.inputs).as_bytes()).to_string()
     }
 
     /// The stamp of the last bake into the folder, where it read the same and all that it wrote is as it was.
-    pub(super) fn current(&self) -> Option<Kept> {
+    pub(super) fn current(&self, lock: &str) -> Option<Kept> {
         let bytes = disk().ok()??.bytes(KIND, address(&self.out)?)?;
         let kept: Kept = serde_json::from_slice(&bytes).ok()?;
-        let is_same = kept.inputs == self.inputs
+        let is_same = kept.inputs == self.inputs(lock)
             && kept.named_hash == hash(&kept.named)
             && !LEFT.iter().any(|left| self.out.join(left).exists())
             && kept.outputs.iter().all(|(path, then)| then.is_some() && *then == state(&self.out.join(path)));
@@ -85,7 +94,7 @@ impl Stamp {
     }
 
     /// Keeps the stamp of a bake, if the folder still holds it and not one that another program has published since.
-    pub(super) fn keep(&self, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
+    pub(super) fn keep(&self, lock: &str, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
         let (Ok(Some(store)), Some(address)) = (disk(), address(&self.out)) else { return };
         let _lock = shared(&self.out);
         if !encoded.is_in(&self.out) {
@@ -94,7 +103,7 @@ impl Stamp {
         let named = all_named(materials);
         let paths = encoded.files.iter().map(|(path, _)| path.as_str()).chain([MANIFEST]);
         let kept = Kept {
-            inputs: self.inputs.clone(),
+            inputs: self.inputs(lock),
             named_hash: hash(&named),
             named,
             outputs: paths.map(|path| (path.to_owned(), state(&self.out.join(path)))).collect(),
@@ -130,9 +139,14 @@ impl Kept {
 
 /// A hash of the paths and bytes of some files.
 fn hash(files: &[PathBuf]) -> String {
-    let one = |path: &PathBuf| {
-        let bytes = input::image(path).map(|bytes| Key::of(&bytes).to_string());
-        format!("{} {}\n", path.display(), bytes.unwrap_or_else(|error| error.to_string()))
+    let one = |path: &PathBuf| match input::image(path) {
+        Ok(bytes) => hashed(path, Key::of(&bytes)),
+        Err(error) => hashed(path, error),
     };
     Key::of(files.par_iter().map(one).collect::<Vec<_>>().concat().as_bytes()).to_string()
+}
+
+/// A line of a hash: a path, and the hash of its bytes or why there is none.
+fn hashed(path: &Path, hash: impl Display) -> String {
+    format!("{} {hash}\n", path.display())
 }

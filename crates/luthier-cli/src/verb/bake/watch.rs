@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::Duration;
 
-use luthier_export::{find, inner_files};
+use luthier::{find, inner_files};
 use luthier_terminal::{Failure, Outcome, complain};
 
 use super::once;

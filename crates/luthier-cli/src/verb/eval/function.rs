@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
-use luthier_export::parts_of;
+use luthier::refusals::parts_of;
 use luthier_layers::directional_albedo::over_hemisphere;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::model::{Estimator, Model};

@@ -19,7 +19,7 @@ use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
 use luthier_layers::shaded::Place;
 use luthier_manifest::ShadingModel;
-use luthier_material::Material;
+use luthier_material::{FileKind, Material};
 use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
 use luthier_optics::stack::Stack;
 use serde_json::{Value, json};
@@ -31,7 +31,8 @@ use crate::model_inputs::ModelInputs;
 use crate::reradiation::Reradiation;
 use crate::store::store;
 use function::Kind;
-use luthier_export::{gather, of_function, read_all, read_one, refuse_surfaces, surface_map};
+use luthier::refusals::of_function;
+use luthier::{Files, Source, Sources, TomlFile, surface_map};
 use luthier_terminal::{Failure, Outcome, complain, valid};
 use place::{add_layers, place};
 use sweep::{Sweep, sweep};
@@ -88,7 +89,7 @@ impl Subject {
 pub(crate) fn run(options: &EvalOptions) -> Outcome {
     let Some(name) = &options.model else {
         // The command line asks for a model wherever one is needed.
-        let material = valid(vec![read_one(&options.file)?], false)?.swap_remove(0);
+        let material = valid(vec![Source::read(&options.file)?], false)?.swap_remove(0);
         let kind = match options.wavelength {
             None if options.three_wavelengths => Kind::Color(Color::ThreeWavelengths(material.bake.wavelengths_nm())),
             None if options.rgb => Kind::Color(Color::Spectral),
@@ -193,19 +194,19 @@ type Picked = (String, DVec3);
 /// The material of the file, and that of `--other`; of a surface the material at the place, with the name of the surface and the normal there.
 fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> {
     let inputs = &options.inputs;
-    let mut found = gather(std::slice::from_ref(&options.file))?;
-    if found.surfaces.is_empty() {
-        let files = std::iter::once(&options.file).chain(&inputs.other);
-        return Ok((valid(files.map(|file| read_one(file)).collect::<Result<_, _>>()?, false)?, None));
+    let file = TomlFile::read(&options.file)?;
+    if file.kind() != FileKind::Surface {
+        let other = inputs.other.as_ref().map(|other| Source::read(other)).transpose()?;
+        return Ok((valid([Source::of(file)].into_iter().chain(other).collect(), false)?, None));
     }
     if inputs.other.is_some() {
         let text = "a surface has materials of its own: leave out `--other`";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
-    let sources = read_all(&found.materials)?;
-    refuse_surfaces(&mut found.surfaces, &sources);
-    let surface = valid_surfaces(&found.surfaces)?.swap_remove(0);
-    let mut materials = valid(sources, false)?;
+    let mut sources = Sources::of(Files::of(vec![file]));
+    sources.refuse_surfaces();
+    let surface = valid_surfaces(&sources.surfaces)?.swap_remove(0);
+    let mut materials = valid(sources.materials, false)?;
     let pick = surface_map(&surface).pick(inputs.uv().unwrap_or(DVec2::ZERO));
     Ok((vec![materials.swap_remove(pick.stack)], Some((surface.name, pick.normal))))
 }

@@ -121,7 +121,7 @@ fn particle(&Glitter { seed, frequency, filled, tilt }: &Glitter, uv: DVec2) -> 
 }
 
 fn picture(material: &Material, named: &PictureRef, texels: TexelUse) -> Outcome<Picture> {
-    luthier_export::read_picture(&material.source, named, texels)
+    luthier::read_picture(&material.source, named, texels)
         .map_err(|reason| Failure::Input(anyhow::anyhow!("{}: {}: {reason}", material.source, named.path)))
 }
 

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use luthier_export::{Folder, shared, source_hash};
+use luthier::source_hash;
+use luthier_export::{Folder, shared};
 use luthier_layers::layered_mc::Estimate;
 use luthier_manifest::ColorMode;
 use luthier_manifest::ModelPart;

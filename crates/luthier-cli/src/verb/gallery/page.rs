@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use luthier_export::{Bake, MANIFEST, Package, label, lit, of_domain, origin, read};
+use luthier::refusals::of_domain;
+use luthier::{Bake, lit, read_materials};
+use luthier_export::{MANIFEST, Package, label, origin};
 use luthier_gallery::{Exhibit, Gallery, Look, Scenery, hidden_maps};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{CrossSection, Diagnostic, Material};
@@ -46,7 +48,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     }
     if !rest.is_empty() {
         let paths: Vec<PathBuf> = rest.into_iter().cloned().collect();
-        let materials = bakeable(read(&paths)?, &options.shading, &[], false)?;
+        let materials = bakeable(read_materials(&paths)?, &options.shading.in_forms(&[]), false)?;
         add(&mut gallery, options, &materials)?;
     }
     left_out(&gallery);
@@ -163,7 +165,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
 /// A bake for the page, which emits its own shaders: with the tables of blurred surroundings.
 fn package(materials: &[Material]) -> Outcome<Package> {
     let bake = Bake { targets: Vec::new(), ..Bake::default() };
-    Ok(Package::new(&lit(materials), &bake, store()?)?)
+    Ok(bake.package(&lit(materials), store()?)?)
 }
 
 /// A look of a material of the next package, with the cycles of its shaders.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier_export::{Package, Source, find, lit, read};
+use luthier::{Bake, Source, find, lit, read_materials};
 use luthier_manifest::Form;
 use luthier_terminal::{Failure, Outcome, open};
 
@@ -24,8 +24,8 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
     }
     let (titles, sources) = sources(options)?;
     // The warnings of a grid would be those of one file many times.
-    let materials = bakeable(sources, &options.shading, &[], !sheet.grid.is_empty())?;
-    let package = Package::for_renderer(&lit(&materials), store()?)?;
+    let materials = bakeable(sources, &options.shading.in_forms(&[]), !sheet.grid.is_empty())?;
+    let package = Bake::lit().package(&lit(&materials), store()?)?;
     let look = &sheet.look;
     let settings = settings(look, sheet.shape, sheet.mesh.as_deref(), sheet.size)?;
     let gpu = open(look.adapter.as_deref())?;
@@ -47,7 +47,7 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
 /// The files, or the variations of one with their titles.
 fn sources(options: &GalleryOptions) -> Outcome<(Vec<String>, Vec<Source>)> {
     let paths = &options.sources.paths;
-    let [along, down] = options.sheet.grid.as_slice() else { return Ok((Vec::new(), read(paths)?)) };
+    let [along, down] = options.sheet.grid.as_slice() else { return Ok((Vec::new(), read_materials(paths)?)) };
     match find(paths)?.as_slice() {
         [file] => Ok(variations(file, [along, down], options.sheet.steps)?.into_iter().unzip()),
         files => Err(Failure::Input(anyhow::anyhow!(

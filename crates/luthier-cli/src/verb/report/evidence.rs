@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use luthier::{Store, outline};
 use luthier_bake::{Function, Options, kept};
-use luthier_export::{GENERATOR, Store, outline, sha256};
+use luthier_export::{GENERATOR, sha256};
 use luthier_manifest::{Form, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_report::stability::Stability;

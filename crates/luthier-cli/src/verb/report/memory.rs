@@ -1,7 +1,7 @@
 //! Judgements of earlier reports, in the store. The judge computes them: the store only has them again, by the content of what was judged.
 
+use luthier::Store;
 use luthier_bake::Function;
-use luthier_export::Store;
 use luthier_report::Memory;
 use serde_json::Value;
 

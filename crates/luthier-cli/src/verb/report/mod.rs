@@ -7,7 +7,8 @@ mod pictures;
 
 use std::path::Path;
 
-use luthier_export::{Folder, GENERATOR, REPORT_FILES, label, origin, publish_beside, read_one, shared, source_hash};
+use luthier::{Source, source_hash};
+use luthier_export::{Folder, GENERATOR, REPORT_FILES, label, origin, publish_beside, shared};
 use luthier_manifest::Manifest;
 use luthier_manifest::ModelPart;
 use luthier_material::{Material, Parsed};
@@ -135,7 +136,7 @@ fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
         .enumerate()
         .map(|(number, entry)| {
             let file = origin(folder, &entry.source);
-            let source = read_one(&file).map_err(|error| match Failure::from(error) {
+            let source = Source::read(&file).map_err(|error| match Failure::from(error) {
                 Failure::Files(error) => Failure::Files(error.context(format!(
                     "the bake was made from {}, which the judge reads again; run the report where the bake ran",
                     file.display()

@@ -2,40 +2,29 @@
 
 mod page;
 
-use std::path::{Path, PathBuf};
-
-use luthier_export::{
-    MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, plain, read_one, refuse,
-};
+use luthier::{Files, SceneSource, TomlFile};
+use luthier_export::{MANIFEST, label};
 use luthier_manifest::{MaterialChoice, SceneChoice};
-use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
+use luthier_material::{Material, Scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
-use luthier_terminal::{Broken, Failure, Outcome, bytes, files, print, print_diagnostics, valid};
+use luthier_terminal::{Broken, Failure, Outcome, bytes, print, print_diagnostics, valid};
 use serde_json::json;
 
 use crate::cli::BakeOptions;
 use crate::interrupt::whole;
-use crate::materials::refuse_environment;
-use crate::misses;
+use crate::materials::{refuse_environment, tell_misses};
 use crate::progress::published;
 use crate::store::store;
 use crate::verb::check::diagnostics;
 
-/// The scenes among the files; `None` where there is none, and files are materials.
-pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
-    let mut scenes = Vec::new();
-    let mut others = Vec::new();
-    for path in find_files(paths)? {
-        // What is no text is left to whoever reads materials.
-        let text = input::bytes(&path).map_err(files(&path, "read"))?;
-        if is_scene(&String::from_utf8_lossy(&text)) { scenes.push(path) } else { others.push(path) }
-    }
-    match (scenes.first(), others.first()) {
-        (None, _) => Ok(None),
-        (Some(_), None) => Ok(Some(scenes)),
-        (Some(scene), Some(other)) => Err(Failure::Usage(anyhow::anyhow!(
+/// Refuses scenes among other files.
+pub(super) fn refuse_mixture(files: &Files) -> Outcome {
+    let [scene, ..] = files.scenes.as_slice() else { return Ok(()) };
+    match files.paths().find(|path| files.scenes.iter().all(|scene| scene.path != *path)) {
+        None => Ok(()),
+        Some(other) => Err(Failure::Usage(anyhow::anyhow!(
             "{} is a scene and {} is not: a scene names its materials itself",
-            scene.display(),
+            scene.path.display(),
             other.display()
         ))),
     }
@@ -48,7 +37,7 @@ fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Materia
 }
 
 /// Bakes a scene, or prints what budgets would choose for some.
-pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
+pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     let limits = options.limits.options();
     if !options.emission.form.is_empty() {
         return Err(Failure::Usage(anyhow::anyhow!(
@@ -73,11 +62,11 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     if !options.budgets.is_empty() {
         return pool.install(|| tighten(options, scenes));
     }
-    let [path] = scenes else {
+    let Ok([file]) = <[TomlFile; 1]>::try_from(scenes) else {
         let text = "one scene at a time is baked into a folder; several are for --budgets";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
-    let (scene, materials) = read(path, options.quiet)?;
+    let (scene, materials) = read(file, options.quiet)?;
     let mut director = director(options, &scene, &materials)?;
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
     let is_shown = made.package.manifest.materials.iter().any(|m| m.model.is_fitted());
@@ -85,7 +74,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let encoded = options.encoded(&made.package)?;
     whole(&options.out, || encoded.write(&options.out))?;
     published(&options.out);
-    let missed = misses::name(&made.package.manifest, Path::new(""), options.quiet)?;
+    let missed = tell_misses(&made.package.manifest, &materials, options.quiet);
     if options.json {
         let manifest = options.out.join(MANIFEST);
         let (bytes, cycles) = (made.bytes(), made.cycles());
@@ -111,12 +100,12 @@ fn failure(error: SceneFailure) -> Failure {
 }
 
 /// The steps of every scene, loosest budget first, as a page or as JSON.
-fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
+fn tighten(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     let mut budgets = options.budgets.clone();
     budgets.sort_by(|a, b| b.total_cmp(a));
     let mut tightened = Vec::new();
-    for path in scenes {
-        let (scene, materials) = read(path, options.quiet)?;
+    for file in scenes {
+        let (scene, materials) = read(file, options.quiet)?;
         let mut director = director(options, &scene, &materials)?;
         let mut step = |&limit: &f64| director.step(Some(limit), options.allow_miss).map_err(failure);
         let steps: Vec<Made> = budgets.iter().map(&mut step).collect::<Outcome<_>>()?;
@@ -130,62 +119,15 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     print(&page::markdown(&command(options), &budgets, &tightened))
 }
 
-/// A scene file that was read, and the files that it names.
-pub(crate) struct SceneSource {
-    /// The file, as it was named or found.
-    pub(crate) label: String,
-    pub(crate) text: String,
-    /// The scene, or why it is none.
-    pub(crate) parsed: Result<Scene, Vec<Diagnostic>>,
-    /// Its materials, in its order, with what is refused of them.
-    pub(crate) materials: Vec<Source>,
-}
-
-impl SceneSource {
-    /// Reads a scene and its materials, and finds out all that can be known before work begins.
-    pub(crate) fn read(path: &Path) -> Outcome<Self> {
-        let content = input::bytes(path).map_err(files(path, "read"))?;
-        let (label, text) = (label(path), String::from_utf8_lossy(&content).into_owned());
-        let mut parsed = parse_scene(&label, &text);
-        let mut materials = Vec::new();
-        if let Ok(scene) = &parsed {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let mut missing = Vec::new();
-            for named in &scene.materials {
-                match read_one(&plain(&folder.join(&named.file))).map_err(Failure::from) {
-                    Ok(source) => materials.push(source),
-                    Err(failure) => missing.push(scene.diagnostic(named, failure.sentence())),
-                }
-            }
-            if missing.is_empty() {
-                refuse(&mut materials, |material| [of_domain(material, None), of_scene(material)].concat());
-            } else {
-                parsed = Err(missing);
-            }
-        }
-        Ok(Self { label, text, parsed, materials })
-    }
-
-    /// Whether it can be baked.
-    pub(crate) fn is_usable(&self) -> bool {
-        self.parsed.is_ok() && self.materials.iter().all(|source| source.parsed.is_ok())
-    }
-
-    /// Prints what is wrong with the scene to standard error; its materials have diagnostics of their own.
-    pub(crate) fn print_diagnostics(&self) {
-        print_diagnostics(self.parsed.as_ref().err().into_iter().flatten(), &self.text);
-    }
-}
-
 /// A scene and its materials; or all diagnostics and a failure.
-fn read(path: &Path, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
-    let source = SceneSource::read(path)?;
-    source.print_diagnostics();
-    let scene = source.parsed.map_err(|diagnostics| {
-        let sentence = format!("{} cannot be used; nothing was written", path.display());
+fn read(file: TomlFile, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
+    let SceneSource { label, text, parsed, materials, .. } = SceneSource::of(file);
+    print_diagnostics(parsed.as_ref().err().into_iter().flatten(), &text);
+    let scene = parsed.map_err(|diagnostics| {
+        let sentence = format!("{label} cannot be used; nothing was written");
         Failure::input(Broken { sentence, diagnostics })
     })?;
-    Ok((scene, valid(source.materials, quiet)?))
+    Ok((scene, valid(materials, quiet)?))
 }
 
 fn text(options: &BakeOptions, made: &Made) -> String {

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier::{Bake, MemoryStore};
+use luthier_export::Shader;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_layers::textured::TextureSample;
@@ -89,7 +90,7 @@ fn roughness_maps_scale_all_of_them() {
     let three = [645.0, 525.0, 445.0];
     let materials = materials("weidlich-wilkie");
     let bake = Bake { functions: [FunctionGroup::Surface].into_iter().collect(), ..Bake::wgsl(&[Form::Full]) };
-    let mut package = Package::new(&materials, &bake, &MemoryStore::default()).unwrap();
+    let mut package = bake.package(&materials, &MemoryStore::default()).unwrap();
     for (factor, variance) in [(0.5, 0.0), (1.8, 0.0), (1.0, 0.01)] {
         let emitted = package.wgsl(Form::Full).unwrap().to_owned();
         let wgsl = emitted.replace("fn luthier_eval(", "fn emitted_eval(")
@@ -136,7 +137,7 @@ fn tables_hold_them() {
         found
     };
     let materials: Vec<Material> = SURFACES.iter().map(of).collect();
-    let package = Package::new(&materials, &Bake::wgsl(&[Form::Baked]), &MemoryStore::default()).unwrap();
+    let package = Bake::wgsl(&[Form::Baked]).package(&materials, &MemoryStore::default()).unwrap();
     let tiles: Vec<_> =
         package.manifest.materials.iter().map(|m| m.layers[0].tiles[TableKind::Distribution].unwrap()).collect();
     // One tile for the three of Blinn, and one for each pair of parameters.
@@ -167,7 +168,7 @@ fn every_model_has_its_shaders() {
     let store = MemoryStore::default();
     for model in ["elek", "weidlich-wilkie", "microfacet"] {
         let functions = FunctionGroup::NAMES.iter().filter_map(|name| FunctionGroup::from_name(name)).collect();
-        Package::new(&materials(model), &Bake { functions, ..Bake::wgsl(&[]) }, &store).unwrap();
+        (Bake { functions, ..Bake::wgsl(&[]) }).package(&materials(model), &store).unwrap();
     }
 }
 

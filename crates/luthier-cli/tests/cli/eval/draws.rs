@@ -6,7 +6,8 @@
 
 use std::f64::consts::TAU;
 
-use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier::{Bake, MemoryStore};
+use luthier_export::Shader;
 use luthier_gpu::Scene;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::Material;
@@ -82,7 +83,7 @@ pub(super) fn scene(materials: &[Material]) -> Option<Scene> {
     let gpu = gpu()?;
     let functions = [FunctionGroup::Propose, FunctionGroup::Albedo].into_iter().collect();
     let bake = Bake { functions, refuses: false, ..Bake::wgsl(&[Form::Baked]) };
-    let mut package = Package::new(materials, &bake, &MemoryStore::default()).unwrap();
+    let mut package = bake.package(materials, &MemoryStore::default()).unwrap();
     let wgsl = package.wgsl(Form::Baked).unwrap().replace("fn luthier_eval(", "fn emitted_eval(");
     let mut prepare = "luthier_prepare".to_owned();
     let mut place = String::new();

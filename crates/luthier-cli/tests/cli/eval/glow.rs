@@ -1,7 +1,8 @@
 //! Fluorescent bases from file to pixel: check, bake, manifest, shader on the device against the f64 twin, picture.
 
 use glam::DVec3;
-use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier::{Bake, MemoryStore};
+use luthier_export::Shader;
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
@@ -77,8 +78,7 @@ fn device_and_twin_agree_for_lights_of_all_colours() {
             for light in [[1.0f32, 1.0, 1.0], [0.0, 0.0, 2.0], [0.1, 1.5, 0.7]] {
                 let functions = [FunctionGroup::Light].into_iter().collect();
                 let bake = Bake { functions, ..Bake::wgsl(&[Form::Full]) };
-                let mut package =
-                    Package::new(std::slice::from_ref(&material), &bake, &MemoryStore::default()).unwrap();
+                let mut package = bake.package(std::slice::from_ref(&material), &MemoryStore::default()).unwrap();
                 let [r, g, b] = light;
                 let body = format!(
                     "\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    \

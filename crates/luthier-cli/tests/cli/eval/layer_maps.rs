@@ -1,6 +1,7 @@
 //! Maps of single layers: `eval` at a texture coordinate, the shader at a place, and the renderer, which reads the maps itself.
 
-use luthier_export::{Bake, MemoryStore, Package, Shader, read_one};
+use luthier::{Bake, MemoryStore, Source};
+use luthier_export::{Package, Shader};
 use luthier_gpu::{Environment, RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -47,7 +48,7 @@ fn workshop(model: &str) -> Workshop {
 }
 
 fn material(workshop: &Workshop) -> Material {
-    read_one(&workshop.path("m.toml")).unwrap().parsed.unwrap_or_else(|errors| panic!("{errors:?}")).material
+    Source::read(&workshop.path("m.toml")).unwrap().parsed.unwrap_or_else(|errors| panic!("{errors:?}")).material
 }
 
 /// The values of the place as `eval` states them, written into the shader.
@@ -80,7 +81,7 @@ fn package(material: &Material, body: Option<&str>) -> Package {
 
 fn package_in(form: Form, material: &Material, body: Option<&str>) -> Package {
     let bake = Bake { refuses: false, ..Bake::wgsl(&[form]) };
-    let mut package = Package::new(std::slice::from_ref(material), &bake, &MemoryStore::default()).unwrap();
+    let mut package = bake.package(std::slice::from_ref(material), &MemoryStore::default()).unwrap();
     if let Some(body) = body {
         let wgsl = package.wgsl(form).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
             + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
@@ -211,7 +212,7 @@ fn a_blurred_environment_refuses_maps_of_layers() {
     let Some(gpu) = gpu() else { return };
     let workshop = workshop("weidlich-wilkie");
     let bake = Bake { refuses: false, ..Bake::wgsl(&[Form::Baked]) };
-    let package = Package::new(&[material(&workshop)], &bake, &MemoryStore::default()).unwrap();
+    let package = bake.package(&[material(&workshop)], &MemoryStore::default()).unwrap();
     let scene = gpu.scene(&package, Form::Baked).unwrap();
     let settings = RenderSettings::new(Shape::Sphere).unwrap();
     let error = scene.render(&[0], &settings).unwrap_err().to_string();

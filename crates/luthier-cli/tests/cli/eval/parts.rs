@@ -1,7 +1,8 @@
 //! Parts of a model that a file chooses, on the device: maskings and reflectances against their f64 twins, and drawn directions.
 
 use glam::DVec3;
-use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier::{Bake, MemoryStore};
+use luthier_export::Shader;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_manifest::{BeamsRecord, ColorMode, Form, Masking, Reflectance, ShadingModel};
@@ -80,8 +81,7 @@ fn parts(material: &Material) -> (Parts, Reflectance) {
 fn compare(materials: &[Material], worst: &mut f64) {
     let Some(gpu) = gpu() else { return };
     let pairs = pairs();
-    let mut package =
-        Package::new(materials, &Bake::wgsl(&[Form::Baked, Form::Full]), &MemoryStore::default()).unwrap();
+    let mut package = Bake::wgsl(&[Form::Baked, Form::Full]).package(materials, &MemoryStore::default()).unwrap();
     let set = MaterialSet::from_manifest(&package.manifest).with_closed_distribution();
     let baked = emit(&set, Form::Baked, Target::Wgsl).unwrap();
     let full = package.wgsl(Form::Full).unwrap().to_owned();
@@ -261,7 +261,7 @@ fn places_roughen_and_tilt_both_boundaries() {
     let varying = material("varying", &format!("{varying}{COPPER}alpha = 0.2\n"), "model = \"granier-heidrich\"");
     for own in beams() {
         let set = [own.clone(), varying.clone()];
-        let mut package = Package::new(&set, &Bake::wgsl(&[Form::Full]), &MemoryStore::default()).unwrap();
+        let mut package = Bake::wgsl(&[Form::Full]).package(&set, &MemoryStore::default()).unwrap();
         let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
             + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
         package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
@@ -317,7 +317,7 @@ fn tarnish_dims_chosen_reflectances() {
         let grown = material("grown", &layers, &bake);
         let Some(gpu) = gpu() else { return };
         let mut package =
-            Package::new(std::slice::from_ref(&grown), &Bake::wgsl(&[Form::Full]), &MemoryStore::default()).unwrap();
+            Bake::wgsl(&[Form::Full]).package(std::slice::from_ref(&grown), &MemoryStore::default()).unwrap();
         let body =
             "var place = luthier_place();\nplace.patina = 0.4;\nreturn luthier_eval_at(place, material, wi, wo);";
         let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")

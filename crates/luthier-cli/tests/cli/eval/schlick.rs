@@ -1,6 +1,6 @@
 //! Surfaces that reflect by Schlick's formula: from files to the device, in every model, and by hand.
 
-use luthier_export::{Bake, MemoryStore, Package};
+use luthier::{Bake, MemoryStore};
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_manifest::{FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
@@ -72,7 +72,7 @@ fn every_model_has_its_shaders() {
         let materials = materials(model);
         // Energies and simulations of rough layers are slow.
         let some = if ["belcour", "yamaguchi", "lobes"].contains(model) { &materials[1..2] } else { &materials };
-        Package::new(some, &bake, &store).unwrap();
+        bake.package(some, &store).unwrap();
     }
 }
 

@@ -123,18 +123,18 @@ fn what_cannot_be_baked_is_pointed_at() {
 #[test]
 fn places_are_those_of_the_shader() {
     use glam::{DVec2, DVec3};
-    use luthier_export::{Bake, MemoryStore, Package, Shader, gather, read_all, surface_map};
+    use luthier::{Bake, MemoryStore, Sources, surface_map};
+    use luthier_export::Shader;
     use luthier_manifest::Form;
 
     let Some(gpu) = super::twin::gpu() else { return };
     let workshop = veined();
-    let found = gather(&[workshop.path("stone.toml")]).unwrap();
-    let sources = read_all(&found.materials).unwrap();
-    let materials: Vec<_> = sources.into_iter().map(|source| source.parsed.unwrap().material).collect();
-    let surfaces: Vec<_> = found.surfaces.iter().filter_map(|surface| surface.entry()).collect();
+    let sources = Sources::read([workshop.path("stone.toml")]).unwrap();
+    let materials: Vec<_> = sources.materials.iter().map(|source| source.material().unwrap().clone()).collect();
+    let surfaces = sources.surface_entries();
     let map = surface_map(&surfaces[0]);
     let bake = Bake { surfaces, ..Bake::wgsl(&[Form::Full]) };
-    let mut package = Package::new(&materials, &bake, &MemoryStore::default()).unwrap();
+    let mut package = bake.package(&materials, &MemoryStore::default()).unwrap();
     // The place comes in as the direction of a light, which is the same for all.
     let body = "let pick = luthier_pick(0u, wi.xy);\nvar place = luthier_place();\nplace.normal = pick.normal;\n\
                 return luthier_eval_at(place, pick.material, vec3<f32>(0.5, 0.0, 0.8660254), wo);";

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier::{Bake, MemoryStore};
+use luthier_export::Shader;
 use luthier_gpu::{Gpu, GpuError};
 use luthier_layers::shaded::{Place, Shaded};
 use luthier_manifest::{ColorMode, Form, ShadingModel};
@@ -70,7 +71,7 @@ fn shipped_in(folder: &str, model: &str) -> Vec<Material> {
 fn scene(gpu: &Gpu, materials: &[Material], body: Option<&str>) -> luthier_gpu::Scene {
     let form = if materials.iter().all(|material| material.model().has(Form::Full)) { Form::Full } else { Form::Baked };
     let bake = Bake { refuses: false, ..Bake::wgsl(&[form]) };
-    let mut package = Package::new(materials, &bake, &MemoryStore::default()).unwrap();
+    let mut package = bake.package(materials, &MemoryStore::default()).unwrap();
     if let Some(body) = body {
         let wgsl = package.wgsl(form).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
             + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use luthier_export::{Bake, MemoryStore, Package, Shader, SurfaceSource, gather, read_one};
+use luthier::{Bake, Files, MemoryStore, Source, SurfaceSource};
+use luthier_export::{Package, Shader};
 use luthier_gpu::Gpu;
 use luthier_manifest::{Form, FunctionGroup, Functions, ShadingModel};
 use luthier_material::Material;
@@ -139,7 +140,7 @@ fn write_other(element: &Element, workshop: &Workshop) {
 }
 
 fn material(element: &Element, path: &Path) -> Material {
-    let read = read_one(path).unwrap().parsed;
+    let read = Source::read(path).unwrap().parsed;
     let material = read.unwrap_or_else(|errors| panic!("{}: {errors:?}", element.name()));
     let mut material = material.material;
     material.bake.model = ShadingModel::from_name(element.cell("model"));
@@ -159,13 +160,13 @@ fn package_of(element: &Element, text: &str) -> Package {
     write_other(element, &workshop);
     let (mut files, mut surfaces) = (vec![workshop.path("m.toml")], Vec::new());
     if element.surface().is_some() {
-        let found = gather(&[workshop.path("s.toml")]).unwrap();
-        (files, surfaces) = (found.materials, found.surfaces.iter().filter_map(SurfaceSource::entry).collect());
+        let found = Files::read(&[workshop.path("s.toml")]).unwrap();
+        files = found.materials.into_iter().map(|file| file.path).collect();
+        surfaces = found.surfaces.iter().filter_map(SurfaceSource::entry).collect();
     }
     let materials: Vec<Material> = files.iter().map(|path| material(element, path)).collect();
     let bake = Bake { refuses: false, functions, surfaces, ..Bake::wgsl(&forms) };
-    Package::new(&materials, &bake, &MemoryStore::default())
-        .unwrap_or_else(|error| panic!("{}: {error}", element.name()))
+    bake.package(&materials, &MemoryStore::default()).unwrap_or_else(|error| panic!("{}: {error}", element.name()))
 }
 
 /// Values of the shader at all pairs, channel by channel.

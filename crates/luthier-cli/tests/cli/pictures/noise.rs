@@ -1,6 +1,6 @@
 //! Noise of environments that go through the shader: directions are drawn for the place, whatever maps say of it.
 
-use luthier_export::{MemoryStore, Package, lit, read_one};
+use luthier::{Bake, MemoryStore, Source, lit};
 use luthier_gpu::{Backdrop, RenderSettings, Scene, Shape};
 use luthier_lut::Image;
 use luthier_manifest::Form;
@@ -65,9 +65,9 @@ fn materials() -> [(&'static str, String); 8] {
 
 fn scene(workshop: &Workshop, gpu: &luthier_gpu::Gpu, text: &str) -> Scene {
     workshop.write("m.toml", text);
-    let parsed = read_one(&workshop.path("m.toml")).unwrap().parsed;
+    let parsed = Source::read(&workshop.path("m.toml")).unwrap().parsed;
     let material = parsed.unwrap_or_else(|errors| panic!("{errors:?}")).material;
-    let package = Package::for_renderer(&lit(&[material]), &MemoryStore::default()).unwrap();
+    let package = Bake::lit().package(&lit(&[material]), &MemoryStore::default()).unwrap();
     gpu.scene(&package, Form::Baked).unwrap()
 }
 

@@ -21,7 +21,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::schlick::metallic_roughness;
 use luthier_optics::stack::{Base, Layer, Stack};
 
-use crate::parts::parts_of;
+use super::parts::parts_of;
 
 /// More than this share of the light is told. Sums and interpolated tables are not that precise at 1.
 const ALL: f64 = 1.02;

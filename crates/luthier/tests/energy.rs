@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use luthier_export::{Returned, of_energy, of_text, returned};
+use luthier::Source;
+use luthier::refusals::{Returned, of_energy, returned};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 
@@ -15,7 +16,7 @@ const PAINTED: &str = "maps = { base_color = \"c.png\", metallic = \"m.png\" }\n
 
 fn material(body: &str, model: Option<&str>) -> Material {
     let bake = model.map_or_else(String::new, |model| format!("[bake]\nmodel = \"{model}\"\n"));
-    let source = of_text(Path::new("x.toml"), format!("schema = 1\nname = \"x\"\n{body}{bake}"));
+    let source = Source::of_text(Path::new("x.toml"), format!("schema = 1\nname = \"x\"\n{body}{bake}"));
     source.parsed.unwrap_or_else(|errors| panic!("{}", errors[0].message)).material
 }
 

@@ -13,7 +13,7 @@ use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
 use luthier_optics::stack::{Stack, Surface};
 
-use crate::beams::{self, of_beams};
+use super::beams::{self, of_beams};
 
 /// Errors for parts that a model does not have, and for films of which a curve knows nothing; warnings of what the others do. `asked` is the
 /// model of the command line.

@@ -6,7 +6,7 @@ use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::{Diagnostic, LeftOut, Material, Severity, left_out};
 use luthier_model::Quantity;
 
-use crate::parts::of_parts;
+use super::parts::of_parts;
 
 /// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
 pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {

@@ -1,9 +1,34 @@
-//! Doubts about a picture: what a file may say, but rarely means.
+//! Pictures that cannot be used, and doubts about others: what a file may say, but rarely means.
 
 use luthier_lut::Picture;
-use luthier_material::{PictureRef, TexelUse};
+use luthier_material::{Diagnostic, Material, NamedImage, PictureRef, Severity, TexelUse};
 
-use super::Read;
+use crate::pictures::{self, Read};
+
+/// Diagnostics of the pictures that a material names.
+pub fn of_pictures(material: &Material) -> Vec<Diagnostic> {
+    material.images().iter().flat_map(|image| told(material, image)).collect()
+}
+
+/// Diagnostics of a picture that a material names: why it cannot be used, or doubts about it.
+fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
+    let NamedImage { key, picture, texels } = image;
+    let path = &picture.path;
+    match pictures::read(&material.source, picture, *texels) {
+        Ok(read) => {
+            let doubts = doubts(&read, picture, *texels).into_iter();
+            let warning = |(sentence, hint)| {
+                material.diagnostic(Severity::Warning, key, format!("the map `{path}`: {sentence}"), Some(hint))
+            };
+            doubts.map(warning).collect()
+        }
+        Err(reason) => {
+            let hint = "name a PNG, JPEG or WebP file by its path relative to the material file".to_owned();
+            let message = format!("cannot use the map `{path}`: {reason}");
+            vec![material.diagnostic(Severity::Error, key, message, Some(hint))]
+        }
+    }
+}
 
 /// Texels that are looked at; of larger pictures every n-th row and column.
 const SEEN_MAX: usize = 1 << 20;
@@ -18,7 +43,7 @@ const UPRIGHT: f64 = 0.866;
 const FLIPPED: f64 = 4.0;
 
 /// A sentence and a hint for each doubt.
-pub(crate) fn doubts(read: &Read, asked: &PictureRef, texels: TexelUse) -> Vec<(String, String)> {
+fn doubts(read: &Read, asked: &PictureRef, texels: TexelUse) -> Vec<(String, String)> {
     let mut found = Vec::new();
     match texels {
         TexelUse::Number if asked.channel.is_none() && has_colours(&read.decoded.picture) => found.push((

@@ -1,15 +1,13 @@
 //! Pictures that materials name: read, made into the map that ships, and looked at for what is unlikely to be meant.
 
-mod doubts;
-
 use luthier_lut::{Image, Picture, PictureSamples, srgb};
 use luthier_material::{Channel, PictureRef, TexelUse};
 use luthier_texture::picture::{Decoded, decode};
 use luthier_texture::{Container, png};
 
-pub(crate) use doubts::doubts;
+use luthier_export::input;
 
-use crate::{input, sources};
+use crate::paths;
 
 /// A picture as its material reads it.
 pub(crate) struct Read {
@@ -38,7 +36,7 @@ pub fn read_image(material: &str, picture: &PictureRef) -> Result<Image, String>
 }
 
 pub(crate) fn read(material: &str, picture: &PictureRef, texels: TexelUse) -> Result<Read, String> {
-    let bytes = input::image(&sources::beside(material, &picture.path)).map_err(|source| source.to_string())?;
+    let bytes = input::image(&paths::beside(material, &picture.path)).map_err(|source| source.to_string())?;
     let decoded = decode(&bytes).map_err(|source| source.to_string())?;
     let made = shipped(&decoded.picture, picture, texels)?;
     Ok(Read { picture: made, bytes, decoded })

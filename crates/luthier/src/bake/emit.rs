@@ -1,0 +1,55 @@
+//! The shaders of a package.
+
+use std::ops::Range;
+
+use luthier_export::{Map, Package, Shader};
+use luthier_manifest::{Form, MaterialTexture, Target, material_buffer};
+use luthier_shader::{MaterialSet, ShaderError};
+use rayon::prelude::*;
+
+use crate::Error;
+
+/// Emits and validates the shaders, and describes what they bind. The bindings are those of the first form.
+pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) -> Result<(), Error> {
+    let manifest = &mut package.manifest;
+    manifest.material_texture = MaterialTexture::of(material_buffer(&manifest.materials).len());
+    let set = MaterialSet::from_manifest(manifest);
+    let wanted: Vec<(Form, Target)> =
+        forms.iter().flat_map(|&form| targets.iter().map(move |&target| (form, target))).collect();
+    let shader = |(form, target)| {
+        let bytes = match target {
+            Target::SpirV => luthier_shader::emit_spirv(&set, form),
+            _ => luthier_shader::emit(&set, form, target).map(String::into_bytes),
+        };
+        Ok(Shader { form, target, bytes: bytes? })
+    };
+    package.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
+    manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
+    Ok(())
+}
+
+/// The package of some of the materials of a package, by their numbers: with all tables, without surfaces, and with shaders for these materials alone.
+///
+/// # Errors
+/// [`Error::Shader`].
+pub fn of_materials(all: &Package, numbers: Range<usize>) -> Result<Package, Error> {
+    let mut package = all.clone();
+    package.manifest.materials = all.manifest.materials[numbers.clone()].to_vec();
+    package.manifest.surfaces.clear();
+    package.maps.retain(|map| numbers.contains(&(map.material as usize)));
+    package.maps.iter_mut().for_each(|map: &mut Map| map.material -= numbers.start as u32);
+    let (mut targets, mut forms) = (Vec::new(), Vec::new());
+    for Shader { form, target, .. } in &all.shaders {
+        if !targets.contains(target) {
+            targets.push(*target);
+        }
+        if !forms.contains(form) {
+            forms.push(*form);
+        }
+    }
+    // Forms that only others lack.
+    let is_new = |form: &Form| !all.manifest.has(*form) && package.manifest.has(*form);
+    forms.extend(Form::ALL.into_iter().filter(is_new));
+    emit(&mut package, &targets, &forms)?;
+    Ok(package)
+}

@@ -1,0 +1,242 @@
+//! Packages made from materials.
+
+mod emit;
+mod entries;
+mod maps;
+
+use std::collections::BTreeMap;
+
+use luthier_bake::{BakedMaterial, ImageReader, Missing, Observer, Options, Share, Silent, Store};
+use luthier_export::{GENERATOR, Package, Table};
+use luthier_lut::{Atlas, TableKind};
+use luthier_manifest::{Form, FunctionGroup, Functions, Manifest, SurfaceEntry, TableEntry, Target};
+use luthier_material::{Diagnostic, Material};
+use luthier_shader::ShaderError;
+use luthier_texture::Texture;
+
+use self::emit::emit;
+use self::entries::{material_entries, table_entry};
+use crate::refusals::{of_domain, of_parts};
+use crate::{Error, Shading, Sources, read_image};
+
+pub use emit::of_materials;
+pub use entries::source_hash;
+
+/// How a package is made, beside what its materials say. The default is all that `luthier bake` writes.
+#[derive(Clone)]
+pub struct Bake<'a> {
+    /// Models, and forms of the shaders.
+    pub shading: Shading,
+    /// Limits, formats, whether tables are searched for.
+    pub options: Options<'a>,
+    /// Languages of the shaders.
+    pub targets: Vec<Target>,
+    /// Groups of functions of each shader.
+    pub functions: Functions,
+    /// Surfaces of the materials, by their numbers.
+    pub surfaces: Vec<SurfaceEntry>,
+    /// Told what happens; may cancel the bake.
+    pub observer: &'a dyn Observer,
+    /// Whether materials outside the domain of their model are refused; tests at the limits of models take them.
+    pub refuses: bool,
+}
+
+impl Default for Bake<'_> {
+    fn default() -> Self {
+        Self {
+            shading: Shading::default(),
+            options: Options::default(),
+            targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300],
+            functions: Functions::default(),
+            surfaces: Vec::new(),
+            observer: &Silent,
+            refuses: true,
+        }
+    }
+}
+
+impl<'a> Bake<'a> {
+    /// A package with shaders in WGSL only.
+    pub fn wgsl(forms: &[Form]) -> Self {
+        let shading = Shading { forms: forms.to_vec(), ..Shading::default() };
+        Self { shading, targets: vec![Target::Wgsl], ..Self::default() }
+    }
+
+    /// A package for a renderer: all forms of the shader in WGSL, with functions that show an environment, blurred beforehand and in directions that
+    /// are drawn. [`lit`](crate::lit) gives its materials the tables that such a renderer reads.
+    pub fn lit() -> Self {
+        Self { functions: [FunctionGroup::Environment, FunctionGroup::Sample].into_iter().collect(), ..Self::wgsl(&[]) }
+    }
+
+    /// With shaders of some forms alone.
+    #[must_use]
+    pub fn in_forms(mut self, forms: &[Form]) -> Self {
+        self.shading.forms = forms.to_vec();
+        self
+    }
+
+    /// Bakes the materials and surfaces of sources, which were refused where that was called for ([`Sources::refuse`]).
+    ///
+    /// # Errors
+    /// [`Error`]; [`Error::Refused`] where a source is unusable.
+    pub fn of(&self, sources: &Sources, store: &dyn Store) -> Result<Package, Error> {
+        if !sources.is_usable() {
+            let diagnostics: Vec<Diagnostic> = sources.diagnostics().filter(|d| d.is_error()).cloned().collect();
+            return Err(refused(diagnostics));
+        }
+        let surfaces = sources.surface_entries();
+        Self { surfaces, ..self.clone() }.package(&sources.materials(&Shading::default()), store)
+    }
+
+    /// Bakes materials: tables as they need, then shaders that read them. What the store has is not computed again; what is computed goes
+    /// into it. Files that materials name are read beside the materials' own files.
+    ///
+    /// ```
+    /// use luthier::{Bake, Form, MemoryStore};
+    ///
+    /// let text = "schema = 1\nname = \"red\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.05, 0.05]\n";
+    /// let package = Bake::default().package(&[luthier::parse("red.toml", text)?], &MemoryStore::default())?;
+    /// assert!(package.wgsl(Form::Baked)?.contains("fn luthier_eval("));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error`]. The bytes depend on nothing but the arguments and the files.
+    pub fn package(&self, materials: &[Material], store: &dyn Store) -> Result<Package, Error> {
+        let (materials, forms) = &self.settled(materials)?;
+        let read = &read_image as ImageReader<'_>;
+        if *forms == [Form::Full] {
+            // Without a shader that reads them there are no tables.
+            let options = Options { search: false, ..self.options };
+            let mut outline = luthier_bake::outline_with(materials, &options, read, store)?;
+            outline.materials.iter_mut().for_each(BakedMaterial::forget_tables);
+            return self.assembled(materials, forms, &outline.materials, Vec::new());
+        }
+        let baked = luthier_bake::bake_with(materials, &self.options, read, self.observer, store)?;
+        let mut package = self.assembled(materials, forms, &baked.materials, baked.atlases)?;
+        package.manifest.searches = baked.searches;
+        Ok(package)
+    }
+
+    /// Computes a share of the jobs of a bake into a store: the bake that follows finds the results there.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn share(&self, materials: &[Material], store: &dyn Store, share: Share) -> Result<(), Error> {
+        let (materials, forms) = self.settled(materials)?;
+        if forms == [Form::Full] {
+            return Ok(());
+        }
+        Ok(luthier_bake::bake_share(&materials, &self.options, &read_image, self.observer, store, share)?)
+    }
+
+    /// The jobs that a bake would run because a store lacks their results.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn missing(&self, materials: &[Material], store: &dyn Store) -> Result<Missing, Error> {
+        let (materials, forms) = self.settled(materials)?;
+        if forms == [Form::Full] {
+            return Ok(Missing { jobs: BTreeMap::new(), is_all: true });
+        }
+        Ok(luthier_bake::missing(&materials, &self.options, &read_image, store)?)
+    }
+
+    /// The materials as they are baked, and the forms of their shaders.
+    fn settled(&self, materials: &[Material]) -> Result<(Vec<Material>, Vec<Form>), Error> {
+        let materials = self.shading.shaded(materials.to_vec());
+        if self.refuses {
+            refuse_foreign(&materials)?;
+        }
+        let forms = forms(&materials, &self.shading.forms)?;
+        Ok((materials, forms))
+    }
+
+    fn assembled(
+        &self,
+        materials: &[Material],
+        forms: &[Form],
+        baked: &[BakedMaterial],
+        atlases: Vec<Atlas>,
+    ) -> Result<Package, Error> {
+        let (entries, maps) = material_entries(materials, baked)?;
+        let entry = |atlas: &Atlas| TableEntry {
+            tiles: atlas.tiles.clone(),
+            ..table_entry(atlas.kind, &atlas.layout, atlas.format)
+        };
+        let tables = atlases.iter().map(entry).collect();
+        let (functions, surfaces) = (self.functions.clone(), self.surfaces.clone());
+        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables) };
+        let table =
+            |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
+        let tables = atlases.into_iter().map(table).collect();
+        let mut package = Package::from_parts(manifest, tables, Vec::new())?;
+        package.maps = maps;
+        emit(&mut package, &self.targets, forms)?;
+        Ok(package)
+    }
+}
+
+/// The manifest that a bake of these materials would have, without its files: materials, tables without tiles, searches. Takes little
+/// computing, unless a material has a budget or lobes, of which the store has what was computed before.
+///
+/// # Errors
+/// [`Error`].
+pub fn outline(materials: &[Material], options: &Options<'_>, store: &dyn Store) -> Result<Manifest, Error> {
+    let outline = luthier_bake::outline_with(materials, options, &read_image, store)?;
+    let (entries, _) = material_entries(materials, &outline.materials)?;
+    let tables = outline.tables.iter().map(|(kind, layout, format)| table_entry(*kind, layout, *format)).collect();
+    Ok(Manifest { searches: outline.searches, ..Manifest::new(GENERATOR, entries, tables) })
+}
+
+/// Tables that the environment of pictures reads beside the shader: reflectance and albedo of every interface.
+const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film];
+
+/// Texels of the energies of rough interfaces, over the view and the slope parameter, where pictures alone read them. A table of the size that a bake
+/// looks for takes three times as long, more than all the rest of a first picture.
+const ENERGY_SIZE: [u32; 2] = [32, 16];
+
+/// The materials, each asking for the tables that blurred environments read, too, as far as its distributions of slopes have them.
+pub fn lit(materials: &[Material]) -> Vec<Material> {
+    let mut lit = materials.to_vec();
+    let is_of_pictures =
+        |material: &Material| !material.model().is_statistical() && !material.bake.asks_for(TableKind::Fgd);
+    let is_small = materials.iter().all(is_of_pictures);
+    // Lobes have their own energies.
+    for material in lit.iter_mut().filter(|material| !material.model().is_fitted()) {
+        // Of facets without walks there are no albedos: renderers draw directions.
+        let has_walks = material.stack.layers.iter().all(|layer| layer.surface.distribution.has_walks());
+        let tables = ENVIRONMENT_TABLES.into_iter().filter(|kind| has_walks || *kind != TableKind::Fgd);
+        material.bake.tables.extend(tables);
+        if is_small && has_walks {
+            material.bake.fgd.size = Some(ENERGY_SIZE);
+        }
+    }
+    lit
+}
+
+/// Refuses materials outside the domain of their model, and parts that their model does not have.
+fn refuse_foreign(materials: &[Material]) -> Result<(), Error> {
+    let doubts = materials.iter().flat_map(|material| [of_domain(material, None), of_parts(material, None)].concat());
+    let diagnostics: Vec<Diagnostic> = doubts.filter(Diagnostic::is_error).collect();
+    if diagnostics.is_empty() { Ok(()) } else { Err(refused(diagnostics)) }
+}
+
+/// A refusal in the words of its first diagnostic.
+fn refused(diagnostics: Vec<Diagnostic>) -> Error {
+    let sentence = diagnostics.first().map_or_else(String::new, |first| format!("{}: {}", first.label, first.message));
+    Error::Refused { sentence, diagnostics }
+}
+
+/// The forms of the shaders of materials: those that are asked for, or all that the models of all materials have.
+fn forms(materials: &[Material], asked: &[Form]) -> Result<Vec<Form>, Error> {
+    let lacking = |form: Form| materials.iter().find(|material| !material.model().has(form));
+    for &form in asked {
+        if let Some(material) = lacking(form) {
+            let (material, model) = (material.name.clone(), material.model());
+            return Err(ShaderError::NoForm { material, model, form }.into());
+        }
+    }
+    let all = || Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect();
+    Ok(if asked.is_empty() { all() } else { asked.to_vec() })
+}

@@ -1,0 +1,37 @@
+//! The front door of luthier: files of materials become a package of tables and shaders, with everything that is wrong said where it stands.
+//!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
+//! - [`Sources`]: scenes, surfaces and materials, each file read once, with diagnostics that have places in files;
+//! - [`Shading`]: the choice of models beside what the files say; [`Bake`]: all options of a bake;
+//! - [`Bake::package`]: materials to a [`Package`], which is in memory until [`Package::write`] publishes it in a folder;
+//! - [`refusals`]: every reason why a material is refused, or doubted.
+//!
+//! A bake computes what its [`Store`] lacks: [`MemoryStore`] starts empty, `luthier_store::DiskStore` keeps results between processes.
+//! An [`Observer`] hears of every job, and may cancel.
+//!
+//! Modules, each of which uses those before it alone: paths, pictures, refusals, shading, sources, bake.
+
+mod bake;
+mod error;
+mod paths;
+mod pictures;
+pub mod refusals;
+mod shading;
+mod sources;
+
+pub use bake::{Bake, lit, of_materials, outline, source_hash};
+pub use error::Error;
+pub use paths::{find, inner_files};
+pub use pictures::{read_image, read_picture};
+pub use shading::Shading;
+pub use sources::{
+    Files, SceneSource, Source, Sources, SurfaceSource, TomlFile, named_files, parse, read_materials, refuse,
+    surface_map,
+};
+
+pub use luthier_bake::{MemoryStore, Missing, Observer, Options, Share, Silent, Store};
+pub use luthier_export::{Compression, Encoded, Folder, Package, PackageError, sha256};
+pub use luthier_manifest::{Form, FunctionGroup, Functions, Manifest, ShadingModel, Target};
+pub use luthier_material::{Diagnostic, Material, Severity};

@@ -1,0 +1,75 @@
+//! Paths of files that users name, and the files of folders.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::Error;
+
+/// The files of paths: files, and the `*.toml` of folders, each once, in the order given and by name within a folder.
+///
+/// # Errors
+/// [`Error::File`], [`Error::NoFiles`].
+pub fn find(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
+    let mut seen = BTreeSet::new();
+    let mut found = Vec::new();
+    for path in paths {
+        let here = if path.is_dir() { toml_files(path)? } else { vec![path.clone()] };
+        if here.is_empty() {
+            return Err(Error::NoFiles { folder: path.display().to_string() });
+        }
+        found.extend(here.into_iter().filter(|path| seen.insert(same(path))));
+    }
+    Ok(found)
+}
+
+/// The `*.toml` of the folders inside the folders among `paths`, each with the name and the path of its folder, in their order.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn inner_files(paths: &[PathBuf]) -> Result<Vec<(String, PathBuf, PathBuf)>, Error> {
+    let mut all = Vec::new();
+    for folder in paths.iter().filter(|path| path.is_dir()) {
+        for (name, inner) in folders(folder)? {
+            all.extend(toml_files(&inner)?.into_iter().map(|file| (name.clone(), inner.clone(), file)));
+        }
+    }
+    Ok(all)
+}
+
+/// A path without links where the file is there: two paths of one file are the same.
+pub(crate) fn same(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// The path of a file that another file names.
+pub(crate) fn beside(file: &str, named: &str) -> PathBuf {
+    folder(Path::new(file)).join(named)
+}
+
+/// The folder of a file.
+pub(crate) fn folder(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
+}
+
+/// The `*.toml` of a folder, by name.
+fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut paths = entries(folder)?;
+    // A broken link is a file that cannot be read, not one to leave out in silence.
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml") && !path.is_dir());
+    Ok(paths)
+}
+
+/// The folders inside a folder, with their names.
+fn folders(folder: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
+    let inside = entries(folder)?.into_iter().filter(|path| path.is_dir());
+    Ok(inside.filter_map(|path| Some((path.file_name()?.to_string_lossy().into_owned(), path))).collect())
+}
+
+/// All that a folder holds, by name.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let listed = |source| Error::file("list", folder, source);
+    let entries = std::fs::read_dir(folder).map_err(listed)?;
+    let mut paths = entries.map(|entry| Ok(entry.map_err(listed)?.path())).collect::<Result<Vec<_>, Error>>()?;
+    paths.sort();
+    Ok(paths)
+}

@@ -1,0 +1,18 @@
+//! All that is known of materials before any work begins: what `bake` refuses, and so does `check`, and what is doubtful.
+//!
+//! Each function looks at materials alone and returns diagnostics: errors refuse, warnings doubt.
+
+mod beams;
+mod energy;
+mod misses;
+mod model;
+mod parts;
+mod pictures;
+mod set;
+
+pub use energy::{Returned, of_energy, returned};
+pub use misses::{foreseen_misses, misses};
+pub use model::{of_domain, of_model};
+pub use parts::{of_function, of_parts, of_scene, parts_of};
+pub use pictures::of_pictures;
+pub use set::{of_set, too_many};

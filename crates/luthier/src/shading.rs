@@ -1,0 +1,80 @@
+//! The choice of models, beside what material files say.
+
+use luthier_lut::TableKind;
+use luthier_manifest::{Form, Reflectance, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity};
+
+use crate::refusals::{of_energy, of_model};
+
+/// How materials are shaded, beside what their files say. The default leaves all to the files.
+///
+/// ```
+/// use luthier::{Shading, ShadingModel};
+///
+/// let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
+/// let shading = Shading { model: Some(ShadingModel::Elek), ..Shading::default() };
+/// let shaded = shading.shaded(vec![luthier::parse("gold.toml", text)?]);
+/// assert_eq!(shaded[0].model(), ShadingModel::Elek);
+/// # Ok::<(), luthier::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Shading {
+    /// The model of all materials.
+    pub model: Option<ShadingModel>,
+    /// Whether nothing is simulated: materials whose files ask for no model take a closed form, and those that ask for a fitted one are refused.
+    pub no_fit: bool,
+    /// How models come by the reflectance of an interface.
+    pub reflectance: Option<Reflectance>,
+    /// Kinds of tables to bake for every material, beside those that its shader reads.
+    pub tables: Vec<TableKind>,
+    /// Forms of the shaders; none stands for all that the models of all materials have. The form `full` computes all terms, so that
+    /// materials whose files name no model take one that is not fitted; with `full` alone a package has no tables.
+    pub forms: Vec<Form>,
+}
+
+impl Shading {
+    /// The model of a material, unless it is the material's own choice.
+    fn model_of(&self, material: &Material) -> Option<ShadingModel> {
+        let is_closed = self.no_fit || self.forms.contains(&Form::Full);
+        self.model.or_else(|| is_closed.then(|| material.model_without_fit()))
+    }
+
+    /// The model by which a material is shaded.
+    pub fn model(&self, material: &Material) -> ShadingModel {
+        self.model_of(material).unwrap_or_else(|| material.model())
+    }
+
+    /// The materials with their models, reflectances and tables.
+    pub fn shaded(&self, mut materials: Vec<Material>) -> Vec<Material> {
+        for material in &mut materials {
+            material.bake.model = self.model_of(material).or(material.bake.model);
+            material.bake.reflectance = self.reflectance.or(material.bake.reflectance);
+            let new = self.tables.iter().filter(|kind| !material.bake.tables.contains(kind));
+            let new: Vec<TableKind> = new.copied().collect();
+            material.bake.tables.extend(new);
+        }
+        materials
+    }
+
+    /// Warnings of what the model leaves out, and refusals.
+    pub fn doubts(&self, material: &Material) -> Vec<Diagnostic> {
+        let model = self.model_of(material);
+        let chosen = self.reflectance.map(|_| {
+            let mut chosen = material.clone();
+            chosen.bake.reflectance = self.reflectance;
+            chosen
+        });
+        let mut doubts = of_model(chosen.as_ref().unwrap_or(material), model);
+        if self.no_fit && model.is_some_and(ShadingModel::is_fitted) {
+            let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
+            let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
+            doubts.push(material.diagnostic(Severity::Error, "bake.model", message, Some(hint)));
+        }
+        doubts
+    }
+
+    /// A warning of energy that the model wins or loses.
+    pub(crate) fn doubts_of_energy(&self, material: &Material) -> Option<Diagnostic> {
+        of_energy(material, self.model_of(material))
+    }
+}

@@ -1,0 +1,62 @@
+//! A TOML file, read once.
+
+use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
+
+use luthier_export::{input, label};
+use luthier_material::{Diagnostic, FileKind, Severity};
+
+use crate::Error;
+
+/// A TOML file that was read, before it is parsed.
+#[derive(Debug, Clone)]
+pub struct TomlFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Its bytes, which are UTF-8 where it is a text.
+    pub bytes: Vec<u8>,
+}
+
+impl TomlFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let bytes = input::bytes(path).map_err(|source| Error::file("read", path, source))?;
+        Ok(Self { path: path.to_owned(), bytes })
+    }
+
+    /// The file in messages and manifests.
+    pub(crate) fn label(&self) -> String {
+        label(&self.path)
+    }
+
+    /// The kind of its text, by its keys.
+    pub fn kind(&self) -> FileKind {
+        FileKind::of(&String::from_utf8_lossy(&self.bytes))
+    }
+
+    /// The text; of other bytes, the text with replacement characters and an error at the first.
+    pub(crate) fn text(self) -> Result<String, (String, Diagnostic)> {
+        let label = self.label();
+        String::from_utf8(self.bytes).map_err(|source| not_utf8(label, &source))
+    }
+}
+
+fn not_utf8(label: String, source: &FromUtf8Error) -> (String, Diagnostic) {
+    let start = source.utf8_error().valid_up_to();
+    let text = String::from_utf8_lossy(source.as_bytes()).into_owned();
+    let before = &text[..start];
+    let diagnostic = Diagnostic {
+        severity: Severity::Error,
+        label,
+        line: before.matches('\n').count() + 1,
+        column: before.chars().rev().take_while(|&c| c != '\n').count() + 1,
+        span: start..start + char::REPLACEMENT_CHARACTER.len_utf8(),
+        message: "the file is not UTF-8".to_owned(),
+        hint: Some("save it as UTF-8".to_owned()),
+        count: 1,
+    };
+    (text, diagnostic)
+}

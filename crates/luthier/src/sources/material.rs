@@ -1,0 +1,121 @@
+//! Material files.
+
+use std::path::{Path, PathBuf};
+
+use luthier_export::{input, label};
+use luthier_material::{Diagnostic, Material, Parsed};
+use rayon::prelude::*;
+
+use super::TomlFile;
+use crate::{Error, paths, refusals};
+
+/// A material file that was read, and its material or its errors.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// The file, as it was named or found.
+    pub label: String,
+    /// Its text.
+    pub text: String,
+    /// The material, or why it is none.
+    pub parsed: Result<Parsed, Vec<Diagnostic>>,
+}
+
+impl Source {
+    /// Errors or warnings, whichever there are.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match &self.parsed {
+            Ok(parsed) => &parsed.warnings,
+            Err(errors) => errors,
+        }
+    }
+
+    /// The material of a file that can be used.
+    pub fn material(&self) -> Option<&Material> {
+        self.parsed.as_ref().ok().map(|parsed| &parsed.material)
+    }
+
+    /// Adds diagnostics; a file with an error has no material.
+    pub(crate) fn add(&mut self, found: Vec<Diagnostic>) {
+        match &mut self.parsed {
+            Ok(parsed) => {
+                parsed.warnings.extend(found);
+                parsed.warnings.sort_by_key(|d| (d.span.start, d.span.end));
+                if parsed.warnings.iter().any(Diagnostic::is_error) {
+                    let all = std::mem::take(&mut parsed.warnings);
+                    self.parsed = Err(all.into_iter().filter(Diagnostic::is_error).collect());
+                }
+            }
+            Err(errors) => errors.extend(found),
+        }
+    }
+
+    /// Reads and validates one file.
+    ///
+    /// # Errors
+    /// [`Error::File`], of the file itself: faults of its text are in [`Source::parsed`].
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Ok(Self::of(TomlFile::read(path)?))
+    }
+
+    /// Validates a file that was read.
+    pub fn of(file: TomlFile) -> Self {
+        let path = file.path.clone();
+        match file.text() {
+            Ok(text) => Self::of_text(&path, text),
+            Err((text, error)) => Self { label: label(&path), text, parsed: Err(vec![error]) },
+        }
+    }
+
+    /// Validates a text in the place of a file's. Files that it names are beside that file.
+    pub fn of_text(path: &Path, text: String) -> Self {
+        let label = label(path);
+        let folder = paths::folder(path);
+        let (material, mut diagnostics) =
+            luthier_material::parse_partly(&label, &text, &|name| input::text(&folder.join(name)));
+        let is_usable = !diagnostics.iter().any(Diagnostic::is_error);
+        let parsed = match material {
+            Some(material) if is_usable => Ok(Parsed { material, warnings: diagnostics }),
+            // Who mends the file hears of its pictures in the same run.
+            Some(material) => {
+                // A map that is wrong for another reason is said once.
+                let is_new = |found: &Diagnostic| found.is_error() && diagnostics.iter().all(|d| d.span != found.span);
+                let mut of_pictures = refusals::of_pictures(&material);
+                of_pictures.retain(is_new);
+                diagnostics.extend(of_pictures);
+                diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
+                Err(diagnostics)
+            }
+            None => Err(diagnostics),
+        };
+        Self { label, text, parsed }
+    }
+}
+
+/// The material of a text that names no other files. `label` is its file in messages and in the manifest.
+///
+/// # Errors
+/// [`Error::Refused`] with everything that is wrong.
+pub fn parse(label: &str, text: &str) -> Result<Material, Error> {
+    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    match luthier_material::parse(label, text, &no_files) {
+        Ok(parsed) => Ok(parsed.material),
+        Err(diagnostics) => {
+            let sentence = diagnostics.iter().map(|d| d.render(text)).collect::<Vec<_>>().join("\n");
+            Err(Error::Refused { sentence, diagnostics })
+        }
+    }
+}
+
+/// Reads files, and the `*.toml` of folders, as materials. Scenes and surfaces have errors that say what they are.
+///
+/// # Errors
+/// [`Error::File`], [`Error::NoFiles`].
+pub fn read_materials(paths: &[PathBuf]) -> Result<Vec<Source>, Error> {
+    let files = paths::find(paths)?;
+    files.par_iter().map(|path| Source::read(path)).collect::<Vec<_>>().into_iter().collect()
+}
+
+/// The files that a material names, beside its own.
+pub fn named_files(material: &Material) -> impl Iterator<Item = PathBuf> {
+    material.files.iter().map(|file| paths::beside(&material.source, file))
+}

@@ -1,0 +1,118 @@
+//! Surface files, and the surfaces of a bake.
+
+use std::path::PathBuf;
+
+use luthier_layers::heterogeneous::{Map, Switch};
+use luthier_layers::perlin::Perlin;
+use luthier_layers::voronoi::Voronoi;
+use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
+use luthier_material::{Diagnostic, Surface, SurfaceCells, parse_surface};
+
+use super::TomlFile;
+use crate::sha256;
+
+/// A surface file that was read, and its surface or its errors.
+#[derive(Debug, Clone)]
+pub struct SurfaceSource {
+    /// The file.
+    pub path: PathBuf,
+    /// The file, as it was named or found.
+    pub label: String,
+    /// Its text.
+    pub text: String,
+    /// The surface, or why it is none.
+    pub parsed: Result<Surface, Vec<Diagnostic>>,
+    /// Doubts about a surface that can be used.
+    pub warnings: Vec<Diagnostic>,
+    /// The numbers of its materials among those of the package, in the order of [`Surface::materials`].
+    pub(crate) numbers: Vec<usize>,
+}
+
+impl SurfaceSource {
+    pub(super) fn of(file: TomlFile) -> Self {
+        let (path, label) = (file.path.clone(), file.label());
+        let (text, parsed) = match file.text() {
+            Ok(text) => {
+                let parsed = parse_surface(&label, &text);
+                (text, parsed)
+            }
+            Err((text, error)) => (text, Err(vec![error])),
+        };
+        Self { path, label, text, parsed, warnings: Vec::new(), numbers: Vec::new() }
+    }
+
+    /// Its errors; of a surface that can be used, its warnings.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        self.parsed.as_ref().err().map_or(&self.warnings, Vec::as_slice)
+    }
+
+    /// The surface as the manifest has it; `None` where it is unusable.
+    pub fn entry(&self) -> Option<SurfaceEntry> {
+        let surface = self.parsed.as_ref().ok()?;
+        let mut numbers = self.numbers.iter().map(|&number| number as u32);
+        let mut cells = |cells: &SurfaceCells| CellsRecord {
+            seed: cells.seed,
+            frequency: cells.frequency,
+            materials: numbers.by_ref().take(cells.materials.len()).collect(),
+        };
+        Some(SurfaceEntry {
+            name: surface.name.clone(),
+            source: self.label.clone(),
+            source_hash: sha256(self.text.as_bytes()),
+            cells: cells(&surface.cells),
+            switches: surface
+                .switches
+                .iter()
+                .map(|switch| SwitchRecord { by: switch.by, cells: cells(&switch.cells) })
+                .collect(),
+            glitter: surface.glitter.as_ref().map(|glitter| ParticlesRecord {
+                cells: cells(&glitter.cells),
+                filled: glitter.filled,
+                tilt: glitter.tilt,
+            }),
+        })
+    }
+}
+
+/// The places of a switch.
+pub(super) fn switch_of(by: &SwitchBy) -> Switch {
+    match *by {
+        SwitchBy::Noise { seed, frequency, octaves, between } => {
+            Switch::Noise { noise: Perlin { seed, frequency, octaves }, between }
+        }
+        SwitchBy::Tiles { seed, frequency, share } => Switch::Tiles { cells: Voronoi { seed, frequency }, share },
+    }
+}
+
+/// The f64 twin of `luthier_pick`: its picks have the numbers of materials.
+///
+/// ```
+/// use luthier_layers::heterogeneous::Map;
+/// use luthier_manifest::{CellsRecord, SurfaceEntry};
+///
+/// let cells = CellsRecord { seed: 1, frequency: 20.0, materials: vec![4, 2] };
+/// let (name, source, source_hash) = ("stone".to_owned(), "stone.toml".to_owned(), String::new());
+/// let surface = SurfaceEntry { name, source, source_hash, cells, switches: Vec::new(), glitter: None };
+/// assert!(matches!(luthier::surface_map(&surface), Map::Cells { stacks, .. } if stacks == [4, 2]));
+/// ```
+pub fn surface_map(surface: &SurfaceEntry) -> Map {
+    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
+    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&material| material as usize).collect();
+    let grains = |cells: &CellsRecord| Map::Cells { cells: voronoi(cells), stacks: stacks(cells) };
+    // The first switch of the file is the outermost.
+    let map = surface.switches.iter().rev().fold(grains(&surface.cells), |under, switch| Map::Switch {
+        switch: switch_of(&switch.by),
+        inside: Box::new(grains(&switch.cells)),
+        outside: Box::new(under),
+    });
+    match &surface.glitter {
+        None => map,
+        Some(glitter) => Map::Glitter {
+            cells: voronoi(&glitter.cells),
+            stacks: stacks(&glitter.cells),
+            filled: glitter.filled,
+            tilt: glitter.tilt,
+            under: Box::new(map),
+        },
+    }
+}
