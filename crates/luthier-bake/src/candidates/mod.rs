@@ -8,12 +8,11 @@ mod choice;
 pub(crate) mod grids;
 
 use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat, WeightBits};
-use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
+use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR};
 use luthier_optics::color_difference::{ciede2000, lab};
 use serde::{Deserialize, Serialize};
 
-use self::choice::front;
-pub(crate) use self::choice::{Refusal, best_effort, choose, locked};
+pub(crate) use self::choice::{Refusal, best_effort, choose, locked, report};
 
 /// Budget of tables for which none is stated: errors that a fixed row of 128 half floats has too.
 pub const DEFAULT_BUDGET: Budget = Budget {
@@ -81,24 +80,6 @@ impl Found {
             others.for_each(|(candidate, _)| candidate.error.max_abs *= exact / found);
         }
         false
-    }
-}
-
-/// The report of a search.
-pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
-    let keep = front(&found.candidates);
-    let mut front: Vec<(usize, &Candidate)> = keep.iter().map(|&i| (i, &found.candidates[i])).collect();
-    if !keep.contains(&chosen) {
-        front.push((chosen, &found.candidates[chosen]));
-    }
-    let key = |c: &Candidate| (c.bytes, c.cost, c.error.max_abs);
-    front.sort_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-    Search {
-        kind: found.kind,
-        budget: *budget,
-        chosen: front.iter().position(|(i, _)| *i == chosen).unwrap_or(0),
-        measured: found.candidates.len() as u32,
-        front: front.into_iter().map(|(_, c)| c.clone()).collect(),
     }
 }
 
