@@ -1,21 +1,24 @@
 //! Assembly of tiles into atlases.
 
-use std::collections::BTreeMap;
-
-use luthier_lut::{Atlas, AtlasLayout, FormatSet, Image, RowBase, TableKind, TexelFormat, Tile};
-use luthier_manifest::{Budget, ColorMode, Decision, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
+use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat, Tile};
+use luthier_manifest::{Budget, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 use rayon::prelude::*;
 
+use crate::BakeError;
+use crate::candidates::AIM;
 use crate::constants::constants;
-use crate::decide::{Planned, budget, layouts, plan, used};
-use crate::graph::{JobKind, Key, Observer, Results, Silent};
-use crate::kinds::lobes;
+use crate::graph::{JobKind, Key, MemoryStore, Observer, Results, Silent, Store};
+use crate::kinds::{is_left, lobes};
+use crate::limits::layouts;
 use crate::maps::{MaterialMap, maps};
-use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color_mode};
+use crate::options::{Options, budget};
+use crate::plan::{Plan, PlannedLayers, TileList};
+use crate::planner::color_mode;
+use crate::relief::ImageReader;
+use crate::search::{Planned, plan};
 use crate::settings::Settings;
-use crate::{AIM, BakeError, MemoryStore, Store};
 
 /// Tables, records and maps that a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,30 +67,6 @@ pub struct Outline {
     pub searches: Vec<Search>,
 }
 
-/// How a bake is to be made, beside what the materials say.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options<'a> {
-    /// Limits, each in place of those that materials state.
-    pub budget: Budget,
-    /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
-    /// are not looked at.
-    pub search: bool,
-    /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
-    pub rows: Option<(RowBase, TexelFormat)>,
-    /// Texel formats that a search may take; those of core WebGPU unless the target is known.
-    pub formats: FormatSet,
-    /// Whether an outline fits lobes, which takes seconds: their number decides tables and shaders. A bake always does.
-    pub fits: bool,
-    /// Decisions of an earlier search, which stay as long as they hold the budget.
-    pub locked: &'a [Decision],
-}
-
-impl Default for Options<'_> {
-    fn default() -> Self {
-        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE, fits: true, locked: &[] }
-    }
-}
-
 /// The outline of a bake of these materials: each material with the tiles that serve it, and the layout and texel format of each table, in
 /// binding order. The outline takes little computing, unless a material has a budget, whose candidates must be measured, or lobes.
 ///
@@ -109,8 +88,8 @@ pub fn outline_with(
 ) -> Result<Outline, BakeError> {
     let planned = plan(materials, options, read_image, &Silent, store)?;
     let tables = layouts(&planned.plan)?;
-    let Plan { tiles, records, settings, .. } = planned.plan;
-    let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
+    let keys = planned.plan.used().map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
+    let Plan { records, settings, .. } = planned.plan;
     Ok(Outline {
         tables,
         keys,
@@ -135,7 +114,7 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
     }
     let Planned { plan, results, .. } =
         plan(materials, &Options { fits: false, ..Options::default() }, read_image, &Silent, &MemoryStore::default())?;
-    if !plan.settings.leaves(TableKind::Fresnel) {
+    if !is_left(&plan.settings, TableKind::Fresnel) {
         return Ok(Vec::new());
     }
     let results = plan.graph.only(|job| job.kind() == JobKind::tile(TableKind::Fresnel)).run(
@@ -149,35 +128,6 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
         Some((layer, results.find(*key)?.error.max_abs_err))
     };
     Ok(layers.into_iter().filter_map(error).filter(|(_, error)| *error > AIM).collect())
-}
-
-/// Refuses a set of materials for its names, settings and limits before anything is computed. Images are not read.
-///
-/// # Errors
-/// All that is wrong, at least one.
-pub fn check(materials: &[Material], options: &Options<'_>) -> Result<(), Vec<BakeError>> {
-    let mut errors = Vec::new();
-    if materials.is_empty() {
-        errors.push(BakeError::Empty);
-    }
-    let mut named: BTreeMap<&str, &Material> = BTreeMap::new();
-    for (number, material) in materials.iter().enumerate() {
-        if let Some(first) = named.get(material.name.as_str()) {
-            let (name, first, second) = (material.name.clone(), first.place("name"), material.place("name"));
-            errors.push(BakeError::DuplicateName { material: number, name, first, second });
-        } else {
-            named.insert(&material.name, material);
-        }
-    }
-    errors.extend(Settings::of(materials).err());
-    errors.extend(budget(materials, &options.budget).err());
-    let limits = [("max_lobe_err", options.budget.max_lobe_err), ("max_albedo_err", options.budget.max_albedo_err)];
-    if let Some((name, _)) = limits.into_iter().find(|(_, limit)| limit.is_some())
-        && materials.iter().all(|material| !material.model().is_fitted())
-    {
-        errors.push(BakeError::NoLobes { name });
-    }
-    if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
@@ -205,7 +155,7 @@ pub fn bake_with(
     let Plan { settings, graph, tiles, records } = plan;
     let mut results = graph.run(observer, store, results);
     let is_asked = !options.search || !budget(materials, &options.budget)?.of_texels().is_empty();
-    let aim = |kind: TableKind| (!is_asked && settings.leaves(kind)).then_some(AIM);
+    let aim = |kind: TableKind| (!is_asked && is_left(&settings, kind)).then_some(AIM);
     let mut atlases = Vec::with_capacity(layouts.len());
     for (kind, layout, format) in layouts {
         atlases.push(atlas(kind, layout, format, &tiles[kind as usize], &mut results, aim(kind)));

@@ -10,32 +10,51 @@
 //!
 //! Simplifications: albedos are tabulated at the nominal thickness of films, reflectances over all of their thickness where it
 //! varies; anisotropic surfaces enter with the geometric mean of their slope parameters, except in lobes.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `error`, `json`, `grid`, `tile`: refusals, the text of keys, functions on grids, tiles.
+//! - `graph`: jobs, their results, and stores of these.
+//! - `options`, `settings`, `relief`, `plan`: data of a bake, from what is asked for to the jobs that run.
+//! - `candidates`: forms that a table may have, and the choice among them.
+//! - `kinds`: each kind of table, with its jobs and its candidates.
+//! - `records`, `veil`, `constants`, `maps`: the part of a material that is not in tables.
+//! - `limits`, `planner`, `check`: from materials to a plan, and refusals before anything is computed.
+//! - `search`: the shapes of tables, from a lock or from candidates.
+//! - `assemble`, `share`, [`goals`]: whole bakes, shares of one, and figures of the search.
 
 mod assemble;
+mod candidates;
+mod check;
 mod constants;
-mod decide;
 mod error;
+pub mod goals;
 mod graph;
 mod grid;
 mod json;
 mod kinds;
 mod limits;
 mod maps;
+mod options;
 mod plan;
+mod planner;
 mod records;
+mod relief;
 mod search;
 mod settings;
 mod share;
 mod tile;
 mod veil;
 
-pub use assemble::{
-    Baked, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with,
-};
+pub use assemble::{Baked, BakedMaterial, Outline, bake, bake_with, kinked_rows, outline, outline_with};
+pub use candidates::{AIM, DEFAULT_BUDGET};
+pub use check::check;
 pub use error::BakeError;
 pub use graph::{Artefact, Function, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task, kept};
 pub use kinds::lobes::{VARIED_LAYERS_MAX, fitted, is_too_deep};
 pub use maps::{MapSource, MaterialMap, height_normals};
-pub use plan::ImageReader;
-pub use search::{AIM, DEFAULT_BUDGET, goals};
+pub use options::Options;
+pub use relief::ImageReader;
 pub use share::{Missing, bake_share, missing};

@@ -1,10 +1,12 @@
 //! Limits of one bake, checked before anything is computed.
 
-use luthier_lut::{AtlasLayout, TableKind};
+use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, MATERIAL_WORDS, SIDE, SIDE_MAX};
 
 use crate::BakeError;
-use crate::plan::PlannedLayers;
+use crate::plan::{Plan, PlannedLayers, TileList};
+use crate::settings::Shape;
+use crate::tile::apron;
 
 /// Refuses more layers than the material buffer holds.
 pub(crate) fn check_buffer(records: &[PlannedLayers]) -> Result<(), BakeError> {
@@ -43,6 +45,21 @@ pub(crate) fn too_many_tiles(kind: TableKind, layout: &AtlasLayout) -> BakeError
     let setting = if kind.facts().has_settings { setting.as_str() } else { "" };
     let hint = format!("{setting}bake the materials into several folders");
     BakeError::TooManyTiles { kind, tiles: layout.tiles, tile, most: across * down, hint }
+}
+
+/// Kind, layout and texel format of each table of a plan, in binding order.
+pub(crate) fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
+    let layout = |(kind, tiles): (TableKind, &TileList)| {
+        let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
+        let (apron, count) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
+        let layout = AtlasLayout { x, y, apron, columns: 1, tiles: count, base };
+        let columns = if tiles.has_runs { one_column(&layout) } else { columns(&layout) };
+        Some(match columns {
+            Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
+            None => Err(too_many_tiles(kind, &layout)),
+        })
+    };
+    plan.used().filter_map(layout).collect()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use luthier_manifest::MapSlot;
 use luthier_material::{FlakeSource, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::stack::Base;
 
-use crate::kinds::thickness::relief::{Field, Relief};
+use crate::relief::{Field, Relief};
 
 /// Side of the maps that noise is baked to.
 const NOISE_SIDE: u32 = 256;

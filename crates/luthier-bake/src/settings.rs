@@ -7,7 +7,6 @@ use luthier_manifest::CandidateForm;
 use luthier_material::{BakeSettings, Material};
 
 use crate::BakeError;
-use crate::kinds;
 
 /// Axes, format and base of the tiles of a kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +61,7 @@ impl Asked {
         self != Self::default()
     }
 
-    fn or(self, other: Self) -> Self {
+    pub(crate) fn or(self, other: Self) -> Self {
         Self {
             size: self.size || other.size,
             mapping: self.mapping || other.mapping,
@@ -86,22 +85,9 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// The settings that the materials ask for, where they agree, and fixed defaults for the rest.
-    ///
-    /// # Errors
-    /// [`BakeError::Conflict`] where they do not.
-    pub(crate) fn of(materials: &[Material]) -> Result<Self, BakeError> {
-        let mut fixed = Vec::with_capacity(TableKind::ALL.len());
-        for kind in TableKind::ALL {
-            fixed.push(kinds::of(kind).fixed(Ask(materials))?);
-        }
-        let fixed: [Shape; TableKind::ALL.len()] =
-            fixed.try_into().unwrap_or_else(|_| unreachable!("there is one of each kind"));
-        let asked = TableKind::ALL.map(|kind| {
-            let of = |m: &Material| kinds::of(kind).asked(&m.bake);
-            materials.iter().map(of).fold(Asked::default(), Asked::or)
-        });
-        Ok(Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None })
+    /// These shapes, as far as no search finds others.
+    pub(crate) fn new(fixed: [Shape; TableKind::ALL.len()], asked: [Asked; TableKind::ALL.len()]) -> Self {
+        Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None }
     }
 
     /// The shape of the tables of a kind; none where values are computed.
@@ -119,9 +105,9 @@ impl Settings {
         self.asked[kind as usize]
     }
 
-    /// Whether the shape of the tables of a kind that interfaces share is left to the bake, which then aims at an error of its own.
-    pub(crate) fn leaves(&self, kind: TableKind) -> bool {
-        kinds::of(kind).has_aim() && !self.asked(kind).is_any()
+    /// The formats of a list that a search may take.
+    pub(crate) fn allowed(&self, formats: &[TexelFormat]) -> Vec<TexelFormat> {
+        formats.iter().copied().filter(|format| self.formats.has(*format)).collect()
     }
 
     /// Tables of a kind in the form of a candidate.

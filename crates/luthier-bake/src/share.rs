@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use luthier_lut::TableKind;
 use luthier_material::Material;
 
-use crate::decide::{Fixed, plan};
-use crate::graph::{Graph, Job, JobKind, Observer, Results, Share};
+use crate::graph::{Graph, Job, JobKind, Observer, Results, Share, Silent, Store};
 use crate::kinds::lobes;
-use crate::plan::{ImageReader, Plan};
-use crate::{BakeError, Options, Store};
+use crate::options::Options;
+use crate::relief::ImageReader;
+use crate::search::{Fixed, plan};
+use crate::{BakeError, planner};
 
 /// Jobs that a bake would run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,7 +38,7 @@ fn certain(
     let (_, is_asked) = fixed.budget();
     Ok(match (options.search, is_asked) {
         (true, true) => fixed.plan.graph.intermediate(),
-        (true, false) => Plan::new(materials, fixed.first_choice(options, store), read_image)?.graph,
+        (true, false) => planner::plan(materials, fixed.first_choice(options, store), read_image)?.graph,
         (false, _) => fixed.plan.graph.only(|_| true),
     })
 }
@@ -81,7 +82,7 @@ pub fn missing(
         certain(&fixed, materials, options, read_image, store)?.only(is_apart).count_missing(store, &mut results);
     if jobs.is_empty() && fits.is_empty() {
         // Nothing is computed but what a search refuses: the plan is that of the bake.
-        let planned = plan(materials, options, read_image, &crate::Silent, store)?;
+        let planned = plan(materials, options, read_image, &Silent, store)?;
         let mut results = planned.results;
         return Ok(Missing { jobs: planned.plan.graph.count_missing(store, &mut results), is_all: true });
     }

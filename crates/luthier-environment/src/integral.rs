@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use luthier_lut::Image;
 use rayon::prelude::*;
 
-use crate::cube::direction;
+use crate::faces::direction;
 
 /// An integral along a border over the height: RGB, and that of radiance 1.
 type Line = [f64; 4];

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::cube::{Cap, Cube, solid_angles, texel_direction};
+use crate::cube::Cube;
+use crate::faces::{Cap, solid_angles, texel_direction};
 use crate::vector::dot;
 
 /// Exponent at which a lobe ends: all but a third of a thousandth of it lies within.

@@ -12,12 +12,23 @@
 //!
 //! Simplifications: maps with more than 512 rows are averaged down to that; levels blur a cube whose texels are half as wide as their lobe, as light
 //! from the middle of each. Bytes of levels depend on the map only: sums have a fixed order, transcendental functions are those of libm.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `vector`, `error`, `panorama`, `faces`: directions, and where these are on maps and on the faces of cubes.
+//! - `integral`, `cube`, `layout`, `kernel`, `mirror`: radiance on cubes and textures, and lobes that blur it.
+//! - `sky`, `environment`: skies by formula; a map with all that is made of it.
+//! - `levels`, `scenery`: blurred textures of an environment; surroundings to have one of.
 
 mod cube;
 mod environment;
 mod error;
+mod faces;
 mod integral;
 mod kernel;
+mod layout;
 mod levels;
 mod mirror;
 mod panorama;
@@ -25,9 +36,9 @@ mod scenery;
 mod sky;
 mod vector;
 
-pub use environment::{Blur, Environment};
+pub use environment::Environment;
 pub use error::EnvironmentError;
-pub use levels::{Layout, Level};
-pub use mirror::ALPHAS;
+pub use layout::{Layout, Level};
+pub use mirror::{ALPHAS, Blur};
 pub use scenery::Scenery;
 pub use sky::{Sky, SoftLight};

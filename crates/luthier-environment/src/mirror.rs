@@ -2,7 +2,14 @@
 
 use std::f64::consts::PI;
 
-use crate::environment::Blur;
+/// A slope distribution that reflections of the environment are blurred by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blur {
+    /// Trowbridge-Reitz.
+    Ggx,
+    /// Beckmann.
+    Beckmann,
+}
 
 /// Slope parameters of the blurred maps, half an octave apart. Rougher than 1 there is nothing; between 0 (the map itself)
 /// and the first, and between neighbours, maps are mixed.

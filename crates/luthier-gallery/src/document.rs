@@ -5,6 +5,7 @@ use std::fmt::Write;
 use luthier_export::GENERATOR;
 use luthier_manifest::MaterialEntry;
 
+use crate::markup::escape;
 use crate::{Exhibit, Gallery, section};
 
 /// Parts of the script, in order.
@@ -113,9 +114,4 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
         let _ = writeln!(out, "<p class=\"sub\">The bake has no text of the material file.{from}</p>");
     }
     out.push_str("</div></div></article>\n");
-}
-
-/// Text as HTML.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

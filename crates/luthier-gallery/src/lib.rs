@@ -22,12 +22,21 @@
 //! # Simplifications
 //!
 //! Maps of single layers ([`hidden_maps`]), but for the albedo of a base, and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `error`, `exhibit`, `markup`, `pack`, `roughness`: what is shown, and texts, numbers and factors of the page.
+//! - `maps`, `sets`, `skies`, `section`: textures, shaders, surroundings and cross-sections.
+//! - `data`, `document`: what the script reads, and the page around it.
 
 mod data;
 mod document;
 mod error;
 mod exhibit;
 mod maps;
+mod markup;
 mod pack;
 mod roughness;
 mod section;

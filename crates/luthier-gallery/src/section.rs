@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use luthier_material::{CrossSection, Part, PartKind};
 
-use crate::document::escape;
+use crate::markup::escape;
 
 /// Width of the drawing, in its own units.
 const WIDTH: f64 = 300.0;

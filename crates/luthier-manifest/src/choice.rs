@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use luthier_model::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
-use crate::{ColorMode, Form, ShadingModel};
+use crate::color::ColorMode;
 
 /// Limits on the error of a model against the reference under the light of a scene; what is absent is unlimited.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

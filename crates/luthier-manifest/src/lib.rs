@@ -5,16 +5,29 @@
 //! # In detail
 //!
 //! Every crate that reads or writes a bake says these things with the types of this crate.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `color`, `distribution`, `error`, `file`, `functions`, `limits`, `place`, `search`, `surface`, `target`, `tiles`: names and numbers.
+//! - `record`, `constants`: layers and whole surfaces to a shader; `reads` says which tables a layer reads.
+//! - `map`, `material`: maps, and materials with all of these; `buffer` writes them down for shaders.
+//! - `choice`, `manifest`, `lock`: how a scene chose, the whole bake, and its decisions that stay.
 
+mod buffer;
 mod choice;
+mod color;
 mod constants;
 mod distribution;
 mod error;
+mod file;
 mod functions;
 mod limits;
 mod lock;
 mod manifest;
 mod map;
+mod material;
 mod place;
 mod reads;
 mod record;
@@ -23,12 +36,15 @@ mod surface;
 mod target;
 mod tiles;
 
+pub use buffer::{MATERIAL_WORDS, material_buffer};
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
+pub use color::ColorMode;
 pub use constants::{
     AxesRecord, BeamsRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PaintedRecord,
     PatinaRecord, VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
+pub use file::FileEntry;
 pub use functions::{FunctionGroup, Functions};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
@@ -37,13 +53,12 @@ pub use luthier_model::{
     ShadingModel,
 };
 pub use luthier_optics::stack::Distribution;
-pub use manifest::{
-    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShaderEntry, TableEntry,
-};
+pub use manifest::{BindingEntry, MANIFEST_SCHEMA, Manifest, ShaderEntry, TableEntry};
 pub use map::{MapEntry, MapSlot};
+pub use material::MaterialEntry;
 pub use place::{LayerValues, PlaceValues};
 pub use reads::reads;
-pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
+pub use record::{LAYER_WORDS, LayerKind, LayerRecord};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 pub use target::Target;

@@ -3,7 +3,8 @@
 use luthier_lut::TableKind;
 use serde::{Deserialize, Serialize};
 
-use crate::{Candidate, Manifest};
+use crate::manifest::Manifest;
+use crate::search::{Candidate, Search};
 
 /// The decision of a search for one kind of table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,7 +30,7 @@ impl Lock {
 
     /// The decisions of the searches of a bake.
     pub fn of(manifest: &Manifest) -> Self {
-        let decision = |search: &crate::Search| {
+        let decision = |search: &Search| {
             let mut candidate = search.front.get(search.chosen)?.clone();
             // A search leaves out tiles that no candidate serves; a lock takes them as they are.
             let tiles = manifest.table(search.kind).map_or(&[][..], |table| &table.tiles);
@@ -75,7 +76,7 @@ impl Lock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, CandidateForm, MeasuredError, Search};
+    use crate::{Budget, CandidateForm, MeasuredError};
 
     #[test]
     fn a_lock_reads_what_it_wrote() {

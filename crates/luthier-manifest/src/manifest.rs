@@ -1,12 +1,18 @@
 //! The manifest of a bake.
 
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
+use luthier_model::Form;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Form, Functions, InternalReflection, LayerKind, LayerRecord, LowerReflectance, ManifestError, MapEntry, Masking,
-    MaterialConstants, MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
-};
+use crate::choice::SceneChoice;
+use crate::error::ManifestError;
+use crate::file::FileEntry;
+use crate::functions::Functions;
+use crate::limits::MaterialTexture;
+use crate::material::MaterialEntry;
+use crate::search::Search;
+use crate::surface::SurfaceEntry;
+use crate::target::Target;
 
 /// Version of the manifest's shape. A reader refuses any other.
 pub const MANIFEST_SCHEMA: u32 = 3;
@@ -45,44 +51,6 @@ pub struct Manifest {
     pub material_texture: MaterialTexture,
 }
 
-luthier_lut::named! {
-    /// How spectra become colour channels.
-    #[derive(Default, Serialize, Deserialize)]
-    #[serde(into = "&'static str", try_from = "String")]
-    pub enum ColorMode("colour") {
-        /// Integrated against the CIE 1931 2-degree observer under D65, to linear Rec.709.
-        #[default]
-        Spectral = "spectral",
-        /// The value at three wavelengths, taken for the three channels.
-        ThreeWavelengths = "three-wavelengths",
-    }
-}
-
-/// One material.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct MaterialEntry {
-    /// Name, unique in the bake; letters, digits and hyphens.
-    pub name: String,
-    /// The file it came from: a path from the folder of the manifest. Before a package is made for a folder, the path that was given.
-    pub source: String,
-    /// SHA-256, hex, of that file; of the file and, in the order of their names, the hashes of the files that it names, if any.
-    pub source_hash: String,
-    /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4; without a coat `metal`, `film`, `matte` or `glass`.
-    pub class: String,
-    /// The reflectance model that the shaders evaluate.
-    pub model: ShadingModel,
-    /// How the colour of its tables was made.
-    pub color: ColorMode,
-    /// The three wavelengths of the full (table-free) shader, RGB order.
-    pub wavelengths_nm: [f64; 3],
-    /// Constants of the whole surface.
-    pub constants: MaterialConstants,
-    /// The layers from the top down.
-    pub layers: Vec<LayerRecord>,
-    /// Textures that vary the surface from place to place.
-    pub maps: Vec<MapEntry>,
-}
-
 /// One table: a texture and its truth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TableEntry {
@@ -102,15 +70,6 @@ pub struct TableEntry {
     pub picture: FileEntry,
     /// One entry per tile.
     pub tiles: Vec<Tile>,
-}
-
-/// A file of the bake.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct FileEntry {
-    /// Path relative to the manifest, with forward slashes.
-    pub path: String,
-    /// SHA-256 of its bytes, hex.
-    pub sha256: String,
 }
 
 /// An emitted shader.
@@ -133,66 +92,6 @@ pub struct BindingEntry {
     pub name: String,
     /// `texture_2d<f32>`, `sampler` (linear, clamp-to-edge) or `buffer` (read-only, array of `vec4<f32>`).
     pub resource: String,
-}
-
-impl MaterialEntry {
-    /// Whether textures make the surface differ from place to place.
-    pub fn varies(&self) -> bool {
-        let MaterialConstants { flakes, patina, glitter, .. } = &self.constants;
-        let has_effect = flakes.is_some() || patina.is_some() || glitter.is_some();
-        has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
-    }
-
-    /// Masking and reflectance of the model: those of its first interface.
-    pub fn parts(&self) -> (Masking, Reflectance) {
-        let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
-        first.map(|layer| (layer.masking, layer.reflectance)).unwrap_or_default()
-    }
-
-    /// Internal reflection of the model: that of its first interface.
-    pub fn internal_reflection(&self) -> InternalReflection {
-        let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
-        first.map(|layer| layer.internal_reflection).unwrap_or_default()
-    }
-
-    /// Reflectance of the interfaces below the first.
-    pub fn lower_reflectance(&self) -> LowerReflectance {
-        self.layers
-            .iter()
-            .map(|layer| layer.lower_reflectance)
-            .find(|lower| *lower != LowerReflectance::default())
-            .unwrap_or_default()
-    }
-
-    /// Whether it has lobes below an interface, which know their surroundings: those of `luthier_environment`.
-    pub fn shows_lobes(&self) -> bool {
-        self.model.is_fitted() && self.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
-    }
-
-    /// The material with slopes widened by a light of this angular radius, in radians, which gives a highlight of a smooth surface a size: the squares
-    /// of slope parameters grow by the square of half the radius, because the half vector turns by half of what the light does.
-    pub fn widened(&self, angular_radius: f64) -> Self {
-        let wider = |alpha: f64| {
-            let spread = 0.5 * angular_radius;
-            libm::sqrt(alpha * alpha + spread * spread).min(1.0)
-        };
-        let widened = |layer: &LayerRecord| LayerRecord {
-            alpha: wider(layer.alpha),
-            alpha_xy: layer.alpha_xy.map(wider),
-            ..layer.clone()
-        };
-        let mut entry = Self { layers: self.layers.iter().map(widened).collect(), ..self.clone() };
-        if let Some(patina) = &mut entry.constants.patina {
-            patina.bare = widened(&patina.bare);
-            patina.base_alpha = patina.base_alpha.map(wider);
-        }
-        entry
-    }
-
-    /// The layers, then the bare layer of a patina: what the material buffer holds.
-    pub fn records(&self) -> impl Iterator<Item = &LayerRecord> {
-        self.layers.iter().chain(self.constants.patina.as_ref().map(|patina| &patina.bare))
-    }
 }
 
 impl TableEntry {
@@ -296,7 +195,8 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     use crate::{
-        Budget, Candidate, CandidateForm, FlakesRecord, GlitterRecord, LayerKind, MapSlot, MeasuredError, PatinaRecord,
+        Budget, Candidate, CandidateForm, ColorMode, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MapEntry,
+        MapSlot, MaterialConstants, MeasuredError, PatinaRecord, ShadingModel,
     };
 
     fn manifest() -> Manifest {

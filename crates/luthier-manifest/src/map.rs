@@ -1,9 +1,9 @@
 //! Maps of materials: which quantity each varies, and for which layer.
 
-use luthier_model::Reach;
+use luthier_model::Feature;
 use serde::{Deserialize, Serialize};
 
-use crate::{Feature, FileEntry, Form, MaterialEntry};
+use crate::file::FileEntry;
 
 luthier_lut::named! {
     /// Quantity that a map varies.
@@ -78,22 +78,6 @@ impl MapSlot {
             Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
             Self::Normal | Self::Roughness | Self::Patina | Self::FlakeNormal => None,
         }
-    }
-}
-
-impl MaterialEntry {
-    /// Layers with maps of their own that the model shows, and quantities that these vary, in the order of the maps. `LuthierPlace` has
-    /// values of these, that of an albedo as its `base_color`.
-    pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
-        let reads_all = self.model.facts().reach == Reach::All;
-        self.maps.iter().filter_map(move |map| {
-            let layer = map.layer?;
-            let feature = map.slot.layer_feature(layer)?;
-            // Models of the first interface may have the base, which is the last layer.
-            let is_base = map.slot == MapSlot::Albedo && self.model.honours(Feature::Base, form);
-            let is_shown = (layer == 0 || reads_all || is_base) && self.model.honours(feature, form);
-            is_shown.then_some((layer, map.slot))
-        })
     }
 }
 

@@ -1,9 +1,9 @@
 //! Interfaces of a material for which the shader of its model reads a table: the one list that the baker, the emitter and the judge go by.
 
 use luthier_lut::TableKind;
-use luthier_model::{Reach, ReadWhen};
+use luthier_model::{Reach, ReadWhen, Reflectance, ShadingModel};
 
-use crate::{LayerKind, LayerRecord, Reflectance, ShadingModel};
+use crate::record::{LayerKind, LayerRecord};
 
 /// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by the layer's number. For layers without a tile it
 /// does without the kinds that are optional.

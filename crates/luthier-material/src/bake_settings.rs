@@ -6,6 +6,9 @@ use luthier_manifest::{ColorMode, InternalReflection, LowerReflectance, Masking,
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
 pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 
+/// The line at which a single index is usually quoted.
+pub(crate) const SODIUM_D_NM: f64 = 589.3;
+
 named! {
     /// Axis of a Fresnel row.
     pub enum FresnelMapping("mapping") {

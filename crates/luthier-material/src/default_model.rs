@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use luthier_model::{DefaultFor, Feature, Form, ShadingModel};
 use luthier_optics::stack::{Base, Layer, Surface};
 
-use crate::doubt::SODIUM_D_NM;
+use crate::bake_settings::SODIUM_D_NM;
 use crate::left_out::{LeftOut, left_out};
 use crate::material::Material;
 

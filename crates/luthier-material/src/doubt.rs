@@ -16,9 +16,6 @@ use crate::material::Material;
 use crate::places::Places;
 use crate::suggest::short;
 
-/// The line at which a single index is usually quoted.
-pub(crate) const SODIUM_D_NM: f64 = 589.3;
-
 /// Smallest slope parameter that the real-time models tell from a smooth surface: layer records have it in place of less.
 pub const ALPHA_MIN: f64 = 1e-3;
 

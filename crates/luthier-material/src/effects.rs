@@ -2,8 +2,7 @@
 
 use luthier_optics::Rgb;
 
-use crate::material::VariationSource;
-use crate::picture::PictureRef;
+use crate::picture::{PictureRef, VariationSource};
 
 /// Effects that modify the layered model.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -10,6 +10,16 @@
 //!
 //! Physical nonsense is an error, doubtful physics a warning. This crate crosses the units of files (degrees, artist's
 //! roughness) into those of the optics (radians, slope parameters), once.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `bake_settings`, `class`, `diagnostic`, `picture`, `suggest`: words of materials and of messages.
+//! - `effects`, `section`, `places`, `material`: a material, and where its values stand in the file.
+//! - `left_out`, `default_model`, `doubt`, `cross_section`, `rewrite`: what follows from a material.
+//! - `grammar`: keys, kinds and bounds as data; `schema` and `reference` put them into words.
+//! - `correct`, `check`, `decode`, `parse`: from a text to a material; `scene` and `surface` to those of other files.
 
 mod bake_settings;
 mod check;
@@ -47,9 +57,9 @@ pub use doubt::ALPHA_MIN;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use file_kind::FileKind;
 pub use left_out::{LeftOut, distribution_key, left_out};
-pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, VariationSource};
+pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap};
 pub use parse::{Parsed, parse, parse_partly};
-pub use picture::{Channel, PictureRef, TexelUse, UvTransform};
+pub use picture::{Channel, PictureRef, TexelUse, UvTransform, VariationSource};
 pub use places::Places;
 pub use reference::{KeyReference, TableReference, reference};
 pub use rewrite::rewritten;

@@ -13,7 +13,7 @@ use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::effects::{Effects, FlakeSource};
-use crate::picture::{PictureRef, TexelUse};
+use crate::picture::{PictureRef, TexelUse, VariationSource};
 use crate::places::Places;
 
 /// A validated material.
@@ -255,30 +255,4 @@ pub struct FilmVariation {
     pub source: VariationSource,
     /// Width of one repeat of the map on the surface.
     pub extent_um: f64,
-}
-
-/// A scalar map with values in 0..=1.
-#[derive(Debug, Clone, PartialEq)]
-pub enum VariationSource {
-    /// Fractal gradient noise that repeats.
-    Noise {
-        /// Seed of the noise.
-        seed: u32,
-        /// Lattice cells of the first octave along one repeat.
-        frequency: f64,
-        /// Octaves, each of twice the frequency and half the weight.
-        octaves: u32,
-    },
-    /// A picture.
-    Image(PictureRef),
-}
-
-impl VariationSource {
-    /// The image that it names, if it is one.
-    pub(crate) fn image(&self) -> Option<&PictureRef> {
-        match self {
-            Self::Image(picture) => Some(picture),
-            Self::Noise { .. } => None,
-        }
-    }
 }

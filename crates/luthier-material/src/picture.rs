@@ -106,3 +106,29 @@ impl UvTransform {
         [[cos * su, -sin * sv, u], [sin * su, cos * sv, v]]
     }
 }
+
+/// A scalar map with values in 0..=1.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VariationSource {
+    /// Fractal gradient noise that repeats.
+    Noise {
+        /// Seed of the noise.
+        seed: u32,
+        /// Lattice cells of the first octave along one repeat.
+        frequency: f64,
+        /// Octaves, each of twice the frequency and half the weight.
+        octaves: u32,
+    },
+    /// A picture.
+    Image(PictureRef),
+}
+
+impl VariationSource {
+    /// The image that it names, if it is one.
+    pub(crate) fn image(&self) -> Option<&PictureRef> {
+        match self {
+            Self::Image(picture) => Some(picture),
+            Self::Noise { .. } => None,
+        }
+    }
+}

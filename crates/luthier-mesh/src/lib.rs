@@ -8,6 +8,15 @@
 //!
 //! Simplifications: textures, materials, lights and cameras of a file are not read, but for the colour of parts whose material is named `plain`;
 //! openness is a number of a vertex, between vertices it is linear.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `vector`, `error`, `soup`, `bvh`: vectors, refusals, triangles, and a tree of boxes around them.
+//! - `normals`, `tangents`, `openness`: what vertices lack.
+//! - `mesh`, `gltf`: triangles ready for rays, and files of triangles.
+//! - [`model`]: the project's own mesh.
 
 mod bvh;
 mod error;
@@ -16,10 +25,12 @@ mod mesh;
 pub mod model;
 mod normals;
 mod openness;
+mod soup;
 mod tangents;
 mod vector;
 
 pub use bvh::{Bvh, Meeting, Node};
 pub use error::MeshError;
 pub use gltf::{File, soup};
-pub use mesh::{Mesh, Soup, TRIANGLES_MAX, Triangle, Vertex};
+pub use mesh::Mesh;
+pub use soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};

@@ -1,57 +1,19 @@
 //! Meshes as pictures take them.
 
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Meeting};
+use crate::error::MeshError;
 use crate::openness::openness;
-use crate::vector::{dot, sub};
-use crate::{MeshError, tangents};
-
-/// The most triangles of a mesh.
-pub const TRIANGLES_MAX: usize = 1 << 19;
-
-/// A corner of triangles.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Vertex {
-    /// Position; +y is up.
-    pub position: [f32; 3],
-    /// Unit normal.
-    pub normal: [f32; 3],
-    /// Unit tangent across the normal, along which `u` grows, and the sign of the bitangent: `sign cross(normal, tangent)` is where `v` falls.
-    pub tangent: [f32; 4],
-    /// Texture coordinates; the top left of a picture is 0, 0.
-    pub uv: [f32; 2],
-}
-
-/// Three corners, counterclockwise from outside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Triangle {
-    /// Numbers of the vertices.
-    pub corners: [u32; 3],
-    /// 0 takes the material that is shown; from 1 on, a colour of [`Soup::plain`].
-    pub part: u32,
-}
-
-/// Triangles before they are made ready.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Soup {
-    /// All corners. Tangents count where [`Soup::has_tangents`] is set.
-    pub vertices: Vec<Vertex>,
-    /// All triangles.
-    pub triangles: Vec<Triangle>,
-    /// Colours of matte parts that take no material: albedos, linear Rec.709.
-    pub plain: Vec<[f32; 3]>,
-    /// Whether all shown vertices have texture coordinates.
-    pub has_uv: bool,
-    /// Whether vertices have tangents, by number. Others get them from texture coordinates.
-    pub has_tangents: Vec<bool>,
-}
+use crate::soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};
+use crate::tangents;
+use crate::vector::{cross, dot, sub};
 
 /// Triangles in a tree of boxes, with what rays and shaders want of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    pub(crate) vertices: Vec<Vertex>,
-    pub(crate) openness: Vec<f32>,
-    pub(crate) triangles: Vec<Triangle>,
-    pub(crate) bvh: Bvh,
+    vertices: Vec<Vertex>,
+    openness: Vec<f32>,
+    triangles: Vec<Triangle>,
+    bvh: Bvh,
     plain: Vec<[f32; 3]>,
     has_uv: bool,
     floor: Option<f32>,
@@ -67,18 +29,15 @@ impl Mesh {
         if soup.triangles.len() > TRIANGLES_MAX {
             return Err(MeshError::TooLarge { count: soup.triangles.len(), limit: TRIANGLES_MAX });
         }
-        soup.triangles.retain(|triangle| has_area(triangle.corners.map(|i| soup.vertices[i as usize].position)));
+        soup.triangles.retain(|triangle| has_area(triangle.positions(&soup.vertices)));
         fit(&mut soup)?;
         tangents::complete(&mut soup);
-        let corner = |i: u32| soup.vertices[i as usize].position;
-        let corners: Vec<[[f32; 3]; 3]> = soup.triangles.iter().map(|t| t.corners.map(corner)).collect();
+        let corners: Vec<[[f32; 3]; 3]> = soup.triangles.iter().map(|t| t.positions(&soup.vertices)).collect();
         let (bvh, order) = Bvh::new(&corners);
-        let triangles = order.iter().map(|&i| soup.triangles[i as usize]).collect();
+        let triangles: Vec<Triangle> = order.iter().map(|&i| soup.triangles[i as usize]).collect();
         let floor = floor(&soup);
         let Soup { vertices, plain, has_uv, .. } = soup;
-        let mut mesh = Self { openness: vec![1.0; vertices.len()], vertices, triangles, bvh, plain, has_uv, floor };
-        mesh.openness = openness(&mesh);
-        Ok(mesh)
+        Ok(Self { openness: openness(&vertices, &triangles, &bvh), vertices, triangles, bvh, plain, has_uv, floor })
     }
 
     /// The corners.
@@ -112,6 +71,12 @@ impl Mesh {
         self.has_uv
     }
 
+    /// The nearest triangle that a ray meets.
+    pub fn nearest(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Meeting> {
+        let positions = |i: u32| Some(self.triangles[i as usize].positions(&self.vertices));
+        self.bvh.nearest(origin, direction, f32::INFINITY, positions)
+    }
+
     /// Height of a level floor: the plane that holds a plain part which lies below all that is shown.
     pub fn floor(&self) -> Option<f32> {
         self.floor
@@ -119,7 +84,7 @@ impl Mesh {
 }
 
 fn has_area([a, b, c]: [[f32; 3]; 3]) -> bool {
-    let normal = crate::vector::cross(sub(b, a), sub(c, a));
+    let normal = cross(sub(b, a), sub(c, a));
     dot(normal, normal) > 0.0
 }
 

@@ -1,6 +1,6 @@
 //! Normals from triangles.
 
-use crate::Vertex;
+use crate::soup::Vertex;
 use crate::vector::{V, along, angle, cross, sub, unit};
 
 /// A vertex that no triangle with an area touches is not seen; its normal is any.

@@ -4,18 +4,19 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
+use crate::bvh::Bvh;
+use crate::soup::{Triangle, Vertex};
 use crate::vector::{V, across, along, cross};
-use crate::{Mesh, Vertex};
 
 /// Rays of all vertices together: about half a second.
 const RAYS: usize = 1 << 19;
 
 /// The openness of each vertex, from rays in fixed directions with the density of the cosine.
-pub(crate) fn openness(mesh: &Mesh) -> Vec<f32> {
-    let count = (RAYS / mesh.vertices.len().max(1)).clamp(4, 128);
+pub(crate) fn openness(vertices: &[Vertex], triangles: &[Triangle], bvh: &Bvh) -> Vec<f32> {
+    let count = (RAYS / vertices.len().max(1)).clamp(4, 128);
     let directions: Vec<V> = (0..count).map(|i| cosine_weighted(i, count)).collect();
-    let mut part = vec![0; mesh.vertices.len()];
-    for triangle in &mesh.triangles {
+    let mut part = vec![0; vertices.len()];
+    for triangle in triangles {
         triangle.corners.iter().for_each(|&i| part[i as usize] = triangle.part);
     }
     let open = |(vertex, part): (&Vertex, u32)| {
@@ -23,31 +24,18 @@ pub(crate) fn openness(mesh: &Mesh) -> Vec<f32> {
         let t = across(n);
         let b = cross(n, t);
         let origin = along(vertex.position, 2e-3, n);
+        // The shown part hides from all, plain parts from plain ones.
+        let hides = |i: u32| {
+            let triangle = triangles[i as usize];
+            (part > 0 || triangle.part == 0).then(|| triangle.positions(vertices))
+        };
         let is_open = |d: &&V| {
             let direction = [0, 1, 2].map(|c| d[0] * t[c] + d[1] * b[c] + d[2] * n[c]);
-            mesh.hidden_by(origin, direction, part).is_none()
+            bvh.nearest(origin, direction, f32::INFINITY, hides).is_none()
         };
         directions.iter().filter(is_open).count() as f32 / count as f32
     };
-    mesh.vertices.par_iter().zip(part).map(open).collect()
-}
-
-impl Mesh {
-    /// The triangle that hides a direction from a part: the shown part hides it from all, plain parts from plain ones.
-    fn hidden_by(&self, origin: V, direction: V, part: u32) -> Option<crate::Meeting> {
-        let counts = |i: u32| part > 0 || self.triangles[i as usize].part == 0;
-        self.bvh.nearest(origin, direction, f32::INFINITY, |i| counts(i).then(|| self.corners(i)))
-    }
-
-    /// Positions of the corners of a triangle.
-    pub(crate) fn corners(&self, triangle: u32) -> [V; 3] {
-        self.triangles[triangle as usize].corners.map(|i| self.vertices[i as usize].position)
-    }
-
-    /// The nearest triangle that a ray meets.
-    pub fn nearest(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<crate::Meeting> {
-        self.bvh.nearest(origin, direction, f32::INFINITY, |i| Some(self.corners(i)))
-    }
+    vertices.par_iter().zip(part).map(open).collect()
 }
 
 /// Hammersley's points, mapped to the hemisphere.

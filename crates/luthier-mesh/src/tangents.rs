@@ -1,7 +1,7 @@
 //! Tangents from texture coordinates.
 
+use crate::soup::{Soup, Vertex};
 use crate::vector::{V, across, along, angle, dot, sub, unit};
-use crate::{Soup, Vertex};
 
 /// Gives tangents to the vertices that have none: directions in which `u` grows, weighed by the angles at the corner, as MikkTSpace does it. A vertex
 /// between triangles of both orientations of the texture becomes two. Without texture coordinates, tangents are any across the normal.

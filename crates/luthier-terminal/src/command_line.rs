@@ -5,8 +5,8 @@ use std::process::exit;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ColorChoice, CommandFactory, FromArgMatches};
 
-use crate::failure::{print_json, tell_failure, usage};
-use crate::{complain, has_colour, has_events};
+use crate::end::{print_json, tell_failure, usage};
+use crate::output::{complain, has_colour, has_events};
 
 /// The command line of this process; exits where it asks for help or is wrong. `of_features` are verbs that a cargo feature brings, each
 /// with its feature: where such a verb is left out, the failure names the feature.

@@ -2,15 +2,11 @@
 
 use std::fmt;
 use std::io;
-use std::process::ExitCode;
 
 use luthier::Error;
 use luthier_export::PackageError;
 use luthier_material::{Diagnostic, did_you_mean};
 use serde_json::{Value, json};
-
-use crate::output::asks_for;
-use crate::{complain, has_events, print, tell};
 
 /// Why a command ends with another code than 0. `luthier --help` documents the codes.
 #[derive(Debug)]
@@ -58,27 +54,8 @@ impl Failure {
         }
     }
 
-    /// Says what it is, in JSON too if that was asked for, and gives the exit code.
-    pub fn exit(&self) -> ExitCode {
-        let Some(failed) = self.as_json() else {
-            return ExitCode::from(u8::from(matches!(self, Self::Verdict)));
-        };
-        print_json(&failed);
-        self.tell();
-        ExitCode::from(failed["code"].as_u64().map_or(1, |code| code as u8))
-    }
-
-    /// Says what it is on standard error.
-    pub fn tell(&self) {
-        match self.as_json() {
-            Some(failed) if has_events() => tell_failure(failed),
-            Some(_) => complain(&format!("error: {}", self.sentence())),
-            None => {}
-        }
-    }
-
     /// The failure for programs; `None` where there is nothing more to say.
-    fn as_json(&self) -> Option<Value> {
+    pub(crate) fn as_json(&self) -> Option<Value> {
         let (code, kind, error) = match self {
             Self::BrokenPipe | Self::Verdict => return None,
             Self::Input(error) => (1, "input", error),
@@ -92,24 +69,6 @@ impl Failure {
         let diagnostics: Vec<Value> = diagnostics.iter().map(diagnostic).collect();
         Some(json!({"code": code, "kind": kind, "message": sentence(error), "diagnostics": diagnostics}))
     }
-}
-
-/// A command line that is wrong, for programs.
-pub(crate) fn usage(message: &str) -> Value {
-    json!({"code": 2, "kind": "usage", "message": message, "diagnostics": []})
-}
-
-/// Writes a failure to standard output as JSON where the command line asks for JSON. A reader that is gone hears nothing.
-pub(crate) fn print_json(failed: &Value) {
-    if asks_for("--json") {
-        let _ = print(&format!("{:#}", json!({ "error": failed })));
-    }
-}
-
-/// Writes a failure to standard error as an event, where the command line asks for events.
-pub(crate) fn tell_failure(mut failed: Value) {
-    failed["event"] = json!("failed");
-    tell(&failed);
 }
 
 /// A diagnostic for programs.

@@ -9,10 +9,18 @@
 //! - [`valid`]: the materials of files, with their diagnostics printed;
 //! - [`Sources`], [`named`]: options that many verbs have; [`parse`] reads a command line;
 //! - [`Shaders`], with the feature `gpu`: the graphics adapter as the judge sees it.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `failure`, `output`, `end`: failures, the streams that say them, and the end of a command.
+//! - `command_line`, `device`, `materials`, `options`, `progress`: what verbs have in common.
 
 mod command_line;
 #[cfg(feature = "gpu")]
 mod device;
+mod end;
 mod failure;
 mod materials;
 mod options;

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use serde_json::{Value, json};
 
-use crate::{Failure, Outcome, files};
+use crate::failure::{Failure, Outcome, files};
 
 /// Writes a text to standard output, with a final newline.
 ///

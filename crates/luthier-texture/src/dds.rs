@@ -5,7 +5,7 @@ use luthier_lut::Image;
 
 use crate::TextureError;
 use crate::error::Container;
-use crate::limits::checked_bytes;
+use crate::size::checked_bytes;
 use crate::texels::{Samples, TexelLayout};
 
 const HEADER_BYTES: usize = 128;

@@ -6,7 +6,7 @@ use std::fmt;
 use luthier_lut::LutError;
 use thiserror::Error;
 
-use crate::{MAX_BYTES, MAX_SIDE};
+use crate::limits::{MAX_BYTES, MAX_SIDE};
 
 /// The file formats of this crate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,6 +13,15 @@
 //!
 //! Simplifications: textures that are written have one layer; EXR files are
 //! single-part scan-line images of 32-bit floats.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `limits`, `error`, `size`: limits, refusals, and sizes that are checked.
+//! - `metadata`, `srgb`, `texels`, `texture`, `zstd`: texels with their notes, and how they are stored.
+//! - [`ktx2`], [`exr`], [`png`], [`picture`], `dds`, [`radiance`]: one container each.
+//! - [`table`]: tables of any of these.
 
 mod dds;
 mod error;
@@ -23,6 +32,7 @@ mod metadata;
 pub mod picture;
 pub mod png;
 pub mod radiance;
+mod size;
 mod srgb;
 pub mod table;
 mod texels;
@@ -30,7 +40,6 @@ mod texture;
 mod zstd;
 
 pub use error::{Container, TextureError};
-
 pub use limits::{MAX_BYTES, MAX_SIDE};
 pub use metadata::Metadata;
 pub use texels::Samples;

@@ -1,30 +1,10 @@
-//! Limits on sizes, checked before memory is allocated.
-
-use luthier_lut::Image;
-
-use crate::TextureError;
+//! Limits on sizes.
 
 /// Longest side of an image, in texels: what current devices take at most.
 pub const MAX_SIDE: u32 = 16_384;
 
 /// Most bytes that the texels of one image may take as they are stored before compression: 512 MiB, 8192 x 4096 of rgba32float.
 pub const MAX_BYTES: u64 = 1 << 29;
-
-/// The bytes that an image takes, `texel_bytes` to a texel as it is stored.
-///
-/// # Errors
-/// [`TextureError::Size`] beyond the limits, or when a side is 0.
-pub(crate) fn checked_bytes(width: u32, height: u32, texel_bytes: u32) -> Result<usize, TextureError> {
-    let side_ok = |side: u32| (1..=MAX_SIDE).contains(&side);
-    if !side_ok(width) || !side_ok(height) {
-        return Err(TextureError::Size { width, height });
-    }
-    let bytes = u64::from(width) * u64::from(height) * u64::from(texel_bytes);
-    if bytes > MAX_BYTES {
-        return Err(TextureError::Size { width, height });
-    }
-    Ok(bytes as usize)
-}
 
 /// Bytes that any file may ask for.
 const PLAUSIBLE: u64 = 64 << 20;
@@ -35,35 +15,4 @@ const EXPANSION: u64 = 4096;
 /// Whether a file may be as long as it is and have so many bytes of decoded texels.
 pub(crate) fn is_plausible(file: &[u8], bytes: u64) -> bool {
     bytes <= PLAUSIBLE + EXPANSION * file.len() as u64
-}
-
-/// Checks that an image is what its fields say, and within the limits.
-pub(crate) fn check_image(image: &Image) -> Result<(), TextureError> {
-    if !(1..=4).contains(&image.channels) {
-        return Err(TextureError::Channels(image.channels));
-    }
-    let expected = checked_bytes(image.width, image.height, 4 * image.channels)? / 4;
-    if image.data.len() == expected { Ok(()) } else { Err(TextureError::Length { found: image.data.len(), expected }) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn limits_hold_without_overflow() {
-        assert_eq!(checked_bytes(8192, 4096, 16).unwrap(), 1 << 29);
-        for (width, height) in [(0, 1), (1, 0), (MAX_SIDE + 1, 1), (u32::MAX, u32::MAX), (8192, 4097)] {
-            assert!(matches!(checked_bytes(width, height, 16), Err(TextureError::Size { .. })), "{width}x{height}");
-        }
-    }
-
-    #[test]
-    fn inconsistent_images_are_refused() {
-        let image = |channels, values| Image { width: 2, height: 2, channels, data: vec![0.0; values] };
-        assert!(check_image(&image(3, 12)).is_ok());
-        assert!(matches!(check_image(&image(0, 0)), Err(TextureError::Channels(0))));
-        assert!(matches!(check_image(&image(5, 20)), Err(TextureError::Channels(5))));
-        assert!(matches!(check_image(&image(3, 11)), Err(TextureError::Length { found: 11, expected: 12 })));
-    }
 }

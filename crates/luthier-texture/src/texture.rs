@@ -3,7 +3,7 @@
 use luthier_lut::{Atlas, Image, TexelFormat};
 
 use crate::TextureError;
-use crate::limits::checked_bytes;
+use crate::size::checked_bytes;
 
 /// Texels as a device takes them.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,12 +1,9 @@
-//! The window: what it knows, and one frame of it.
+//! The window: what it knows, and what it does with orders and results.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use eframe::egui::{
-    Align2, Area, CentralPanel, ColorImage, Context, Frame, Id, Margin, Panel, Rect, RichText, Theme, Ui,
-    ViewportCommand,
-};
+use eframe::egui::{Align2, Area, ColorImage, Context, Frame, Id, Rect, RichText, Theme, Ui, ViewportCommand};
 use luthier_gpu::{Gpu, RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -18,23 +15,21 @@ use crate::error::ViewError;
 use crate::files::Files;
 use crate::history::History;
 use crate::host::{Differences, Host, Screenshot};
-use crate::keys::{Action, actions};
+use crate::keys::Action;
 use crate::look::{Look, Surroundings};
+use crate::options::Options;
 use crate::orbit::Orbit;
 use crate::shots::Schedule;
-use crate::window::Options;
 use crate::work::baker::{BakeOrder, Baker, Ready};
 use crate::work::gathering::Progress;
 use crate::work::latest::Latest;
-use crate::work::painter::{Painter, View};
+use crate::work::painter::Painter;
+use crate::work::view::View;
 use crate::work::watcher::Watcher;
 
 /// Shapes to choose from.
 pub(crate) const SHAPES: [(Shape, &str); 4] =
     [(Shape::Mesh, "model"), (Shape::Sphere, "sphere"), (Shape::Torus, "torus"), (Shape::Plane, "plane")];
-
-/// Width of the panel in points.
-const PANEL: f32 = 340.0;
 
 /// A screenshot on its way: its number, whether the command line asked for it, its pixels.
 type Taken = (u32, bool, Arc<ColorImage>);
@@ -85,7 +80,7 @@ pub(crate) struct App {
     pub(crate) status: String,
 
     // Screenshots.
-    schedule: Option<Schedule>,
+    pub(crate) schedule: Option<Schedule>,
     by_hand: u32,
     shots: Arc<Latest<Taken>>,
     pub(crate) message: Option<String>,
@@ -180,7 +175,7 @@ impl App {
         self.request(context, self.by_hand, false);
     }
 
-    fn request(&self, context: &Context, number: u32, asked: bool) {
+    pub(crate) fn request(&self, context: &Context, number: u32, asked: bool) {
         let (slot, waker) = (Arc::clone(&self.shots), context.clone());
         context.request_screenshot(move |image| {
             slot.put((number, asked, image));
@@ -189,7 +184,7 @@ impl App {
     }
 
     /// Takes what the threads have.
-    fn receive(&mut self, context: &Context) {
+    pub(crate) fn receive(&mut self, context: &Context) {
         if let Some(files) = self.watcher.files.take() {
             // What was edited is replaced by what was saved.
             for label in self.files.update(files) {
@@ -266,7 +261,7 @@ impl App {
         }
     }
 
-    fn act(&mut self, action: Action, context: &Context) {
+    pub(crate) fn act(&mut self, action: Action, context: &Context) {
         match action {
             Action::Next => self.files.step(1),
             Action::Previous => self.files.step(-1),
@@ -348,7 +343,7 @@ impl App {
     }
 
     /// Whether nothing is going on that would change what the window shows.
-    fn settled(&self) -> bool {
+    pub(crate) fn settled(&self) -> bool {
         if !self.files_seen {
             return false;
         }
@@ -358,45 +353,5 @@ impl App {
         let baked = self.bake_order.as_ref().is_some_and(|order| order.version == self.baked);
         let painted = self.paint_order.is_none_or(|(version, ..)| version == self.painted && self.finished);
         baked && painted && (self.paint_order.is_some() || self.bake_problem.is_some())
-    }
-}
-
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
-        let context = ui.ctx().clone();
-        self.receive(&context);
-        let actions = actions(&context);
-        if !actions.is_empty() {
-            self.message = None;
-        }
-        for action in actions {
-            self.act(action, &context);
-        }
-        self.is_still = false;
-        let frame = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
-        Panel::right("panel")
-            .exact_size(PANEL)
-            .resizable(false)
-            .frame(frame)
-            .show(ui, |ui| crate::panel::show(self, ui));
-        Panel::bottom("status").show(ui, |ui| crate::panel::status(self, ui));
-        CentralPanel::default()
-            .frame(Frame::NONE.fill(ui.visuals().panel_fill))
-            .show(ui, |ui| crate::canvas::show(self, ui));
-        crate::panel::help(self, &context);
-        // An edit is one step until the mouse is released, or the number that is being typed is left.
-        if !context.input(|input| input.pointer.any_down()) && !context.text_edit_focused() {
-            self.history.close();
-        }
-
-        let settled = self.settled();
-        if let Some(schedule) = &mut self.schedule {
-            if let Some(number) = schedule.frame(settled) {
-                self.request(&context, number, true);
-            }
-            if settled {
-                context.request_repaint();
-            }
-        }
     }
 }

@@ -12,6 +12,16 @@
 //! Simplifications: the renderer has a device of its own, and its pixels travel through memory to the window's, so that
 //! neither can bring down the other and both may use different adapters. Edits live in the window, which can copy them as a
 //! text; nothing writes them to a file, and a change on disk replaces them and their history. On Linux the window speaks X11, which Wayland desktops understand.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `error`, `host`, `keys`, `look`, `orbit`, `parameter`, `theme`, `clipboard`, `history`, `shots`: words, numbers and orders of the window.
+//! - `work`, `comparison`, `files`, `canvas`, `options`: threads and their results, what is compared, what is open, what is shown.
+//! - `app`, with `edits` and `sides`: the window, and what it does with orders and results.
+//! - `panel`, `picture`, `frame`: one frame of it.
+//! - `window`: the loop that runs it.
 
 mod app;
 mod canvas;
@@ -20,13 +30,16 @@ mod comparison;
 mod edits;
 mod error;
 mod files;
+mod frame;
 mod history;
 mod host;
 mod keys;
 mod look;
+mod options;
 mod orbit;
 mod panel;
 mod parameter;
+mod picture;
 mod shots;
 mod sides;
 mod theme;
@@ -38,7 +51,8 @@ pub use error::ViewError;
 pub use host::{Differences, Host, MaterialFile, Screenshot};
 pub use look::Look;
 pub use luthier_manifest::Form;
+pub use options::Options;
 pub use orbit::Orbit;
 pub use parameter::{Group, Handle, Parameter, groups};
 pub use shots::Shots;
-pub use window::{Options, run};
+pub use window::run;

@@ -10,7 +10,8 @@ use crate::app::App;
 use crate::comparison::Against;
 use crate::theme::LIGHT_BACKDROP;
 use crate::work::baker::{BakeOrder, Subject, Way};
-use crate::work::painter::{PaintOrder, View};
+use crate::work::painter::PaintOrder;
+use crate::work::view::View;
 
 impl App {
     /// Shows the second picture that was shown last, or none.

@@ -1,45 +1,16 @@
-//! The window: its options, and the loop that runs it.
+//! The loop that runs the window.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{ThemePreference, ViewportBuilder};
-use luthier_gpu::{Gpu, RenderSettings, Shape, ToneMapping};
-use luthier_manifest::{Form, ShadingModel};
+use luthier_gpu::Gpu;
 
 use crate::app::App;
-use crate::comparison::Comparison;
 use crate::error::ViewError;
 use crate::host::Host;
 use crate::look::{Look, Surroundings};
-use crate::shots::Shots;
-
-/// Initial state of the window.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// Light, environment, samples, exposure. Its size and camera do not count; environment samples of 0 become some in the
-    /// full form.
-    pub settings: RenderSettings,
-    /// Name of the environment of the settings, where it is another than the default.
-    pub environment_name: Option<&'static str>,
-    /// Tone curve.
-    pub tone: ToneMapping,
-    /// Shape; the grid becomes a sphere, because a window shows one material.
-    pub shape: Shape,
-    /// Form.
-    pub form: Form,
-    /// Model; `None` is what each file asks for.
-    pub model: Option<ShadingModel>,
-    /// Whether files that ask for no model may have one that is fitted to a simulation.
-    pub fits: bool,
-    /// The picture beside that of the material.
-    pub comparison: Comparison,
-    /// Inner size of the window in points.
-    pub size: [f32; 2],
-    /// Dark; `None` is what the desktop says, or else dark.
-    pub dark: Option<bool>,
-    /// Screenshots to take without being asked again.
-    pub shots: Option<Shots>,
-}
+use crate::options::Options;
+use crate::theme;
 
 /// Opens the window, and returns when it is closed.
 ///
@@ -58,7 +29,7 @@ pub fn run(host: Arc<dyn Host>, gpu: Gpu, options: Options) -> Result<(), ViewEr
     let native = eframe::NativeOptions { viewport, run_and_return: true, ..Default::default() };
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
         let context = &creation.egui_ctx;
-        crate::theme::apply(context);
+        theme::apply(context);
         context.set_theme(match options.dark {
             Some(true) => ThemePreference::Dark,
             Some(false) => ThemePreference::Light,

@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
+use crate::candidates::{self, Found, Refusal, choose, cost, locked};
 use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results, Store, result_of};
 use crate::plan::Plan;
-use crate::search::{self, Found, Refusal};
 use crate::settings::{Ask, Settings, Shape, axis};
 use crate::tile::{TileData, apron, color_in_words, lone_tile};
 use crate::{BakeError, json};
@@ -154,7 +154,7 @@ pub(crate) fn decide(
     let candidate = |&(most, i): &(usize, usize)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
         let Shape { x, y, base, format } = shape(most_lobes(Some(most)), has_base, STEPS[i]);
-        let cost = search::cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * search::cost::read(format);
+        let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
         let bytes = layout.size().map(u64::from).iter().product::<u64>() * u64::from(format.texel_bytes());
@@ -163,7 +163,7 @@ pub(crate) fn decide(
     };
     let found = Found::new(TableKind::Lobes, 0.0, choices.iter().map(candidate).collect());
     let found = std::slice::from_ref(&found);
-    let chosen = search::locked(found, lock, budget, 0).map_or_else(|| search::choose(found, budget, 0), Ok);
+    let chosen = locked(found, lock, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
         let (most, i) = match &refusal {
             Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
@@ -176,7 +176,7 @@ pub(crate) fn decide(
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
     settings.take_lobes(shape(most_lobes(Some(most)), has_base, STEPS[i]));
-    Ok(Some(search::report(&found[0], chosen, budget)))
+    Ok(Some(candidates::report(&found[0], chosen, budget)))
 }
 
 /// The fit of a material; with lobes of every number, where a search chooses among them.

@@ -6,8 +6,8 @@ pub(crate) mod fgd;
 pub(crate) mod film;
 pub(crate) mod fresnel;
 pub(crate) mod lobes;
-pub(crate) mod phase;
-pub(crate) mod thickness;
+mod phase;
+mod thickness;
 
 use std::sync::Arc;
 
@@ -19,10 +19,11 @@ use luthier_optics::interface::Interface;
 use luthier_optics::stack::Layer;
 
 use crate::BakeError;
+use crate::candidates::Found;
 use crate::graph::{Job, Results};
-use crate::plan::{ImageReader, Plan};
-use crate::search::Found;
-use crate::settings::{Ask, Asked, Shape};
+use crate::plan::Plan;
+use crate::relief::ImageReader;
+use crate::settings::{Ask, Asked, Settings, Shape};
 
 /// An interface that may need a tile: one layer of a material.
 pub(crate) struct Site<'a> {
@@ -103,4 +104,9 @@ pub(crate) fn of(kind: TableKind) -> &'static dyn Kind {
         TableKind::Escape => &escape::Table,
         TableKind::Lobes => &lobes::Table,
     }
+}
+
+/// Whether the shape of the tables of a kind that interfaces share is left to the bake, which then aims at an error of its own.
+pub(crate) fn is_left(settings: &Settings, kind: TableKind) -> bool {
+    of(kind).has_aim() && !settings.asked(kind).is_any()
 }

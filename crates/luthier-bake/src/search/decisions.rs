@@ -3,13 +3,11 @@
 use std::sync::Arc;
 
 use luthier_lut::TableKind;
-use luthier_manifest::{Budget, Candidate, CandidateForm, Decision, Search};
+use luthier_manifest::{Candidate, CandidateForm, Decision, MeasuredError, Search};
 
-use super::Found;
-use crate::decide::worst;
-use crate::graph::{Artefact, JobKind, Key, Results, Task};
+use crate::candidates::{AIM, DEFAULT_BUDGET, Found};
+use crate::graph::{Artefact, JobKind, Key, Results, Store, Task};
 use crate::plan::Plan;
-use crate::{AIM, DEFAULT_BUDGET, Store};
 
 /// Changes whenever the same plan gives other candidates, or other errors of them, than before.
 const REVISION: u32 = 2;
@@ -19,7 +17,7 @@ const SEARCH: JobKind = JobKind::part("search");
 
 /// The candidates that a search finds for a kind of a plan, from the store where it has been made before. Its truths are those of the jobs of the tiles: what makes
 /// the tiles of other kinds does not decide it.
-pub(crate) fn kept(
+pub(super) fn kept(
     plan: &Plan,
     kind: TableKind,
     is_asked: bool,
@@ -50,35 +48,19 @@ pub(crate) fn kept(
     found
 }
 
-/// The candidates of a lock, where it has one of each kind and together they hold a budget.
-pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_bytes: u64) -> Option<Vec<usize>> {
-    let place = |found: &Found| {
-        let decision = lock.iter().find(|decision| decision.kind == found.kind)?;
-        found.candidates.iter().position(|candidate| candidate.form == decision.candidate.form)
-    };
-    let places: Vec<usize> = found.iter().map(place).collect::<Option<_>>()?;
-    let chosen: Vec<&Candidate> = found.iter().zip(&places).map(|(found, &place)| &found.candidates[place]).collect();
-    let bytes = fixed_bytes + chosen.iter().map(|candidate| candidate.bytes).sum::<u64>();
-    let cost = chosen.iter().map(|candidate| candidate.cost).sum::<f64>();
-    let holds = chosen.iter().all(|candidate| budget.excess(&candidate.error) <= 1.0)
-        && budget.max_bytes.is_none_or(|most| bytes <= most)
-        && budget.max_cost.is_none_or(|most| cost <= most);
-    (holds && !places.is_empty()).then_some(places)
-}
-
 /// The reports of decisions of a lock on a plan that has taken them, where no budget is stated: none where a table is off by more than bakes aim at, and by more
 /// than when it was locked.
-pub(crate) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decision]) -> Option<Vec<Search>> {
+pub(super) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decision]) -> Option<Vec<Search>> {
     let report = |decision: &Decision| {
         let Candidate { form, cost, error, .. } = &decision.candidate;
-        let found = worst(plan, results, decision.kind, &[]);
+        let found = plan.worst(results, decision.kind, &[]);
         if found > error.max_abs.max(AIM) {
             return None;
         }
         let tiles = plan.tiles[decision.kind as usize].tiles.len() as u32;
         let error = match form {
             CandidateForm::ClosedForm => *error,
-            CandidateForm::Table { .. } => luthier_manifest::MeasuredError { max_abs: found, ..*error },
+            CandidateForm::Table { .. } => MeasuredError { max_abs: found, ..*error },
         };
         let candidate = Candidate { form: form.clone(), bytes: form.bytes(tiles), cost: *cost, error };
         Some(Search { kind: decision.kind, budget: DEFAULT_BUDGET, chosen: 0, front: vec![candidate], measured: 1 })

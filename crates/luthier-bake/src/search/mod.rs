@@ -1,186 +1,256 @@
-//! The search for the cheapest tables that hold a budget.
+//! The search for the shapes of the tables of a bake: those that materials ask for, those that a lock keeps, and those that hold a budget.
 //!
-//! Every kind of table has candidates: sizes, axis mappings, texel formats, a closed form to add, or a closed form alone. All are
-//! measured as a device samples them, against one fine truth per tile, in the same order whatever the budget: a tighter budget chooses
-//! among fewer, so never fewer bytes. Of those that hold, the fewest bytes win, then the lowest cost.
-//!
-//! Not searched: thickness textures, which are pictures, and escape tiles. Lobes come first and have limits of their own ([`kinds::lobes::decide`]): their
+//! Not searched: thickness textures, which are pictures, and escape tiles. Lobes come first and have limits of their own ([`lobes::decide`]): their
 //! errors are those of the fit, not of texels.
 
-mod choice;
 mod decisions;
-pub mod goals;
-pub(crate) mod grids;
+mod refusal;
 
-use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat, WeightBits};
-use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
-use luthier_optics::color_difference::{ciede2000, lab};
-use serde::{Deserialize, Serialize};
+use luthier_layers::lobes::LOBES;
+use luthier_lut::{AtlasLayout, TableKind};
+use luthier_manifest::{Budget, CandidateForm, Decision, Search};
+use luthier_material::Material;
 
-pub(crate) use choice::{Refusal, best_effort, choose, front};
-pub(crate) use decisions::{kept, kept_decisions, locked};
-
-use crate::graph::Results;
-use crate::kinds;
+use self::decisions::{kept, kept_decisions};
+use self::refusal::{refused, worst_of};
+use crate::candidates::{DEFAULT_BUDGET, Found, Refusal, best_effort, choose, locked, report};
+use crate::check::check;
+use crate::graph::{Graph, JobKind, Observer, Results, Store};
+use crate::kinds::{self, lobes};
+use crate::limits::{self, layouts};
+use crate::options::{Options, budget};
 use crate::plan::Plan;
-
-/// Budget of tables for which none is stated: errors that a fixed row of 128 half floats has too.
-pub const DEFAULT_BUDGET: Budget = Budget {
-    max_abs: Some(5e-4),
-    max_rel: None,
-    delta_e: None,
-    max_bytes: None,
-    max_cost: None,
-    max_lobe_err: None,
-    max_albedo_err: None,
-};
-
-/// The candidates for one kind.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct Found {
-    pub(crate) kind: TableKind,
-    /// Cost of the fixed default.
-    pub(crate) fixed_cost: f64,
-    pub(crate) candidates: Vec<Candidate>,
-    /// Whether the bake itself has measured each of the candidates.
-    pub(crate) confirmed: Vec<bool>,
-    /// Tiles, by number, that no candidate serves and that the others do not wait for.
-    pub(crate) left_out: Vec<usize>,
-    /// True if every tile was measured; otherwise the other candidates' errors are scaled by the ratio found for one.
-    pub(crate) is_whole: bool,
-}
-
-/// The default budget (5e-4) may be exceeded fourfold: 2e-3 is half an 8-bit step. Beyond it some
-/// interface is one that no table serves (the fringes of a thick film, total reflection by what absorbs), and the choice would be the best
-/// for it alone.
-const NEAR: f64 = 4.0;
-
-/// The error that tables are to hold where no budget is stated; a tile beyond it is named by the bake.
-pub const AIM: f64 = NEAR * 5e-4;
-
-impl Found {
-    /// Whether some candidate holds a budget, or nearly.
-    pub(crate) fn comes_near(&self, budget: &Budget) -> bool {
-        self.candidates.iter().any(|c| budget.excess(&c.error) <= NEAR)
-    }
-
-    pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
-        let confirmed = vec![false; candidates.len()];
-        Self { kind, fixed_cost, candidates, confirmed, left_out: Vec::new(), is_whole: true }
-    }
-
-    /// Keeps the candidates whose read costs at most half as much again as one of the fixed default, for bakes without a stated budget.
-    pub(crate) fn affordable(mut self) -> Self {
-        let most = 1.5 * self.fixed_cost;
-        self.candidates.retain(|c| c.cost <= most);
-        self.confirmed.truncate(self.candidates.len());
-        self
-    }
-
-    /// Records the bake's measured error if it is larger. Returns true if the search's estimate held.
-    pub(crate) fn confirm(&mut self, choice: usize, exact: f64) -> bool {
-        let found = self.candidates[choice].error.max_abs;
-        let is_new = !std::mem::replace(&mut self.confirmed[choice], true);
-        if exact <= found {
-            return true;
-        }
-        self.candidates[choice].error.max_abs = exact;
-        if !self.is_whole && is_new && found > 0.0 {
-            let others = self.candidates.iter_mut().zip(&self.confirmed).filter(|(_, confirmed)| !**confirmed);
-            others.for_each(|(candidate, _)| candidate.error.max_abs *= exact / found);
-        }
-        false
-    }
-}
+use crate::relief::ImageReader;
+use crate::settings::Settings;
+use crate::{BakeError, planner};
 
 /// The kinds that are searched where no budget is stated.
-pub(crate) const SEARCHED_BY_DEFAULT: [TableKind; 2] = [TableKind::Fresnel, TableKind::Distribution];
+const SEARCHED_BY_DEFAULT: [TableKind; 2] = [TableKind::Fresnel, TableKind::Distribution];
+
+/// A plan whose settings are final, results that were needed to find them, and what the search found.
+pub(crate) struct Planned {
+    pub(crate) plan: Plan,
+    pub(crate) results: Results,
+    pub(crate) searches: Vec<Search>,
+}
+
+/// A plan before any search for texels.
+pub(crate) struct Fixed {
+    pub(crate) settings: Settings,
+    pub(crate) plan: Plan,
+    /// The limits that materials and options state, on texels and on lobes.
+    pub(crate) asked: Budget,
+}
+
+/// Often enough for the error of every choice to be confirmed or refuted by the exact measurement.
+const ROUNDS: usize = 24;
+
+impl Fixed {
+    /// The plan of what materials and options ask for. Lobes have the most parts, as long as nothing is fitted.
+    pub(crate) fn new(
+        materials: &[Material],
+        options: &Options<'_>,
+        read_image: ImageReader<'_>,
+    ) -> Result<Self, BakeError> {
+        check(materials, options).map_err(|mut errors| errors.swap_remove(0))?;
+        let mut settings = planner::settings(materials)?;
+        settings.formats = options.formats;
+        if let Some(rows) = options.rows {
+            settings.take_rows(rows);
+        }
+        let asked = budget(materials, &options.budget)?;
+        settings.lobes = (options.search && asked.limits_lobes()).then_some(LOBES);
+        let plan = planner::plan(materials, settings.clone(), read_image)?;
+        Ok(Self { settings, plan, asked })
+    }
+
+    /// The limits on texels, and whether there are any; otherwise those that bakes aim at.
+    pub(crate) fn budget(&self) -> (Budget, bool) {
+        let asked = self.asked.of_texels();
+        if asked.is_empty() { (DEFAULT_BUDGET, false) } else { (asked, true) }
+    }
+
+    /// The settings that a bake without a stated budget tries first: those of the lock, or of a search. None where nothing is searched.
+    pub(crate) fn first_choice(&self, options: &Options<'_>, store: &dyn Store) -> Settings {
+        let mut settings = self.settings.clone();
+        if let Some(decisions) = self.locked(options) {
+            decisions.iter().for_each(|decision| settings.apply(decision.kind, &decision.candidate.form));
+            return settings;
+        }
+        let found = found(self, &Results::default(), store);
+        for (kind, choice) in found.iter().zip(best_effort(&found, &DEFAULT_BUDGET)) {
+            settings.apply(kind.kind, &kind.candidates[choice].form);
+        }
+        settings
+    }
+
+    /// The decisions of the lock for the kinds that a bake without a stated budget searches, where it has one for each of them.
+    fn locked(&self, options: &Options<'_>) -> Option<Vec<Decision>> {
+        let is_open = |kind: &TableKind| {
+            !self.plan.tiles[*kind as usize].tiles.is_empty() && !self.settings.asked(*kind).is_any()
+        };
+        let decision = |kind: TableKind| {
+            let is_fit = |decision: &&Decision| match &decision.candidate.form {
+                CandidateForm::ClosedForm => true,
+                CandidateForm::Table { format, .. } => options.formats.has(*format),
+            };
+            options.locked.iter().find(|decision| decision.kind == kind).filter(is_fit).cloned()
+        };
+        let open = SEARCHED_BY_DEFAULT.into_iter().filter(is_open);
+        let decisions: Vec<Decision> = open.map(decision).collect::<Option<_>>()?;
+        (!decisions.is_empty()).then_some(decisions)
+    }
+}
+
+/// The candidates for the tables of a plan; none that no texture holds.
+fn found(fixed: &Fixed, results: &Results, store: &dyn Store) -> Vec<Found> {
+    let (budget, is_asked) = fixed.budget();
+    let (plan, colors) = (&fixed.plan, budget.delta_e.is_some());
+    let kinds: &[TableKind] = if is_asked { &TableKind::ALL } else { &SEARCHED_BY_DEFAULT };
+    let of = |&kind: &TableKind| {
+        kept(plan, kind, is_asked, colors, store, &|| {
+            if is_asked { candidates(plan, kind, results, colors) } else { by_default(plan, kind) }
+        })
+    };
+    let mut found: Vec<Found> = kinds.iter().filter_map(of).collect();
+    found.iter_mut().for_each(|found| fitting(found, plan));
+    found.retain(|found| !found.candidates.is_empty());
+    found
+}
 
 /// The candidates of a kind, if some come near the default budget. A row that none serves does not count.
-pub(crate) fn by_default(plan: &Plan, kind: TableKind) -> Option<Found> {
+fn by_default(plan: &Plan, kind: TableKind) -> Option<Found> {
     kinds::of(kind).candidates_by_default(plan).filter(|f| f.comes_near(&DEFAULT_BUDGET))
 }
 
 /// Measures the candidates of a kind that a plan has. `results` has the intermediate ones of its graph.
-pub(crate) fn candidates(plan: &Plan, kind: TableKind, results: &Results, colors: bool) -> Option<Found> {
+fn candidates(plan: &Plan, kind: TableKind, results: &Results, colors: bool) -> Option<Found> {
     kinds::of(kind).candidates(plan, results, colors).filter(|f| !f.candidates.is_empty())
 }
 
-/// The report of a search.
-pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
-    let keep = front(&found.candidates);
-    let mut front: Vec<(usize, &Candidate)> = keep.iter().map(|&i| (i, &found.candidates[i])).collect();
-    if !keep.contains(&chosen) {
-        front.push((chosen, &found.candidates[chosen]));
+/// The final plan.
+///
+/// # Errors
+/// See [`BakeError`].
+pub(crate) fn plan(
+    materials: &[Material],
+    options: &Options<'_>,
+    read_image: ImageReader<'_>,
+    observer: &dyn Observer,
+    store: &dyn Store,
+) -> Result<Planned, BakeError> {
+    let mut fixed = Fixed::new(materials, options, read_image)?;
+    let (mut results, mut searches) = (Results::default(), Vec::new());
+    if let Some(fits) = lobes::fits(&fixed.plan.graph).filter(|_| options.fits) {
+        results = fits.run(observer, store, results);
+        let limits = fixed.asked.of_lobes();
+        let decided = lobes::decide(&mut fixed.settings, &fixed.plan, materials, &results, &limits, options.locked);
+        searches.extend(decided.map_err(|(refusal, errors)| {
+            let worst = worst_of(&errors, &limits).map(|material| (material, None));
+            refused(refusal, TableKind::Lobes, worst, materials, options)
+        })?);
+        fixed.plan = planner::plan(materials, fixed.settings.clone(), read_image)?;
     }
-    let key = |c: &Candidate| (c.bytes, c.cost, c.error.max_abs);
-    front.sort_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-    Search {
-        kind: found.kind,
-        budget: *budget,
-        chosen: front.iter().position(|(i, _)| *i == chosen).unwrap_or(0),
-        measured: found.candidates.len() as u32,
-        front: front.into_iter().map(|(_, c)| c.clone()).collect(),
+    let fixed_layouts = layouts(&fixed.plan)?;
+    if !options.search {
+        return Ok(Planned { plan: fixed.plan, results, searches });
     }
-}
-
-/// Estimated costs, in operations on one number: see [`Candidate::cost`].
-pub(crate) mod cost {
-    use super::{Axis, Mapping, TexelFormat};
-
-    /// A root, logarithm, exponential, division, sine.
-    pub(crate) const QUARTER_RATE: f64 = 4.0;
-    /// Fetch of 4 bytes.
-    pub(crate) const FETCH: f64 = 16.0;
-
-    /// Cost of the way from a value to a node index.
-    pub(crate) fn axis(axis: &Axis) -> f64 {
-        let offset = if axis.min == 0.0 { 0.0 } else { 1.0 };
-        offset
-            + match axis.mapping {
-                Mapping::Linear | Mapping::Periodic | Mapping::Apart => 2.0,
-                Mapping::Power { exponent: 2.0 } => 2.0 + QUARTER_RATE,
-                Mapping::Power { exponent: 4.0 } => 2.0 + 2.0 * QUARTER_RATE,
-                Mapping::Power { exponent: 8.0 } => 2.0 + 3.0 * QUARTER_RATE,
-                Mapping::Power { .. } => 3.0 + 2.0 * QUARTER_RATE,
-                Mapping::Rational { .. } | Mapping::Logarithmic => 3.0 + QUARTER_RATE,
-            }
-    }
-
-    /// A filtered read; what is not filtered takes four fetches and is weighed by hand.
-    pub(crate) fn read(format: TexelFormat) -> f64 {
-        let fetch = FETCH * f64::from(format.texel_bytes().max(4)) / 4.0;
-        if format.is_filterable() { 4.0 + fetch } else { 4.0 * fetch + 12.0 + 9.0 * f64::from(format.channels()) }
-    }
-}
-
-/// Largest errors at points: `read` against the function. `slack` is added to absolute errors.
-pub(crate) fn measured<'p>(
-    points: impl Iterator<Item = (&'p [f64; 2], [f64; 4])>,
-    channels: usize,
-    colors: bool,
-    slack: f64,
-    mut read: impl FnMut([f64; 2]) -> [f64; 4],
-) -> MeasuredError {
-    let mut error = MeasuredError { delta_e: colors.then_some(0.0), ..MeasuredError::default() };
-    for (at, expected) in points {
-        let found = read(*at);
-        let largest = (0..channels).map(|c| (found[c] - expected[c]).abs()).fold(0.0, f64::max) + slack;
-        let brightest = expected[..channels.min(3)].iter().copied().fold(REL_FLOOR, f64::max);
-        error.max_abs = error.max_abs.max(largest);
-        error.max_rel = error.max_rel.max(largest / brightest);
-        if let Some(worst) = &mut error.delta_e {
-            let rgb = |v: [f64; 4]| [v[0], v[1], v[2]];
-            *worst = worst.max(ciede2000(lab(rgb(found)), lab(rgb(expected))));
+    let (budget, is_asked) = fixed.budget();
+    if !is_asked && let Some(decisions) = fixed.locked(options) {
+        let mut settings = fixed.settings.clone();
+        decisions.iter().for_each(|decision| settings.apply(decision.kind, &decision.candidate.form));
+        let plan = planner::plan(materials, settings, read_image)?;
+        results = exact(&plan, &decisions.iter().map(|d| d.kind).collect::<Vec<_>>()).run(observer, store, results);
+        if let Some(kept) = kept_decisions(&plan, &results, &decisions) {
+            searches.extend(kept);
+            return Ok(Planned { plan, results, searches });
         }
     }
-    error
+    // Costly tables are made once; candidates are compared with them.
+    if is_asked {
+        results = fixed.plan.graph.intermediate().run(observer, store, results);
+    }
+    let mut found = found(&fixed, &results, store);
+    let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
+    let fixed_bytes = fixed_layouts
+        .iter()
+        .filter(|(kind, ..)| !searched.contains(kind))
+        .map(|(_, layout, format)| {
+            let [width, height] = layout.size();
+            u64::from(width) * u64::from(height) * u64::from(format.texel_bytes())
+        })
+        .sum();
+    let Fixed { settings, plan, .. } = fixed;
+    // One plan at a time: of many materials it is large.
+    let mut last = Some(plan);
+    let (mut chosen, mut refusal) = (Vec::new(), None);
+    let refuse = |refusal: Refusal, plan: &Plan, results: &Results, found: &[Found]| {
+        let Refusal::Error { nearest: (number, candidate), .. } = refusal else {
+            return refused(refusal, TableKind::Lobes, None, materials, options);
+        };
+        let Found { kind, candidates, .. } = &found[number];
+        let errors = kinds::of(*kind).errors(plan, results, &candidates[candidate].form);
+        let worst = worst_of(&errors, &budget).and_then(|tile| plan.reader(*kind, tile as u32));
+        refused(refusal, *kind, worst, materials, options)
+    };
+    for _ in 0..ROUNDS {
+        // What a refusal says would do is confirmed too, before it is said.
+        refusal = None;
+        chosen = if !is_asked {
+            best_effort(&found, &budget)
+        } else if let Some(locked) = locked(&found, options.locked, &budget, fixed_bytes) {
+            locked
+        } else {
+            match choose(&found, &budget, fixed_bytes) {
+                Ok(chosen) => chosen,
+                Err(error) => {
+                    let unlimited = Budget { max_bytes: None, max_cost: None, ..budget };
+                    let Ok(would) = choose(&found, &unlimited, fixed_bytes) else {
+                        let plan = last.unwrap_or_else(|| unreachable!("there is a plan before each round"));
+                        return Err(refuse(error, &plan, &results, &found));
+                    };
+                    refusal = Some(error);
+                    would
+                }
+            }
+        };
+        let mut settings = settings.clone();
+        for (kind, &choice) in found.iter().zip(&chosen) {
+            settings.apply(kind.kind, &kind.candidates[choice].form);
+        }
+        drop(last.take());
+        let plan = last.insert(planner::plan(materials, settings, read_image)?);
+        // The measurement of the bake itself climbs to the worst points; it has the last word.
+        results = exact(plan, &searched).run(observer, store, results);
+        let mut is_confirmed = true;
+        for (kind, &choice) in found.iter_mut().zip(&chosen) {
+            is_confirmed &= kind.confirm(choice, plan.worst(&results, kind.kind, &kind.left_out));
+        }
+        if is_confirmed {
+            break;
+        }
+    }
+    let plan = last.unwrap_or_else(|| unreachable!("there is a plan after each round"));
+    if let Some(error) = refusal {
+        return Err(refuse(error, &plan, &results, &found));
+    }
+    searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| report(f, choice, &budget)));
+    Ok(Planned { plan, results, searches })
 }
 
-/// A table of one row.
-pub(crate) fn row_form(x: Axis, format: TexelFormat, base: RowBase) -> CandidateForm {
-    CandidateForm::Table { x, y: None, format, base }
+/// The jobs of the tiles of some kinds.
+fn exact(plan: &Plan, kinds: &[TableKind]) -> Graph {
+    plan.graph.only(|job| kinds.iter().any(|&kind| job.kind() == JobKind::tile(kind)))
 }
 
-/// How devices weigh texels.
-pub(crate) const WEIGHTS: WeightBits = WeightBits::Fixed(8);
+/// Drops the candidates whose table no texture holds.
+fn fitting(found: &mut Found, plan: &Plan) {
+    let tiles = plan.tiles[found.kind as usize].tiles.len() as u32;
+    found.candidates.retain(|candidate| match &candidate.form {
+        CandidateForm::ClosedForm => true,
+        CandidateForm::Table { x, y, base, .. } => {
+            let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron: 0, columns: 1, tiles, base: *base };
+            limits::columns(&layout).is_some()
+        }
+    });
+}

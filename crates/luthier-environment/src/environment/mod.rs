@@ -6,11 +6,12 @@ use luthier_lut::Image;
 use rayon::prelude::*;
 
 use crate::cube::Cube;
-use crate::error::setting;
-use crate::mirror::{ALPHAS, Lobe, level_height};
+use crate::error::{EnvironmentError, setting};
+use crate::layout::Level;
+use crate::mirror::{ALPHAS, Blur, Lobe, level_height, place};
 use crate::panorama::{bilinear, coordinates, direction, shrunk, solid_angle, texel_direction};
+use crate::sky::Sky;
 use crate::vector::{dot, tangents};
-use crate::{EnvironmentError, Layout, Level, Sky};
 
 /// Rows of the largest map kept: one texel is 0.35 degrees.
 const MAX_HEIGHT: u32 = 512;
@@ -28,7 +29,7 @@ pub struct Environment {
     /// The map, then each half as high as the one before.
     levels: Vec<Image>,
     /// Levels of a cube.
-    levels_of_cube: OnceLock<Vec<Level>>,
+    pub(crate) levels_of_cube: OnceLock<Vec<Level>>,
     /// The map on a cube, then each with half the side of the one before.
     cubes: OnceLock<Vec<Cube>>,
     parts: OnceLock<Vec<Part>>,
@@ -44,15 +45,6 @@ struct Part {
     area: [f64; 3],
     /// Integrals of the direction times the radiance of each channel.
     flux: [[f64; 3]; 3],
-}
-
-/// A slope distribution that reflections of the environment are blurred by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Blur {
-    /// Trowbridge-Reitz.
-    Ggx,
-    /// Beckmann.
-    Beckmann,
 }
 
 impl Environment {
@@ -132,15 +124,9 @@ impl Environment {
     pub fn mirrored(&self, blur: Blur, alpha: f64, direction: [f64; 3]) -> [f64; 3] {
         let at = coordinates(direction);
         let read = |k: usize| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at);
-        let (low, weight) = crate::mirror::place(alpha);
+        let (low, weight) = place(alpha);
         let (a, b) = (read(low), read((low + 1).min(ALPHAS.len())));
         [0, 1, 2].map(|c| a[c] + weight * (b[c] - a[c]))
-    }
-
-    /// The levels of a cube as large as suits the map.
-    pub fn cube_levels(&self) -> &[Level] {
-        self.levels_of_cube
-            .get_or_init(|| self.levels(Layout::Cube, self.level_size()).expect("a size that is a power of two"))
     }
 
     /// Irradiance over pi on a small map.
@@ -160,6 +146,11 @@ impl Environment {
             }
         }
         sum.map(|v| v / total)
+    }
+
+    /// Rows of the largest level that suit this environment: a power of two.
+    pub fn level_size(&self) -> u32 {
+        self.map().height.next_power_of_two().clamp(32, 512)
     }
 
     /// The map on a cube as fine as it, and averages over ever larger texels.

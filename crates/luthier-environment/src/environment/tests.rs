@@ -1,6 +1,7 @@
 //! Tests of environments: blurred maps and irradiance against quadrature.
 
 use super::*;
+use crate::Layout;
 use crate::sky::lobe_integral;
 use crate::vector::unit;
 use std::f64::consts::PI;

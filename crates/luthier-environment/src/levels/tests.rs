@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::faces;
 use crate::vector::{dot, unit};
 use crate::{Sky, SoftLight};
 
@@ -14,7 +15,7 @@ fn texels(layout: Layout, level: &Level) -> impl Iterator<Item = (f64, [f64; 3],
         let texels = (0..image.height).flat_map(move |y| (0..image.width).map(move |x| (x, y)));
         layout.solid_angles(image.height).into_iter().zip(texels).map(move |(solid_angle, (x, y))| {
             let direction = match layout {
-                Layout::Cube => cube::texel_direction(face, image.height, x, y),
+                Layout::Cube => faces::texel_direction(face, image.height, x, y),
                 Layout::Equirect => panorama::texel_direction(image, x, y),
             };
             (solid_angle, direction, f64::from(image.texel(x, y)[1]))
@@ -113,7 +114,7 @@ fn levels_follow_a_sum_over_the_texels_of_the_map() {
         let mut worst = 0.0_f64;
         for i in 0..60 {
             let (face, x, y) = (i % 6, i as u32 * 7 % size, i as u32 * 11 % size);
-            let middle = cube::texel_direction(face, size, x, y);
+            let middle = faces::texel_direction(face, size, x, y);
             let (mut sum, mut total) = (0.0, 0.0);
             for (v, u) in (0..128).flat_map(|v| (0..256).map(move |u| (v, u))) {
                 let cosine = dot(panorama::texel_direction(map, u, v), middle);

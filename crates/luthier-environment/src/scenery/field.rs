@@ -1,6 +1,6 @@
 //! A landscape.
 
-use super::{clouds, mix, noise, random, smooth};
+use super::patterns::{clouds, mix, noise, random, smooth};
 use crate::vector::{dot, unit};
 
 /// Where the sun is.

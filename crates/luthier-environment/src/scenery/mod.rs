@@ -1,14 +1,17 @@
 //! Surroundings with detail, by formulas of the project's own: for tests, measurements, and whoever has no picture at hand.
 
 mod field;
+mod patterns;
 mod rooms;
-
-use crate::panorama::texel_direction;
-use crate::vector::{dot, unit};
-use crate::{Environment, EnvironmentError};
 
 use luthier_lut::Image;
 use rayon::prelude::*;
+
+use self::patterns::{clouds, meets, mix, random, smooth};
+use crate::environment::Environment;
+use crate::error::{EnvironmentError, setting};
+use crate::panorama::texel_direction;
+use crate::vector::{dot, unit};
 
 luthier_lut::named! {
     /// Surroundings made of formulas and fixed random numbers.
@@ -35,7 +38,7 @@ impl Scenery {
     /// [`EnvironmentError`] for other than 2 to 4096 rows.
     pub fn map(self, rows: u32) -> Result<Image, EnvironmentError> {
         if !(2..=4096).contains(&rows) {
-            return Err(crate::error::setting("rows", rows.to_string(), "2 to 4096"));
+            return Err(setting("rows", rows.to_string(), "2 to 4096"));
         }
         let lamps = lamps();
         let fine = Image { width: 8 * rows, height: 4 * rows, channels: 3, data: Vec::new() };
@@ -72,48 +75,6 @@ impl Scenery {
     }
 }
 
-/// A number in 0..1 for three whole numbers: PCG's output function (Jarzynski and Olano 2020), thrice.
-fn random(x: i64, y: i64, z: i64) -> f64 {
-    let step = |state: u32| {
-        let state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-        let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-        (word >> 22) ^ word
-    };
-    let hash = [y, z].into_iter().fold(step(x as u32), |hash, v| step(hash ^ v as u32));
-    f64::from(hash) / f64::from(u32::MAX)
-}
-
-/// Smooth noise in 0..1 between the points of a lattice.
-fn noise(at: [f64; 3]) -> f64 {
-    let cell = at.map(f64::floor);
-    let weight = [0, 1, 2].map(|i| {
-        let t = at[i] - cell[i];
-        t * t * (3.0 - 2.0 * t)
-    });
-    let corner = |i: usize| {
-        let step = [i & 1, i >> 1 & 1, i >> 2];
-        let value =
-            random(cell[0] as i64 + step[0] as i64, cell[1] as i64 + step[1] as i64, cell[2] as i64 + step[2] as i64);
-        (0..3).map(|c| if step[c] == 1 { weight[c] } else { 1.0 - weight[c] }).product::<f64>() * value
-    };
-    (0..8).map(corner).sum()
-}
-
-/// Five octaves of noise, in 0..1.
-fn clouds(d: [f64; 3], scale: f64) -> f64 {
-    let octave = |k: i32| noise(d.map(|v| (v + 3.0) * scale * f64::from(1 << k))) * f64::from(16 >> k) / 31.0;
-    (0..5).map(octave).sum()
-}
-
-fn mix(a: [f64; 3], b: [f64; 3], weight: f64) -> [f64; 3] {
-    [0, 1, 2].map(|c| a[c] + weight * (b[c] - a[c]))
-}
-
-fn smooth(from: f64, to: f64, x: f64) -> f64 {
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
 fn cloudy_sun(d: [f64; 3]) -> [f64; 3] {
     let sun = unit([0.5, 0.55, 0.67]);
     let cosine = dot(d, sun);
@@ -130,19 +91,6 @@ fn cloudy_sun(d: [f64; 3]) -> [f64; 3] {
     let shine = [1.0, 0.93, 0.8].map(|c| c * (glow + disc));
     let base = mix(sky, cloud, cover);
     [0, 1, 2].map(|c| base[c] + shine[c])
-}
-
-/// Whether a ray from the middle of a room meets a rectangle on a wall: its middle, half sides along two axes.
-fn meets(d: [f64; 3], middle: [f64; 3], along: [f64; 3], across: [f64; 3]) -> Option<[f64; 2]> {
-    let normal = crate::vector::cross(along, across);
-    let facing = dot(d, normal);
-    let t = dot(middle, normal) / facing;
-    if facing == 0.0 || t <= 0.0 {
-        return None;
-    }
-    let at = [0, 1, 2].map(|c| t * d[c] - middle[c]);
-    let [u, v] = [dot(at, along) / dot(along, along), dot(at, across) / dot(across, across)];
-    (u.abs() <= 1.0 && v.abs() <= 1.0).then_some([u, v])
 }
 
 fn strip_studio(d: [f64; 3]) -> [f64; 3] {

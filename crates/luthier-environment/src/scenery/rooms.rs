@@ -1,6 +1,6 @@
 //! Rooms: boxes about the point from which they are seen, with things on their walls. Walls are lit by the lamps of the room.
 
-use super::{clouds, meets, mix, noise, random, smooth};
+use super::patterns::{clouds, meets, mix, noise, random, smooth};
 use crate::vector::{dot, unit};
 
 type V = [f64; 3];

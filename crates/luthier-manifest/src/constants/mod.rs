@@ -6,9 +6,8 @@ use std::f64::consts::FRAC_1_PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::LayerRecord;
-
-pub use beams::BeamsRecord;
+pub use self::beams::BeamsRecord;
+use crate::record::LayerRecord;
 
 /// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Film, Layer, Surface};
 
-use crate::doubt::SODIUM_D_NM;
+use crate::bake_settings::SODIUM_D_NM;
 use crate::effects::{Effects, FlakeSource};
 use crate::material::{LayerExtras, Material};
 use crate::picture::PictureRef;

@@ -5,12 +5,13 @@ use std::ops::Range as Span;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Film, FilmThickness};
 
-use super::{Read, picture};
+use super::ior::Read;
+use super::picture;
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::{NOT_NEGATIVE, POSITIVE};
-use crate::material::{FilmVariation, VariationSource};
-use crate::picture::TexelUse;
+use crate::material::FilmVariation;
+use crate::picture::{TexelUse, VariationSource};
 use crate::section::Section;
 use crate::suggest::short;
 

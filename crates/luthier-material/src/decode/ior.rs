@@ -9,11 +9,13 @@ use luthier_optics::ior::{Ior, IorError, IorSample};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::Read;
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::section::{Numbers, Section, section};
 use crate::suggest::{did_you_mean, short};
+
+/// Reads a file that a material refers to, by its path relative to the material file.
+pub(super) type Read<'r> = &'r dyn Fn(&str) -> std::io::Result<String>;
 
 /// The index under `key`, or `None` when it is absent or wrong.
 pub(super) fn decode(

@@ -3,11 +3,12 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
-use super::{Read, films, ior, maps, reradiation, schlick, surface};
+use super::ior::Read;
+use super::{films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
-use crate::material::LayerExtras;
+use crate::material::{FilmVariation, LayerExtras};
 use crate::section::Section;
 
 /// The layers of the stack, and what each has beyond its physics.
@@ -128,7 +129,7 @@ fn uncoatable(films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
 }
 
 /// The variation of the top film; those below it must be even.
-fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<crate::material::FilmVariation> {
+fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<FilmVariation> {
     let (top, below) = films.split_first()?;
     for film in below.iter().filter(|f| f.variation.is_some()) {
         let message = "only the top film of an interface may vary in thickness";

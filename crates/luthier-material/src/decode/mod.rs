@@ -19,14 +19,14 @@ use std::collections::BTreeSet;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::Stack;
 
+use self::ior::Read;
+use crate::bake_settings::SODIUM_D_NM;
 use crate::class::SurfaceClass;
 use crate::diagnostic::Sink;
 use crate::doubt::{self, Sources};
 use crate::material::Material;
 use crate::section::Section;
-
-/// Reads a file that a material refers to, by its path relative to the material file.
-pub(crate) type Read<'r> = &'r dyn Fn(&str) -> std::io::Result<String>;
+use crate::suggest::short;
 
 /// k up to which a medium passes for transparent: 0.2 % over a path of one wavelength.
 const TRANSPARENT_K: f64 = 1e-4;
@@ -85,8 +85,8 @@ fn exterior(document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sources
     let k_max = ior.samples().iter().fold(0.0, |k: f64, s| k.max(s.k));
     if k_max > TRANSPARENT_K {
         let span = document.value_span("exterior");
-        let message = format!("the exterior must be transparent, but its k reaches {}", crate::suggest::short(k_max));
-        let n = crate::suggest::short(ior.at(doubt::SODIUM_D_NM).re);
+        let message = format!("the exterior must be transparent, but its k reaches {}", short(k_max));
+        let n = short(ior.at(SODIUM_D_NM).re);
         sink.error(span, message, Some(format!("write `exterior = {n}` for its real part alone")));
     }
     let mut samples = ior.samples().to_vec();

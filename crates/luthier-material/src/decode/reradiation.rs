@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::reradiation::{Matrix, rgb};
 
-use super::Read;
+use super::ior::Read;
 use crate::diagnostic::Sink;
 use crate::section::Section;
 

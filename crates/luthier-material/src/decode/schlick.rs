@@ -6,8 +6,8 @@ use luthier_optics::schlick::index_of_f0;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::films;
+use crate::bake_settings::SODIUM_D_NM;
 use crate::diagnostic::Sink;
-use crate::doubt::SODIUM_D_NM;
 use crate::grammar::INDEX;
 use crate::material::Metallic;
 use crate::section::Section;

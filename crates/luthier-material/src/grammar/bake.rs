@@ -3,7 +3,7 @@
 use luthier_lut::TableKind;
 use luthier_manifest::{ColorMode, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
 
-use super::{Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
+use super::table::{ANY, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
 use crate::bake_settings::{AlphaMapping, DistributionMapping, FresnelMapping};
 
 /// Wavelengths that the colour matching functions cover.
@@ -140,7 +140,7 @@ static BEAMS: Table = Table {
         ),
         Key::with_default(
             "inner_azimuth_deg",
-            Kind::Number(super::ANY),
+            Kind::Number(ANY),
             "0",
             "Azimuth to which the normal of the inner boundary leans, in degrees from the tangent; with inner_tilt_deg.",
         ),

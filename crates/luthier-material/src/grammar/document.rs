@@ -3,7 +3,7 @@
 use super::bake::{BAKE, BUDGET};
 use super::effects::EFFECTS;
 use super::layers::{CONDUCTOR, DIELECTRIC, DIFFUSE, IOR, METALLIC_ROUGHNESS, THIN_FILM};
-use super::{Key, Kind, LAYERS_MAX, SCHEMA_VERSION, Table, TextForm};
+use super::table::{Key, Kind, LAYERS_MAX, SCHEMA_VERSION, Table, TextForm};
 
 /// The whole file.
 pub(crate) static DOCUMENT: Table = Table {

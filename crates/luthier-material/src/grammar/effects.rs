@@ -2,7 +2,7 @@
 
 use super::layers::VARIATION;
 use super::picture::{CHANNEL, PICTURE, SCALE, SRGB, TRANSFORM};
-use super::{ANY, Alternatives, Key, Kind, NOT_NEGATIVE, PATH, POSITIVE, Range, Table, UNIT, UNIT_RGB};
+use super::table::{ANY, Alternatives, Key, Kind, NOT_NEGATIVE, PATH, POSITIVE, Range, Table, UNIT, UNIT_RGB};
 
 /// Slope angles of flakes that still lie face up.
 const SPREAD_DEG: Range = Range { min: 0.0, max: 45.0, above: true };

@@ -1,6 +1,6 @@
 //! Words of other formats (glTF 2.0, OpenPBR, Standard Surface, Disney's model), and how a material file says what they mean.
 
-use super::Table;
+use super::table::Table;
 
 const HOST: &str = "the program that draws the surface adds it: a material says how light is reflected";
 const EMISSION: &str = "light that a surface gives off is the host's business: add it to what the shader returns";

@@ -1,8 +1,8 @@
 //! Grammar of layers: types, indices, micro-surfaces, slabs, maps.
 
 use super::picture::{CHANNEL, PICTURE, SCALE, SRGB, TRANSFORM};
-use super::{
-    Alternatives, Key, Kind, NOT_NEGATIVE, NOT_NEGATIVE_RGB, PATH, POSITIVE, Range, Table, TextForm, UNIT,
+use super::table::{
+    ANY, Alternatives, Key, Kind, NOT_NEGATIVE, NOT_NEGATIVE_RGB, PATH, POSITIVE, Range, Table, TextForm, UNIT,
     UNIT_ABOVE_ZERO, UNIT_RGB,
 };
 
@@ -114,7 +114,7 @@ const ALPHA_Y: Key =
     Key::optional("alpha_y", Kind::Number(UNIT_ABOVE_ZERO), "Slope parameter along the bitangent; with alpha_x.");
 const ROTATION: Key = Key::with_default(
     "rotation_deg",
-    Kind::Number(super::ANY),
+    Kind::Number(ANY),
     "0",
     "Angle from the surface's tangent to this layer's in degrees, counter-clockwise; with alpha_x and alpha_y.",
 );

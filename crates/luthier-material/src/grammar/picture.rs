@@ -1,6 +1,6 @@
 //! Grammar of pictures: one spelling wherever a file names one.
 
-use super::{ANY, Key, Kind, NOT_NEGATIVE, PATH, Table};
+use super::table::{ANY, Key, Kind, NOT_NEGATIVE, PATH, Table};
 
 /// A path alone, or a table with the path as `image`.
 pub(crate) const PICTURE: Kind = Kind::OneOf(&[PATH, Kind::Table(&PICTURE_TABLE)]);

@@ -1,6 +1,6 @@
 //! Grammar of a scene file.
 
-use super::{Key, Kind, LAYERS_MAX, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, TextForm};
+use super::table::{Key, Kind, LAYERS_MAX, PATH, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, TextForm};
 
 /// Version of the grammar of scenes.
 const SCENE_VERSION: i64 = 1;
@@ -41,7 +41,7 @@ static MATERIAL: Table = Table {
     name: "scene-material",
     doc: "A material of the scene.",
     keys: &[
-        Key::required("file", super::PATH, "The material file, relative to the scene's."),
+        Key::required("file", PATH, "The material file, relative to the scene's."),
         Key::optional("budget", Kind::Table(&SCENE_BUDGET), "Limits for this material, in place of the scene's."),
     ],
     exactly_one: None,

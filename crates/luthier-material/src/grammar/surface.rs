@@ -1,6 +1,6 @@
 //! Grammar of a surface file.
 
-use super::{Alternatives, Key, Kind, LAYERS_MAX, PATH, POSITIVE, Range, Table, TextForm, UNIT};
+use super::table::{Alternatives, Key, Kind, LAYERS_MAX, PATH, POSITIVE, Range, Table, TextForm, UNIT};
 
 /// Version of the grammar of surfaces.
 const SURFACE_VERSION: i64 = 1;

@@ -1,6 +1,6 @@
 //! Units of the numbers of the grammar.
 
-use super::{Key, Kind, Table};
+use super::table::{Key, Kind, Table};
 
 /// Unit of a pure number: a share, an index, a slope, an exponent.
 pub(crate) const PURE: &str = "1";

@@ -11,20 +11,11 @@ mod turn;
 
 use std::io;
 
-use buffers::Buffers;
-use document::Document;
-use reader::Reader;
-
-use crate::{MeshError, Soup};
-
-/// Contents of a glTF file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct File {
-    /// Its triangles.
-    pub soup: Soup,
-    /// Parts of it that are not shown, or not as they stand in the file: a phrase each, each once.
-    pub left_out: Vec<String>,
-}
+use self::buffers::Buffers;
+use self::document::Document;
+pub use self::reader::File;
+use self::reader::Reader;
+use crate::error::MeshError;
 
 /// The triangles of the default scene of a glTF 2.0 file, binary or text. `files` reads buffers beside the file by their relative paths. Normals that are
 /// missing are those of the triangles. The material of the file does not count, but for parts whose material is named `plain`: these keep its base

@@ -2,15 +2,16 @@
 
 use std::borrow::Cow;
 
-use super::File;
 use super::accessor::{Numbers, Owner};
 use super::buffers::Buffers;
 use super::document::{Document, Primitive};
 use super::extensions::{COMPRESSIONS, OF_NODES};
 use super::materials::{Placement, plain_color};
 use super::turn::{IDENTITY, Matrix, Turn, of_node, product};
+use crate::error::MeshError;
+use crate::normals;
+use crate::soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};
 use crate::vector::{cross, sub, unit};
-use crate::{MeshError, Soup, TRIANGLES_MAX, Triangle, Vertex, normals};
 
 /// Levels of nodes below a scene.
 const DEPTH_MAX: usize = 64;
@@ -20,6 +21,15 @@ const NODES_MAX: usize = 1 << 16;
 
 /// Vertices and corners that are looked at, those that no triangle uses included, which meshes may share.
 const LOOKS_MAX: usize = 128 * TRIANGLES_MAX;
+
+/// Contents of a glTF file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct File {
+    /// Its triangles.
+    pub soup: Soup,
+    /// Parts of it that are not shown, or not as they stand in the file: a phrase each, each once.
+    pub left_out: Vec<String>,
+}
 
 pub(super) struct Reader<'a> {
     numbers: Numbers<'a>,

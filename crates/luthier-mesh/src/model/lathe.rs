@@ -2,8 +2,11 @@
 
 use std::f64::consts::PI;
 
+/// Radius of the ball.
+pub(super) const OUTER: f64 = 0.8;
+
 /// Texture coordinates repeat after this length along a curve: half a turn over the ball.
-const REPEAT: f64 = PI * super::OUTER;
+const REPEAT: f64 = PI * OUTER;
 
 /// A point of a half section: distance from the axis and height.
 type Point = [f64; 2];

@@ -9,7 +9,7 @@ mod write;
 use std::f64::consts::PI;
 
 use crate::{Mesh, soup};
-use lathe::{Curve, Part};
+use lathe::{Curve, OUTER, Part};
 
 /// The model as binary glTF: what [`glb`] makes, so that other programs can have the file.
 pub const GLB: &[u8] = include_bytes!("../../assets/model.glb");
@@ -17,9 +17,8 @@ pub const GLB: &[u8] = include_bytes!("../../assets/model.glb");
 /// Albedo of the floor, linear.
 const FLOOR: f64 = 0.36;
 
-/// Height of the middle of the ball, and radii of its shell, of the hollow and of the ball within.
+/// Height of the middle of the ball, and radii of the hollow and of the ball within.
 const MIDDLE: f64 = 1.1;
-const OUTER: f64 = 0.8;
 const HOLLOW: f64 = 0.7;
 const INNER: f64 = 0.5;
 

@@ -22,7 +22,7 @@ use ::exr::prelude::{
 use luthier_lut::Image;
 
 use crate::error::Container;
-use crate::limits::{check_image, checked_bytes};
+use crate::size::{check_image, checked_bytes};
 use crate::{Metadata, TextureError, metadata};
 
 /// Name of the attribute that holds the metadata.

@@ -9,7 +9,7 @@ use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionSche
 use luthier_lut::{Image, TexelFormat};
 
 use crate::error::Container;
-use crate::limits::checked_bytes;
+use crate::size::checked_bytes;
 use crate::texels::TexelLayout;
 use crate::{Metadata, Samples, Texture, TextureError, metadata, zstd};
 

@@ -11,7 +11,8 @@ use ::image::{DynamicImage, ImageDecoder, ImageError};
 use luthier_lut::{Picture, PictureSamples};
 
 use crate::error::Container;
-use crate::limits::{checked_bytes, is_plausible};
+use crate::limits::is_plausible;
+use crate::size::checked_bytes;
 use crate::{TextureError, png};
 
 /// A picture, and what its file says of it.

@@ -7,7 +7,7 @@ use ::image::{ExtendedColorType, ImageDecoder, ImageEncoder, Limits};
 use luthier_lut::{Image, Picture, PictureSamples};
 
 use crate::error::Container;
-use crate::limits::{check_image, checked_bytes};
+use crate::size::{check_image, checked_bytes};
 use crate::{Metadata, TextureError, metadata, srgb};
 
 /// Deflate expands by at most 1032 (RFC 1951: a match of 258 bytes in two bits); a file that promises more is damaged.

@@ -4,23 +4,14 @@ mod channels;
 mod hdr;
 mod header;
 mod open_exr;
+mod picture;
 mod primaries;
 
-use luthier_lut::Image;
-
+pub use self::picture::Picture;
 use crate::TextureError;
 use crate::error::Container;
 
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-
-/// A picture of radiance.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
-    /// Three channels, linear Rec.709.
-    pub image: Image,
-    /// A sentence for each thing of the file that was converted or left out.
-    pub notes: Vec<String>,
-}
 
 /// Reads a Radiance HDR file, or the colours of an OpenEXR file: those of its first part that has any, at their largest resolution.
 ///

@@ -10,7 +10,8 @@ use ::exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read as read_exr};
 use luthier_lut::Image;
 
 use crate::error::Container;
-use crate::limits::{checked_bytes, is_plausible};
+use crate::limits::is_plausible;
+use crate::size::checked_bytes;
 use crate::texels::{Samples, TexelLayout};
 use crate::{TextureError, dds, exr, ktx2, png, radiance};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use luthier_gpu::{GpuError, Package, RenderSettings, Scene, Shown, Simulation, SimulationSettings, ToneMapping};
 use luthier_lut::Image;
 
-use crate::work::painter::View;
+use crate::work::view::View;
 
 /// Paths that are added at once, at most.
 const STEP: u32 = 32;

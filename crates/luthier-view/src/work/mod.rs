@@ -6,6 +6,7 @@ pub(crate) mod gathering;
 pub(crate) mod latest;
 pub(crate) mod painter;
 pub(crate) mod stages;
+pub(crate) mod view;
 pub(crate) mod watcher;
 
 #[cfg(test)]

@@ -11,37 +11,18 @@ use luthier_manifest::Form;
 
 use crate::error::ViewError;
 use crate::host::{Differences, Host};
-use crate::look::Look;
-use crate::orbit::Orbit;
 use crate::work::baker::{Ready, Way};
 use crate::work::crop::{Crop, SIDE_MAX, shown};
 use crate::work::gathering::{Gathering, Progress};
 use crate::work::latest::Latest;
 use crate::work::stages::{Goal, MOVING_SECONDS, Stage, affordable};
+use crate::work::view::View;
 
 /// Longest side of a rendering that is compared: the paths of every pixel are followed, and their sums kept.
 const COMPARED_SIDE_MAX: u32 = 1024;
 
 /// Seconds per evaluation, and per path, before any was measured: those of a software adapter.
 const SECONDS_AT_FIRST: [f64; 2] = [5e-7, 5e-6];
-
-/// View that is seen: the shape, its light, and the place of the eye.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct View {
-    pub(crate) shape: Shape,
-    pub(crate) orbit: Orbit,
-    pub(crate) look: Look,
-    /// Colour behind the shape where it is not the surroundings.
-    pub(crate) backdrop: [f32; 3],
-    /// Pixels across and down.
-    pub(crate) size: [u32; 2],
-    /// Samples along each side of a pixel at rest.
-    pub(crate) samples: u32,
-    /// Directions of the environment at rest; 0 reads blurred maps where the form can.
-    pub(crate) environment_samples: u32,
-    /// Whether the mouse is at work.
-    pub(crate) moving: bool,
-}
 
 /// A picture to make, and one to make beside it.
 #[derive(Debug, Clone)]

@@ -14,7 +14,8 @@ use crate::host::{Differences, Host, MaterialFile, Screenshot};
 use crate::look::Look;
 use crate::orbit::Orbit;
 use crate::work::baker::{Ready, Way};
-use crate::work::painter::{PaintOrder, Painted, Painter, View};
+use crate::work::painter::{PaintOrder, Painted, Painter};
+use crate::work::view::View;
 
 /// Far more than a busy machine needs.
 const PATIENCE: Duration = Duration::from_secs(240);

@@ -8,8 +8,8 @@ use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
 use super::DistributionJob;
+use crate::candidates::{Found, cost};
 use crate::plan::Plan;
-use crate::search::{Found, cost};
 use crate::settings::axis;
 
 const SIDES: [u32; 3] = [32, 64, 128];
@@ -27,11 +27,11 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     if jobs.is_empty() || plan.settings.asked(TableKind::Distribution).is_any() {
         return None;
     }
-    let formats = FORMATS.iter().filter(|format| plan.settings.formats.has(**format));
+    let formats = plan.settings.allowed(&FORMATS);
     let tables: Vec<(f64, u32, TexelFormat)> = EXPONENTS
         .iter()
         .flat_map(|&e| SIDES.iter().map(move |&side| (e, side)))
-        .flat_map(|(e, side)| formats.clone().map(move |&format| (e, side, format)))
+        .flat_map(|(e, side)| formats.iter().map(move |&format| (e, side, format)))
         .collect();
     let mut candidates = vec![Candidate {
         form: CandidateForm::ClosedForm,

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::crossed_curves;
+use super::curves::crossed_curves;
 use super::smooth::savitzky_golay;
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;

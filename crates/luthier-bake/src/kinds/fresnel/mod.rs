@@ -17,9 +17,9 @@ use luthier_optics::interface::{Interface, Sampled};
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
+use crate::candidates::Found;
 use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::plan::Plan;
-use crate::search::Found;
 use crate::settings::{Ask, Asked, Shape, axis};
 use crate::tile::{TileData, color_in_words, lone_tile};
 use crate::{BakeError, json};

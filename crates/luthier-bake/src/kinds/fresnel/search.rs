@@ -7,8 +7,8 @@ use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;
 
 use super::{Fit, FresnelJob, RowCurve, RowShape, cos_theta};
+use crate::candidates::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form};
 use crate::plan::Plan;
-use crate::search::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form};
 use crate::settings::{Asked, axis};
 
 /// Nodes of a row: four to the octave, and those that make 384 bytes of texels of 4 and 8 bytes.
@@ -113,8 +113,7 @@ fn hardness(job: &FresnelJob) -> f64 {
 
 /// The rows of a plan by the numbers of their tiles; where they are many, the hardest first.
 fn rows(plan: &Plan) -> Vec<(usize, &FresnelJob)> {
-    let tiles = plan.tiles[TableKind::Fresnel as usize].tiles.iter().enumerate();
-    let rows: Vec<(usize, &FresnelJob)> = tiles.filter_map(|(i, (_, key))| Some((i, plan.graph.get(*key)?))).collect();
+    let rows: Vec<(usize, &FresnelJob)> = plan.jobs(TableKind::Fresnel).collect();
     if rows.len() <= HARDEST {
         return rows;
     }

@@ -12,9 +12,9 @@ use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
+use crate::candidates::Found;
 use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::plan::Plan;
-use crate::search::Found;
 use crate::settings::{Ask, Asked, Shape, axis};
 use crate::tile::{TileData, lone_tile};
 use crate::{BakeError, json};

@@ -5,8 +5,8 @@ use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
 use super::PhaseJob;
+use crate::candidates::{Found, cost, row_form};
 use crate::plan::Plan;
-use crate::search::{Found, cost, row_form};
 use crate::settings::axis;
 
 const SIZES: [u32; 8] = [16, 32, 64, 128, 192, 256, 384, 512];
@@ -20,9 +20,9 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     if jobs.is_empty() || plan.settings.asked(TableKind::Phase).is_any() {
         return None;
     }
-    let formats = FORMATS.into_iter().filter(|format| plan.settings.formats.has(*format));
+    let formats = plan.settings.allowed(&FORMATS);
     let shapes: Vec<(u32, TexelFormat)> =
-        SIZES.iter().flat_map(|&size| formats.clone().map(move |format| (size, format))).collect();
+        SIZES.iter().flat_map(|&size| formats.iter().map(move |&format| (size, format))).collect();
     // Three look-ups, one for the cosine of each channel.
     let price = |format| 3.0 * (2.0 + cost::read(format));
     let mut candidates = vec![Candidate {
@@ -44,8 +44,7 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
 /// The errors of rows in this form, by the numbers of their tiles.
 pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
     let CandidateForm::Table { x, format, .. } = form else { return Vec::new() };
-    let tiles = plan.tiles[TableKind::Phase as usize].tiles.iter().enumerate();
-    tiles.filter_map(|(tile, (_, key))| Some((tile, error(plan.graph.get(*key)?, x, *format)))).collect()
+    plan.jobs(TableKind::Phase).map(|(tile, job)| (tile, error(job, x, *format))).collect()
 }
 
 fn error(job: &PhaseJob, axis: &Axis, format: TexelFormat) -> MeasuredError {

@@ -10,6 +10,7 @@ mod models;
 #[cfg(unix)]
 mod nightly;
 mod pipes;
+mod rooms;
 mod schema;
 mod shared_store;
 mod sources;

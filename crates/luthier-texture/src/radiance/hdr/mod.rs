@@ -5,9 +5,10 @@
 use luthier_lut::Image;
 
 use super::header::{self, Header, malformed};
-use super::{Picture, primaries};
+use super::picture::Picture;
+use super::primaries;
 use crate::TextureError;
-use crate::limits::checked_bytes;
+use crate::size::checked_bytes;
 
 /// Bytes of a stored texel.
 const TEXEL: usize = 4;

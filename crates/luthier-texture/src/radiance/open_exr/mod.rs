@@ -11,12 +11,13 @@ use half::f16;
 use luthier_lut::Image;
 
 use super::channels::{Colors, colors};
-use super::primaries::Primaries;
-use super::{Picture, primaries};
+use super::picture::Picture;
+use super::primaries::{self, Primaries};
 use crate::TextureError;
 use crate::error::Container;
 use crate::exr::{dwa, malformed, read_error, side};
-use crate::limits::{checked_bytes, is_plausible};
+use crate::limits::is_plausible;
+use crate::size::checked_bytes;
 
 /// Reads the first part of a file that has colours, its largest level, onto the display window.
 pub(super) fn decode(file: &[u8]) -> Result<Picture, TextureError> {

@@ -1,7 +1,5 @@
 //! Thickness textures of films: Granier and Heidrich 2003, section 6.
 
-pub(crate) mod relief;
-
 use std::sync::Arc;
 
 use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
@@ -9,9 +7,9 @@ use luthier_material::Material;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use self::relief::{Field, Relief};
 use super::{Kind, Site};
 use crate::graph::{Artefact, Inputs, Job, JobKind};
+use crate::relief::{Field, Relief};
 use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, lone_tile};
 use crate::{BakeError, json};

@@ -8,6 +8,11 @@ use luthier_material::{PictureRef, VariationSource};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use crate::BakeError;
+
+/// Reads an image that a material names: material file, path as written there.
+pub type ImageReader<'a> = &'a (dyn Fn(&str, &PictureRef) -> Result<Image, String> + Sync);
+
 /// Where a field comes from.
 #[derive(Debug, Clone)]
 pub(crate) enum Relief {
@@ -21,8 +26,8 @@ impl Relief {
     /// The relief that a material describes, with `read` to fetch images.
     pub(crate) fn of(
         source: &VariationSource,
-        read: impl FnOnce(&PictureRef) -> Result<Image, crate::BakeError>,
-    ) -> Result<Self, crate::BakeError> {
+        read: impl FnOnce(&PictureRef) -> Result<Image, BakeError>,
+    ) -> Result<Self, BakeError> {
         Ok(match source {
             VariationSource::Noise { seed, frequency, octaves } => {
                 Self::Noise { seed: *seed, frequency: *frequency, octaves: *octaves }

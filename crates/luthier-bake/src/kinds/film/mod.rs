@@ -1,5 +1,7 @@
 //! Film tiles: reflectance of an interface over the angle and the thickness of its top film.
 
+mod search;
+
 use std::sync::Arc;
 
 use luthier_lut::{
@@ -15,9 +17,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
+use crate::candidates::{Found, grids};
 use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::plan::Plan;
-use crate::search::{Found, grids};
 use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, color_in_words, lone_tile};
 use crate::{BakeError, json};
@@ -48,11 +50,11 @@ impl Kind for Table {
     }
 
     fn candidates(&self, plan: &Plan, _: &Results, colors: bool) -> Option<Found> {
-        grids::film(plan, colors)
+        search::candidates(plan, colors)
     }
 
     fn errors(&self, plan: &Plan, _: &Results, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
-        grids::film_errors(plan, form)
+        grids::errors(&search::tiles(plan), form)
     }
 }
 

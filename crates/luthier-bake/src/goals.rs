@@ -12,15 +12,17 @@ use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
-use super::{Found, WEIGHTS, choose, grids, measured};
-use crate::BakeError;
+use crate::candidates::{Found, WEIGHTS, choose, measured};
 use crate::graph::{MemoryStore, Results, Silent};
 use crate::kinds::distribution::DistributionJob;
 use crate::kinds::fgd::{FgdJob, FgdTruth};
 use crate::kinds::fresnel::search::{self as fresnel, FORMATS, Truth};
 use crate::kinds::fresnel::{FresnelJob, RowShape};
-use crate::plan::{ImageReader, Plan};
-use crate::settings::{Settings, axis};
+use crate::plan::Plan;
+use crate::relief::ImageReader;
+use crate::settings::axis;
+use crate::tile::lone_tile;
+use crate::{BakeError, planner};
 
 /// Bytes of Elek's rows: 128 texels of three bytes.
 pub const ROW_BYTES: u64 = 384;
@@ -106,7 +108,7 @@ pub struct Goals {
 /// # Errors
 /// See [`BakeError`].
 pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goals, BakeError> {
-    let plan = Plan::new(materials, Settings::of(materials)?, read_image)?;
+    let plan = planner::plan(materials, planner::settings(materials)?, read_image)?;
     let names = |kind: TableKind| plan.tiles[kind as usize].tiles.clone();
     let rows: Vec<(String, Truth)> = names(TableKind::Fresnel)
         .into_par_iter()
@@ -189,10 +191,17 @@ fn albedos(plan: &Plan, results: &Results) -> Vec<AlbedoGoal> {
     let goals = plan.tiles[TableKind::Fgd as usize].tiles.iter().filter_map(|(name, key)| {
         let job: &FgdJob = plan.graph.get(*key)?;
         let truth: &FgdTruth = results.part(&job.truth);
-        let MeasuredError { max_abs, .. } = grids::sampled_error(truth, &job.truth.grid, TexelFormat::Rgba16Float);
-        Some(AlbedoGoal { name: name.clone(), sampled: max_abs, uncertainty: truth.slack })
+        let sampled = sampled_error(truth, &job.truth.grid).max_abs;
+        Some(AlbedoGoal { name: name.clone(), sampled, uncertainty: truth.slack })
     });
     goals.collect()
+}
+
+/// The error of a tile on the grid where it is computed, without what the function may be off itself.
+fn sampled_error(truth: &FgdTruth, grid: &[Axis; 2]) -> MeasuredError {
+    let atlas = lone_tile(TableKind::Fgd, &[&grid[0], &grid[1]], TexelFormat::Rgba16Float, &truth.image);
+    let points = truth.probes.iter().map(|(at, value)| (at, *value));
+    measured(points, 4, false, 0.0, |at| atlas.sample(0, at, WEIGHTS))
 }
 
 fn distributions() -> Vec<DistributionGoal> {

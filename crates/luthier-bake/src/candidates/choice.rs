@@ -1,8 +1,8 @@
-//! The choice among candidates.
+//! The choice among candidates, and its report.
 
 use std::cmp::Ordering;
 
-use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError};
+use luthier_manifest::{Budget, Candidate, CandidateForm, Decision, MeasuredError, Search};
 use thiserror::Error;
 
 use super::Found;
@@ -35,7 +35,7 @@ pub(crate) enum Refusal {
 }
 
 /// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
-pub(crate) fn front(candidates: &[Candidate]) -> Vec<usize> {
+fn front(candidates: &[Candidate]) -> Vec<usize> {
     let beats =
         |a: &Candidate, b: &Candidate| a.bytes <= b.bytes && a.cost <= b.cost && a.error.max_abs <= b.error.max_abs;
     let is_equal = |a: &Candidate, b: &Candidate| beats(a, b) && beats(b, a);
@@ -89,6 +89,22 @@ pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
         (0..f.candidates.len()).min_by(best).unwrap_or_default()
     };
     found.iter().map(of).collect()
+}
+
+/// The candidates of a lock, where it has one of each kind and together they hold a budget.
+pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_bytes: u64) -> Option<Vec<usize>> {
+    let place = |found: &Found| {
+        let decision = lock.iter().find(|decision| decision.kind == found.kind)?;
+        found.candidates.iter().position(|candidate| candidate.form == decision.candidate.form)
+    };
+    let places: Vec<usize> = found.iter().map(place).collect::<Option<_>>()?;
+    let chosen: Vec<&Candidate> = found.iter().zip(&places).map(|(found, &place)| &found.candidates[place]).collect();
+    let bytes = fixed_bytes + chosen.iter().map(|candidate| candidate.bytes).sum::<u64>();
+    let cost = chosen.iter().map(|candidate| candidate.cost).sum::<f64>();
+    let holds = chosen.iter().all(|candidate| budget.excess(&candidate.error) <= 1.0)
+        && budget.max_bytes.is_none_or(|most| bytes <= most)
+        && budget.max_cost.is_none_or(|most| cost <= most);
+    (holds && !places.is_empty()).then_some(places)
 }
 
 /// The cheapest combination of candidates that hold, within bytes and cost.
@@ -190,6 +206,24 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
         limit: "max_bytes",
         reason: format!("tables take at least {least} bytes{kept}, more than"),
         hint: format!("max_bytes = {least}"),
+    }
+}
+
+/// The report of a search.
+pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
+    let keep = front(&found.candidates);
+    let mut front: Vec<(usize, &Candidate)> = keep.iter().map(|&i| (i, &found.candidates[i])).collect();
+    if !keep.contains(&chosen) {
+        front.push((chosen, &found.candidates[chosen]));
+    }
+    let key = |c: &Candidate| (c.bytes, c.cost, c.error.max_abs);
+    front.sort_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal));
+    Search {
+        kind: found.kind,
+        budget: *budget,
+        chosen: front.iter().position(|(i, _)| *i == chosen).unwrap_or(0),
+        measured: found.candidates.len() as u32,
+        front: front.into_iter().map(|(_, c)| c.clone()).collect(),
     }
 }
 

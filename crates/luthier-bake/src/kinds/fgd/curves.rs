@@ -1,0 +1,118 @@
+//! Reflectance curves of an interface, at the wavelengths that the bounces of light need.
+
+use luthier_optics::Rgb;
+use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
+use luthier_optics::color::{Color, WavelengthNode, luminance};
+use luthier_optics::interface::{Interface, Sampled};
+use rayon::prelude::*;
+
+/// Largest change of the share of the light after the first bounce by wavelengths that are left out; the first bounce has all.
+const SPECTRUM_TOLERANCE: f64 = 4e-4;
+
+/// Largest change of the crossed part of films by wavelengths that are left out; that part is a fraction of the light.
+const CROSSED_SPECTRUM_TOLERANCE: f64 = 2e-2;
+
+/// Where spectra are compared to decide which wavelengths are left out.
+const SPECTRUM_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
+
+/// Powers of the reflectance that are compared: as many reflections.
+const SPECTRUM_POWERS: i32 = 3;
+
+/// Step between the points of the error scan that take all wavelengths; 16 columns and 10 of nodes are no multiples of it.
+const SPECTRUM_PROBES: usize = 23;
+
+/// Reflectance curves of an interface at the wavelengths of a colour mode: all, and enough for later bounces.
+pub(super) struct Curves {
+    all: Weighted,
+    later: Weighted,
+}
+
+/// Albedo of the first bounce, and share of the rest that comes out in the end.
+pub(super) struct Bounces {
+    pub(super) first: Rgb,
+    pub(super) later_share: Rgb,
+}
+
+impl Curves {
+    pub(super) fn new(interface: &Interface, color: &Color) -> Self {
+        Self {
+            all: Weighted::new(interface.at_nodes(&color.nodes())),
+            later: Weighted::new(interface.at_nodes(&sparse(interface, color, SPECTRUM_TOLERANCE))),
+        }
+    }
+
+    pub(super) fn bounces(&self, statistics: &FacetStatistics) -> Bounces {
+        Bounces {
+            first: self.all.rgb(&statistics.single_scattering(&self.all.curves)),
+            later_share: self.later.rgb(&statistics.later_share(&self.later.curves)),
+        }
+    }
+
+    /// Largest change of an albedo by all wavelengths in place of the sparse ones, at some points of the error scan, and that in the root
+    /// mean square.
+    pub(super) fn spectrum_error(&self, probes: &[([f64; 2], FacetStatistics)]) -> [f64; 2] {
+        let errors: Vec<f64> = probes
+            .par_iter()
+            .step_by(SPECTRUM_PROBES)
+            .map(|(_, statistics)| {
+                let [a, b] = [&self.all, &self.later].map(|c| c.rgb(&statistics.later_share(&c.curves)));
+                (0..3).map(|c| statistics.remaining() * (a[c] - b[c]).abs()).fold(0.0, f64::max)
+            })
+            .collect();
+        let squares = errors.iter().map(|e| e * e).sum::<f64>();
+        [errors.iter().copied().fold(0.0, f64::max), (squares / errors.len() as f64).sqrt()]
+    }
+}
+
+/// Curves at some wavelengths, and the weights of these.
+pub(super) struct Weighted {
+    pub(super) weights: Vec<Rgb>,
+    pub(super) curves: ReflectanceCurves,
+}
+
+impl Weighted {
+    fn new(sampled: Sampled) -> Self {
+        let (weights, interfaces): (Vec<_>, Vec<_>) = sampled.nodes.into_iter().unzip();
+        let curves = ReflectanceCurves::new(interfaces.len(), |k, cos| interfaces[k].reflectance(cos));
+        Self { weights, curves }
+    }
+
+    pub(super) fn rgb(&self, values: &[f64]) -> Rgb {
+        let mut rgb = [0.0; 3];
+        for (weights, value) in self.weights.iter().zip(values) {
+            for (c, weight) in weights.iter().enumerate() {
+                rgb[c] += weight * value;
+            }
+        }
+        rgb
+    }
+}
+
+/// Wavelengths that suffice for products of a few reflectances.
+fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<WavelengthNode> {
+    let nodes = color.nodes();
+    let mut spectra = Vec::new();
+    for cos in SPECTRUM_COS_THETA {
+        let reflectance: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect();
+        let mut power = vec![1.0; nodes.len()];
+        for _ in 0..SPECTRUM_POWERS {
+            power.iter_mut().zip(&reflectance).for_each(|(p, r)| *p *= r);
+            spectra.push(power.clone());
+        }
+    }
+    color.sparse_nodes(&spectra, tolerance)
+}
+
+/// The curves that stand for an interface in its crossed part. Films colour it strongly and get a curve per wavelength, and an F0 in
+/// colour one per channel; for other bare interfaces, whose index varies little, the mean by luminance serves all channels.
+pub(super) fn crossed_curves(interface: &Interface, color: &Color) -> Weighted {
+    if interface.below.f0().is_some_and(|[r, g, b]| r != g || g != b) {
+        return Weighted::new(interface.at_nodes(&sparse(interface, color, CROSSED_SPECTRUM_TOLERANCE)));
+    }
+    if interface.films.is_empty() {
+        let sampled = interface.sampled(color);
+        let mean = ReflectanceCurves::new(1, |_, cos| luminance(sampled.rgb(cos)).clamp(0.0, 1.0));
+        return Weighted { weights: vec![[1.0; 3]], curves: mean };
+    }
+    Weighted::new(interface.at_nodes(&sparse(interface, color, CROSSED_SPECTRUM_TOLERANCE)))
+}

@@ -1,0 +1,55 @@
+//! How a bake is to be made, beside what the materials say.
+
+use luthier_lut::{FormatSet, RowBase, TexelFormat};
+use luthier_manifest::{Budget, Decision};
+use luthier_material::Material;
+
+use crate::BakeError;
+
+/// How a bake is to be made, beside what the materials say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options<'a> {
+    /// Limits, each in place of those that materials state.
+    pub budget: Budget,
+    /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
+    /// are not looked at.
+    pub search: bool,
+    /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
+    pub rows: Option<(RowBase, TexelFormat)>,
+    /// Texel formats that a search may take; those of core WebGPU unless the target is known.
+    pub formats: FormatSet,
+    /// Whether an outline fits lobes, which takes seconds: their number decides tables and shaders. A bake always does.
+    pub fits: bool,
+    /// Decisions of an earlier search, which stay as long as they hold the budget.
+    pub locked: &'a [Decision],
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE, fits: true, locked: &[] }
+    }
+}
+
+/// The limits of the materials, the tightest of each; those of the options in their place.
+///
+/// # Errors
+/// [`BakeError::BudgetValue`] of a limit that means nothing.
+pub(crate) fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
+    let stated = materials.iter().map(|material| material.budget).fold(Budget::default(), |a, b| a.tighter(&b));
+    let budget = Budget {
+        max_abs: given.max_abs.or(stated.max_abs),
+        max_rel: given.max_rel.or(stated.max_rel),
+        delta_e: given.delta_e.or(stated.delta_e),
+        max_bytes: given.max_bytes.or(stated.max_bytes),
+        max_cost: given.max_cost.or(stated.max_cost),
+        max_lobe_err: given.max_lobe_err.or(stated.max_lobe_err),
+        max_albedo_err: given.max_albedo_err.or(stated.max_albedo_err),
+    };
+    let examples = ["1e-3", "1e-2", "0.5", "65536", "200", "0.05", "0.01"];
+    for ((name, value), example) in budget.limits().into_iter().zip(examples) {
+        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(BakeError::BudgetValue { name, value, example });
+        }
+    }
+    Ok(budget)
+}

@@ -1,0 +1,168 @@
+//! From materials to the plan of their bake.
+
+use luthier_lut::TableKind;
+use luthier_manifest::reads;
+use luthier_manifest::{ColorMode, Feature, Form, LayerRecord};
+use luthier_material::{LayerExtras, Material};
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::Stack;
+use rayon::prelude::*;
+
+use crate::graph::{Graph, Key};
+use crate::kinds::{self, Site};
+use crate::plan::{Plan, PlannedLayers};
+use crate::records::{Parts, records};
+use crate::relief::ImageReader;
+use crate::settings::{Ask, Asked, Settings};
+use crate::{BakeError, limits};
+
+/// How the tables of a material come by their colour: spectrally, unless its file asks otherwise.
+pub(crate) fn color_mode(material: &Material) -> ColorMode {
+    material.bake.color.unwrap_or_default()
+}
+
+/// Materials that are planned side by side: few beside all that a large bake has.
+const SIDE_BY_SIDE: usize = 256;
+
+/// The plan of one material.
+#[derive(Default)]
+struct Part {
+    graph: Graph,
+    layers: Vec<LayerRecord>,
+    bare: Option<LayerRecord>,
+    /// Tiles in the order in which they stand in their tables.
+    tiles: Vec<Wanted>,
+}
+
+/// A tile that a material reads.
+struct Wanted {
+    kind: TableKind,
+    key: Key,
+    name: String,
+    reader: Reader,
+}
+
+/// Reader of a tile.
+enum Reader {
+    /// The record of a layer.
+    Layer(usize),
+    /// The record of the layer below a patina where none has grown.
+    Bare,
+    /// A look-up in the tile before.
+    Run,
+}
+
+/// The settings that the materials ask for, where they agree, and fixed defaults for the rest.
+///
+/// # Errors
+/// [`BakeError::Conflict`] where they do not.
+pub(crate) fn settings(materials: &[Material]) -> Result<Settings, BakeError> {
+    let mut fixed = Vec::with_capacity(TableKind::ALL.len());
+    for kind in TableKind::ALL {
+        fixed.push(kinds::of(kind).fixed(Ask(materials))?);
+    }
+    let fixed = fixed.try_into().unwrap_or_else(|_| unreachable!("there is one of each kind"));
+    let asked = TableKind::ALL.map(|kind| {
+        materials.iter().map(|material| kinds::of(kind).asked(&material.bake)).fold(Asked::default(), Asked::or)
+    });
+    Ok(Settings::new(fixed, asked))
+}
+
+/// The plan of a set of materials with these settings.
+///
+/// # Errors
+/// See [`BakeError`].
+pub(crate) fn plan(materials: &[Material], settings: Settings, read_image: ImageReader<'_>) -> Result<Plan, BakeError> {
+    let mut plan = Plan { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
+    for materials in materials.chunks(SIDE_BY_SIDE) {
+        let part = |material: &Material| Part::new(material, &plan.settings, read_image);
+        let parts: Vec<Result<Part, BakeError>> = materials.par_iter().map(part).collect();
+        for part in parts {
+            part?.enter(&mut plan);
+        }
+    }
+    limits::check_buffer(&plan.records)?;
+    Ok(plan)
+}
+
+impl Part {
+    /// Adds the plan of a material, and numbers its tiles.
+    fn enter(self, plan: &mut Plan) {
+        let Self { graph, mut layers, mut bare, tiles } = self;
+        plan.graph.merge(graph);
+        for Wanted { kind, key, name, reader } in tiles {
+            let list = &mut plan.tiles[kind as usize];
+            let tile = Some(list.tile(key, name));
+            match reader {
+                Reader::Layer(i) => layers[i].tiles[kind] = tile,
+                Reader::Bare => bare.iter_mut().for_each(|record| record.tiles[kind] = tile),
+                // The jobs of a run are those of no other material, or all of another's: their tiles follow each other.
+                Reader::Run => list.has_runs = true,
+            }
+        }
+        plan.records.push(PlannedLayers { layers, bare });
+    }
+
+    fn new(material: &Material, settings: &Settings, read_image: ImageReader<'_>) -> Result<Self, BakeError> {
+        let mut part = Self::default();
+        part.layers =
+            part.records(material, settings, &material.reflecting_stack(), &material.layers, None, read_image)?;
+        if material.effects.patina.is_some() && material.stack.layers.len() > 1 {
+            let stack =
+                Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };
+            let extras = &material.layers[1..2];
+            part.bare = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?.into_iter().next();
+        }
+        Ok(part)
+    }
+
+    /// The records of a stack of a material; names of tiles are the material's and the label of the layer below a patina, then the layer's number.
+    fn records(
+        &mut self,
+        material: &Material,
+        settings: &Settings,
+        stack: &Stack,
+        extras: &[LayerExtras],
+        bare: Option<&str>,
+        read_image: ImageReader<'_>,
+    ) -> Result<Vec<LayerRecord>, BakeError> {
+        let (color, model) = (material.color(), material.model());
+        let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
+        // Models that do not show it have the base's colour under white light, as an albedo.
+        if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {
+            last.reradiation = extras.last().and_then(|extras| extras.reradiation);
+            if let Some(rows) = last.reradiation {
+                last.albedo = rows.map(|row| row.iter().sum::<f64>().max(0.0));
+            }
+        }
+        for (i, layer) in stack.layers.iter().enumerate() {
+            let Some(interface) = Interface::of(stack, i) else { continue };
+            let wanted = TableKind::ALL.map(|kind| {
+                // Where some materials ask for D as a table, it is computed for the others.
+                let is_offered = kind != TableKind::Distribution || !settings.asked(kind).is_any();
+                material.bake.asks_for(kind) || is_offered && reads(model, kind, &records, i)
+            });
+            let wants = |kind: TableKind| wanted[kind as usize];
+            if wants(TableKind::Fresnel) || wants(TableKind::Film) {
+                records[i].critical_cot_sq = interface.sampled(&color).critical_cot_sq();
+            }
+            for kind in TableKind::ALL.into_iter().filter(|&kind| wants(kind)) {
+                let Some(shape) = settings.shape(kind) else { continue };
+                let (fixed, record) = (settings.fixed(kind), &records[i]);
+                let (extras, interface) = (extras.get(i), &interface);
+                let lobes = settings.lobes;
+                let site = Site { material, layer, extras, record, interface, color, shape, fixed, lobes, read_image };
+                let Some(job) = kinds::of(kind).job(&site)? else { continue };
+                let place = format!("{}/{}{i}", material.name, bare.unwrap_or_default());
+                let name = kinds::of(kind).name(layer).map_or_else(|| place.clone(), str::to_owned);
+                let reader = if bare.is_some() { Reader::Bare } else { Reader::Layer(i) };
+                self.tiles.push(Wanted { kind, key: self.graph.add(job), name, reader });
+                for (node, job) in (1..).zip(kinds::of(kind).followers(&site)) {
+                    let (key, name) = (self.graph.add(job), format!("{place}-{node}"));
+                    self.tiles.push(Wanted { kind, key, name, reader: Reader::Run });
+                }
+            }
+        }
+        Ok(records)
+    }
+}

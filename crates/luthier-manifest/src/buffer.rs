@@ -1,0 +1,93 @@
+//! The material buffer that shaders read.
+
+use luthier_lut::TableKind;
+
+use crate::constants::MaterialConstants;
+use crate::material::MaterialEntry;
+use crate::record::{LAYER_WORDS, whole};
+
+/// `vec4` words of a material's header in the material buffer.
+pub const MATERIAL_WORDS: usize = 11;
+
+/// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
+/// layers of a material with patina, the layer of [`crate::PatinaRecord::bare`].
+///
+/// Whole numbers n that shaders count with, here and the kind of a layer, are 2^23 + n: the low 23 bits of such an f32 are n, and no
+/// conversion is needed.
+///
+/// | header word | x, y, z, w |
+/// |---|---|
+/// | 0 | index of its first layer's first word, number of layers, number of the model, number of its tile of lobes or 0 |
+/// | 1-10 | see [`MaterialConstants::words`] |
+pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
+    let mut words = Vec::new();
+    let mut first = materials.len() * MATERIAL_WORDS;
+    for material in materials {
+        let lobes = material.layers.first().and_then(|layer| layer.tiles[TableKind::Lobes]).unwrap_or(0);
+        let model = material.model.number() as usize;
+        words.push([whole(first), whole(material.layers.len()), whole(model), lobes as f32]);
+        words.extend(material.constants.words());
+        first += material.records().count() * LAYER_WORDS;
+    }
+    for layer in materials.iter().flat_map(MaterialEntry::records) {
+        words.extend(layer.words());
+    }
+    words
+}
+
+const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word, and the constants");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{LayerKind, LayerRecord, PatinaRecord, ShadingModel};
+
+    fn layer(kind: LayerKind) -> LayerRecord {
+        LayerRecord { kind, alpha: 2.0, eta: 4.0, ior_n: [10.0, 11.0, 12.0], ..LayerRecord::default() }
+    }
+
+    #[test]
+    fn headers_point_at_the_layers() {
+        let [top, middle, base] = [LayerKind::Dielectric, LayerKind::Conductor, LayerKind::Diffuse].map(layer);
+        let material = |model, layers| MaterialEntry { model, layers, ..MaterialEntry::default() };
+        let materials = [
+            material(ShadingModel::Elek, vec![top, base]),
+            material(ShadingModel::Phong, Vec::new()),
+            material(ShadingModel::Microfacet, vec![middle]),
+        ];
+        let buffer = material_buffer(&materials);
+        let headers: Vec<[f32; 4]> = buffer[..3 * MATERIAL_WORDS].iter().step_by(MATERIAL_WORDS).copied().collect();
+        let whole = |word: f32| word.to_bits() & 0x7f_ffff;
+        let numbers: Vec<[u32; 3]> = headers.iter().map(|[x, y, z, _]| [x, y, z].map(|word| whole(*word))).collect();
+        assert_eq!(numbers, [[33, 2, 0], [55, 0, 5], [55, 1, 6]]);
+        assert_eq!(buffer.len(), 3 * MATERIAL_WORDS + 3 * LAYER_WORDS);
+        for (header, material) in numbers.iter().zip(&materials) {
+            let first = header[0] as usize;
+            let words: Vec<[f32; 4]> = material.layers.iter().flat_map(LayerRecord::words).collect();
+            assert_eq!(buffer[first..first + words.len()], words);
+        }
+        assert!(material_buffer(&[]).is_empty());
+    }
+
+    #[test]
+    fn the_bare_layer_of_a_patina_follows_the_others() {
+        let [top, base, bare] = [LayerKind::Dielectric, LayerKind::Conductor, LayerKind::Diffuse].map(layer);
+        let patina = PatinaRecord {
+            extent: 0.5,
+            transition: 0.5,
+            diffuse_albedo: [0.0; 3],
+            base_alpha: None,
+            tarnish: [1.0; 3],
+            bare: bare.clone(),
+        };
+        let constants = MaterialConstants { patina: Some(patina), ..MaterialConstants::default() };
+        let grown = MaterialEntry { layers: vec![top.clone(), base], constants, ..MaterialEntry::default() };
+        let plain = MaterialEntry { layers: vec![top.clone()], ..MaterialEntry::default() };
+        let buffer = material_buffer(&[grown, plain]);
+        let first = 2 * MATERIAL_WORDS;
+        assert_eq!(buffer[0][..2], [first, 2].map(whole));
+        assert_eq!(buffer[first + 2 * LAYER_WORDS..][..LAYER_WORDS], bare.words());
+        assert_eq!(buffer[MATERIAL_WORDS][0], whole(first + 3 * LAYER_WORDS));
+        assert_eq!(buffer[first + 3 * LAYER_WORDS..], top.words());
+    }
+}

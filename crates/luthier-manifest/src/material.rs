@@ -1,0 +1,108 @@
+//! Materials of a bake.
+
+use luthier_model::{Feature, Form, InternalReflection, LowerReflectance, Masking, Reach, Reflectance, ShadingModel};
+use serde::{Deserialize, Serialize};
+
+use crate::color::ColorMode;
+use crate::constants::MaterialConstants;
+use crate::map::{MapEntry, MapSlot};
+use crate::record::{LayerKind, LayerRecord};
+
+/// One material.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct MaterialEntry {
+    /// Name, unique in the bake; letters, digits and hyphens.
+    pub name: String,
+    /// The file it came from: a path from the folder of the manifest. Before a package is made for a folder, the path that was given.
+    pub source: String,
+    /// SHA-256, hex, of that file; of the file and, in the order of their names, the hashes of the files that it names, if any.
+    pub source_hash: String,
+    /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4; without a coat `metal`, `film`, `matte` or `glass`.
+    pub class: String,
+    /// The reflectance model that the shaders evaluate.
+    pub model: ShadingModel,
+    /// How the colour of its tables was made.
+    pub color: ColorMode,
+    /// The three wavelengths of the full (table-free) shader, RGB order.
+    pub wavelengths_nm: [f64; 3],
+    /// Constants of the whole surface.
+    pub constants: MaterialConstants,
+    /// The layers from the top down.
+    pub layers: Vec<LayerRecord>,
+    /// Textures that vary the surface from place to place.
+    pub maps: Vec<MapEntry>,
+}
+
+impl MaterialEntry {
+    /// Whether textures make the surface differ from place to place.
+    pub fn varies(&self) -> bool {
+        let MaterialConstants { flakes, patina, glitter, .. } = &self.constants;
+        let has_effect = flakes.is_some() || patina.is_some() || glitter.is_some();
+        has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
+    }
+
+    /// Masking and reflectance of the model: those of its first interface.
+    pub fn parts(&self) -> (Masking, Reflectance) {
+        let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
+        first.map(|layer| (layer.masking, layer.reflectance)).unwrap_or_default()
+    }
+
+    /// Internal reflection of the model: that of its first interface.
+    pub fn internal_reflection(&self) -> InternalReflection {
+        let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
+        first.map(|layer| layer.internal_reflection).unwrap_or_default()
+    }
+
+    /// Reflectance of the interfaces below the first.
+    pub fn lower_reflectance(&self) -> LowerReflectance {
+        self.layers
+            .iter()
+            .map(|layer| layer.lower_reflectance)
+            .find(|lower| *lower != LowerReflectance::default())
+            .unwrap_or_default()
+    }
+
+    /// Whether it has lobes below an interface, which know their surroundings: those of `luthier_environment`.
+    pub fn shows_lobes(&self) -> bool {
+        self.model.is_fitted() && self.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
+    }
+
+    /// The material with slopes widened by a light of this angular radius, in radians, which gives a highlight of a smooth surface a size: the squares
+    /// of slope parameters grow by the square of half the radius, because the half vector turns by half of what the light does.
+    pub fn widened(&self, angular_radius: f64) -> Self {
+        let wider = |alpha: f64| {
+            let spread = 0.5 * angular_radius;
+            libm::sqrt(alpha * alpha + spread * spread).min(1.0)
+        };
+        let widened = |layer: &LayerRecord| LayerRecord {
+            alpha: wider(layer.alpha),
+            alpha_xy: layer.alpha_xy.map(wider),
+            ..layer.clone()
+        };
+        let mut entry = Self { layers: self.layers.iter().map(widened).collect(), ..self.clone() };
+        if let Some(patina) = &mut entry.constants.patina {
+            patina.bare = widened(&patina.bare);
+            patina.base_alpha = patina.base_alpha.map(wider);
+        }
+        entry
+    }
+
+    /// The layers, then the bare layer of a patina: what the material buffer holds.
+    pub fn records(&self) -> impl Iterator<Item = &LayerRecord> {
+        self.layers.iter().chain(self.constants.patina.as_ref().map(|patina| &patina.bare))
+    }
+
+    /// Layers with maps of their own that the model shows, and quantities that these vary, in the order of the maps. `LuthierPlace` has
+    /// values of these, that of an albedo as its `base_color`.
+    pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
+        let reads_all = self.model.facts().reach == Reach::All;
+        self.maps.iter().filter_map(move |map| {
+            let layer = map.layer?;
+            let feature = map.slot.layer_feature(layer)?;
+            // Models of the first interface may have the base, which is the last layer.
+            let is_base = map.slot == MapSlot::Albedo && self.model.honours(Feature::Base, form);
+            let is_shown = (layer == 0 || reads_all || is_base) && self.model.honours(feature, form);
+            is_shown.then_some((layer, map.slot))
+        })
+    }
+}

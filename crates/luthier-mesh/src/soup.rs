@@ -1,0 +1,48 @@
+//! Triangles as files have them.
+
+/// The most triangles of a mesh.
+pub const TRIANGLES_MAX: usize = 1 << 19;
+
+/// A corner of triangles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertex {
+    /// Position; +y is up.
+    pub position: [f32; 3],
+    /// Unit normal.
+    pub normal: [f32; 3],
+    /// Unit tangent across the normal, along which `u` grows, and the sign of the bitangent: `sign cross(normal, tangent)` is where `v` falls.
+    pub tangent: [f32; 4],
+    /// Texture coordinates; the top left of a picture is 0, 0.
+    pub uv: [f32; 2],
+}
+
+/// Three corners, counterclockwise from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Triangle {
+    /// Numbers of the vertices.
+    pub corners: [u32; 3],
+    /// 0 takes the material that is shown; from 1 on, a colour of [`Soup::plain`].
+    pub part: u32,
+}
+
+/// Triangles before they are made ready.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Soup {
+    /// All corners. Tangents count where [`Soup::has_tangents`] is set.
+    pub vertices: Vec<Vertex>,
+    /// All triangles.
+    pub triangles: Vec<Triangle>,
+    /// Colours of matte parts that take no material: albedos, linear Rec.709.
+    pub plain: Vec<[f32; 3]>,
+    /// Whether all shown vertices have texture coordinates.
+    pub has_uv: bool,
+    /// Whether vertices have tangents, by number. Others get them from texture coordinates.
+    pub has_tangents: Vec<bool>,
+}
+
+impl Triangle {
+    /// Positions of its corners.
+    pub(crate) fn positions(&self, vertices: &[Vertex]) -> [[f32; 3]; 3] {
+        self.corners.map(|i| vertices[i as usize].position)
+    }
+}

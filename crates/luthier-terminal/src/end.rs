@@ -1,0 +1,47 @@
+//! Last words of a command, and its exit code.
+
+use std::process::ExitCode;
+
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::{asks_for, complain, has_events, print, tell};
+
+impl Failure {
+    /// Says what it is, in JSON too if that was asked for, and gives the exit code.
+    pub fn exit(&self) -> ExitCode {
+        let Some(failed) = self.as_json() else {
+            return ExitCode::from(u8::from(matches!(self, Self::Verdict)));
+        };
+        print_json(&failed);
+        self.tell();
+        ExitCode::from(failed["code"].as_u64().map_or(1, |code| code as u8))
+    }
+
+    /// Says what it is on standard error.
+    pub fn tell(&self) {
+        match self.as_json() {
+            Some(failed) if has_events() => tell_failure(failed),
+            Some(_) => complain(&format!("error: {}", self.sentence())),
+            None => {}
+        }
+    }
+}
+
+/// A command line that is wrong, for programs.
+pub(crate) fn usage(message: &str) -> Value {
+    json!({"code": 2, "kind": "usage", "message": message, "diagnostics": []})
+}
+
+/// Writes a failure to standard output as JSON where the command line asks for JSON. A reader that is gone hears nothing.
+pub(crate) fn print_json(failed: &Value) {
+    if asks_for("--json") {
+        let _ = print(&format!("{:#}", json!({ "error": failed })));
+    }
+}
+
+/// Writes a failure to standard error as an event, where the command line asks for events.
+pub(crate) fn tell_failure(mut failed: Value) {
+    failed["event"] = json!("failed");
+    tell(&failed);
+}
