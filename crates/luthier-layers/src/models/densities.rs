@@ -5,7 +5,7 @@
 //! of its layers.
 
 use glam::DVec3;
-use luthier_optics::ndf::{Anisotropic, to_layer};
+use luthier_optics::microfacet::{Anisotropic, to_layer};
 use luthier_optics::sampling::{CosineHemisphere, Mixture, Sampler as DirectionSampler, VisibleNormals};
 use luthier_optics::stack::Surface;
 

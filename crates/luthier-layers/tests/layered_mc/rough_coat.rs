@@ -34,7 +34,7 @@ impl Coat {
     /// Share of the light from above that leaves upward without the base.
     fn reflects(&self, cos: f64) -> f64 {
         let effort = Effort { first: 24, later: 32 };
-        let facets = TransparentFacets { eta: self.n, from_above: &self.curve, curve: 0 };
+        let facets = TransparentFacets { eta: self.n, from_above: |cos| self.curve.at(0, cos) };
         FacetStatistics::new(self.distribution, self.alpha, cos, effort, 0).albedo(&self.curve)[0]
             + crossed_albedo(self.distribution, self.alpha, facets, cos, 2048, 1)
     }

@@ -254,7 +254,7 @@ impl CrossedJob {
             let (cos_theta, alpha) = (x.decode(u[0]), y.decode(u[1]));
             let albedos: Vec<f64> = (0..weighted.curves.count())
                 .map(|curve| {
-                    let facets = TransparentFacets { eta, from_above: &weighted.curves, curve };
+                    let facets = TransparentFacets { eta, from_above: |cos| weighted.curves.at(curve, cos) };
                     crossed_albedo(self.distribution, alpha, facets, cos_theta, walks, seed)
                 })
                 .collect();
