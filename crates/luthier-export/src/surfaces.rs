@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use luthier_layers::heterogeneous::{Map, Switch, SwitchShare, switch_shares};
-use luthier_layers::perlin::Perlin;
-use luthier_layers::voronoi::Voronoi;
+use luthier_layers::effects::heterogeneous::{Map, Switch, SwitchShare, switch_shares};
+use luthier_layers::noise::perlin::Perlin;
+use luthier_layers::noise::voronoi::Voronoi;
 use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 use luthier_material::{
     Diagnostic, Material, NamedMaterial, Surface, SurfaceCells, SurfaceSwitch, is_surface, parse_surface,
@@ -226,7 +226,7 @@ fn switch_of(by: &SwitchBy) -> Switch {
 /// The f64 twin of `luthier_pick`: its picks have the numbers of materials.
 ///
 /// ```
-/// use luthier_layers::heterogeneous::Map;
+/// use luthier_layers::effects::heterogeneous::Map;
 /// use luthier_manifest::{CellsRecord, SurfaceEntry};
 ///
 /// let cells = CellsRecord { seed: 1, frequency: 20.0, materials: vec![4, 2] };

@@ -6,9 +6,10 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::layered_mc::{Estimate, InterfaceMode, Side};
+use luthier_layers::model::Estimate;
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::random_walk::RandomWalk;
+use luthier_layers::references::layered_mc::{InterfaceMode, Side};
+use luthier_layers::references::random_walk::RandomWalk;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::fresnel::interface;
 use luthier_optics::microsurface::TransparentFacets;

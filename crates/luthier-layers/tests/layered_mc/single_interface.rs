@@ -1,8 +1,8 @@
 //! Albedos of one interface against those of `luthier_optics::albedo`, from quadrature and low-discrepancy walks.
 
-use luthier_layers::layered_mc::{InterfaceMode, Side};
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::random_walk::RandomWalk;
+use luthier_layers::references::layered_mc::{InterfaceMode, Side};
+use luthier_layers::references::random_walk::RandomWalk;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::fresnel::interface;
 use luthier_optics::microsurface::TransparentFacets;

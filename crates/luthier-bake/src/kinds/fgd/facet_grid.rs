@@ -1,7 +1,7 @@
 //! How light meets the facets of a slope distribution, over the whole domain of a table: the part of FGD-infinity that no
 //! material enters, computed once for all of them.
 
-use luthier_layers::refraction::REFRACTION_WAVELENGTH_NM;
+use luthier_layers::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use luthier_lut::{Axis, Scan};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, crossed_albedo};

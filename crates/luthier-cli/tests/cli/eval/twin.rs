@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use luthier_export::{Bake, MemoryStore, Package, Shader};
 use luthier_gpu::{Gpu, GpuError};
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::Rgb;

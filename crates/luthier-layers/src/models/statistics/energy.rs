@@ -10,8 +10,8 @@ use luthier_optics::interpolation::cubic_stencil;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
-use super::layers::Layers;
 use super::total_reflection::escaping_share;
+use crate::layers::Layers;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
 /// Source of the energies of a stack, in `C` channels.
