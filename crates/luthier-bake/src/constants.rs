@@ -1,7 +1,7 @@
 //! Constants of a whole surface for shaders.
 
+use luthier_layers::models::phong::Coefficients;
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::phong::Coefficients;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord};
 use luthier_material::{Effects, FlakeSource, Glitter, Material};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use luthier_layers::elek::ALPHA_MIN;
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_lut::{
     Atlas, AtlasLayout, Axis, Encoding, Image, Mapping, RowBase, TableKind, TexelFormat, WeightBits, bilinear,
 };

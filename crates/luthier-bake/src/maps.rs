@@ -1,6 +1,6 @@
 //! Maps that vary a surface from place to place.
 
-use luthier_layers::flakes::Flakes;
+use luthier_layers::effects::flakes::Flakes;
 use luthier_lut::Image;
 use luthier_manifest::MapSlot;
 use luthier_material::{FlakeSource, Material, PictureRef, TexelUse, VariationSource};

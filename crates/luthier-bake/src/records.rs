@@ -1,6 +1,7 @@
 //! Layer records: what a shader needs of each layer.
 
-use luthier_layers::elek::{self, ALPHA_MIN, Below};
+use luthier_layers::layers::ALPHA_MIN;
+use luthier_layers::models::elek::{self, Below};
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
     InternalReflection, LayerKind, LayerRecord, LowerReflectance, Masking, Reflectance, ReflectanceCurve,

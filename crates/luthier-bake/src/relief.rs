@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::perlin::Octaves;
+use luthier_layers::noise::perlin::Octaves;
 use luthier_lut::Image;
 use luthier_material::{PictureRef, VariationSource};
 use serde_json::{Value, json};

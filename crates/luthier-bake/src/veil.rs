@@ -1,7 +1,7 @@
 //! Effect of layers on the light of a diffuse base below them, for the models that follow it (`belcour`, `yamaguchi`).
 
+use luthier_layers::models::statistics::evaluate::Memory;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
-use luthier_layers::statistics::evaluate::Memory;
 use luthier_optics::Rgb;
 use luthier_optics::color::{Color, WavelengthNode, luminance};
 use luthier_optics::interface::Interface;

@@ -5,10 +5,9 @@ use std::str::FromStr;
 
 use clap::Args;
 use glam::{DVec2, DVec3};
-use luthier_layers::inputs::{Input, Inputs};
-use luthier_layers::model::Model;
+use luthier_layers::effects::textured::{TextureSample, Textured};
+use luthier_layers::model::{Input, Inputs, Model};
 use luthier_layers::registry::models;
-use luthier_layers::textured::{TextureSample, Textured};
 use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
 use luthier_material::{Effects, Material, PictureRef, TexelUse, left_out};
 use luthier_model::Family;

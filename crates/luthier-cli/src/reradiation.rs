@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use luthier_layers::fluorescence::{Fluorescent, Reradiated};
+use luthier_layers::effects::fluorescence::{Fluorescent, Reradiated};
+use luthier_layers::luthier_optics::reradiation::Matrix;
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::reradiation::Matrix;
 use luthier_terminal::{Failure, Outcome};
 
 use crate::input;

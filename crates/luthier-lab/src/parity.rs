@@ -15,7 +15,7 @@ use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, 
 use crate::cli::{PARITY_PAIRS, ParityOptions};
 
 /// Least slope parameter of the polished variants: that of layer records.
-const ALPHA_MIN: f64 = luthier_layers::elek::ALPHA_MIN;
+const ALPHA_MIN: f64 = luthier_layers::layers::ALPHA_MIN;
 
 /// Compares every shader with its f64 twin.
 pub(crate) fn run(options: &ParityOptions) -> Outcome {

@@ -6,8 +6,8 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::DVec3;
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 

@@ -4,7 +4,7 @@ use luthier_model::{Limit, Quantity, ShadingModel};
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
-use crate::refraction::REFRACTION_WAVELENGTH_NM;
+use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 
 /// A quantity outside the domain of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ fn returned(stack: &Stack, layer: usize) -> f64 {
     (0..3).map(at).fold(0.0, f64::max)
 }
 
-/// Quantities of a stack outside the domain of a model. Slope parameters below [`crate::elek::ALPHA_MIN`] count as inside: all models raise
+/// Quantities of a stack outside the domain of a model. Slope parameters below [`crate::layers::ALPHA_MIN`] count as inside: all models raise
 /// them to it.
 pub fn outside(model: ShadingModel, stack: &Stack) -> Vec<Outside> {
     let mut out = Vec::new();

@@ -2,24 +2,16 @@
 //!
 //! Which surface is lossless depends on what a model knows of it:
 //!
-//! - [`lossless`], for models of a whole stack: no absorption in slabs, films and dielectrics, conductors that reflect
-//!   everything, diffuse bases of albedo 1. A medium without end below the last interface gets a white Lambert base at
-//!   its far end, so that what enters comes back.
-//! - [`lossless_interface`], for models of the first interface: the same with a conductor below it.
+//! - [`Monochrome::lossless`], for models of a whole stack;
+//! - [`Monochrome::lossless_interface`], for models of the first interface.
 //!
-//! Roughness, indices of dielectrics, films and their thicknesses stay. What a model lacks to 1 is what it leaves out: bounces
-//! between facets or layers; what it has above 1, it makes up.
+//! What a model lacks to 1 is what it leaves out: bounces between facets or layers; what it has above 1, it makes up.
 
 use glam::DVec3;
-use luthier_optics::stack::Surface;
-use num_complex::Complex64;
 
 use crate::directional_albedo::{DirectionalAlbedo, directional_albedo};
 use crate::model::Model;
-use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-
-/// An index without a real part: no light enters, at any angle and under any lossless film.
-const MIRROR: MonochromeBelow = MonochromeBelow::Conductor { ior: Complex64::new(0.0, 10.0) };
+use crate::monochrome::Monochrome;
 
 /// Radiance towards `wo` (unit, above the surface) of the model's lossless stack under light of radiance 1 from everywhere: the
 /// directional albedo that `wo` sees, with its error.
@@ -27,62 +19,15 @@ pub fn furnace(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> DirectionalA
     directional_albedo(model, &model.lossless(stack), wo)
 }
 
-/// The stack without loss.
-pub fn lossless(stack: &Monochrome) -> Monochrome {
-    let mut white = stack.clone();
-    for layer in &mut white.layers {
-        without_absorption(layer);
-    }
-    if let Some(MonochromeBelow::Dielectric { ior, .. }) = white.layers.last().map(|layer| layer.below) {
-        let below = MonochromeBelow::Diffuse { albedo: 1.0, sigma: 0.0 };
-        white.layers.push(MonochromeLayer {
-            surface: Surface::smooth(),
-            above: ior,
-            films: Vec::new(),
-            below,
-            f0: None,
-        });
-    }
-    white
-}
-
-/// The first interface, without loss and with a mirror below it; a diffuse first layer is white.
-pub fn lossless_interface(stack: &Monochrome) -> Monochrome {
-    let mut white = stack.clone();
-    white.layers.truncate(1);
-    if let Some(layer) = white.layers.first_mut() {
-        without_absorption(layer);
-        if matches!(layer.below, MonochromeBelow::Dielectric { .. }) {
-            layer.below = MIRROR;
-            layer.f0 = None;
-        }
-    }
-    white
-}
-
-fn without_absorption(layer: &mut MonochromeLayer) {
-    for film in &mut layer.films {
-        film.ior.im = 0.0;
-    }
-    match &mut layer.below {
-        MonochromeBelow::Dielectric { ior, complex_ior, optical_depth } => {
-            (*complex_ior, *optical_depth) = (Complex64::new(*ior, 0.0), 0.0);
-        }
-        MonochromeBelow::Conductor { .. } => {
-            layer.below = MIRROR;
-            layer.f0 = layer.f0.map(|_| 1.0);
-        }
-        MonochromeBelow::Diffuse { albedo, .. } => *albedo = 1.0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_form::ClosedForm;
-    use crate::microfacet::{Components, Microfacet};
+    use crate::models::microfacet::{Components, Microfacet};
+    use crate::monochrome::MonochromeBelow;
+    use crate::references::closed_form::ClosedForm;
     use luthier_optics::fresnel::FilmLayer;
-    use luthier_optics::stack::Distribution;
+    use luthier_optics::stack::{Distribution, Surface};
+    use num_complex::Complex64;
 
     fn filmed(alpha: f64, base: MonochromeBelow) -> Monochrome {
         let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 1e-3), optical_depth: 0.7 };

@@ -3,17 +3,23 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! | room | holds |
-//! |---|---|
-//! | `models` | every reflectance model under its name, with its facets, refraction and statistics of light |
-//! | `effects` | flakes, patina, particles, textures, fluorescence |
-//! | `twins` | models as the shaders evaluate them, in three channels: [`real_time`], [`shaded`], their [`parts`], and the [`terms`] of tables |
-//! | [`lobes`] | the stack as it was simulated, in a few lobes |
-//! | `references` | [`random_walk`] for one rough interface, [`layered_mc`] for a rough stack, [`closed_form`] for a smooth one |
-//! | `noise` | gradient noise and cells |
-//! | `beam_fit` | with the feature `fit`: numbers of Granier and Heidrich's model for a lobe that values give |
+//! Modules use each other one way only: each stands on those above it.
 //!
-//! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength; [`registry`] lists all by name.
+//! | layer | modules |
+//! |---|---|
+//! | directions, numbers | [`angles`], [`frame`], [`noise`]: gradient noise and cells |
+//! | descriptions of a stack | [`monochrome`] at one wavelength, [`layers`] in channels that share their directions |
+//! | formulas | [`formulas`] that models share |
+//! | the trait | [`model`]: `Model`, its inputs and its estimates; [`directional_albedo`] and [`furnace`] integrate any |
+//! | models | [`models`], each under its name |
+//! | references | [`references`]: random walks through one rough interface or a rough stack, a closed form for a smooth one |
+//! | above the models | [`effects`]: flakes, patina, particles, textures, fluorescence; [`lobes`]: a simulated stack in a few lobes |
+//! | shaders | [`twins`]: models as shaders evaluate them, in three channels |
+//! | lists | [`registry`] of all models by name, [`domain`] of each |
+//!
+//! With the feature `fit`, `beam_fit` finds numbers of Granier and Heidrich's model for a lobe that values give.
+//!
+//! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength.
 //!
 //! Every model takes directions in the local frame (+z is the normal, both point away from the surface) and returns
 //! `f cos_theta_i`, the BRDF times the cosine of the incident direction: that stays finite where the BRDF alone does
@@ -22,25 +28,26 @@
 //! Stacks are described by [`luthier_optics`], directions are vectors of [`glam`], and indices complex numbers of [`num_complex`]; these
 //! crates are re-exported.
 
-mod effects;
-pub mod lobes;
-mod models;
-mod noise;
-mod references;
-mod twins;
-
 pub mod angles;
 #[cfg(feature = "fit")]
 pub mod beam_fit;
 pub mod directional_albedo;
 pub mod domain;
+pub mod effects;
+pub mod formulas;
 pub mod frame;
 pub mod furnace;
-pub mod inputs;
+pub mod layers;
+pub mod lobes;
 mod memo;
 pub mod model;
+pub mod models;
 pub mod monochrome;
+pub mod noise;
+pub mod references;
 pub mod registry;
+pub mod terms;
+pub mod twins;
 
 /// Vectors, for directions and places.
 pub use glam;
@@ -50,15 +57,3 @@ pub use luthier_model;
 pub use luthier_optics;
 /// Complex numbers, for indices.
 pub use num_complex;
-
-pub use self::noise::{perlin, voronoi};
-pub use effects::{flakes, fluorescence, heterogeneous, layer_sample, patina, textured};
-/// Re-radiation matrices of fluorescent bases.
-pub use luthier_optics::reradiation;
-pub use models::{
-    belcour, densities, diffuse, elek, elek_model, facets, granier_heidrich, interface_fresnel, microfacet, normals,
-    oren_nayar, phong, refraction, statistics, weidlich_wilkie, weidlich_wilkie_corrected, weidlich_wilkie_sampling,
-    yamaguchi,
-};
-pub use references::{closed_form, layered_mc, plane_stack, random_walk, transfer_matrix};
-pub use twins::{parts, real_time, shaded, terms};

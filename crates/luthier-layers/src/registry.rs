@@ -3,26 +3,26 @@
 use glam::DVec2;
 use luthier_model::InternalReflection;
 
-use crate::belcour::Belcour;
-use crate::closed_form::ClosedForm;
-use crate::densities::Density;
-use crate::diffuse::{Lambert, OrenNayar};
-use crate::elek_model::Elek;
-use crate::flakes::FlakeMean;
-use crate::fluorescence::Fluorescence;
-use crate::granier_heidrich::GranierHeidrich;
-use crate::heterogeneous::{Heterogeneous, Pattern};
-use crate::layered_mc::{InterfaceMode, LayeredMc};
+use crate::effects::flakes::FlakeMean;
+use crate::effects::fluorescence::Fluorescence;
+use crate::effects::heterogeneous::{Heterogeneous, Pattern};
+use crate::effects::patina::PatinaAt;
 use crate::lobes::Fitted;
-use crate::microfacet::{Microfacet, VARIANTS};
 use crate::model::Model;
-use crate::patina::PatinaAt;
-use crate::phong::Phong;
-use crate::random_walk::RandomWalk;
-use crate::statistics::evaluate::Follow;
-use crate::weidlich_wilkie::{Refraction, WeidlichWilkie};
-use crate::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
-use crate::yamaguchi::Yamaguchi;
+use crate::models::belcour::Belcour;
+use crate::models::densities::Density;
+use crate::models::diffuse::{Lambert, OrenNayar};
+use crate::models::elek_model::Elek;
+use crate::models::granier_heidrich::GranierHeidrich;
+use crate::models::microfacet::{Microfacet, VARIANTS};
+use crate::models::phong::Phong;
+use crate::models::statistics::evaluate::Follow;
+use crate::models::weidlich_wilkie::{Refraction, WeidlichWilkie};
+use crate::models::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
+use crate::models::yamaguchi::Yamaguchi;
+use crate::references::closed_form::ClosedForm;
+use crate::references::layered_mc::{InterfaceMode, LayeredMc};
+use crate::references::random_walk::RandomWalk;
 
 /// Every model, in the order of listings: by kind.
 pub fn models() -> Vec<Box<dyn Model>> {

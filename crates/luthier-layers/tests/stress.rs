@@ -6,14 +6,14 @@
 
 use glam::DVec3;
 use luthier_layers::directional_albedo::directional_albedo;
-use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
-use luthier_layers::model::{Kind, Model};
+use luthier_layers::layers::Layers;
+use luthier_layers::model::{Estimate, Kind, Model};
+use luthier_layers::models::statistics::adding::add;
+use luthier_layers::models::statistics::energy::Energy;
+use luthier_layers::models::statistics::spread::alpha;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::{model, models};
-use luthier_layers::statistics::adding::add;
-use luthier_layers::statistics::energy::Energy;
-use luthier_layers::statistics::layers::Layers;
-use luthier_layers::statistics::spread::alpha;
 use luthier_optics::fresnel::interface;
 use luthier_optics::microfacet::lambda;
 use luthier_optics::stack::{Distribution, Surface};

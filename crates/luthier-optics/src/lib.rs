@@ -10,6 +10,17 @@
 //!
 //! Directions are vectors of [`glam`] and indices complex numbers of [`num_complex`]; both crates are re-exported.
 //!
+//! Modules use each other one way only: each stands on those above it:
+//!
+//! | layer | modules |
+//! |---|---|
+//! | numerics | `rows`, `interpolation`, `quadrature` |
+//! | quantities | `color`, `color_difference`, `ior`, `dispersion`, `index_file`, `constants`, `reradiation` |
+//! | one boundary | `fresnel`, `schlick`, `film_color` |
+//! | descriptions | `ndf`, `stack`, then `interface` and `f0_table` |
+//! | micro-surfaces | `masking`, `microfacet`, `visible_normals`, `sampling`, `microsurface` |
+//! | integrals over facets | `albedo`, `dielectric_albedo`, `split_sum`, `cloth`, `diffuse_albedo` |
+//!
 //! Everything is deterministic: transcendental functions come from `libm`, so that the same input gives
 //! the same bits on every platform.
 

@@ -22,7 +22,7 @@ pub enum Correlation {
 }
 
 /// Smith's G for reflection from the Lambdas of both directions
-/// ([`microfacet::lambda`](crate::microfacet::lambda), [`Anisotropic::lambda`](crate::ndf::Anisotropic::lambda)). Infinite Lambdas
+/// ([`microfacet::lambda`](crate::microfacet::lambda), [`Anisotropic::lambda`](crate::microfacet::Anisotropic::lambda)). Infinite Lambdas
 /// give 0.
 pub fn smith(correlation: Correlation, lambda_i: f64, lambda_o: f64) -> f64 {
     match correlation {
@@ -117,8 +117,9 @@ pub fn smith_g1_of(ndf: &impl Ndf, cos_theta: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::microfacet::Isotropic;
     use crate::microfacet::{distribution, lambda};
-    use crate::ndf::{Abc, BlinnPhong, Isotropic, Sgd};
+    use crate::ndf::{Abc, BlinnPhong, Sgd};
     use crate::stack::Distribution;
 
     /// The integral of D max(0, wo.wh) G1(wh), by midpoints.

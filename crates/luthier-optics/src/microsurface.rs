@@ -7,7 +7,6 @@
 
 use glam::DVec3;
 
-use crate::albedo::ReflectanceCurves;
 use crate::microfacet::lambda;
 use crate::stack::Distribution;
 use crate::visible_normals;
@@ -121,18 +120,16 @@ fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, m
 const SPLIT: f64 = 0.02;
 
 /// An interface between transparent media, as the facets of a micro-surface have it.
-#[derive(Debug, Clone, Copy)]
-pub struct TransparentFacets<'a> {
+#[derive(Clone, Copy)]
+pub struct TransparentFacets<R> {
     /// Index below over index above.
     pub eta: f64,
-    /// Reflectances from above, films included. From below they are the same at the refracted angle (no absorption), and 1
-    /// under total reflection.
-    pub from_above: &'a ReflectanceCurves,
-    /// Number of the curve.
-    pub curve: usize,
+    /// Reflectance from above by the cosine, films included. From below it is the same at the refracted angle (no absorption), and 1 under
+    /// total reflection.
+    pub from_above: R,
 }
 
-impl TransparentFacets<'_> {
+impl<R: Fn(f64) -> f64> TransparentFacets<R> {
     /// Reflectance, and cosine of the refracted ray on the other side.
     fn split(&self, above: bool, cos_theta: f64) -> (f64, f64) {
         let eta_ti = if above { self.eta } else { 1.0 / self.eta };
@@ -141,7 +138,7 @@ impl TransparentFacets<'_> {
             return (1.0, 0.0);
         }
         let cos_t = libm::sqrt(cos_t_sq);
-        (self.from_above.at(self.curve, if above { cos_theta } else { cos_t.min(1.0) }), cos_t)
+        ((self.from_above)(if above { cos_theta } else { cos_t.min(1.0) }), cos_t)
     }
 }
 
@@ -152,7 +149,7 @@ impl TransparentFacets<'_> {
 pub fn crossed_and_returned(
     distribution: Distribution,
     alpha: f64,
-    facets: TransparentFacets<'_>,
+    facets: TransparentFacets<impl Fn(f64) -> f64>,
     cos_theta_i: f64,
     walk: Walk,
 ) -> f64 {

@@ -7,7 +7,7 @@
 //! [`Device`] that runs the emitted shaders. Every figure of the [`Report`] comes from that run:
 //!
 //! - tables are read back through the sampler of `luthier-lut` at points of the judge's own choosing;
-//! - shaders are compared with `luthier_layers::real_time` over deterministic sets of directions;
+//! - shaders are compared with `luthier_layers::twins::real_time` over deterministic sets of directions;
 //! - the error of the baked shader is split into the error of the tables and that of f32 arithmetic;
 //! - the difference between three wavelengths and the spectrum is shown apart, because it is not an error of the bake;
 //! - materials that maps or effects vary are judged at random places ([`Places`]): shader, f64 on the tables that ship ([`Rows`]), and exact terms or

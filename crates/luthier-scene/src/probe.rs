@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::elek::ALPHA_MIN;
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_manifest::SceneDirection;
 use luthier_material::{Light, View};
 use luthier_optics::stack::{Base, Stack};

@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
-use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
-use luthier_layers::model::Estimator;
+use luthier_layers::model::{Estimate, Estimator};
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;

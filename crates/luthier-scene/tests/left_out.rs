@@ -6,8 +6,8 @@ use std::f64::consts::{PI, TAU};
 use std::io;
 
 use glam::DVec3;
-use luthier_layers::real_time::Twin;
-use luthier_layers::terms::Exact;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::left_out;
 use luthier_material::{Material, parse};

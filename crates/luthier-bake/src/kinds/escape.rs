@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luthier_layers::statistics::total_reflection::escaping_share;
+use luthier_layers::models::statistics::total_reflection::escaping_share;
 use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 

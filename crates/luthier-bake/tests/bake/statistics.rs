@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use luthier_bake::Baked;
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
+use luthier_layers::layers::Layers;
+use luthier_layers::models::statistics::adding::add;
+use luthier_layers::models::statistics::energy::{Energy, ExactEnergy, FresnelEnergy};
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::statistics::adding::add;
-use luthier_layers::statistics::energy::{Energy, ExactEnergy, FresnelEnergy};
-use luthier_layers::statistics::layers::Layers;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_lut::{TableKind, WeightBits};
 use luthier_manifest::LayerRecord;
 use luthier_material::Material;

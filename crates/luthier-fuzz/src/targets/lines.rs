@@ -2,7 +2,7 @@
 
 use luthier_layers::angles::pairs;
 use luthier_layers::beam_fit::samples;
-use luthier_layers::reradiation::Matrix;
+use luthier_layers::luthier_optics::reradiation::Matrix;
 use luthier_optics::index_file::{IndexFile, IndexFileError, VALUE_MAX, csv, yaml};
 use luthier_table::{Layout, Nodes};
 

@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3};
 use luthier_gpu::{Package, RenderSettings, Scene, Shader};
-use luthier_layers::elek;
-use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::Map;
+use luthier_layers::effects::flakes::Flakes;
+use luthier_layers::effects::heterogeneous::Map;
+use luthier_layers::models::elek;
+use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::terms::Terms;
-use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
 use luthier_manifest::{
     FileEntry, FlakesRecord, GlitterRecord, LayerRecord, MapEntry, MapSlot, MaterialConstants, PatinaRecord,

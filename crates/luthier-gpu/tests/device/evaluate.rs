@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_gpu::GpuError;
-use luthier_layers::elek::{self, Layer};
+use luthier_layers::models::elek::{self, Layer};
 use luthier_layers::terms::Terms;
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
 use luthier_manifest::LayerRecord;

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::elek::{Below, Layer};
+use luthier_layers::models::elek::{Below, Layer};
 use luthier_layers::terms::Terms;
 use luthier_manifest::InternalReflection;
 use luthier_manifest::{LayerKind, LayerRecord};

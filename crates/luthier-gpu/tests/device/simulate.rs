@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 use luthier_gpu::{Facets, GpuError, RenderSettings, Scene, Shown, SimulationSettings};
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::fresnel::interface;
 use luthier_optics::microfacet::{distribution, lambda};

@@ -1,7 +1,7 @@
 //! The figure of the course of Weidlich and Wilkie about a fluorescent base under a rough varnish.
 
 use glam::DVec3;
-use luthier_layers::fluorescence::Fluorescent;
+use luthier_layers::effects::fluorescence::Fluorescent;
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
 use luthier_terminal::{Failure, Outcome};

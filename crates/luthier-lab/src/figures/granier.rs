@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier::{Bake, MemoryStore};
 use luthier_gpu::{RenderSettings, Shape};
-use luthier_layers::granier_heidrich::Film;
+use luthier_layers::models::granier_heidrich::Film;
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use luthier::{Bake, MemoryStore};
 use luthier_export::Package;
 use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, Simulated, SimulationSettings, model};
-use luthier_layers::layered_mc::Estimate;
+use luthier_layers::model::Estimate;
 use luthier_layers::registry;
 use luthier_lut::Image;
 use luthier_manifest::{ColorMode, Form, ShadingModel};

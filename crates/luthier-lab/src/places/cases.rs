@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use luthier::surface_map;
-use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::Map;
-use luthier_layers::layer_sample::LayerSample;
-use luthier_layers::patina::Patina;
-use luthier_layers::shaded::{Growth, Place};
-use luthier_layers::voronoi::Voronoi;
+use luthier_layers::effects::flakes::Flakes;
+use luthier_layers::effects::heterogeneous::Map;
+use luthier_layers::effects::layer_sample::LayerSample;
+use luthier_layers::effects::patina::Patina;
+use luthier_layers::noise::voronoi::Voronoi;
+use luthier_layers::twins::shaded::{Growth, Place};
 use luthier_manifest::ShadingModel::{self, Belcour, Elek, GranierHeidrich, Microfacet, WeidlichWilkie, Yamaguchi};
 use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 use luthier_material::{FlakeSource, Material, parse};

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
 use super::lobe::Sample;
 use super::{Fitted, Form};
-use crate::granier_heidrich::Film;
+use crate::models::granier_heidrich::Film;
 
 /// Numbers of every fit: logarithms of three indices less 1, of two exponents and of a weight, and roots of three diffuse coefficients.
 const COMMON: usize = 9;

@@ -7,8 +7,8 @@ use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
 use super::*;
-use crate::granier_heidrich::GranierHeidrich;
 use crate::model::Model;
+use crate::models::granier_heidrich::GranierHeidrich;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
 const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];

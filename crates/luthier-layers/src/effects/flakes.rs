@@ -4,9 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use crate::elek_model;
-use crate::inputs::{Input, Inputs};
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
+use crate::models::elek_model;
 use crate::monochrome::Monochrome;
 use crate::noise::hash;
 

@@ -12,11 +12,10 @@ use std::f64::consts::FRAC_1_PI;
 use glam::DVec3;
 use luthier_model::Masking;
 
-use crate::facets::Facets;
-use crate::inputs::Input;
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::formulas::facets::Facets;
+use crate::formulas::plane_stack::{diffuse_return, seen_from_above};
+use crate::model::{Claims, Input, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::plane_stack::{diffuse_return, seen_from_above};
 
 /// Why a re-radiation matrix was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

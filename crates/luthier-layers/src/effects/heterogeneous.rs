@@ -9,12 +9,11 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use crate::frame;
-use crate::inputs::{Input, Inputs};
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
+use crate::models::weidlich_wilkie::WeidlichWilkie;
 use crate::monochrome::Monochrome;
-use crate::perlin::Perlin;
-use crate::voronoi::Voronoi;
-use crate::weidlich_wilkie::WeidlichWilkie;
+use crate::noise::perlin::Perlin;
+use crate::noise::voronoi::Voronoi;
 
 /// Contents of a place: a stack by number, and its normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,8 +121,8 @@ const SIDE: f64 = 256.0;
 /// within 0.0005 at two standard errors.
 ///
 /// ```
-/// use luthier_layers::heterogeneous::{Switch, switch_shares};
-/// use luthier_layers::perlin::Perlin;
+/// use luthier_layers::effects::heterogeneous::{Switch, switch_shares};
+/// use luthier_layers::noise::perlin::Perlin;
 ///
 /// let between = [0.8, 1.0];
 /// let noise = Perlin { seed: 1, frequency: 4.0, octaves: 4 };

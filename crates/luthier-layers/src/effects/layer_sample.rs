@@ -6,8 +6,6 @@ use glam::{DVec2, DVec3};
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Layer};
 
-use crate::frame;
-
 /// Length below which a texel of tangents has no direction: grey of eight bits is half a step, 0.004, from the middle.
 const NO_DIRECTION: f64 = 0.02;
 
@@ -63,39 +61,9 @@ impl LayerSample {
     }
 }
 
-/// Both directions in the frame of an interface's own normal, and the factor on the light that falls on it: the cosine of `wi` there over
-/// its cosine in the frame of the place. `None` where the interface turns away from either.
-///
-/// A tilted facet of a surface gets `L cos(wi, n)` and not `L cos(wi, z)`, and a pixel sees its radiance. Slabs keep the thickness along the
-/// place's normal that they have without bumps.
-pub(crate) fn onto(normal: DVec3, wi: DVec3, wo: DVec3) -> Option<(DVec3, DVec3, f64)> {
-    if normal == DVec3::Z {
-        return Some((wi, wo, 1.0));
-    }
-    let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(normal, w));
-    (wi_here.z > 0.0 && wo_here.z > 0.0).then(|| (wi_here, wo_here, wi_here.z / wi.z))
-}
-
-/// Directions below an interface, back in the frame of the place, and the factor on the light as in [`onto`].
-pub(crate) fn off(normal: DVec3, wi: DVec3, wo: DVec3) -> Option<(DVec3, DVec3, f64)> {
-    // The least rotation back is that to the normal's mirror image.
-    onto(DVec3::new(-normal.x, -normal.y, normal.z), wi, wo)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn off_undoes_onto() {
-        let n = DVec3::new(0.2, -0.3, 0.8).normalize();
-        let (wi, wo) = (DVec3::new(0.1, 0.2, 0.9).normalize(), DVec3::new(-0.4, 0.1, 0.7).normalize());
-        let (a, b, there) = onto(n, wi, wo).unwrap();
-        let (c, d, back) = off(n, a, b).unwrap();
-        assert!((c - wi).length() < 1e-15 && (d - wo).length() < 1e-15);
-        assert!((there * back - 1.0).abs() < 1e-15);
-        assert!((a.z - wi.dot(n)).abs() < 1e-15);
-    }
 
     /// Lines at 179 degrees and at 1 degree are two degrees apart: their texels average to 0 degrees, which angles would not.
     #[test]

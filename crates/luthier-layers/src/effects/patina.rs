@@ -4,10 +4,9 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use crate::elek_model;
 use crate::frame;
-use crate::inputs::{Input, Inputs};
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
+use crate::models::elek_model;
 use crate::monochrome::Monochrome;
 
 /// Patina over the layers of a stack, at one wavelength (Elek 2010, section 4.2): the stack's first layer is the patina.
@@ -123,7 +122,7 @@ impl Model for PatinaAt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elek_model::Elek;
+    use crate::models::elek_model::Elek;
     use crate::monochrome::MonochromeBelow;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;

@@ -4,8 +4,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 
 use crate::frame;
-use crate::layered_mc::Estimate;
-use crate::model::{Estimator, Model, ModelInfo};
+use crate::model::{Estimate, Estimator, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
 /// Values of normal, roughness and thickness textures at one place (Elek 2010, Algorithm 1, line 2, and section 3).
@@ -119,7 +118,7 @@ impl Estimator for Textured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elek_model::Elek;
+    use crate::models::elek_model::Elek;
     use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;
@@ -151,9 +150,9 @@ mod tests {
     /// A textured model is the model at the place: estimators keep their error, and colour of its own is that of the film at the place.
     #[test]
     fn a_textured_model_is_the_model_at_the_place() {
-        use crate::interface_fresnel::Fresnel;
-        use crate::layered_mc::{InterfaceMode, LayeredMc};
-        use crate::microfacet::{Components, Microfacet};
+        use crate::formulas::interface_fresnel::Fresnel;
+        use crate::models::microfacet::{Components, Microfacet};
+        use crate::references::layered_mc::{InterfaceMode, LayeredMc};
         let (wi, wo) = (DVec3::new(0.3, 0.0, 0.7).normalize(), DVec3::new(-0.1, 0.2, 0.7).normalize());
         let sample = TextureSample { alpha_factor: 0.5, film_factor: 2.0, ..TextureSample::NONE };
         let (stack, here) = (coated(0.4, 0.1, 0.2), coated(0.2, 0.1, 0.4));

@@ -15,8 +15,8 @@ use super::problem::{Lobed, Problem, ViewProblem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
-use crate::facets::ALPHA_MIN;
-use crate::layered_mc::ColorPaths;
+use crate::formulas::facets::ALPHA_MIN;
+use crate::references::layered_mc::ColorPaths;
 
 /// Settings of a simulation and of the fit to it. The same settings give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
 use super::{Axes, FirstInterface, FitSettings, Lobes, Varied, Varying, ViewAxis, patina, shown};
-use crate::layered_mc::ColorPaths;
+use crate::references::layered_mc::ColorPaths;
 
 /// Views, and paths of each.
 const VIEWS: usize = 5;

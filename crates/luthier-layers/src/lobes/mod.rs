@@ -1,6 +1,6 @@
 //! The stack as it was simulated, in lobes: a model of our own.
 //!
-//! A model that is a formula is as good as its assumptions. This one simulates the stack once ([`crate::layered_mc`]), keeps what has a
+//! A model that is a formula is as good as its assumptions. This one simulates the stack once ([`crate::references::layered_mc`]), keeps what has a
 //! short closed form, and fits the rest:
 //!
 //! ```text
@@ -74,10 +74,10 @@ use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::ior::IorSample;
 use luthier_optics::stack::{Base, Diffuse, Layer, Stack};
 
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
+use crate::formulas::oren_nayar;
 use crate::model::{Claims, Kind, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::oren_nayar;
 
 /// A stack in lobes, in the colour in which it was simulated.
 #[derive(Debug, Clone)]

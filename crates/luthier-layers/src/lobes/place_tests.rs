@@ -10,8 +10,8 @@ use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, La
 
 use super::tests::direction;
 use super::{FitSettings, Judge, Lobes, Varied, Varying};
-use crate::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 use crate::monochrome::Monochrome;
+use crate::references::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 
 const NM: [f64; 3] = [650.0, 550.0, 450.0];
 const COLOR: Color = Color::ThreeWavelengths(NM);

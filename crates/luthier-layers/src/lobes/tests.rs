@@ -8,8 +8,8 @@ use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
 use super::{FirstInterface, FitSettings, Lobes, Simulation};
-use crate::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 use crate::monochrome::Monochrome;
+use crate::references::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 
 const NM: [f64; 3] = [650.0, 550.0, 450.0];
 

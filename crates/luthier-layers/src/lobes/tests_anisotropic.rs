@@ -9,8 +9,8 @@ use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 
 use super::tests::{direction, integral};
 use super::{Axes, Below, FitSettings, Lobes, Simulation};
-use crate::layered_mc::{InterfaceMode, LayeredMc};
 use crate::monochrome::Monochrome;
+use crate::references::layered_mc::{InterfaceMode, LayeredMc};
 
 const NM: [f64; 3] = [650.0, 550.0, 450.0];
 

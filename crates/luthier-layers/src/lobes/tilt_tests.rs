@@ -8,7 +8,7 @@ use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 use num_complex::Complex64;
 
 use super::{Below, FitSettings, Lobes, Simulation};
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
 use crate::frame;
 
 const INDEX: f64 = 1.5;

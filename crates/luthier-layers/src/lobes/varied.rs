@@ -6,7 +6,7 @@ use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, Lobes, Row, ViewAxis, most_lobes, patina, shown};
-use crate::elek::ALPHA_MIN;
+use crate::layers::ALPHA_MIN;
 
 /// The part of a stack that a texture decides.
 #[derive(Debug, Clone, Copy, PartialEq)]

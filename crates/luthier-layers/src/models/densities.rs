@@ -5,14 +5,14 @@
 //! of its layers.
 
 use glam::DVec3;
-use luthier_optics::ndf::{Anisotropic, to_layer};
+use luthier_optics::microfacet::{Anisotropic, to_layer};
 use luthier_optics::sampling::{CosineHemisphere, Mixture, Sampler as DirectionSampler, VisibleNormals};
 use luthier_optics::stack::Surface;
 
-use crate::facets::ALPHA_MIN;
+use crate::formulas::facets::ALPHA_MIN;
 use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::models::weidlich_wilkie_sampling::Sampler;
 use crate::monochrome::Monochrome;
-use crate::weidlich_wilkie_sampling::Sampler;
 
 /// A sampling method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,7 +87,7 @@ fn turned<S: DirectionSampler>(surface: &Surface, wi: DVec3, wo: DVec3, method: 
 mod tests {
     use super::*;
     use crate::directional_albedo::directional_albedo;
-    use crate::facets::Facets;
+    use crate::formulas::facets::Facets;
     use crate::monochrome::MonochromeBelow;
     use luthier_optics::stack::Distribution;
 

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use crate::formulas::oren_nayar;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use crate::oren_nayar;
 
 /// Lambert 1760: `f = albedo / pi`. Zero for a stack without a diffuse base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

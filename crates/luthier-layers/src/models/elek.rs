@@ -23,14 +23,12 @@ use luthier_optics::Rgb;
 use luthier_optics::masking::v_cavity;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 
-use crate::layer_sample::{off, onto};
-use crate::refraction::{REFRACTION_WAVELENGTH_NM, refract};
+use crate::formulas::oren_nayar;
+use crate::formulas::refraction::{REFRACTION_WAVELENGTH_NM, refract};
+use crate::frame;
+use crate::frame::{off, onto};
+use crate::layers::ALPHA_MIN;
 use crate::terms::Terms;
-use crate::{frame, oren_nayar};
-
-/// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
-/// below what one pixel or one light source resolves, and still safe in f32.
-pub const ALPHA_MIN: f64 = 1e-3;
 
 /// One layer as the model sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]

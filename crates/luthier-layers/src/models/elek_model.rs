@@ -5,9 +5,9 @@ use luthier_model::{InternalReflection, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Diffuse;
 
-use crate::elek::{self, ALPHA_MIN, Below, Layer};
-use crate::inputs::Input;
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::layers::ALPHA_MIN;
+use crate::model::{Claims, Input, Kind, Model, ModelInfo};
+use crate::models::elek::{self, Below, Layer};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::terms::Terms;
 
@@ -96,7 +96,7 @@ impl Terms for Exact<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terms;
+    use crate::twins::terms;
     use luthier_optics::color::Color;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{self, Base, Distribution, Slab, Stack, Surface};

@@ -36,12 +36,12 @@ use glam::DVec3;
 use luthier_model::ShadingModel;
 use luthier_optics::schlick::schlick_average;
 
-use crate::elek::ALPHA_MIN;
-use crate::inputs::{Input, Inputs};
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::formulas::normals::exponent;
+use crate::formulas::refraction::refract;
+use crate::layers::ALPHA_MIN;
+use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
+use crate::models::phong::lobe;
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
-use crate::phong::{exponent, lobe};
-use crate::refraction::refract;
 
 /// A film as the model takes it, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]

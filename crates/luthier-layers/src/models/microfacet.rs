@@ -5,15 +5,14 @@ use luthier_model::{Masking, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
+use crate::formulas::interface_fresnel::{Fresnel, LazanyiMemo};
+use crate::formulas::normals::{Normals, NormalsMemo};
+use crate::formulas::oren_nayar;
 use crate::frame::cos_theta_d;
-use crate::furnace;
-use crate::interface_fresnel::{Fresnel, LazanyiMemo};
 use crate::memo::Memo;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer, Optics};
-use crate::normals::{Normals, NormalsMemo};
-use crate::oren_nayar;
 
 /// Parts of a microfacet model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -212,6 +211,6 @@ impl Model for Microfacet {
     }
 
     fn lossless(&self, stack: &Monochrome) -> Monochrome {
-        furnace::lossless_interface(stack)
+        stack.lossless_interface()
     }
 }

@@ -8,10 +8,10 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use crate::facets::ALPHA_MIN;
+use crate::formulas::normals::exponent;
+use crate::formulas::plane_stack::seen_from_above;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, in_colors};
-use crate::plane_stack::seen_from_above;
 
 /// B. T. Phong, "Illumination for computer generated pictures", 1975: the single-layer shader of Elek's Table 1.
 ///
@@ -78,12 +78,6 @@ impl Coefficients {
         let lobe = lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, exponent);
         FRAC_1_PI * diffuse * wi.z + specular * (exponent + 1.0) / (2.0 * PI) * lobe
     }
-}
-
-/// Blinn's exponent for a slope parameter: `2/alpha^2 - 2` (Walter et al. 2007).
-pub fn exponent(alpha: f64) -> f64 {
-    let alpha = alpha.clamp(ALPHA_MIN, 1.0);
-    2.0 / (alpha * alpha) - 2.0
 }
 
 /// `max(0, a.b)^e` of unit directions. `1 - a.b` is half the squared distance between them, which does not cancel in narrow lobes.

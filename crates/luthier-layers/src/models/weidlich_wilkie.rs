@@ -13,20 +13,20 @@
 //!
 //! The model errs in two ways, which the tests measure: radiance is not compressed by 1/n^2 on its way out, so that a smooth
 //! coat over a white base returns about twice what it receives; and light that comes back from the underside of an
-//! interface is lost or, by `t`, made up for where facets hide each other. [`crate::weidlich_wilkie_corrected`] mends
+//! interface is lost or, by `t`, made up for where facets hide each other. [`crate::models::weidlich_wilkie_corrected`] mends
 //! both.
 
 use glam::DVec3;
 use luthier_model::{InternalReflection, Masking, ShadingModel};
 
-use crate::elek::Tilts;
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
+use crate::formulas::oren_nayar;
+use crate::formulas::refraction::{refract, refract_at};
 use crate::frame;
-use crate::layer_sample::{off, onto};
+use crate::frame::{off, onto};
 use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::models::elek::Tilts;
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
-use crate::oren_nayar;
-use crate::refraction::{refract, refract_at};
 
 /// Normal at which both directions are refracted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -101,7 +101,7 @@ impl WeidlichWilkie {
         self.eval_tilted(stack, optics, wi, wo, Tilts::NONE)
     }
 
-    /// [`Self::eval_with`] with other normals of interfaces, see [`eval_below`](crate::elek::eval_below).
+    /// [`Self::eval_with`] with other normals of interfaces, see [`eval_below`](crate::models::elek::eval_below).
     pub(crate) fn eval_tilted(
         self,
         stack: &Monochrome,

@@ -1,6 +1,6 @@
 //! The layered model of Weidlich and Wilkie, corrected to conserve energy.
 //!
-//! Two corrections to [`crate::weidlich_wilkie`]:
+//! Two corrections to [`crate::models::weidlich_wilkie`]:
 //!
 //! - radiance that leaves a medium of index n is divided by n^2;
 //! - bounces between a layer and all the interfaces above it are summed. The term `t` goes.
@@ -19,12 +19,12 @@
 use glam::DVec3;
 use luthier_model::Masking;
 
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
+use crate::formulas::oren_nayar;
+use crate::formulas::plane_stack::{diffuse_return, seen_from_above, seen_from_below};
+use crate::formulas::refraction::refract;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::oren_nayar;
-use crate::plane_stack::{diffuse_return, seen_from_above, seen_from_below};
-use crate::refraction::refract;
 
 /// The energy-corrected variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -25,10 +25,10 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
+use crate::formulas::plane_stack::seen_from_above;
+use crate::formulas::refraction::refract;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use crate::plane_stack::seen_from_above;
-use crate::refraction::refract;
 
 /// A proposed direction.
 #[derive(Debug, Clone, Copy, PartialEq)]

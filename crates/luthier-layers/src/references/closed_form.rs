@@ -4,10 +4,9 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use crate::layered_mc::Estimate;
-use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
+use crate::formulas::plane_stack::{diffuse_return, rule, seen_from_above};
+use crate::model::{Claims, Estimate, Estimator, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::plane_stack::{diffuse_return, rule, seen_from_above};
 
 /// Smooth interfaces and absorbing slabs over anything, Lambert's surface included, with all bounces: powers added interface by
 /// interface (Stokes 1862), the diffuse base as in Saunderson 1942 with exact Fresnel,

@@ -2,6 +2,4 @@
 
 pub mod closed_form;
 pub mod layered_mc;
-pub mod plane_stack;
 pub mod random_walk;
-pub mod transfer_matrix;

@@ -6,11 +6,9 @@
 
 use glam::DVec3;
 
-use crate::furnace;
-use crate::inputs::{Input, Inputs};
-use crate::layered_mc::{Estimate, Interface, InterfaceMode, Side, Sided, Stream, both_above, mixed_seed};
-use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
+use crate::model::{Claims, Estimate, Estimator, Input, Inputs, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeLayer};
+use crate::references::layered_mc::{Interface, InterfaceMode, Side, Sided, Stream, both_above, mixed_seed};
 
 /// Walks between the facets of one interface. The same fields give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,7 +94,7 @@ impl Model for RandomWalk {
     }
 
     fn lossless(&self, stack: &Monochrome) -> Monochrome {
-        furnace::lossless_interface(stack)
+        stack.lossless_interface()
     }
 }
 

@@ -9,13 +9,14 @@ use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::schlick::Lazanyi;
 use luthier_optics::stack::{Distribution, Stack};
 
-use crate::granier_heidrich::GranierHeidrich;
-use crate::interface_fresnel::Fresnel;
+use crate::formulas::interface_fresnel::Fresnel;
 use crate::lobes::Below;
-use crate::microfacet::Components;
-use crate::statistics::diffuse_base::Veil;
-use crate::statistics::energy::Energy;
-use crate::terms::{ShaderTerms, Terms};
+use crate::models::granier_heidrich::GranierHeidrich;
+use crate::models::microfacet::Components;
+use crate::models::statistics::diffuse_base::Veil;
+use crate::models::statistics::energy::Energy;
+use crate::terms::Terms;
+use crate::twins::terms::ShaderTerms;
 
 /// Parts of the model of a shader; each is ignored by models that have no choice of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,9 +159,9 @@ mod tests {
 
     use super::*;
     use crate::monochrome::Monochrome;
-    use crate::real_time::Twin;
     use crate::registry;
-    use crate::terms::Exact;
+    use crate::twins::real_time::Twin;
+    use crate::twins::terms::Exact;
 
     const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 

@@ -15,20 +15,22 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
 
-use crate::elek::{self, ALPHA_MIN, Tilts};
-use crate::granier_heidrich::GranierHeidrich;
+use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
+use crate::layers::ALPHA_MIN;
+use crate::layers::Layers;
 use crate::lobes;
-use crate::microfacet::{Components, Microfacet};
+use crate::models::elek::{self, Tilts};
+use crate::models::granier_heidrich::GranierHeidrich;
+use crate::models::microfacet::{Components, Microfacet};
+use crate::models::phong::Coefficients;
+use crate::models::statistics::diffuse_base::DiffuseBase;
+use crate::models::statistics::evaluate::{Follow, evaluate};
+use crate::models::statistics::spread::{Covariance, Spread};
+use crate::models::weidlich_wilkie::WeidlichWilkie;
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
-use crate::parts::{Parts, Reflectances};
-use crate::phong::Coefficients;
-use crate::refraction::REFRACTION_WAVELENGTH_NM;
-use crate::statistics::diffuse_base::DiffuseBase;
-use crate::statistics::evaluate::{Follow, evaluate};
-use crate::statistics::layers::Layers;
-use crate::statistics::spread::{Covariance, Spread};
-use crate::terms::{ShaderTerms, Terms};
-use crate::weidlich_wilkie::WeidlichWilkie;
+use crate::terms::Terms;
+use crate::twins::parts::{Parts, Reflectances};
+use crate::twins::terms::ShaderTerms;
 
 /// Normals below the first interface of a surface, each unit, and the variance of its own: those of `LuthierPlace`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -340,11 +342,11 @@ mod tests {
     use super::*;
     use crate::lobes::Below;
     use crate::model::Model;
+    use crate::models::statistics::diffuse_base::Veil;
+    use crate::models::statistics::energy::Energy;
+    use crate::models::statistics::evaluate::Prepared;
     use crate::registry;
-    use crate::statistics::diffuse_base::Veil;
-    use crate::statistics::energy::Energy;
-    use crate::statistics::evaluate::Prepared;
-    use crate::terms::Exact;
+    use crate::twins::terms::Exact;
 
     const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 

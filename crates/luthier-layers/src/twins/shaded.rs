@@ -11,16 +11,17 @@ use luthier_optics::interface::Interface;
 use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 
-use crate::elek::ALPHA_MIN;
+use crate::effects::layer_sample::LayerSample;
+use crate::effects::textured::TextureSample;
 use crate::frame;
-use crate::layer_sample::LayerSample;
+use crate::layers::ALPHA_MIN;
 use crate::lobes::{self, Below, Cover, Fit, Lobes, Varied, Varying};
-use crate::parts::{Chosen, Parts, Reflectances};
-use crate::real_time::{Twin, Under};
-use crate::statistics::diffuse_base::Veil;
-use crate::statistics::energy::Energy;
-use crate::terms::{Exact, ShaderTerms, Terms};
-use crate::textured::TextureSample;
+use crate::models::statistics::diffuse_base::Veil;
+use crate::models::statistics::energy::Energy;
+use crate::terms::Terms;
+use crate::twins::parts::{Chosen, Parts, Reflectances};
+use crate::twins::real_time::{Twin, Under};
+use crate::twins::terms::{Exact, ShaderTerms};
 
 /// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +57,7 @@ impl Place {
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Growth {
-    /// Amount of it, 0..=1: see [`Patina::amount`](crate::patina::Patina::amount).
+    /// Amount of it, 0..=1: see [`Patina::amount`](crate::effects::patina::Patina::amount).
     pub amount: f64,
     /// Diffuse reflectance that stands for scattering in it.
     pub diffuse_albedo: Rgb,
@@ -408,10 +409,10 @@ mod tests {
     use luthier_optics::stack::{Diffuse, Layer, Slab};
 
     use super::*;
-    use crate::flakes::Flakes;
+    use crate::effects::flakes::Flakes;
+    use crate::effects::patina::Patina;
     use crate::model::Model;
     use crate::monochrome::Monochrome;
-    use crate::patina::Patina;
     use crate::registry;
 
     const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];

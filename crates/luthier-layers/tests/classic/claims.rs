@@ -7,8 +7,7 @@
 
 use glam::{DVec2, DVec3};
 use luthier_layers::directional_albedo::{DirectionalAlbedo, directional_albedo};
-use luthier_layers::inputs::Inputs;
-use luthier_layers::model::{Kind, Model};
+use luthier_layers::model::{Inputs, Kind, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::models;
 use luthier_optics::stack::Distribution;

@@ -3,18 +3,18 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::belcour::Belcour;
-use luthier_layers::elek_model::Elek;
-use luthier_layers::granier_heidrich::GranierHeidrich;
 use luthier_layers::luthier_model::Masking;
-use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
+use luthier_layers::models::belcour::Belcour;
+use luthier_layers::models::elek_model::Elek;
+use luthier_layers::models::granier_heidrich::GranierHeidrich;
+use luthier_layers::models::microfacet::{Components, Microfacet};
+use luthier_layers::models::phong::Phong;
+use luthier_layers::models::statistics::evaluate::Follow;
+use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
+use luthier_layers::models::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
+use luthier_layers::models::yamaguchi::Yamaguchi;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
-use luthier_layers::phong::Phong;
-use luthier_layers::statistics::evaluate::Follow;
-use luthier_layers::weidlich_wilkie::WeidlichWilkie;
-use luthier_layers::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
-use luthier_layers::yamaguchi::Yamaguchi;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Distribution, Surface};
 

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::granier_heidrich::{Film, GranierHeidrich};
+use luthier_layers::formulas::normals::exponent;
 use luthier_layers::model::Model;
+use luthier_layers::models::granier_heidrich::{Film, GranierHeidrich};
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::phong::exponent;
 use luthier_optics::fresnel::FilmLayer;
 use num_complex::Complex64;
 

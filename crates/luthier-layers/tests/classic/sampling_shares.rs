@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 use luthier_layers::model::Model;
+use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
+use luthier_layers::models::weidlich_wilkie_sampling::Sampler;
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::weidlich_wilkie::WeidlichWilkie;
-use luthier_layers::weidlich_wilkie_sampling::Sampler;
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::sphere::{at, furnace, integral, mirrored};

@@ -2,14 +2,13 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::closed_form::ClosedForm;
-use luthier_layers::furnace::lossless;
-use luthier_layers::interface_fresnel::Fresnel;
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
-use luthier_layers::microfacet::{Components, Microfacet};
+use luthier_layers::formulas::interface_fresnel::Fresnel;
 use luthier_layers::model::{Estimator, Model};
+use luthier_layers::models::microfacet::{Components, Microfacet};
+use luthier_layers::models::phong::Coefficients;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
-use luthier_layers::phong::Coefficients;
+use luthier_layers::references::closed_form::ClosedForm;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::model;
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
@@ -119,7 +118,7 @@ fn lossless_stacks_return_everything() {
     let stacks = [
         metal(0.0, 1.0),
         metal(0.4, 1.0),
-        lossless(&metal(0.4, 0.3)),
+        metal(0.4, 0.3).lossless(),
         coat(Surface::smooth(), 1.5, 0.04, lambert(1.0)),
         coat(ggx(0.4), 1.5, 0.5, lambert(1.0)),
         coat(ggx(0.4), 1.0, 0.5, lambert(1.0)),

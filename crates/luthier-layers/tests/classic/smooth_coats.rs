@@ -3,15 +3,15 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::elek_model::Elek;
-use luthier_layers::facets::Facets;
+use luthier_layers::formulas::facets::Facets;
+use luthier_layers::formulas::oren_nayar;
 use luthier_layers::luthier_model::{InternalReflection, Masking};
-use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
+use luthier_layers::models::elek_model::Elek;
+use luthier_layers::models::microfacet::{Components, Microfacet};
+use luthier_layers::models::weidlich_wilkie::{Refraction, WeidlichWilkie};
+use luthier_layers::models::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
-use luthier_layers::oren_nayar;
-use luthier_layers::weidlich_wilkie::{Refraction, WeidlichWilkie};
-use luthier_layers::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 
 use crate::sphere::{albedo, at, mirrored};
 use crate::stacks::{WHITE, dielectric, ggx, lambert};

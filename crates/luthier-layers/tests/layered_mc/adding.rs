@@ -10,8 +10,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::layered_mc::InterfaceMode;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::references::layered_mc::InterfaceMode;
 use luthier_optics::quadrature::gauss_legendre;
 
 use crate::scenes::{at, conductor, dielectric, ggx, lambert, mc};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::layered_mc::InterfaceMode;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::InterfaceMode;
 use luthier_optics::fresnel::{dielectric_average, interface};
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
@@ -34,7 +34,7 @@ fn smooth_coat_on_lambert_albedo_of_diffuse_light() {
     for (rho, expected) in [(0.18, 0.16570257), (0.5, 0.35295886), (0.8, 0.65263668), (1.0, 1.0)] {
         let coated = coated_lambert(rho);
         let each = |i: u64| {
-            let mc = luthier_layers::layered_mc::LayeredMc { seed: i, ..mc(InterfaceMode::SmithWalk, 0) };
+            let mc = luthier_layers::references::layered_mc::LayeredMc { seed: i, ..mc(InterfaceMode::SmithWalk, 0) };
             mc.albedo(&coated, cosine(evenly(i)), 4).mean
         };
         let values: Vec<f64> = (0..80_000).map(each).collect();

@@ -1,7 +1,8 @@
 //! White furnace: stacks that absorb nothing return all light.
 
-use luthier_layers::layered_mc::{Estimate, InterfaceMode};
+use luthier_layers::model::Estimate;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::InterfaceMode;
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::scenes::{BOTH, assert_agrees, at, dielectric, ggx, lambert, mc, mirror};

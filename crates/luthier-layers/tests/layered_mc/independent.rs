@@ -1,7 +1,7 @@
 //! Rough stacks against another program: a brute-force Smith walk in Python, `scripts/independent/layered.py`.
 
-use luthier_layers::layered_mc::InterfaceMode;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::InterfaceMode;
 
 use crate::scenes::{assert_agrees, at, conductor, dielectric, ggx, mc};
 

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::layered_mc::LayeredMc;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::references::layered_mc::LayeredMc;
 use luthier_optics::fresnel::FilmLayer;
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::layered_mc::InterfaceMode;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::InterfaceMode;
 use luthier_optics::fresnel::interface;
 use luthier_optics::microfacet::{distribution, lambda};
 use luthier_optics::stack::{Distribution, Surface};

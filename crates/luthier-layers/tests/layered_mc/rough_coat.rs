@@ -6,9 +6,10 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::layered_mc::{Estimate, InterfaceMode, Side};
+use luthier_layers::model::Estimate;
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::random_walk::RandomWalk;
+use luthier_layers::references::layered_mc::{InterfaceMode, Side};
+use luthier_layers::references::random_walk::RandomWalk;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::fresnel::interface;
 use luthier_optics::microsurface::TransparentFacets;
@@ -34,7 +35,7 @@ impl Coat {
     /// Share of the light from above that leaves upward without the base.
     fn reflects(&self, cos: f64) -> f64 {
         let effort = Effort { first: 24, later: 32 };
-        let facets = TransparentFacets { eta: self.n, from_above: &self.curve, curve: 0 };
+        let facets = TransparentFacets { eta: self.n, from_above: |cos| self.curve.at(0, cos) };
         FacetStatistics::new(self.distribution, self.alpha, cos, effort, 0).albedo(&self.curve)[0]
             + crossed_albedo(self.distribution, self.alpha, facets, cos, 2048, 1)
     }

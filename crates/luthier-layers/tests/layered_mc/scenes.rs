@@ -1,8 +1,9 @@
 //! Stacks and directions of the Monte Carlo tests.
 
 use glam::DVec3;
-use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
+use luthier_layers::model::Estimate;
 use luthier_layers::monochrome::MonochromeBelow;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 

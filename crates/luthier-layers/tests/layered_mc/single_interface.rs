@@ -1,8 +1,8 @@
 //! Albedos of one interface against those of `luthier_optics::albedo`, from quadrature and low-discrepancy walks.
 
-use luthier_layers::layered_mc::{InterfaceMode, Side};
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::random_walk::RandomWalk;
+use luthier_layers::references::layered_mc::{InterfaceMode, Side};
+use luthier_layers::references::random_walk::RandomWalk;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::fresnel::interface;
 use luthier_optics::microsurface::TransparentFacets;
@@ -63,7 +63,7 @@ fn dielectrics_split_light_as_crossing_walks_say() {
             let glass = Monochrome::bare(&[(Surface::isotropic(d, alpha), dielectric(n, 0.0))]);
             for theta in [0.0, 60.0, 85.0] {
                 let wo = at(theta, 0.0);
-                let facets = TransparentFacets { eta: n, from_above: &fresnel, curve: 0 };
+                let facets = TransparentFacets { eta: n, from_above: |cos| fresnel.at(0, cos) };
                 let expected = FacetStatistics::new(d, alpha, wo.z, EFFORT, 0).albedo(&fresnel)[0]
                     + crossed_albedo(d, alpha, facets, wo.z, 4096, 1);
                 let walks = RandomWalk { samples: 150_000, seed: 3 };

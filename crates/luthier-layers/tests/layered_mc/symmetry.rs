@@ -1,8 +1,8 @@
 //! Reciprocity and determinism of the Monte Carlo reference.
 
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc, Side};
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::random_walk::RandomWalk;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc, Side};
+use luthier_layers::references::random_walk::RandomWalk;
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::scenes::{MODES, at, conductor, dielectric, ggx, lambert, mc};

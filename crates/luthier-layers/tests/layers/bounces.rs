@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use luthier_layers::directional_albedo::over_hemisphere;
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::lobes::{Lobes, Varied, Varying};
-use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
+use luthier_layers::models::microfacet::{Components, Microfacet};
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};

@@ -3,10 +3,10 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::{DVec2, DVec3};
-use luthier_layers::layer_sample::LayerSample;
+use luthier_layers::effects::layer_sample::LayerSample;
+use luthier_layers::effects::textured::TextureSample;
 use luthier_layers::luthier_model::ShadingModel;
-use luthier_layers::shaded::{Place, Shaded};
-use luthier_layers::textured::TextureSample;
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};

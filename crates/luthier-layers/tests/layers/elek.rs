@@ -3,9 +3,11 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::elek::{self, ALPHA_MIN, Below, Layer};
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_layers::luthier_model::InternalReflection;
-use luthier_layers::terms::{Exact, Terms};
+use luthier_layers::models::elek::{self, Below, Layer};
+use luthier_layers::terms::Terms;
+use luthier_layers::twins::terms::Exact;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;

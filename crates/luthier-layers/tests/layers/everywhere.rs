@@ -1,8 +1,8 @@
 //! Laws of Elek's model for every stack and pair of directions.
 
 use glam::DVec3;
-use luthier_layers::elek;
-use luthier_layers::terms::Exact;
+use luthier_layers::models::elek;
+use luthier_layers::twins::terms::Exact;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};

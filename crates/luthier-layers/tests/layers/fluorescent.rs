@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::luthier_model::ShadingModel;
-use luthier_layers::real_time::{Twin, Under};
-use luthier_layers::shaded::{Place, Shaded};
-use luthier_layers::terms::Exact;
+use luthier_layers::twins::real_time::{Twin, Under};
+use luthier_layers::twins::shaded::{Place, Shaded};
+use luthier_layers::twins::terms::Exact;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;

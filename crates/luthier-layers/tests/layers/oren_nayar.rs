@@ -1,6 +1,6 @@
 //! Oren and Nayar's full model against values from another program.
 
-use luthier_layers::oren_nayar::brdf;
+use luthier_layers::formulas::oren_nayar::brdf;
 use luthier_optics::stack::Diffuse;
 use proptest::prelude::*;
 

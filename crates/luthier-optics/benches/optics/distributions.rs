@@ -2,8 +2,9 @@
 
 use crate::inputs::{INPUTS, angles, each};
 use divan::Bencher;
+use luthier_optics::microfacet::Anisotropic;
 use luthier_optics::microfacet::distribution;
-use luthier_optics::ndf::{Abc, Anisotropic, BlinnPhong, Ndf, Sgd};
+use luthier_optics::ndf::{Abc, BlinnPhong, Ndf, Sgd};
 use luthier_optics::stack::Distribution;
 use luthier_optics::stack::Distribution::{Beckmann, Ggx};
 

@@ -3,8 +3,9 @@
 use crate::inputs::{INPUTS, angles, draws, each};
 use divan::{Bencher, black_box};
 use luthier_optics::masking::{self, Correlation};
+use luthier_optics::microfacet::Anisotropic;
 use luthier_optics::microfacet::lambda;
-use luthier_optics::ndf::{Anisotropic, BlinnPhong};
+use luthier_optics::ndf::BlinnPhong;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::Distribution;
 use luthier_optics::stack::Distribution::{Beckmann, Ggx};

@@ -2,7 +2,7 @@
 
 use crate::inputs::{INPUTS, draws, each};
 use divan::Bencher;
-use luthier_optics::ndf::Anisotropic;
+use luthier_optics::microfacet::Anisotropic;
 use luthier_optics::sampling::{CosineHemisphere, Mixture, Sampler, VisibleNormals};
 use luthier_optics::stack::Distribution;
 use luthier_optics::stack::Distribution::{Beckmann, Ggx};

@@ -28,6 +28,6 @@ fn reflecting(bencher: Bencher<'_, '_>, kind: Distribution) {
 fn crossing(bencher: Bencher<'_, '_>, kind: Distribution) {
     let glass = |_, cos| interface(Complex64::ONE, Complex64::new(1.5, 0.0), cos).unpolarised();
     let curve = ReflectanceCurves::new(1, glass);
-    let facets = TransparentFacets { eta: 1.5, from_above: &curve, curve: 0 };
+    let facets = TransparentFacets { eta: 1.5, from_above: |cos| curve.at(0, cos) };
     each(bencher, &walks(), |&(cos, walk)| crossed_and_returned(kind, 0.5, facets, cos, walk));
 }

@@ -1,25 +1,19 @@
 //! Slope distributions by their own parameters, each normalised: the integral of D cos_theta_h over the hemisphere is 1. Layers have them as a
-//! [`Distribution`] and a slope parameter; [`Shape`] is what is between the two.
+//! [`Distribution`](crate::stack::Distribution) and a slope parameter ([`microfacet`](crate::microfacet)); [`Shape`] is between the two.
 //!
-//! The isotropic ones are an [`Ndf`]; [`Anisotropic`] has two slope parameters. Masking for any of them is in
-//! [`masking`](crate::masking).
+//! Masking for any [`Ndf`] is in [`masking`](crate::masking).
 
 mod abc;
-mod anisotropic;
 mod blinn_phong;
 mod sgd;
 mod shape;
 
 pub use abc::Abc;
-pub use anisotropic::{Anisotropic, to_layer};
 pub use blinn_phong::BlinnPhong;
 pub use sgd::Sgd;
 pub use shape::Shape;
 
 use thiserror::Error;
-
-use crate::microfacet;
-use crate::stack::Distribution;
 
 /// An isotropic distribution of micro-normals.
 pub trait Ndf {
@@ -53,30 +47,7 @@ pub enum NdfError {
     },
 }
 
-/// A distribution of a surface and its slope parameter, as an [`Ndf`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Isotropic {
-    distribution: Distribution,
-    alpha: f64,
-}
-
-impl Isotropic {
-    /// The distribution of slope parameter `alpha`.
-    ///
-    /// # Errors
-    /// [`NdfError::NotPositive`] unless `alpha` is positive and finite.
-    pub fn new(distribution: Distribution, alpha: f64) -> Result<Self, NdfError> {
-        Ok(Self { distribution, alpha: positive("alpha", alpha)? })
-    }
-}
-
-impl Ndf for Isotropic {
-    fn density(&self, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
-        microfacet::distribution(self.distribution, self.alpha, cos_theta_h, sin_theta_h_sq)
-    }
-}
-
-fn positive(name: &'static str, value: f64) -> Result<f64, NdfError> {
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, NdfError> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(NdfError::NotPositive { name, value }) }
 }
 
@@ -85,6 +56,8 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
+    use crate::microfacet::{Anisotropic, Isotropic};
+    use crate::stack::Distribution;
 
     /// Projected area by Simpson's rule over the angle, graded towards the normal.
     fn projected_area(ndf: &impl Ndf) -> f64 {

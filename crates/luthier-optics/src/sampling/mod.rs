@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::ndf::Anisotropic;
+use crate::microfacet::Anisotropic;
 use crate::visible_normals;
 
 /// A direction and its density.

@@ -23,7 +23,7 @@ const POINTS: [(f64, f64); 8] =
 
 fn check(distribution: Distribution, n: f64) {
     let curve = ReflectanceCurves::new(1, |_, cos| dielectric(n, cos));
-    let transparent = TransparentFacets { eta: n, from_above: &curve, curve: 0 };
+    let transparent = TransparentFacets { eta: n, from_above: |cos| curve.at(0, cos) };
     for (i, (alpha, cos_theta)) in POINTS.into_iter().enumerate() {
         let heights = if i % 2 == 0 { Heights::Uniform } else { Heights::Gaussian };
         let surface = Surface { slopes: same(distribution), heights, alpha, facets: Facets::Dielectric { n } };

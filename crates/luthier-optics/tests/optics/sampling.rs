@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_optics::ndf::Anisotropic;
+use luthier_optics::microfacet::Anisotropic;
 use luthier_optics::sampling::{CosineHemisphere, Mixture, Sampler, VisibleNormals};
 use luthier_optics::stack::Distribution;
 

@@ -1,8 +1,7 @@
 //! Pictures of a ball from values for pairs of directions: of models in f64 that no shader has, and of simulations.
 
 use glam::DVec3;
-use luthier_layers::layered_mc::Estimate;
-use luthier_layers::model::Model;
+use luthier_layers::model::{Estimate, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
 use luthier_optics::Rgb;
@@ -144,8 +143,8 @@ impl Place {
 
 #[cfg(test)]
 mod tests {
-    use luthier_layers::diffuse::Lambert;
-    use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
+    use luthier_layers::models::diffuse::Lambert;
+    use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Base, Diffuse, Layer, Surface};
 

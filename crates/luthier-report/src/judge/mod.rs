@@ -11,11 +11,11 @@ pub(crate) mod report;
 use std::fmt;
 
 use glam::DVec3;
-use luthier_layers::elek::{self, Layer};
 use luthier_layers::lobes::{Cover, Varying};
-use luthier_layers::parts::Parts;
-use luthier_layers::real_time::Twin;
-use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_layers::models::elek::{self, Layer};
+use luthier_layers::twins::parts::Parts;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::twins::terms::{Exact, ShaderTerms};
 use luthier_manifest::{
     ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, PatinaRecord, PlaceValues, ShadingModel, VaryingFactor,
 };

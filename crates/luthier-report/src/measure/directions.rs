@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use luthier_layers::elek::{Below, Layer};
+use luthier_layers::models::elek::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
 /// `(wi, wo)`: unit to f32 precision, above the horizon, in the local frame.
@@ -161,7 +161,7 @@ pub(crate) fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
 
 #[cfg(test)]
 mod tests {
-    use luthier_layers::elek::ALPHA_MIN;
+    use luthier_layers::layers::ALPHA_MIN;
     use luthier_manifest::InternalReflection;
     use luthier_optics::stack::Distribution;
 

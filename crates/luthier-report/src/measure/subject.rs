@@ -1,6 +1,6 @@
 //! The subject of a judgement: manifest, decoded tables, stacks.
 
-use luthier_layers::elek::{self, Below};
+use luthier_layers::models::elek::{self, Below};
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, TableEntry};
 use luthier_optics::color::Color;

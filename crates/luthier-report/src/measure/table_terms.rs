@@ -4,10 +4,11 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
-use luthier_layers::shaded::{Part, Place};
-use luthier_layers::statistics::diffuse_base::Veil;
-use luthier_layers::statistics::energy::Energy;
-use luthier_layers::terms::{ShaderTerms, Terms};
+use luthier_layers::models::statistics::diffuse_base::Veil;
+use luthier_layers::models::statistics::energy::Energy;
+use luthier_layers::terms::Terms;
+use luthier_layers::twins::shaded::{Part, Place};
+use luthier_layers::twins::terms::ShaderTerms;
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
 use luthier_manifest::reads;
 use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use luthier_layers::layered_mc::ColorPaths;
-use luthier_layers::real_time::Twin;
-use luthier_layers::terms::Exact;
+use luthier_layers::references::layered_mc::ColorPaths;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::twins::terms::Exact;
 use luthier_manifest::ShadingModel;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

@@ -116,9 +116,9 @@ mod tests {
     use super::*;
     use crate::models::{THETAS_DEG, direction};
     use luthier_layers::directional_albedo::directional_albedo;
-    use luthier_layers::elek_model::Elek;
-    use luthier_layers::microfacet::{Components, Microfacet};
-    use luthier_layers::phong::Phong;
+    use luthier_layers::models::elek_model::Elek;
+    use luthier_layers::models::microfacet::{Components, Microfacet};
+    use luthier_layers::models::phong::Phong;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Base, Distribution, Layer, Stack, Surface};
 

@@ -31,9 +31,8 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
-use luthier_layers::inputs::Input;
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
-use luthier_layers::model::{Kind, Model, ModelInfo};
+use luthier_layers::model::{Input, Kind, Model, ModelInfo};
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::models;
 use luthier_manifest::ShadingModel;
 use luthier_optics::color_difference::{ciede2000, lab};

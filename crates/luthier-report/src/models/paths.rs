@@ -1,7 +1,7 @@
 //! The reference: where its paths go.
 
-use luthier_layers::layered_mc::LayeredMc;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::LayeredMc;
 
 use super::cells::{CELLS, Cells};
 use super::compare::energy_that_noise_moves;

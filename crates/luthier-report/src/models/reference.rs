@@ -5,10 +5,10 @@
 //! its own mirror image in the plane of the eye, so that a cell has the mean of both sides. Every view has as many paths as its noise asks for.
 
 use glam::DVec3;
-use luthier_layers::layered_mc::JointPaths;
 use luthier_layers::lobes::Lobes;
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::JointPaths;
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Stack};
 use rayon::prelude::*;
@@ -185,7 +185,7 @@ fn first_facets(sets: &[JointPaths], cells: &Cells, is_symmetric: bool) -> Vec<R
 
 #[cfg(test)]
 mod tests {
-    use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
+    use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
     use luthier_layers::registry::model;
     use luthier_optics::ior::{Ior, IorSample};
     use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Surface};

@@ -1,7 +1,7 @@
 //! One view of a material at one wavelength.
 
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 
 use super::cells::Cells;
 use super::paths::Histogram;

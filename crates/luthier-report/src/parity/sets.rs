@@ -1,7 +1,7 @@
 //! Directions of the parity run.
 
 use glam::DVec3;
-use luthier_layers::elek::{Below, Layer};
+use luthier_layers::models::elek::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::{

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use luthier_layers::flakes::Flakes;
-use luthier_layers::patina::Patina;
+use luthier_layers::effects::flakes::Flakes;
+use luthier_layers::effects::patina::Patina;
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
 use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};

@@ -1,11 +1,11 @@
 //! The f64 evaluation of rows as they ship, at a place.
 
 use glam::{DVec2, DVec3};
-use luthier_layers::layer_sample::LayerSample;
-use luthier_layers::real_time::Under;
-use luthier_layers::shaded::{Growth, Part, Place, Shaded};
-use luthier_layers::terms::Exact;
-use luthier_layers::textured::TextureSample;
+use luthier_layers::effects::layer_sample::LayerSample;
+use luthier_layers::effects::textured::TextureSample;
+use luthier_layers::twins::real_time::Under;
+use luthier_layers::twins::shaded::{Growth, Part, Place, Shaded};
+use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::schlick::metallic_roughness;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_layers::lobes::{self, Lobes};
-use luthier_layers::shaded::Place;
+use luthier_layers::twins::shaded::Place;
 use luthier_manifest::{MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
+use luthier_layers::models::statistics::spread;
+use luthier_layers::models::statistics::total_reflection::escaping_share;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use luthier_layers::statistics::spread;
-use luthier_layers::statistics::total_reflection::escaping_share;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_lut::{Image, WeightBits, bilinear};
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves};
 use luthier_optics::f0_table::F0_TABLE;

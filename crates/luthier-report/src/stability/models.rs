@@ -3,12 +3,11 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
-use luthier_layers::closed_form::ClosedForm;
-use luthier_layers::elek;
-use luthier_layers::inputs::Inputs;
-use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
-use luthier_layers::model::{Estimator, Kind, Model, ModelInfo};
+use luthier_layers::model::{Estimate, Estimator, Inputs, Kind, Model, ModelInfo};
+use luthier_layers::models::elek;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::references::closed_form::ClosedForm;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::models;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::Base;

@@ -1,6 +1,6 @@
 //! The shaders: tables in f64, and both forms on the adapter.
 
-use luthier_layers::elek;
+use luthier_layers::models::elek;
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 

@@ -3,13 +3,14 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use luthier_layers::elek::{self, Below};
+use luthier_layers::models::elek::{self, Below};
+use luthier_layers::models::statistics::diffuse_base::Veil;
+use luthier_layers::models::statistics::energy::{Energy, ExactEnergy, FacetCache};
+use luthier_layers::models::statistics::total_reflection::escaping_share;
 use luthier_layers::monochrome::Monochrome;
-use luthier_layers::real_time::Twin;
-use luthier_layers::statistics::diffuse_base::Veil;
-use luthier_layers::statistics::energy::{Energy, ExactEnergy, FacetCache};
-use luthier_layers::statistics::total_reflection::escaping_share;
-use luthier_layers::terms::{Exact, Terms};
+use luthier_layers::terms::Terms;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::{AtlasLayout, Axis, ErrorStats, Image, Mapping, TableKind, TexelFormat, Tile, Worst};
 use luthier_manifest::{
     ColorMode, FileEntry, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, MaterialEntry, PlaceValues, ShadingModel,

@@ -1,6 +1,7 @@
 //! Tables whose right values are known without the code that the judge uses.
 
-use luthier_layers::terms::{Exact, Terms};
+use luthier_layers::terms::Terms;
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_optics::color::Color;

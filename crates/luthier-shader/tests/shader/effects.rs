@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::{Map, Switch};
+use luthier_layers::effects::flakes::Flakes;
+use luthier_layers::effects::heterogeneous::{Map, Switch};
+use luthier_layers::effects::patina::Patina;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use luthier_layers::patina::Patina;
-use luthier_layers::perlin::Perlin;
-use luthier_layers::voronoi::Voronoi;
+use luthier_layers::noise::perlin::Perlin;
+use luthier_layers::noise::voronoi::Voronoi;
 use luthier_manifest::{
     CellsRecord, FunctionGroup, LayerRecord, MaterialEntry, ParticlesRecord, ShadingModel, SurfaceEntry, SwitchBy,
     SwitchRecord, material_buffer,

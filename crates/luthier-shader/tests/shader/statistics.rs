@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use luthier_layers::statistics::diffuse_base::{DiffuseBase, Veil};
-use luthier_layers::statistics::energy::Energy;
-use luthier_layers::statistics::evaluate::{Follow, evaluate};
-use luthier_layers::statistics::layers::{Below, Layer, Layers};
-use luthier_layers::statistics::spread::Covariance;
+use luthier_layers::layers::{Below, Layer, Layers};
+use luthier_layers::models::statistics::diffuse_base::{DiffuseBase, Veil};
+use luthier_layers::models::statistics::energy::Energy;
+use luthier_layers::models::statistics::evaluate::{Follow, evaluate};
+use luthier_layers::models::statistics::spread::Covariance;
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{LayerKind, LayerRecord, MapSlot, MaterialEntry, ShadingModel, material_buffer};
 use luthier_optics::fresnel::{FilmLayer, coated};

@@ -8,10 +8,10 @@
 use std::borrow::Cow;
 
 use luthier_layers::directional_albedo::integral;
+use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::glam::DVec3;
-use luthier_layers::layer_sample::LayerSample;
-use luthier_layers::layered_mc::ColorPaths;
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::references::layered_mc::ColorPaths;
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Metallic, Severity};
 use luthier_model::Family;

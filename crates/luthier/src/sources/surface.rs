@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use luthier_layers::heterogeneous::{Map, Switch};
-use luthier_layers::perlin::Perlin;
-use luthier_layers::voronoi::Voronoi;
+use luthier_layers::effects::heterogeneous::{Map, Switch};
+use luthier_layers::noise::perlin::Perlin;
+use luthier_layers::noise::voronoi::Voronoi;
 use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 use luthier_material::{Diagnostic, Surface, SurfaceCells, parse_surface};
 
@@ -87,7 +87,7 @@ pub(super) fn switch_of(by: &SwitchBy) -> Switch {
 /// The f64 twin of `luthier_pick`: its picks have the numbers of materials.
 ///
 /// ```
-/// use luthier_layers::heterogeneous::Map;
+/// use luthier_layers::effects::heterogeneous::Map;
 /// use luthier_manifest::{CellsRecord, SurfaceEntry};
 ///
 /// let cells = CellsRecord { seed: 1, frequency: 20.0, materials: vec![4, 2] };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use luthier_layers::heterogeneous::{Switch, SwitchShare, switch_shares};
+use luthier_layers::effects::heterogeneous::{Switch, SwitchShare, switch_shares};
 use luthier_material::{Diagnostic, Material, NamedMaterial, Surface, SurfaceSwitch};
 
 use super::surface::switch_of;

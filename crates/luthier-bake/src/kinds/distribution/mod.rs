@@ -5,7 +5,7 @@ mod search;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use luthier_layers::elek;
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_lut::{Atlas, Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping};
 use luthier_optics::microfacet::scaled_distribution;
@@ -41,7 +41,7 @@ impl Kind for Table {
         };
         let alpha_mapping = ask.one("bake.distribution.alpha_mapping", |b| b.distribution.alpha_mapping)?;
         let slope = match alpha_mapping.unwrap_or(AlphaMapping::Log) {
-            AlphaMapping::Log => axis("alpha", "", [elek::ALPHA_MIN, 1.0], size[1], Mapping::Logarithmic),
+            AlphaMapping::Log => axis("alpha", "", [ALPHA_MIN, 1.0], size[1], Mapping::Logarithmic),
             AlphaMapping::Linear => axis("alpha", "", [0.0, 1.0], size[1], Mapping::Linear),
         };
         let format = ask.format("bake.distribution.format", |b| b.distribution.format, TexelFormat::Rg16Float)?;

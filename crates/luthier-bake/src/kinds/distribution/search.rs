@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use luthier_layers::elek::ALPHA_MIN;
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! How light meets the facets of a slope distribution, over the whole domain of a table: the part of FGD-infinity that no
 //! material enters, computed once for all of them.
 
-use luthier_layers::refraction::REFRACTION_WAVELENGTH_NM;
+use luthier_layers::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use luthier_lut::{Axis, Scan};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, crossed_albedo};
@@ -254,7 +254,7 @@ impl CrossedJob {
             let (cos_theta, alpha) = (x.decode(u[0]), y.decode(u[1]));
             let albedos: Vec<f64> = (0..weighted.curves.count())
                 .map(|curve| {
-                    let facets = TransparentFacets { eta, from_above: &weighted.curves, curve };
+                    let facets = TransparentFacets { eta, from_above: |cos| weighted.curves.at(curve, cos) };
                     crossed_albedo(self.distribution, alpha, facets, cos_theta, walks, seed)
                 })
                 .collect();

@@ -11,13 +11,12 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use luthier_bake::fitted;
-use luthier_layers::layer_sample::LayerSample;
-use luthier_layers::layered_mc::Estimate;
+use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::lobes::{Fit, Fitted, Varied};
-use luthier_layers::model::{Model, ModelInfo};
+use luthier_layers::model::{Estimate, Model, ModelInfo};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
-use luthier_layers::shaded::Place;
+use luthier_layers::twins::shaded::Place;
 use luthier_manifest::ShadingModel;
 use luthier_material::{FileKind, Material};
 use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
@@ -113,7 +112,7 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
     if let Some(folder) = &options.out {
         return shipped::shipped(&subject, folder, &pairs, options.json);
     }
-    if is_fitted(&subject.model.info()) && subject.place != luthier_layers::shaded::Place::NONE {
+    if is_fitted(&subject.model.info()) && subject.place != luthier_layers::twins::shaded::Place::NONE {
         let what = "fitted to the stack at this place; `--out FOLDER` reads the rows that a bake ships";
         complain(&format!("note: lobes are {what}"));
     }

@@ -2,12 +2,12 @@
 
 use glam::{DVec2, DVec3};
 use luthier_bake::{MapSource, height_normals};
-use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::Map;
-use luthier_layers::layer_sample::LayerSample;
-use luthier_layers::patina::Patina;
-use luthier_layers::shaded::{Growth, Place};
-use luthier_layers::voronoi::Voronoi;
+use luthier_layers::effects::flakes::Flakes;
+use luthier_layers::effects::heterogeneous::Map;
+use luthier_layers::effects::layer_sample::LayerSample;
+use luthier_layers::effects::patina::Patina;
+use luthier_layers::noise::voronoi::Voronoi;
+use luthier_layers::twins::shaded::{Growth, Place};
 use luthier_lut::{Image, Picture};
 use luthier_manifest::MapSlot;
 use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, TexelUse, VariationSource};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use luthier::source_hash;
 use luthier_export::{Folder, shared};
-use luthier_layers::layered_mc::Estimate;
+use luthier_layers::model::Estimate;
 use luthier_manifest::ColorMode;
 use luthier_manifest::ModelPart;
 use luthier_optics::color::Color;

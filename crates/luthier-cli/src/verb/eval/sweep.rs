@@ -1,13 +1,12 @@
 //! Tables against the angle of the eye.
 
 use luthier_layers::directional_albedo::DirectionalAlbedo;
-use luthier_layers::elek_model::{Elek, environment};
 use luthier_layers::furnace::furnace;
-use luthier_layers::layered_mc::Estimate;
-use luthier_layers::microfacet::Microfacet;
-use luthier_layers::model::Model;
-use luthier_layers::parts::Parts;
-use luthier_layers::weidlich_wilkie::WeidlichWilkie;
+use luthier_layers::model::{Estimate, Model};
+use luthier_layers::models::elek_model::{Elek, environment};
+use luthier_layers::models::microfacet::Microfacet;
+use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
+use luthier_layers::twins::parts::Parts;
 use luthier_manifest::{LowerReflectance, ShadingModel};
 use luthier_terminal::{Failure, Outcome, print};
 use rayon::prelude::*;

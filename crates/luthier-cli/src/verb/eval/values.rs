@@ -1,6 +1,6 @@
 //! Values for pairs of directions.
 
-use luthier_layers::layered_mc::Estimate;
+use luthier_layers::model::Estimate;
 use luthier_terminal::{Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@
 //! directions, without drawing.
 
 use glam::{DMat3, DVec3};
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_optics::color::Color;
 

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use luthier::{Bake, MemoryStore};
 use luthier_export::Shader;
-use luthier_layers::parts::Parts;
-use luthier_layers::shaded::{Place, Shaded};
-use luthier_layers::textured::TextureSample;
+use luthier_layers::effects::textured::TextureSample;
+use luthier_layers::twins::parts::Parts;
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_lut::TableKind;
 use luthier_manifest::Masking;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier::{Bake, MemoryStore};
 use luthier_export::Shader;
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::Rgb;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use luthier::{Bake, MemoryStore};
 use luthier_export::Shader;
-use luthier_layers::parts::Parts;
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::twins::parts::Parts;
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{BeamsRecord, ColorMode, Form, Masking, Reflectance, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
@@ -327,7 +327,7 @@ fn tarnish_dims_chosen_reflectances() {
         let (parts, reflectance) = parts(&grown);
         let wavelengths_nm = grown.bake.wavelengths_nm();
         let color = if reflectance.is_fitted() { Color::Spectral } else { Color::ThreeWavelengths(wavelengths_nm) };
-        let growth = luthier_layers::shaded::Growth {
+        let growth = luthier_layers::twins::shaded::Growth {
             amount: 0.4,
             diffuse_albedo: [0.1, 0.3, 0.2],
             base_alpha: None,

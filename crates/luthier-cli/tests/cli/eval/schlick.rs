@@ -1,7 +1,7 @@
 //! Surfaces that reflect by Schlick's formula: from files to the device, in every model, and by hand.
 
 use luthier::{Bake, MemoryStore};
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use luthier::{Bake, MemoryStore};
 use luthier_export::Shader;
 use luthier_gpu::{Gpu, GpuError};
-use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::Rgb;

@@ -13,7 +13,7 @@ use luthier_optics::stack::{Base, Stack, Surface};
 use super::fit::{Simulation, indices};
 use super::solve::solve;
 use super::{FirstInterface, FitSettings, Lobe, Lobes, Row, ViewAxis, Wide};
-use crate::elek::ALPHA_MIN;
+use crate::layers::ALPHA_MIN;
 
 /// A patina where it has grown whole.
 #[derive(Debug, Clone, Copy, PartialEq)]

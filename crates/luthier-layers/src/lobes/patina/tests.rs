@@ -7,9 +7,9 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
 use super::{Cover, bare};
-use crate::layered_mc::ColorPaths;
 use crate::lobes::tests::direction;
 use crate::lobes::{Below, FitSettings, Judge, Lobes, Varied, Varying};
+use crate::references::layered_mc::ColorPaths;
 
 const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);
 const SETTINGS: FitSettings = FitSettings { rows: 10, paths: 16000, seed: 3 };

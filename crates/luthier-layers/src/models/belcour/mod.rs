@@ -1,15 +1,15 @@
 //! Belcour's model: statistical operators with isotropic spreads, for any number of layers.
 //!
-//! See [`statistics`](crate::statistics) for the method. Surfaces count as isotropic GGX: anisotropic ones enter with the
+//! See [`statistics`](crate::models::statistics) for the method. Surfaces count as isotropic GGX: anisotropic ones enter with the
 //! geometric mean of their slope parameters, Beckmann ones with their FGD-infinity and a GGX lobe of their slope parameter.
 //!
 //! Where it stands on what the paper and its code leave open, with what the tests measure:
 //!
 //! - *Total reflection* (TIR) is an integral, within 3e-4, in place of the paper's table; FGD-infinity is computed too. Either can be
-//!   read from a table: see [`Energy`](crate::statistics::energy::Energy).
+//!   read from a table: see [`Energy`](crate::models::statistics::energy::Energy).
 //! - *Mean number of bounces* m belongs to the wavelength. The paper's code averages it over the channels: for gold below a coat of
 //!   n = 1.5, both of alpha 0.2, slopes of single channels then differ by -1.6% to 1.2% at the normal and -3.8% to 2.6% at 78 degrees.
-//! - *A diffuse base* is not in the paper: see [`diffuse_base`](crate::statistics::diffuse_base).
+//! - *A diffuse base* is not in the paper: see [`diffuse_base`](crate::models::statistics::diffuse_base).
 //! - *Widening*: the variance of a base grows by the Jacobian j on the way out, and the fit makes that j^(1/1.1) in slope, so that a
 //!   base of small alpha appears 4% to 11% narrower than refraction makes it (n = 1.5, 0 to 70 degrees). At high alpha the
 //!   fit itself is off, 3.59 against 0.62 at alpha 0.8; it is undone on the way back to a slope, so what is wrong is sums: two
@@ -19,8 +19,8 @@
 
 use luthier_model::ShadingModel;
 
-use crate::statistics::evaluate::Follow;
-use crate::statistics::model::Statistical;
+use crate::models::statistics::evaluate::Follow;
+use crate::models::statistics::model::Statistical;
 
 /// Belcour 2018.
 pub type Belcour = Statistical<f64>;

@@ -10,14 +10,14 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
+use crate::layers::Layers;
 use crate::model::Model;
+use crate::models::statistics::adding::add;
+use crate::models::statistics::diffuse_base::DiffuseBase;
+use crate::models::statistics::evaluate::{Prepared, evaluate};
+use crate::models::statistics::fixtures::{NotTotal, direction, fresnel, tabulated};
+use crate::models::statistics::spread::{alpha, variance};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::statistics::adding::add;
-use crate::statistics::diffuse_base::DiffuseBase;
-use crate::statistics::evaluate::{Prepared, evaluate};
-use crate::statistics::fixtures::{NotTotal, direction, fresnel, tabulated};
-use crate::statistics::layers::Layers;
-use crate::statistics::spread::{alpha, variance};
 
 fn coated(coat: f64, base: f64, below: MonochromeBelow) -> Monochrome {
     let surface = |alpha| Surface::isotropic(Distribution::Ggx, alpha);

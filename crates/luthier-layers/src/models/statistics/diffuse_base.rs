@@ -9,8 +9,8 @@ use luthier_optics::quadrature::gauss_legendre;
 
 use super::adding::{Transport, add};
 use super::energy::Energy;
-use super::layers::{Below, Layers};
-use crate::oren_nayar;
+use crate::formulas::oren_nayar;
+use crate::layers::{Below, Layers};
 
 /// Points over the directions of diffuse light: within 1e-7 for smooth interfaces.
 const POINTS: usize = 24;
@@ -127,8 +127,8 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
+    use crate::models::statistics::fixtures::fresnel;
     use crate::monochrome::{Monochrome, MonochromeBelow};
-    use crate::statistics::fixtures::fresnel;
     use luthier_optics::stack::Surface;
 
     fn coated(albedo: f64, optical_depth: f64) -> Monochrome {

@@ -10,8 +10,8 @@ use luthier_optics::interpolation::cubic_stencil;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
-use super::layers::Layers;
 use super::total_reflection::escaping_share;
+use crate::layers::Layers;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
 /// Source of the energies of a stack, in `C` channels.
@@ -235,7 +235,7 @@ fn albedo_nodes(
         let mut albedos = facets[i].albedo(curves);
         for (curve, (albedo, eta)) in albedos.iter_mut().zip(etas).enumerate() {
             if let Some(eta) = *eta {
-                let transparent = TransparentFacets { eta, from_above: curves, curve };
+                let transparent = TransparentFacets { eta, from_above: |cos| curves.at(curve, cos) };
                 *albedo += crossed_albedo(distribution, alpha, transparent, cos, walks, 1);
             }
         }
@@ -332,7 +332,7 @@ mod tests {
             for cos in [0.02, 0.11, 0.37, 0.69, 0.74, 0.93] {
                 let statistics =
                     FacetStatistics::new(Distribution::Ggx, alpha, cos, Effort { first: 96, later: 48 }, 7);
-                let facets = TransparentFacets { eta: layer.eta(), from_above: &curve, curve: 0 };
+                let facets = TransparentFacets { eta: layer.eta(), from_above: |cos| curve.at(0, cos) };
                 let crossed = match below {
                     MonochromeBelow::Dielectric { .. } => {
                         crossed_albedo(Distribution::Ggx, alpha, facets, cos, 2048, 9)
@@ -370,7 +370,7 @@ mod tests {
                         |seed| FacetStatistics::new(Distribution::Ggx, alpha, cos, effort, seed).albedo(&curve)[0];
                     let mut expected = (7..11).map(estimate).sum::<f64>() / 4.0;
                     if matches!(stack.layers[0].base, Base::Dielectric { .. }) {
-                        let facets = TransparentFacets { eta: 1.5, from_above: &curve, curve: 0 };
+                        let facets = TransparentFacets { eta: 1.5, from_above: |cos| curve.at(0, cos) };
                         expected += crossed_albedo(Distribution::Ggx, alpha, facets, cos, 20_000, 9);
                     }
                     let [_, got, _] = energy.fgd(0, cos, alpha);

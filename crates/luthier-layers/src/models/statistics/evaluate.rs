@@ -8,10 +8,10 @@ use luthier_model::Masking;
 use super::adding::add;
 use super::diffuse_base::{DiffuseBase, Veil};
 use super::energy::{Energy, ExactEnergy, FacetCache};
-use super::layers::Layers;
 use super::spread::Spread;
-use crate::facets::Facets;
+use crate::formulas::facets::Facets;
 use crate::frame::cos_theta_d;
+use crate::layers::Layers;
 use crate::monochrome::Monochrome;
 
 /// The direction whose statistics all lobes are given.

@@ -8,7 +8,7 @@
 //!
 //! The two papers differ in the type of a spread only: a number, or a covariance matrix. So does the code: everything here is
 //! generic over [`spread::Spread`]. It is generic over the number of channels too: the models of this crate have one, a wavelength; shaders
-//! have three colours that share directions and spreads ([`layers::Layers::rgb`]).
+//! have three colours that share directions and spreads ([`Layers::rgb`](crate::layers::Layers::rgb)).
 //!
 //! Out of scope: media that scatter.
 
@@ -18,7 +18,6 @@ pub mod energy;
 pub mod evaluate;
 #[cfg(test)]
 pub(crate) mod fixtures;
-pub mod layers;
 pub mod model;
 pub mod spread;
 pub mod total_reflection;

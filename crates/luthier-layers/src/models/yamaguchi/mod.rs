@@ -3,11 +3,11 @@
 //! Yamaguchi et al. 2019 replace variances by 2x2 matrices `M diag(h(s alpha_x), h(s alpha_y)) M^T`, tangents as the columns of M (the
 //! print has M^T first), and keep everything else. The Jacobians are diagonal with equal entries, so a matrix keeps its axes
 //! on its way through interfaces; sums of matrices from layers with different tangents do not. Lobes are evaluated in the
-//! principal axes of their matrix. See [`statistics`](crate::statistics) for the method.
+//! principal axes of their matrix. See [`statistics`](crate::models::statistics) for the method.
 //!
 //! The paper gives two layers and refers to the adding of Belcour for more; so does this. Energies are those of
 //! isotropic surfaces with the geometric mean of the slope parameters, exact FGD-infinity in place of the paper's
-//! approximation, or that of a table through [`evaluate`](crate::statistics::evaluate::evaluate).
+//! approximation, or that of a table through [`evaluate`](crate::models::statistics::evaluate::evaluate).
 //!
 //! The paper's Jacobians are `2 cos theta_i` for reflection and `(cos theta_i - eta cos theta_t)/eta` for refraction, eta being n_i/n_t
 //! in its eq. 2 and n_t/n_i in its eq. 5. Reflection's drops out, because h is a fit to reflected light. Refraction's
@@ -17,9 +17,9 @@
 
 use luthier_model::ShadingModel;
 
-use crate::statistics::evaluate::Follow;
-use crate::statistics::model::Statistical;
-use crate::statistics::spread::Covariance;
+use crate::models::statistics::evaluate::Follow;
+use crate::models::statistics::model::Statistical;
+use crate::models::statistics::spread::Covariance;
 
 /// Yamaguchi et al. 2019.
 pub type Yamaguchi = Statistical<Covariance>;

@@ -7,14 +7,14 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
-use crate::belcour::Belcour;
+use crate::layers::Layers;
 use crate::model::Model;
+use crate::models::belcour::Belcour;
+use crate::models::statistics::adding::add;
+use crate::models::statistics::evaluate::{Prepared, evaluate};
+use crate::models::statistics::fixtures::{NotTotal, direction, fresnel, tabulated};
+use crate::models::statistics::spread::variance;
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::statistics::adding::add;
-use crate::statistics::evaluate::{Prepared, evaluate};
-use crate::statistics::fixtures::{NotTotal, direction, fresnel, tabulated};
-use crate::statistics::layers::Layers;
-use crate::statistics::spread::variance;
 
 fn surface(alpha_x: f64, alpha_y: f64, rotation: f64) -> Surface {
     Surface { distribution: Distribution::Ggx, alpha_x, alpha_y, rotation }

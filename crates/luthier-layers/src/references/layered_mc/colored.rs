@@ -98,7 +98,7 @@ fn spectral(stack: &Stack, color: &Color) -> Vec<(f64, Rgb, JointPaths)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layered_mc::{InterfaceMode, LayeredMc};
+    use crate::references::layered_mc::{InterfaceMode, LayeredMc};
     use luthier_optics::ior::{Ior, IorSample};
     use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Surface};
 

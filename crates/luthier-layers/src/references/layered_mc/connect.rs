@@ -63,16 +63,18 @@ pub(crate) fn both_above(wi: DVec3, wo: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layered_mc::InterfaceMode;
-    use crate::layered_mc::optics::Side;
-    use crate::layered_mc::rough::Sided;
+    use crate::references::layered_mc::InterfaceMode;
+    use crate::references::layered_mc::optics::Side;
+    use crate::references::layered_mc::rough::Sided;
 
     #[test]
     fn weights_of_all_strategies_of_a_path_sum_to_one() {
         // A path of five events through a rough coat over a rough base, written out, and the weight of each strategy
         // from the recursions on both sides of it.
-        let stack =
-            Interfaces::new(&crate::layered_mc::fixtures::rough_coat_on_metal(0.3, 0.2), InterfaceMode::SmithWalk);
+        let stack = Interfaces::new(
+            &crate::references::layered_mc::fixtures::rough_coat_on_metal(0.3, 0.2),
+            InterfaceMode::SmithWalk,
+        );
         let d = |x: f64, y: f64| DVec3::new(x, y, libm::sqrt(1.0 - x * x - y * y));
         let turned = |d: DVec3| DVec3::new(-d.x, -d.y, d.z);
         let directions = [d(0.3, 0.1), d(-0.2, 0.1), d(0.1, 0.3), d(0.2, -0.5), d(0.4, 0.1), d(-0.6, 0.3)];

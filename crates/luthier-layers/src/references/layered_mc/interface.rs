@@ -16,8 +16,8 @@ use super::optics::{Optics, Side};
 use super::random::Stream;
 use super::rough::{Rough, Sided};
 use super::{one_facet, walk};
+use crate::formulas::oren_nayar;
 use crate::monochrome::{MonochromeBelow, MonochromeLayer};
-use crate::oren_nayar;
 
 /// An interface.
 #[derive(Debug, Clone)]

@@ -22,8 +22,8 @@ use super::path::{EVENTS_SURE, survives};
 use super::random::Stream;
 use super::rough::{Rough, Sided};
 use super::{one_facet, walk};
+use crate::formulas::oren_nayar;
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::oren_nayar;
 
 /// A stack at wavelengths that share their paths.
 #[derive(Debug, Clone)]
@@ -221,7 +221,7 @@ impl JointInterface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layered_mc::{InterfaceMode, LayeredMc};
+    use crate::references::layered_mc::{InterfaceMode, LayeredMc};
     use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;

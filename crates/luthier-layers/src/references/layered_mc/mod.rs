@@ -11,7 +11,6 @@
 mod chance;
 mod colored;
 mod connect;
-mod estimate;
 mod facets;
 #[cfg(test)]
 mod fixtures;
@@ -29,7 +28,6 @@ mod walk;
 use glam::DVec3;
 
 pub use colored::ColorPaths;
-pub use estimate::Estimate;
 pub use joint::{JointPath, JointPaths};
 pub use optics::Side;
 
@@ -38,8 +36,7 @@ pub(crate) use interface::Interface;
 pub(crate) use random::Stream;
 pub(crate) use rough::Sided;
 
-use crate::inputs::{Input, Inputs};
-use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
+use crate::model::{Claims, Estimate, Estimator, Input, Inputs, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use connect::Scratch;
 use path::Interfaces;

@@ -10,9 +10,10 @@ use super::fixtures::rough_coat_on_metal;
 use super::random::Stream;
 use super::rough::{Rough, Sided};
 use super::walk::one_ended;
-use super::{Estimate, Interface, InterfaceMode, LayeredMc, Side};
+use super::{Interface, InterfaceMode, LayeredMc, Side};
+use crate::model::Estimate;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use crate::random_walk::RandomWalk;
+use crate::references::random_walk::RandomWalk;
 
 /// An error is false where the truth is farther off than this many of it.
 const SIGMAS: f64 = 5.0;

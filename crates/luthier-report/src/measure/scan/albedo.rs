@@ -201,7 +201,7 @@ fn estimates(readers: &[Reader], point: Point) -> Vec<Estimate> {
 fn crossed(reader: &Reader, point: Point, seed: u32) -> Rgb {
     let walks = (CROSSED_WALKS / reader.crossing.len().max(1) as u32).max(CROSSED_WALKS_MIN);
     let each = reader.crossing.iter().zip(0..).map(|(crossing, wavelength): (_, u32)| {
-        let facets = TransparentFacets { eta: crossing.eta, from_above: &crossing.curve, curve: 0 };
+        let facets = TransparentFacets { eta: crossing.eta, from_above: |cos| crossing.curve.at(0, cos) };
         // A family of walks for every wavelength: their noise averages out.
         let seed = seed.wrapping_add((wavelength + 1).wrapping_mul(0x9e37_79b9));
         let value = crossed_albedo(reader.distribution, point.alpha, facets, point.cos_theta, walks, seed);

@@ -1,6 +1,6 @@
 //! Scan of escape tiles against the share of a lobe that is not totally reflected.
 
-use luthier_layers::statistics::total_reflection::escaping_share;
+use luthier_layers::models::statistics::total_reflection::escaping_share;
 use luthier_lut::Axis;
 use rayon::prelude::*;
 

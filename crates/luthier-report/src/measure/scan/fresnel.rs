@@ -1,6 +1,7 @@
 //! Scan of Fresnel rows against the interfaces that read them.
 
-use luthier_layers::terms::{Exact, Terms};
+use luthier_layers::terms::Terms;
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::incident_cosine;
 
 use super::{Measured, Scan, User, coordinate, coordinates};

@@ -1,6 +1,6 @@
 //! Scan of rows of lobes against rows that are fitted anew.
 
-use luthier_layers::terms::Exact;
+use luthier_layers::twins::terms::Exact;
 
 use super::{Measured, Scan, User, coordinates, run};
 use crate::Subject;

@@ -11,7 +11,7 @@ mod thickness;
 
 use std::ops::Range;
 
-use luthier_layers::terms::Exact;
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
 use luthier_manifest::MaterialEntry;
 use serde::{Deserialize, Serialize};

@@ -5,9 +5,9 @@ use std::array::from_fn;
 use luthier_optics::albedo::COS_THETA_MIN;
 
 use super::energy::Energy;
-use super::layers::{Below, Layers};
 use super::spread::Spread;
-use crate::refraction::cos_theta_t_sq;
+use crate::formulas::refraction::cos_theta_t_sq;
+use crate::layers::{Below, Layers};
 
 /// Number of inter-reflections that spread light, at most. Between two perfect reflectors it is infinite, and so are
 /// variances.

@@ -6,9 +6,9 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
+use crate::models::statistics::fixtures::{NotTotal, fresnel};
+use crate::models::statistics::spread::{Covariance, alpha};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::statistics::fixtures::{NotTotal, fresnel};
-use crate::statistics::spread::{Covariance, alpha};
 
 fn glass(ior: f64, optical_depth: f64) -> MonochromeBelow {
     MonochromeBelow::dielectric(ior, optical_depth)

@@ -1,9 +1,13 @@
-//! Slope distributions of micro-surfaces and their Smith masking, isotropic.
+//! Slope distributions of micro-surfaces and their Smith masking: isotropic by functions, with two slope parameters as [`Anisotropic`].
+
+mod anisotropic;
 
 use std::f64::consts::PI;
 
+pub use anisotropic::{Anisotropic, to_layer};
+
 use crate::masking::smith_g1_of;
-use crate::ndf::Isotropic;
+use crate::ndf::{Ndf, NdfError, positive};
 use crate::stack::Distribution;
 
 /// `pi alpha^2 D(theta_h)`: the normalised distribution scaled so that it neither overflows nor vanishes as alpha goes to 0. At
@@ -48,6 +52,29 @@ pub fn scaled_distribution(distribution: Distribution, alpha: f64, cos_theta_h: 
 /// The normalised distribution D; its integral times the cosine over the hemisphere is 1. `alpha` > 0.
 pub fn distribution(distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
     scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq) / (PI * alpha * alpha)
+}
+
+/// A distribution of a surface and its slope parameter, as an [`Ndf`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Isotropic {
+    distribution: Distribution,
+    alpha: f64,
+}
+
+impl Isotropic {
+    /// The distribution of slope parameter `alpha`.
+    ///
+    /// # Errors
+    /// [`NdfError::NotPositive`] unless `alpha` is positive and finite.
+    pub fn new(distribution: Distribution, alpha: f64) -> Result<Self, NdfError> {
+        Ok(Self { distribution, alpha: positive("alpha", alpha)? })
+    }
+}
+
+impl Ndf for Isotropic {
+    fn density(&self, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        distribution(self.distribution, self.alpha, cos_theta_h, sin_theta_h_sq)
+    }
 }
 
 /// Smith's Lambda for a direction in the upper hemisphere, 0 <= `cos_theta` <= 1 (infinite at 0); G1 = 1 / (1 + Lambda).

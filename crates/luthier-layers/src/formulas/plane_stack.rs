@@ -6,8 +6,8 @@ use luthier_optics::fresnel::coated;
 use luthier_optics::quadrature::gauss_legendre;
 use num_complex::Complex64;
 
+use crate::formulas::refraction::refracted_cosine;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use crate::refraction::refracted_cosine;
 
 /// Power that the first interfaces of a stack pass and return, with all bounces between them.
 #[derive(Debug, Clone, Copy, PartialEq)]

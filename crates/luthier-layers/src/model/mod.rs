@@ -1,12 +1,15 @@
 //! The `Model` trait: evaluation at one wavelength, and a description for listings.
 
+mod estimate;
+mod inputs;
+
 use glam::DVec3;
 use luthier_model::ShadingModel;
 use luthier_optics::Rgb;
 
-use crate::furnace;
-use crate::inputs::{Input, Inputs};
-use crate::layered_mc::Estimate;
+pub use estimate::Estimate;
+pub use inputs::{Input, Inputs};
+
 use crate::monochrome::Monochrome;
 
 /// Description of a model, for listings and reports.
@@ -117,9 +120,9 @@ pub trait Model: Sync {
         0
     }
 
-    /// The stack of a white furnace, see [`furnace`].
+    /// The stack of a white furnace, see [`furnace`](crate::furnace::furnace).
     fn lossless(&self, stack: &Monochrome) -> Monochrome {
-        furnace::lossless(stack)
+        stack.lossless()
     }
 }
 

@@ -17,9 +17,9 @@ pub enum Input {
     InnerNormal,
     /// A second stack, see [`Model::stack_index`](crate::model::Model::stack_index).
     OtherStack,
-    /// The light of an environment ([`elek_model::environment`](crate::elek_model::environment)).
+    /// The light of an environment ([`elek_model::environment`](crate::models::elek_model::environment)).
     Environment,
-    /// A re-radiation matrix ([`fluorescence`](crate::fluorescence)).
+    /// A re-radiation matrix ([`fluorescence`](crate::effects::fluorescence)).
     Matrix,
     /// The wavelength of the light, when it is not the one seen.
     Excitation,
@@ -55,7 +55,7 @@ pub struct Inputs {
     pub uv: Option<DVec2>,
     /// Distance of the eye, in the scene's unit of length; at least 0.
     pub distance: Option<f64>,
-    /// Extent of patina: below 0 none, above 1 all, see [`Patina::extent`](crate::patina::Patina::extent).
+    /// Extent of patina: below 0 none, above 1 all, see [`Patina::extent`](crate::effects::patina::Patina::extent).
     pub extent: Option<f64>,
     /// Value of the patina's map, 0..=1.
     pub map: Option<f64>,

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{NdfError, positive};
-use crate::microfacet;
+use super::lambda;
+use crate::ndf::{NdfError, positive};
 use crate::stack::{Distribution, Surface};
 
 /// A distribution whose slopes over (`alpha_x`, `alpha_y`) are those of the isotropic one of alpha 1.
@@ -67,7 +67,7 @@ impl Anisotropic {
 
     /// Smith's Lambda for a unit direction with `w.z >= 0` (infinite at 0).
     pub fn lambda(&self, w: DVec3) -> f64 {
-        microfacet::lambda(self.distribution, self.alpha_along(w), w.z)
+        lambda(self.distribution, self.alpha_along(w), w.z)
     }
 }
 
@@ -145,7 +145,7 @@ mod tests {
         for distribution in BOTH {
             let ndf = Anisotropic::new(distribution, 0.3, 0.3).unwrap();
             let wh = DVec3::new(0.2, -0.3, 0.8).normalize();
-            let isotropic = microfacet::distribution(distribution, 0.3, wh.z, wh.x * wh.x + wh.y * wh.y);
+            let isotropic = super::super::distribution(distribution, 0.3, wh.z, wh.x * wh.x + wh.y * wh.y);
             assert!((ndf.density(wh) / isotropic - 1.0).abs() < 1e-14);
         }
     }

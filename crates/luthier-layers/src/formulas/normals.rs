@@ -6,9 +6,8 @@ use luthier_optics::masking::smith_g1_of;
 use luthier_optics::ndf::{Abc, BlinnPhong, Ndf, Sgd};
 use luthier_optics::stack::{Distribution, Surface};
 
-use crate::facets::{ALPHA_MIN, Facets, Lobe, masked_lobe};
+use crate::formulas::facets::{ALPHA_MIN, Facets, Lobe, masked_lobe};
 use crate::memo::Memo;
-use crate::phong::exponent;
 
 /// Distribution of facet normals.
 ///
@@ -26,6 +25,12 @@ pub enum Normals {
     Abc,
     /// SGD of the paper's `alpha` equal to alpha squared, `p = 1`: Beckmann's fall-off far from the normal, a sharper peak.
     Sgd,
+}
+
+/// Blinn's exponent for a slope parameter: `2/alpha^2 - 2` (Walter et al. 2007).
+pub fn exponent(alpha: f64) -> f64 {
+    let alpha = alpha.clamp(ALPHA_MIN, 1.0);
+    2.0 / (alpha * alpha) - 2.0
 }
 
 /// Least exponent of Blinn-Phong: alpha = 1 has 0.

@@ -1,5 +1,7 @@
 //! Layered surface at one wavelength, the input of every model.
 
+mod lossless;
+
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};

@@ -5,9 +5,9 @@ use luthier_optics::film_color::{BelcourBarla, granier_two_beam};
 use luthier_optics::schlick::{F82, F82_COS_THETA, Lazanyi, complex_f0, f0, schlick};
 use num_complex::Complex64;
 
+use crate::formulas::transfer_matrix::transfer_matrix;
 use crate::memo::Memo;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use crate::transfer_matrix::transfer_matrix;
 
 /// Formula for the reflectance of an interface. All but [`Fresnel::Exact`] and [`Fresnel::TransferMatrix`] are approximations; their errors
 /// are in [`luthier_optics::schlick`] and [`luthier_optics::film_color`].

@@ -2,9 +2,12 @@
 
 use luthier_optics::stack::{Base, Stack, Surface};
 
-use crate::elek::ALPHA_MIN;
+use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::refraction::REFRACTION_WAVELENGTH_NM;
+
+/// Smallest slope parameter of models that have a shader. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
+/// below what one pixel or one light source resolves, and still safe in f32.
+pub const ALPHA_MIN: f64 = 1e-3;
 
 /// A stack in `C` channels that share their directions: one wavelength, or three colours.
 #[derive(Debug, Clone, PartialEq)]
