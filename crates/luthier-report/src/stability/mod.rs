@@ -32,7 +32,8 @@ mod svg;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ReportError, pages::json};
+use crate::error::ReportError;
+use crate::text::json;
 
 pub use aim::Aim;
 pub use case::{StressCase, cases};

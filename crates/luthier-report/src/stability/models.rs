@@ -16,7 +16,8 @@ use rayon::prelude::*;
 
 use super::case::StressCase;
 use super::{Cell, Fault, Level, RECIPROCITY};
-use crate::Pair;
+use crate::measure::directions::Pair;
+use crate::measure::statistics::FLOOR;
 
 /// Wavelength and channel at which models are compared: gold is yellow there, films are neither dark nor bright by rule.
 const WAVELENGTH_NM: f64 = 525.0;
@@ -228,7 +229,7 @@ fn laws(
         if info.claims.reciprocal && info.kind != Kind::Density && model.estimator().is_none() && wi.z.min(wo.z) > 0.0 {
             let (f, back) = (value * wo.z, model.eval(stack, wo, wi) * wi.z);
             // Beside what is seen: a value that is nothing next to a white diffuser may be rounding in both.
-            let size = f.abs().max(back.abs()).max(crate::FLOOR * wi.z * wo.z);
+            let size = f.abs().max(back.abs()).max(FLOOR * wi.z * wo.z);
             asymmetry = asymmetry.max((f - back).abs() / size);
         }
     }

@@ -6,7 +6,7 @@ use luthier_model::Quantity;
 
 use super::explain::EXPLANATIONS;
 use super::{Cell, FAILS, HOLDS, HOLDS_ALBEDO, Level, PITFALLS, Stability, Verdict};
-use crate::pages::format::{error, number};
+use crate::text::format::{error, number};
 
 /// Cases side by side in a table.
 const COLUMNS: usize = 12;
