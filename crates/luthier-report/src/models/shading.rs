@@ -59,7 +59,7 @@ impl AgainstReference {
 }
 
 /// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. With the settings of
-/// [`judge_models`], its figures.
+/// [`crate::judge_models`], its figures.
 pub fn judge_shading_models(subject: &ModelSubject, settings: ModelSettings) -> Vec<AgainstReference> {
     let named = |shading: ShadingModel| {
         let model = models().into_iter().find(|model| model.info().name == shading.name());
