@@ -125,14 +125,11 @@ impl Row {
     }
 }
 
-/// Surfaces of one layer that layered models are shown beside.
-const SINGLE: [&str; 2] = ["microfacet", "phong"];
-
-/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered. Not
-/// those that spread two stacks, of which a material has one.
+/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered, and surfaces
+/// of one layer that shaders have. Not those that spread two stacks, of which a material has one.
 fn rows() -> Vec<Row> {
     let is_judged = |info: ModelInfo| match info.kind {
-        Kind::Surface => SINGLE.contains(&info.name),
+        Kind::Surface => info.shading().is_some(),
         Kind::Layered => true,
         Kind::Place => !info.inputs.contains(&Input::OtherStack),
         Kind::Density | Kind::Reference => false,

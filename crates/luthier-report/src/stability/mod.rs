@@ -172,7 +172,7 @@ impl Cell {
         let error = if error.is_finite() { error } else { 0.0 };
         let mut cell =
             Self { level, method: method.to_owned(), case: case.to_owned(), verdict, fault, error, explanation: None };
-        cell.explanation = explain::explanation(&cell).map(|e| e.name.to_owned());
+        cell.explanation = explain::explanation(&cell).map(|e| e.name.clone());
         cell
     }
 

@@ -10,6 +10,7 @@ use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
 use luthier_layers::model::{Estimator, Kind, Model, ModelInfo};
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::registry::models;
+use luthier_model::Family;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::Base;
 use rayon::prelude::*;
@@ -112,7 +113,7 @@ fn is_for(info: &ModelInfo, case: &StressCase) -> bool {
         (_, "lambert" | "oren-nayar") => layers.len() == 1 && ends_diffuse,
         (_, "fluorescence") => layers.len() == 2 && ends_diffuse,
         (_, "closed-form") => is_smooth(&Monochrome::new(&case.stack, WAVELENGTH_NM, CHANNEL)),
-        (Kind::Surface, "phong") => true,
+        (Kind::Surface, _) if info.shading().is_some_and(|model| model.facts().family == Family::Coefficients) => true,
         (Kind::Surface, _) | (_, "random-walk") => layers.len() == 1 && !ends_diffuse,
         (Kind::Density, _) => case.aim != super::Aim::Ordinary || layers.len() == 1,
         _ => true,
