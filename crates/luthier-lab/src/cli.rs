@@ -3,12 +3,10 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use luthier_cost::Family;
 use luthier_manifest::ShadingModel;
 use luthier_terminal::{Sources, named};
-
-use crate::foreign::Kind;
 
 const AFTER_HELP: &str = "\
 Exit codes and failures in JSON are those of `luthier --help`. `scripts/pages.sh` makes all pages.
@@ -435,6 +433,19 @@ pub(crate) struct TexelsOptions {
     pub(crate) folder: PathBuf,
 }
 
+/// A kind of file that others wrote.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ForeignKind {
+    /// glTF
+    Mesh,
+    /// Radiance HDR and OpenEXR
+    Sky,
+    /// PNG, JPEG and WebP
+    Picture,
+    /// Tables of indices: CSV, and the YAML of refractiveindex.info
+    Index,
+}
+
 #[derive(Debug, Args)]
 #[command(
     after_help = "Folders are fetched by hand: the page says where from. Outcomes of a collection take the place of earlier ones in --data, so that a page is made of many runs. \
@@ -447,7 +458,7 @@ pub(crate) struct ForeignOptions {
     pub(crate) folders: Vec<PathBuf>,
     /// Kind of file to try; may be given again. By default all
     #[arg(long, value_name = "KIND", value_enum, requires = "collection")]
-    pub(crate) kind: Vec<Kind>,
+    pub(crate) kind: Vec<ForeignKind>,
     /// Name of the collection on the page
     #[arg(long, value_name = "NAME", requires = "folders")]
     pub(crate) collection: Option<String>,

@@ -13,6 +13,12 @@ impl ShadingModel {
         row(self)
     }
 
+    /// The heading of a model in f64: that of the shader's model that it is a form of, or that it stands beside.
+    pub fn heading_of(name: &str) -> Option<&'static str> {
+        let is_kin = |model: &&Self| name.starts_with(model.name()) || model.facts().beside.contains(&name);
+        Self::ALL.iter().find(is_kin).map(|model| model.facts().heading)
+    }
+
     /// Name and source, for headers and reports.
     pub const fn title(self) -> &'static str {
         self.facts().title

@@ -15,6 +15,10 @@ use crate::tolerance::Tolerances;
 pub struct Facts {
     /// Name and source, for headers and reports.
     pub title: &'static str,
+    /// Heading of pages under which it stands, beside models of the same source or kind.
+    pub heading: &'static str,
+    /// Models in f64 alone that stand under that heading, too.
+    pub beside: &'static [&'static str],
     /// How the model follows light.
     pub family: Family,
     /// Layers that its shader reads.

@@ -27,6 +27,11 @@ const STATISTICS_TABLES: &[TableRead] =
     &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
 
 /// Parts of models that go down a path.
+/// Headings that models share.
+const ONE_LAYER: &str = "One layer";
+const ELEK_AND_GRANIER: &str = "Elek, Granier and Heidrich";
+const STATISTICS: &str = "Statistics of light";
+
 const PATH_PARTS: &[ModelPart] = &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance];
 
 /// Tolerances of models that go down a path.
@@ -44,6 +49,8 @@ const STATISTICS_TOLERANCES: Tolerances = Tolerances {
 /// A path with one slope parameter per interface, and Elek's clamp.
 const ELEK: Facts = Facts {
     title: "elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010)",
+    heading: ELEK_AND_GRANIER,
+    beside: &["flakes", "patina"],
     family: Family::Path,
     reach: Reach::All,
     is_isotropic: true,
@@ -86,6 +93,8 @@ const ELEK: Facts = Facts {
 /// A path with both slope parameters.
 const WEIDLICH_WILKIE: Facts = Facts {
     title: "weidlich-wilkie (A. Weidlich, A. Wilkie, Arbitrarily layered micro-facet surfaces, GRAPHITE 2007)",
+    heading: "Weidlich and Wilkie",
+    beside: &["fluorescence"],
     family: Family::Path,
     reach: Reach::All,
     is_isotropic: false,
@@ -129,6 +138,8 @@ const WEIDLICH_WILKIE: Facts = Facts {
 /// Beams of one film over a base.
 const GRANIER_HEIDRICH: Facts = Facts {
     title: "granier-heidrich (X. Granier, W. Heidrich, A Simple Layered RGB BRDF Model, Graphical Models 2003)",
+    heading: ELEK_AND_GRANIER,
+    beside: &[],
     family: Family::Beams,
     reach: Reach::FirstAndBase,
     is_isotropic: true,
@@ -158,6 +169,8 @@ const GRANIER_HEIDRICH: Facts = Facts {
 /// Statistics with one variance.
 const BELCOUR: Facts = Facts {
     title: "belcour (L. Belcour, Efficient Rendering of Layered Materials, SIGGRAPH 2018)",
+    heading: STATISTICS,
+    beside: &[],
     family: Family::Statistics,
     reach: Reach::All,
     is_isotropic: true,
@@ -193,6 +206,8 @@ const BELCOUR: Facts = Facts {
 /// Statistics with a matrix of covariances.
 const YAMAGUCHI: Facts = Facts {
     title: "yamaguchi (T. Yamaguchi et al., Layered Materials with Anisotropic Normal Distributions, SIGGRAPH Asia 2019)",
+    heading: STATISTICS,
+    beside: &[],
     family: Family::Statistics,
     reach: Reach::All,
     is_isotropic: false,
@@ -229,6 +244,8 @@ const YAMAGUCHI: Facts = Facts {
 /// One lobe of a power over one diffuse term.
 const PHONG: Facts = Facts {
     title: "phong (B. T. Phong, Illumination for computer generated pictures, 1975)",
+    heading: ONE_LAYER,
+    beside: &[],
     family: Family::Coefficients,
     reach: Reach::None,
     is_isotropic: false,
@@ -255,6 +272,8 @@ const PHONG: Facts = Facts {
 /// The facets of the first interface.
 const MICROFACET: Facts = Facts {
     title: "microfacet (K. Torrance, E. Sparrow 1967; masking of E. Heitz 2014)",
+    heading: ONE_LAYER,
+    beside: &[],
     family: Family::Facets,
     reach: Reach::First,
     is_isotropic: false,
@@ -289,6 +308,8 @@ const MICROFACET: Facts = Facts {
 /// The facets of the first interface over rows of lobes.
 const LOBES: Facts = Facts {
     title: "lobes (luthier's own: lobes fitted to a simulation of the stack)",
+    heading: "Lobes fitted to the reference",
+    beside: &[],
     family: Family::Lobes,
     reach: Reach::First,
     is_isotropic: false,

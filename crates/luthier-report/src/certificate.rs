@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::pages::format::{error, escape, number};
+use crate::text::format::{error, escape, number};
 
 /// Decades of the colour scale, from the first colour to the last.
 const DECADES: [i32; 2] = [-6, -1];

@@ -4,7 +4,7 @@ use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use thiserror::Error;
 
-use crate::Form;
+use luthier_manifest::Form;
 
 /// Failure to judge a bake.
 #[derive(Debug, Error)]

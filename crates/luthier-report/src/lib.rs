@@ -25,6 +25,18 @@
 //! [`Certificate`] is the page of one table that travels alone.
 //! [`stability`] runs every method on stacks where methods fail, and finds the domain of each.
 //!
+//! A room uses the rooms above it in this list, and none below:
+//!
+//! - `error`, `text`, `svg`: failures; numbers and JSON as a reader wants them; charts;
+//! - `measure`: the subject, both sides of a comparison, their statistics, causes of errors, tables;
+//! - `models`: models against the simulation of whole stacks;
+//! - `places`: materials that maps vary;
+//! - `parity`, `stability`: shaders against their twins, methods where methods fail;
+//! - `judge`: all of it, of a bake, as a [`Report`];
+//! - `pages`: the report as a page.
+//!
+//! `audit`, `certificate` and `picture` stand beside these and use the first row alone.
+//!
 //! Simplifications: of thickness maps only the properties that follow from the stack are checked (range, normalisation), because
 //! their truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
@@ -40,44 +52,45 @@ mod parity;
 mod picture;
 mod places;
 pub mod stability;
+mod svg;
+mod text;
 
 pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Statement, Term, audit};
 pub use certificate::{Certificate, ErrorMap};
 pub use error::ReportError;
-pub use judge::ball::{BallPicture, DistantLight, render_ball, render_ball_of};
 pub use judge::evidence::{
-    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShapeCost, StabilitySummary,
+    Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShapeCost, StabilitySummary,
 };
-pub use judge::exceptions::{Cause, Exception, Factor, Part};
+pub use judge::exceptions::Exception;
 pub use judge::limits::{Asked, FileBudget, Limit, limits};
-pub use judge::memory::{Memory, contents};
 pub use judge::profile::{ANGLE_BINS, AngleProfile, Exceedance};
-pub use judge::report::{
-    AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,
-    TileReport, WorstCase,
-};
+pub use judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, WorstCase};
 pub use judge::{Progress, Settings, judge};
 pub use luthier_manifest::Form;
+pub use measure::causes::{Cause, Factor, Part};
 pub use measure::device::Device;
 pub use measure::directions::{DirectionSet, Pair};
+pub use measure::memory::{Memory, contents};
+pub use measure::scan::report::{AlphaPoint, Curves, ReflectanceCurve, TableReport, TileReport};
 pub use measure::seen::{Seen, SeenLight, picture_color_difference};
 pub use measure::statistics::{
     DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Spread, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
 };
-pub use measure::subject::Subject;
+pub use measure::subject::{Subject, SurfaceMap};
 pub use measure::table_terms::{TableTerms, Weights};
 pub use models::{
-    MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, PHI_DEG, Quantity, Reference,
-    ReferenceSettings, Shown, ViewError, Worst, judge_models, judge_shading_models,
+    AgainstReference, MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, PHI_DEG, Quantity,
+    Reference, ReferenceSettings, Shown, ViewError, Worst, judge_models, judge_shading_models,
 };
-pub use pages::chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use parity::{
     AT_PLACES, KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Verdict, parity,
     tolerance,
 };
+pub use picture::ball::{BallPicture, DistantLight, render_ball, render_ball_of};
 pub use picture::flip::lightness_chroma_hue;
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures, sheet};
 pub use places::{
     AtPlaces, PLACE_FLOOR, PLACES_SEED, PlaceErrors, Places, Rows, SimulatedAt, SimulatedErrors, SimulatedSettings,
-    SurfaceMap, WorstPlace, at_places, simulated, simulated_by,
+    WorstPlace, at_places, simulated, simulated_by,
 };
+pub use svg::{Curve, Plot, PlotAxis, PlotColor};

@@ -2,25 +2,13 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
 use luthier_environment::Environment;
 use luthier_export::input;
 use luthier_gpu::{Mesh, soup};
 use luthier_optics::index_file::{csv, yaml};
 use luthier_texture::{picture as pictures, radiance};
 
-/// A kind of file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Kind {
-    /// glTF
-    Mesh,
-    /// Radiance HDR and OpenEXR
-    Sky,
-    /// PNG, JPEG and WebP
-    Picture,
-    /// Tables of indices: CSV, and the YAML of refractiveindex.info
-    Index,
-}
+use crate::cli::ForeignKind;
 
 /// Outcome of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +22,7 @@ pub(super) enum Read {
 /// Notes, or the reason of a refusal.
 type Outcome = Result<Vec<String>, String>;
 
-impl Kind {
+impl ForeignKind {
     pub(super) const ALL: [Self; 4] = [Self::Mesh, Self::Sky, Self::Picture, Self::Index];
 
     pub(super) fn name(self) -> &'static str {

@@ -11,10 +11,9 @@ use std::time::Instant;
 use luthier_export::label;
 use luthier_terminal::{Bar, Failure, Outcome, deliver, files};
 
-pub(crate) use self::kinds::Kind;
 use self::kinds::Read;
 use self::record::{Collection, Data, Tried};
-use crate::cli::ForeignOptions;
+use crate::cli::{ForeignKind, ForeignOptions};
 
 /// Tries the files of a collection, keeps the outcome among those of others, and writes the page of all.
 pub(crate) fn run(options: &ForeignOptions) -> Outcome {
@@ -22,7 +21,7 @@ pub(crate) fn run(options: &ForeignOptions) -> Outcome {
     if let Some(name) = &options.collection {
         let collection = data.collection(name);
         describe(collection, options)?;
-        let kinds = if options.kind.is_empty() { Kind::ALL.to_vec() } else { options.kind.clone() };
+        let kinds = if options.kind.is_empty() { ForeignKind::ALL.to_vec() } else { options.kind.clone() };
         for kind in kinds {
             collection.put(kind.name(), &tried(kind, &options.folders)?);
         }
@@ -49,7 +48,7 @@ fn describe(collection: &mut Collection, options: &ForeignOptions) -> Outcome {
 }
 
 /// Outcomes of every file of a kind below the folders, in the order of the folders and of names.
-fn tried(kind: Kind, folders: &[PathBuf]) -> Outcome<Vec<Tried>> {
+fn tried(kind: ForeignKind, folders: &[PathBuf]) -> Outcome<Vec<Tried>> {
     let mut all = Vec::new();
     for folder in folders {
         let mut found = Vec::new();
@@ -84,7 +83,7 @@ fn caught(read: impl FnOnce() -> Result<Vec<String>, String>) -> Read {
 }
 
 /// The files of a kind below a folder. Links are not followed.
-fn below(folder: &Path, kind: Kind, found: &mut Vec<PathBuf>) -> Outcome {
+fn below(folder: &Path, kind: ForeignKind, found: &mut Vec<PathBuf>) -> Outcome {
     for entry in std::fs::read_dir(folder).map_err(files(folder, "list"))? {
         let entry = entry.map_err(files(folder, "list"))?;
         let (path, is) = (entry.path(), entry.file_type().map_err(files(&entry.path(), "read"))?);

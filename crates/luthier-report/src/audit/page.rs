@@ -3,7 +3,7 @@
 use luthier_lut::ErrorStats;
 
 use super::{Audit, AuditVerdict, Candidate};
-use crate::pages::format::{error, number};
+use crate::text::format::{error, number};
 
 impl Audit {
     /// The verdict in a line: `as stated`, `fits better as: flipped in y, masking separable`, `fits nothing that was tried`.

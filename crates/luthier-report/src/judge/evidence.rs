@@ -50,29 +50,6 @@ pub struct ShapeCost {
     pub is_of_similar: bool,
 }
 
-/// A model against the reference of whole stacks: the largest errors over the views of [`crate::judge_models`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AgainstReference {
-    /// The model.
-    pub model: ShadingModel,
-    /// Largest error of the directional albedo, absolute.
-    pub albedo_err: f64,
-    /// Standard error of the reference there.
-    pub albedo_std_err: f64,
-    /// Share of the reflected light that has to move, appear or vanish.
-    pub lobe_err: f64,
-    /// Lobe error that noise alone makes there.
-    pub lobe_noise: f64,
-    /// Angle of the eye at the largest lobe error, degrees.
-    pub worst_theta_deg: f64,
-    /// Wavelength there.
-    pub worst_wavelength_nm: f64,
-    /// Largest CIEDE2000 difference of the albedos at three wavelengths taken as R, G and B, under D65.
-    pub delta_e: f64,
-    /// Largest lobe error over the wavelengths, by angle of the eye in degrees.
-    pub by_angle: Vec<(f64, f64)>,
-}
-
 /// The paths of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReferencePaths {

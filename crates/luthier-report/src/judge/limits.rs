@@ -4,7 +4,7 @@ use luthier_lut::Values;
 use luthier_manifest::Budget;
 use serde::{Deserialize, Serialize};
 
-use crate::Report;
+use crate::judge::report::Report;
 use crate::measure::seen::SeenLight;
 
 /// A limit and what it was compared with.

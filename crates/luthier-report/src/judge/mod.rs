@@ -1,50 +1,40 @@
 //! The judgement of a bake: order of its parts, settings, progress.
 
-pub(crate) mod ball;
 pub(crate) mod evidence;
 pub(crate) mod exceptions;
 pub(crate) mod limits;
-pub(crate) mod memory;
 pub(crate) mod profile;
 pub(crate) mod report;
 
 use std::fmt;
 
-use glam::DVec3;
-use luthier_layers::lobes::{Cover, Varying};
 use luthier_layers::models::elek::{self, Layer};
-use luthier_layers::twins::parts::Parts;
-use luthier_layers::twins::real_time::Twin;
-use luthier_layers::twins::terms::{Exact, ShaderTerms};
-use luthier_manifest::{
-    ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, PatinaRecord, PlaceValues, ShadingModel, VaryingFactor,
-};
+use luthier_manifest::{ColorMode, Form, LayerKind, LayerRecord, Manifest, ShadingModel};
 use luthier_optics::Rgb;
-use luthier_optics::color::Color;
-use luthier_optics::stack::Stack;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use crate::judge::exceptions::{Exception, Factors, Miss, exception};
-use crate::judge::memory::{Memory, Remembered};
-use crate::judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
+use crate::error::ReportError;
+use crate::judge::exceptions::{Exception, exception};
+use crate::judge::profile::{AngleProfile, Exceedance};
+use crate::judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report};
+use crate::measure::causes::{Factors, Miss};
+use crate::measure::device::{Device, WeightsVote, run};
+use crate::measure::directions::{DirectionSet, Pair};
+use crate::measure::memory::{Memory, Remembered};
+use crate::measure::references::{References, evaluate};
+use crate::measure::scan;
+use crate::measure::scan::report::TableReport;
 use crate::measure::seen::SeenBy;
-use crate::measure::statistics::{brightest, relative_error};
-use crate::measure::subject::color;
-use crate::measure::table_terms::{TableTerms, Weights, recorded_veil};
+use crate::measure::statistics::{FLOOR, Statistics, TARGET_MAX_REL_ERR, UNCERTAINTY_MARGIN, statistics};
+use crate::measure::subject::Subject;
+use crate::measure::table_terms::{TableTerms, Weights};
 use crate::places::{AtPlaces, PLACES_SEED, SimulatedErrors, SimulatedSettings, at_places, simulated};
-use crate::{
-    AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
-    TARGET_MAX_REL_ERR, measure::scan, pages::format, statistics,
-};
+use crate::text::format;
 
 /// Factor by which the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
 /// points.
 const BAKER_MARGIN: f64 = 1.05;
-
-/// Standard errors by which an estimated table error has to exceed the baker's besides.
-pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
 
 /// The kinds of votes and of judgements of materials in memories.
 const VOTE: &str = "judge-vote";
@@ -139,7 +129,7 @@ pub fn judge(
     let mut weights = WeightsVote::default();
     for (index, (entry, references)) in manifest.materials.iter().zip(&references).enumerate() {
         record_findings(&entry.name, &references.layers, &entry.layers, &mut findings);
-        let inputs = remembered.material(subject, index, device, settings);
+        let inputs = remembered.material(subject, index, device, settings.pairs_per_set, &settings.simulated);
         let known: Option<WeightsVote> = remembered.recall(VOTE, &inputs);
         let gathered = known.is_none().then(|| bench.gather(index)).transpose()?;
         let vote = known.or_else(|| gathered.as_ref().map(|gathered| gathered.vote)).unwrap_or_default();
@@ -318,110 +308,6 @@ fn models(manifest: &Manifest) -> String {
     names.join(", ")
 }
 
-/// The f64 twin of one material's shader, and its exact terms.
-pub(crate) struct References {
-    pub(crate) layers: Vec<Layer>,
-    pub(crate) twin: Twin,
-    pub(crate) spectral: Exact,
-    pub(crate) three: Exact,
-    /// Exact terms of the form without tables, where these are not `three`.
-    pub(crate) level: Option<Exact>,
-    color: ColorMode,
-}
-
-impl References {
-    pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Self {
-        let three = Color::ThreeWavelengths(material.wavelengths_nm);
-        let color = color(material);
-        let model = material.model;
-        let varying = varying(material);
-        let twin = Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
-        Self {
-            layers: elek::layers(stack),
-            twin: twin.reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
-            spectral: Exact::varying(stack, Color::Spectral, varying),
-            three: Exact::varying(stack, three, varying),
-            level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
-            color: material.color,
-        }
-    }
-
-    /// All that decides the fit of lobes.
-    pub(crate) fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
-        self.baked().fitted()
-    }
-
-    /// The exact terms of the form without tables.
-    pub(crate) fn full(&self) -> &Exact {
-        self.level.as_ref().unwrap_or(&self.three)
-    }
-
-    /// The exact terms that the tables stand for.
-    pub(crate) fn baked(&self) -> &Exact {
-        match self.color {
-            ColorMode::Spectral => &self.spectral,
-            ColorMode::ThreeWavelengths => &self.three,
-        }
-    }
-}
-
-/// The parts of a model that a material chooses.
-pub(crate) fn parts(material: &MaterialEntry) -> Parts {
-    let (masking, reflectance) = material.parts();
-    let parts = Parts { masking, reflectance, internal_reflection: material.internal_reflection(), ..Parts::PLAIN };
-    material.constants.beams.map_or(parts, |beams| {
-        let weights = [beams.specular_weight, beams.diffuse_weight];
-        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
-    })
-}
-
-/// The part of a material that its rows of lobes are over.
-fn varying(material: &MaterialEntry) -> Option<Varying> {
-    let record = material.constants.lobes?.varying?;
-    match record.factor {
-        VaryingFactor::AlphaFactor => Some(Varying::Alpha),
-        VaryingFactor::SlabFactor => Some(Varying::Slab),
-        VaryingFactor::FilmFactor => record.factors.map(Varying::Film),
-        VaryingFactor::Patina => {
-            let PatinaRecord { diffuse_albedo, base_alpha, tarnish, .. } = *material.constants.patina.as_ref()?;
-            Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
-        }
-    }
-}
-
-/// The model in f64 at exactly the f32 directions that the device gets.
-pub(crate) fn evaluate(twin: &Twin, terms: &(impl ShaderTerms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
-    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
-    pairs.par_iter().map(|&(wi, wo)| twin.eval(terms, wide(wi), wide(wo))).collect()
-}
-
-pub(crate) fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
-    checked(device.evaluate(form, material, pairs), form, material, pairs.len())
-}
-
-/// [`run`] with a place for each pair.
-pub(crate) fn run_at(
-    device: &dyn Device,
-    form: Form,
-    material: u32,
-    spots: &[(PlaceValues, Pair)],
-) -> Result<Vec<Rgb>, ReportError> {
-    checked(device.evaluate_at(form, material, spots), form, material, spots.len())
-}
-
-fn checked(
-    values: Result<Vec<[f32; 3]>, String>,
-    form: Form,
-    material: u32,
-    asked: usize,
-) -> Result<Vec<Rgb>, ReportError> {
-    let values = values.map_err(|message| ReportError::Device { form, material, message })?;
-    if values.len() != asked {
-        return Err(ReportError::DeviceCount { form, material, asked, found: values.len() });
-    }
-    Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
-}
-
 /// Pairs, the device's values there, and those of f64 arithmetic on the tables with 8-bit and exact weights.
 type DeviceRun = (DirectionSet, Vec<Pair>, Vec<Rgb>, [Vec<Rgb>; 2]);
 
@@ -478,37 +364,6 @@ impl Gathered {
             };
             self.add(Compared::Arithmetic, set, &pairs, &found, expected);
         }
-    }
-}
-
-/// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-pub(crate) struct WeightsVote {
-    eight_bit: f64,
-    exact: f64,
-}
-
-impl WeightsVote {
-    pub(crate) fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
-        let sum = |expected: &[Rgb]| {
-            let errors = device.iter().zip(expected).flat_map(|(d, e)| {
-                let bright = brightest(e);
-                [0, 1, 2].map(|c: usize| relative_error(d[c], e[c], bright, FLOOR))
-            });
-            errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>()
-        };
-        self.eight_bit += sum(eight_bit);
-        self.exact += sum(exact);
-    }
-
-    /// Adds the sums of another.
-    fn merge(&mut self, other: Self) {
-        self.eight_bit += other.eight_bit;
-        self.exact += other.exact;
-    }
-
-    pub(crate) fn decide(&self) -> Weights {
-        if self.exact <= self.eight_bit { Weights::Exact } else { Weights::EightBit }
     }
 }
 

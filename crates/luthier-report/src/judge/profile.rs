@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::measure::statistics::{brightest, relative_error};
-use crate::{FLOOR, Pair, pages::format};
+use crate::measure::directions::Pair;
+use crate::measure::statistics::{FLOOR, brightest, relative_error};
+use crate::text::format;
 use luthier_optics::Rgb;
 
 /// Bins of [`AngleProfile`], 3 degrees each.

@@ -1,20 +1,22 @@
 //! Data of a judgement.
 
-use luthier_lut::{AtlasLayout, ErrorStats, TableKind, TexelFormat};
+use luthier_lut::TableKind;
 use luthier_manifest::{ColorMode, Search, ShadingModel};
 use serde::{Deserialize, Serialize};
 
-use crate::judge::UNCERTAINTY_MARGIN;
-use crate::judge::evidence::{
-    AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, ShapeCost, StabilitySummary,
-};
+use crate::error::ReportError;
+use crate::judge::evidence::{Costs, PictureErrors, ReferencePaths, ShapeCost, StabilitySummary};
 use crate::judge::exceptions::Exception;
 use crate::judge::limits::Limit;
-use crate::measure::seen::Seen;
+use crate::judge::profile::{AngleProfile, Exceedance};
+use crate::measure::directions::DirectionSet;
+use crate::measure::scan::report::TableReport;
+use crate::measure::seen::{Seen, SeenLight};
+use crate::measure::statistics::Statistics;
+use crate::measure::table_terms::Weights;
+use crate::models::AgainstReference;
 use crate::places::AtPlaces;
-use crate::{
-    AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, pages::json, pages::page, pages::summary,
-};
+use crate::text::json;
 
 /// Version of the report's shape.
 pub const REPORT_SCHEMA: u32 = 3;
@@ -61,92 +63,6 @@ pub struct Report {
     pub tables: Vec<TableReport>,
     /// The materials, in the order of the manifest.
     pub materials: Vec<MaterialReport>,
-}
-
-/// One table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TableReport {
-    /// Kind of the table.
-    pub kind: TableKind,
-    /// Texels of the texture.
-    pub size: [u32; 2],
-    /// Axes, mappings and tiles.
-    pub layout: AtlasLayout,
-    /// Texel format.
-    pub format: TexelFormat,
-    /// Bytes of its texels, uncompressed.
-    pub texel_bytes: u64,
-    /// The file, relative to the manifest.
-    pub path: String,
-    /// One entry per tile.
-    pub tiles: Vec<TileReport>,
-}
-
-/// One tile of a table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TileReport {
-    /// Its name.
-    pub name: String,
-    /// Function that was tabulated.
-    pub model: String,
-    /// The layers that read it, as `material/layer`.
-    pub users: Vec<String>,
-    /// Its error as the baker measured it.
-    pub baker: ErrorStats,
-    /// Its error as measured here from the shipped texels, with 8-bit weights where a sampler filters the format;
-    /// absent for thickness maps, whose truth only the baker has, and for tiles that no layer reads.
-    pub judge: Option<ErrorStats>,
-    /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
-    pub uncertainty: Option<f64>,
-    /// The error that the baker aimed at as sampled, where no other was asked for.
-    #[serde(default)]
-    pub aim: Option<f64>,
-    /// Reads that were not finite; they are not part of `judge`.
-    pub not_finite: u64,
-    /// Curves that are drawn of the tile.
-    pub curves: Curves,
-}
-
-impl TileReport {
-    /// Error of the tile as sampled and the aim of the bake, if the error exceeds the aim: the error that was measured here or that the
-    /// baker states, whichever is more.
-    pub fn miss(&self) -> Option<(f64, f64)> {
-        let stated = (self.baker.worst.expected - self.baker.worst.sampled).abs();
-        let doubt = UNCERTAINTY_MARGIN * self.uncertainty.unwrap_or(0.0);
-        let found = self.judge.as_ref().map_or(0.0, |judge| judge.max_abs_err - doubt).max(stated);
-        self.aim.filter(|aim| found > *aim).map(|aim| (found, aim))
-    }
-}
-
-/// Curves of a tile, in four significant digits: for drawing.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Curves {
-    /// No curves.
-    #[default]
-    None,
-    /// A Fresnel row, as read.
-    Reflectance(ReflectanceCurve),
-    /// The error of a distribution.
-    ByAlpha(Vec<AlphaPoint>),
-}
-
-/// A Fresnel row over the angle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ReflectanceCurve {
-    /// Degrees from one point to the next; the first is at the normal.
-    pub step_deg: f64,
-    /// Reflectance, RGB.
-    pub rgb: Vec<[f64; 3]>,
-}
-
-/// The error of a distribution in a band of alpha.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct AlphaPoint {
-    /// Middle of the band.
-    pub alpha: f64,
-    /// Largest error over the angle, as a fraction of the largest value at that alpha.
-    pub max_err_of_peak: f64,
 }
 
 /// One material.
@@ -328,7 +244,7 @@ impl Report {
     }
 
     /// The largest colour difference of what [`Report::max_error`] covers, under a light: the material besides.
-    pub fn worst_seen(&self, light: crate::SeenLight) -> Option<(f64, &str)> {
+    pub fn worst_seen(&self, light: SeenLight) -> Option<(f64, &str)> {
         let judged = |c: &&Comparison| c.compared.is_judged(self.device.is_some());
         let seen = |m: &MaterialReport| {
             let all = m.comparisons.iter().filter(judged).flat_map(|c| &c.seen).filter(|s| s.light == light);
@@ -372,16 +288,5 @@ impl Report {
     /// [`ReportError::Json`] for other JSON.
     pub fn from_json(json: &str) -> Result<Self, ReportError> {
         Ok(serde_json::from_str(json)?)
-    }
-
-    /// A self-contained page: charts are inline SVG, pictures are in it, no external resource; light, dark and print. It can be read
-    /// without its script, which sorts, filters and reads out values. It is well-formed XML too.
-    pub fn to_html(&self, exhibits: &Exhibits) -> String {
-        page::html(self, exhibits)
-    }
-
-    /// A summary in Markdown, as for a pull request.
-    pub fn to_markdown(&self) -> String {
-        summary::markdown(self)
     }
 }

@@ -1,8 +1,13 @@
-//! Interface to a device that runs the emitted shaders.
+//! The device side of a comparison: a runner of the emitted shaders, and the weights that it reads tables with.
 
 use luthier_manifest::{Form, PlaceValues};
+use luthier_optics::Rgb;
+use serde::{Deserialize, Serialize};
 
-use crate::Pair;
+use crate::error::ReportError;
+use crate::measure::directions::Pair;
+use crate::measure::statistics::{FLOOR, brightest, relative_error};
+use crate::measure::table_terms::Weights;
 
 /// A runner of the emitted shaders.
 pub trait Device {
@@ -24,4 +29,63 @@ pub trait Device {
     /// # Errors
     /// The failure, in words for the user.
     fn evaluate_at(&self, form: Form, material: u32, spots: &[(PlaceValues, Pair)]) -> Result<Vec<[f32; 3]>, String>;
+}
+
+/// The values of a device: one for each pair.
+pub(crate) fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
+    checked(device.evaluate(form, material, pairs), form, material, pairs.len())
+}
+
+/// [`run`] with a place for each pair.
+pub(crate) fn run_at(
+    device: &dyn Device,
+    form: Form,
+    material: u32,
+    spots: &[(PlaceValues, Pair)],
+) -> Result<Vec<Rgb>, ReportError> {
+    checked(device.evaluate_at(form, material, spots), form, material, spots.len())
+}
+
+fn checked(
+    values: Result<Vec<[f32; 3]>, String>,
+    form: Form,
+    material: u32,
+    asked: usize,
+) -> Result<Vec<Rgb>, ReportError> {
+    let values = values.map_err(|message| ReportError::Device { form, material, message })?;
+    if values.len() != asked {
+        return Err(ReportError::DeviceCount { form, material, asked, found: values.len() });
+    }
+    Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
+}
+
+/// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(crate) struct WeightsVote {
+    eight_bit: f64,
+    exact: f64,
+}
+
+impl WeightsVote {
+    pub(crate) fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
+        let sum = |expected: &[Rgb]| {
+            let errors = device.iter().zip(expected).flat_map(|(d, e)| {
+                let bright = brightest(e);
+                [0, 1, 2].map(|c: usize| relative_error(d[c], e[c], bright, FLOOR))
+            });
+            errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>()
+        };
+        self.eight_bit += sum(eight_bit);
+        self.exact += sum(exact);
+    }
+
+    /// Adds the sums of another.
+    pub(crate) fn merge(&mut self, other: Self) {
+        self.eight_bit += other.eight_bit;
+        self.exact += other.exact;
+    }
+
+    pub(crate) fn decide(&self) -> Weights {
+        if self.exact <= self.eight_bit { Weights::Exact } else { Weights::EightBit }
+    }
 }

@@ -5,7 +5,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color_difference::{ciede2000, lab};
 use serde::{Deserialize, Serialize};
 
-use crate::Pair;
+use crate::measure::directions::Pair;
 
 /// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, each channel clipped to what a Rec.709 display
 /// shows, seen by an eye that is adapted to D65.

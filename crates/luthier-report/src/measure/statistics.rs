@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_1_PI;
 use luthier_optics::Rgb;
 use serde::{Deserialize, Serialize};
 
-use crate::Pair;
+use crate::measure::directions::Pair;
 
 /// The floor of relative errors: a tenth of what a white diffuser gives in light along its normal (`f cos_theta_i` =
 /// 1/pi).
@@ -24,6 +24,9 @@ pub const PEAK_FRACTION: f64 = 0.1;
 /// The target: the largest error of a shader against f64, relative to max(brightest channel of the reference, [`FLOOR`]).
 /// Whatever exceeds it is an exception, and the report lists it with its cause.
 pub const TARGET_MAX_REL_ERR: f64 = 1e-3;
+
+/// Standard errors by which an estimated table error has to exceed the baker's besides.
+pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
 
 /// Order statistics of errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

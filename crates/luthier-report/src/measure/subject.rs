@@ -1,12 +1,12 @@
 //! The subject of a judgement: manifest, decoded tables, stacks.
 
 use luthier_layers::models::elek::{self, Below};
-use luthier_lut::{Image, TableKind};
-use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, TableEntry};
+use luthier_lut::{Image, Picture, TableKind};
+use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MapSlot, MaterialEntry, TableEntry};
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use crate::{ReportError, SurfaceMap};
+use crate::error::ReportError;
 
 /// Subject of a judgement: a bake as its users get it, and the surfaces that it was made from.
 #[derive(Debug, Clone)]
@@ -19,6 +19,19 @@ pub struct Subject<'a> {
     pub stacks: Vec<Stack>,
     /// The maps of the materials: places are judged where there are some.
     pub maps: Vec<SurfaceMap>,
+}
+
+/// A map of a material as it ships.
+#[derive(Debug, Clone)]
+pub struct SurfaceMap {
+    /// Number of the material.
+    pub material: u32,
+    /// Quantity that the map varies.
+    pub slot: MapSlot,
+    /// The layer that it is of; `None` for those of the whole surface.
+    pub layer: Option<u32>,
+    /// Its texels.
+    pub picture: Picture,
 }
 
 /// The colour that the tables of a material hold.

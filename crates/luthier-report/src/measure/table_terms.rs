@@ -17,8 +17,8 @@ use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::measure::subject::Table;
-use crate::{ReportError, Subject};
+use crate::error::ReportError;
+use crate::measure::subject::{Subject, Table};
 
 /// How precisely a filtering sampler weighs texels. Formats that core WebGPU does not filter are read with four fetches
 /// and weighed in the shader, exactly, under either.

@@ -223,7 +223,7 @@ mod tests {
         let subject = ModelSubject { name: "coated".to_owned(), stack, wavelengths_nm: nm };
         let reference = Reference::new(&subject, &[50.0], settings(9));
         let expected = reference.errors(Shown::Lobes(&lobes));
-        let most = |of: fn(&crate::ViewError) -> f64| expected.iter().map(of).fold(0.0, f64::max);
+        let most = |of: fn(&crate::models::ViewError) -> f64| expected.iter().map(of).fold(0.0, f64::max);
         let (lobe, albedo) = (most(|view| view.lobe.error), most(|view| view.albedo.error));
         assert!((found.lobe[0] - lobe).abs() < 0.01, "{found:?} {lobe}");
         assert!((found.albedo[0] - albedo).abs() < 4.0 * 1.5 * 2e-3, "{found:?} {albedo}");

@@ -25,6 +25,7 @@ mod page;
 mod paths;
 mod reference;
 mod report;
+mod shading;
 mod views;
 
 use std::num::NonZeroU32;
@@ -34,17 +35,14 @@ use glam::DVec3;
 use luthier_layers::model::{Input, Kind, Model, ModelInfo};
 use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::models;
-use luthier_manifest::ShadingModel;
-use luthier_optics::color_difference::{ciede2000, lab};
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
-
-use crate::judge::evidence::AgainstReference;
 
 use compare::compare;
 use energies::Energies;
 pub use reference::{Reference, ReferenceSettings, Shown};
 pub use report::{MaterialModels, ModelErrors, ModelsReport, Quantity, ViewError, Worst};
+pub use shading::{AgainstReference, judge_shading_models};
 use views::View;
 
 /// Angles of the eye against the normal, degrees.
@@ -90,47 +88,6 @@ pub fn judge_models(
     judge_rows(rows, subjects, settings, progress)
 }
 
-/// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. With the settings of
-/// [`judge_models`], its figures.
-pub fn judge_shading_models(subject: &ModelSubject, settings: ModelSettings) -> Vec<AgainstReference> {
-    let named = |shading: ShadingModel| {
-        let model = models().into_iter().find(|model| model.info().name == shading.name());
-        model.map(|model| (shading, Row::Model(model)))
-    };
-    let (shading, rows): (Vec<ShadingModel>, Vec<Row>) = ShadingModel::ALL.into_iter().filter_map(named).unzip();
-    let judged = judge_material(&rows, subject, settings);
-    let errors = rows.iter().zip(judged).map(|(row, views)| ModelErrors::new(row, views));
-    shading.into_iter().zip(errors).map(|(model, errors)| AgainstReference::of(model, &errors)).collect()
-}
-
-/// Stands for the lobe error of a model that reflects light where the reference reflects none, which no JSON holds.
-const MOST: f64 = 1e6;
-
-impl AgainstReference {
-    fn of(model: ShadingModel, errors: &ModelErrors) -> Self {
-        let at = |theta_deg: f64| errors.views.iter().filter(move |view| view.theta_deg == theta_deg);
-        let color = |theta_deg: f64, of: fn(&ViewError) -> f64| {
-            let mut values = at(theta_deg).map(of);
-            lab([0; 3].map(|_| values.next().unwrap_or(0.0)))
-        };
-        let delta_e = |theta_deg| {
-            ciede2000(color(theta_deg, |view| view.albedo_model), color(theta_deg, |view| view.albedo_reference))
-        };
-        let lobe = |theta_deg| at(theta_deg).map(|view| view.lobe.error.min(MOST)).fold(0.0, f64::max);
-        Self {
-            model,
-            albedo_err: errors.albedo.quantity.error,
-            albedo_std_err: errors.albedo.quantity.std_err,
-            lobe_err: errors.lobe.quantity.error.min(MOST),
-            lobe_noise: errors.lobe.floor.min(MOST),
-            worst_theta_deg: errors.lobe.theta_deg,
-            worst_wavelength_nm: errors.lobe.wavelength_nm,
-            delta_e: THETAS_DEG.into_iter().map(delta_e).fold(0.0, f64::max),
-            by_angle: THETAS_DEG.into_iter().map(|theta_deg| (theta_deg, lobe(theta_deg))).collect(),
-        }
-    }
-}
-
 /// `rows` makes the rows for one material: what models remember of a stack is of no use to other materials.
 fn judge_rows(
     rows: fn() -> Vec<Row>,
@@ -167,14 +124,11 @@ impl Row {
     }
 }
 
-/// Surfaces of one layer that layered models are shown beside.
-const SINGLE: [&str; 2] = ["microfacet", "phong"];
-
-/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered. Not
-/// those that spread two stacks, of which a material has one.
+/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered, and surfaces
+/// of one layer that shaders have. Not those that spread two stacks, of which a material has one.
 fn rows() -> Vec<Row> {
     let is_judged = |info: ModelInfo| match info.kind {
-        Kind::Surface => SINGLE.contains(&info.name),
+        Kind::Surface => info.shading().is_some(),
         Kind::Layered => true,
         Kind::Place => !info.inputs.contains(&Input::OtherStack),
         Kind::Density | Kind::Reference => false,
@@ -214,6 +168,7 @@ pub(crate) fn direction(theta_deg: f64, phi_deg: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use luthier_manifest::ShadingModel;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Surface};
 

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::page;
 use super::{ModelSettings, ModelSubject, PHI_DEG, Row, THETAS_DEG};
-use crate::{ReportError, pages::json};
+use crate::error::ReportError;
+use crate::text::json;
 
 /// Errors of all models against the reference, on all materials.
 #[derive(Debug, Clone, PartialEq, Serialize)]

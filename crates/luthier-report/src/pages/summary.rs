@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use crate::judge::report::{Compared, Report};
-use crate::pages::format::{bytes, error, number};
-use crate::{PlaceErrors, SeenLight, SimulatedAt};
+use crate::measure::seen::SeenLight;
+use crate::places::{PlaceErrors, SimulatedAt};
+use crate::text::format::{bytes, error, number};
 
 /// Findings listed by name.
 const SHOWN: usize = 10;

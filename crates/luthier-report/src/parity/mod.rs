@@ -5,20 +5,22 @@ mod sets;
 mod tolerances;
 
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::twins::terms::ShaderTerms;
-use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_layers::terms::ShaderTerms;
+use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::judge::exceptions::{Factor, Factors, Miss, Part};
-use crate::judge::{References, WeightsVote, evaluate, run};
-use crate::measure::table_terms::TableTerms;
+use crate::error::ReportError;
+use crate::measure::causes::{Factor, Factors, Miss, Part};
+use crate::measure::device::{Device, WeightsVote, run};
+use crate::measure::directions::Pair;
+use crate::measure::references::{References, evaluate};
+use crate::measure::statistics::{ErrorSummary, FLOOR, Statistics, WorstPair, statistics};
+use crate::measure::subject::Subject;
+use crate::measure::table_terms::{TableTerms, Weights};
 use crate::places::{PLACES_SEED, PlaceErrors, at_places};
-use crate::{
-    Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, pages::json,
-    statistics,
-};
+use crate::text::json;
 
 pub use sets::{POLISHED_ALPHAS, ParitySet};
 pub use tolerances::{KNOWN, Known, Share, tolerance};

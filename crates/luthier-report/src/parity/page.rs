@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{Form, ShadingModel};
 use luthier_model::Tolerance;
 
 use super::tolerances::{KNOWN, tolerance};
 use super::{AT_PLACES, Parity, ParityRow, ParitySet, Share, Verdict};
-use crate::pages::format::{error, number};
-use crate::pages::page::{angles, cause};
-use crate::{ErrorSummary, Form, PLACE_FLOOR};
+use crate::measure::statistics::ErrorSummary;
+use crate::places::PLACE_FLOOR;
+use crate::text::format::{angles, error, number};
 
 /// The whole page.
 pub(super) fn markdown(parity: &Parity, command: &str) -> String {
@@ -183,7 +183,7 @@ fn exceptions(out: &mut String, parity: &Parity) {
         let place =
             worst.as_ref().map_or_else(String::new, |(set, w)| format!("{}, {}", set.name(), angles(w.wi, w.wo)));
         let fault = match share {
-            Share::Table => row.parts.first().map_or_else(String::new, |part| cause(&part.cause)),
+            Share::Table => row.parts.first().map_or_else(String::new, |part| part.cause.words()),
             Share::Arithmetic => "f32 arithmetic".to_owned(),
         };
         let accepted = match verdict {

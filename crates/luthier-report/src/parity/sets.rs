@@ -5,9 +5,8 @@ use luthier_layers::models::elek::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::{
-    GRAZING_COS_MIN, LOBE_REACH, direction, halton, log_uniform, mirrored, rounded, spreads,
+    DirectionSet, GRAZING_COS_MIN, LOBE_REACH, Pair, direction, halton, log_uniform, mirrored, rounded, spreads,
 };
-use crate::{DirectionSet, Pair};
 
 /// Set of directions at which a shader is compared with its twin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,11 +1,11 @@
 //! Tolerances of the error of a shader against its twin, by model, and known reasons of larger errors.
 
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{Form, ShadingModel};
 use luthier_model::{Family, Tolerance};
 use serde::{Deserialize, Serialize};
 
-use crate::judge::exceptions::Factor;
-use crate::{Form, Weights};
+use crate::measure::causes::Factor;
+use crate::measure::table_terms::Weights;
 
 /// A share of the error of a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,11 +1,12 @@
 //! Pictures beside each other: how far two are apart, in numbers and as a person would notice; sheets of many.
 
+pub(crate) mod ball;
 pub(crate) mod flip;
 mod sheet;
 
 use luthier_lut::Image;
 
-use crate::ReportError;
+use crate::error::ReportError;
 use crate::picture::flip::flip;
 
 pub use sheet::sheet;

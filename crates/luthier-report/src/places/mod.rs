@@ -14,14 +14,17 @@ use luthier_optics::Rgb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub use ranges::{Places, SurfaceMap};
+pub use ranges::Places;
 pub use rows::Rows;
 pub use simulated::{SimulatedAt, SimulatedErrors, SimulatedSettings, simulated, simulated_by};
 
-use crate::judge::run_at;
+use crate::error::ReportError;
+use crate::measure::device::{Device, run_at};
+use crate::measure::directions::{DirectionSet, Pair};
 use crate::measure::scan::DOMAIN_COS_THETA;
-use crate::measure::statistics::{brightest, relative_error, summarise};
-use crate::{Device, DirectionSet, ErrorSummary, FLOOR, Pair, ReportError, Subject, Weights};
+use crate::measure::statistics::{ErrorSummary, FLOOR, brightest, relative_error, summarise};
+use crate::measure::subject::Subject;
+use crate::measure::table_terms::Weights;
 
 /// Family of the random places, unless another is asked for.
 pub const PLACES_SEED: u64 = 37;

@@ -9,20 +9,7 @@ use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
 use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};
 
-use crate::Subject;
-
-/// A map of a material as it ships.
-#[derive(Debug, Clone)]
-pub struct SurfaceMap {
-    /// Number of the material.
-    pub material: u32,
-    /// Quantity that the map varies.
-    pub slot: MapSlot,
-    /// The layer that it is of; `None` for those of the whole surface.
-    pub layer: Option<u32>,
-    /// Its texels.
-    pub picture: Picture,
-}
+use crate::measure::subject::Subject;
 
 /// Quantities that vary over the surface of a material, with their ranges.
 #[derive(Debug, Clone)]

@@ -10,10 +10,10 @@ use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::schlick::metallic_roughness;
 
-use crate::judge::parts;
-use crate::measure::subject::color;
+use crate::error::ReportError;
+use crate::measure::references::parts;
+use crate::measure::subject::{Subject, color};
 use crate::measure::table_terms::{TableTerms, Weights};
-use crate::{ReportError, Subject};
 
 /// A material at a place, in f64: its model, with terms that are read from the tables of the package as its shader reads them.
 #[derive(Debug)]

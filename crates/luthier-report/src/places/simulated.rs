@@ -11,11 +11,12 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{PLACE_FLOOR, Places, Rows, rows, words};
-use crate::judge::UNCERTAINTY_MARGIN;
-use crate::measure::subject::color;
+use crate::error::ReportError;
+use crate::measure::statistics::UNCERTAINTY_MARGIN;
+use crate::measure::subject::{Subject, color};
+use crate::measure::table_terms::Weights;
 use crate::models::colored::{ColorView, ViewErrors};
-use crate::models::{PHI_DEG, direction};
-use crate::{ReferenceSettings, ReportError, Subject, Weights};
+use crate::models::{PHI_DEG, ReferenceSettings, direction};
 
 /// Settings of the simulation at places.
 #[derive(Debug, Clone)]

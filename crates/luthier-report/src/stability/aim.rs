@@ -3,8 +3,8 @@
 use glam::DVec3;
 use luthier_layers::models::elek::Layer;
 
-use crate::measure::directions::{direction, halton, log_uniform, mirrored, rounded};
-use crate::{Pair, ParitySet};
+use crate::measure::directions::{Pair, direction, halton, log_uniform, mirrored, rounded};
+use crate::parity::ParitySet;
 
 /// Smallest cosine of a stressed direction.
 pub(super) const COS_MIN: f64 = 1e-7;

@@ -32,7 +32,8 @@ mod svg;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ReportError, pages::json};
+use crate::error::ReportError;
+use crate::text::json;
 
 pub use aim::Aim;
 pub use case::{StressCase, cases};
@@ -171,7 +172,7 @@ impl Cell {
         let error = if error.is_finite() { error } else { 0.0 };
         let mut cell =
             Self { level, method: method.to_owned(), case: case.to_owned(), verdict, fault, error, explanation: None };
-        cell.explanation = explain::explanation(&cell).map(|e| e.name.to_owned());
+        cell.explanation = explain::explanation(&cell).map(|e| e.name.clone());
         cell
     }
 

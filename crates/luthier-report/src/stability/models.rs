@@ -9,13 +9,15 @@ use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::references::closed_form::ClosedForm;
 use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::models;
+use luthier_model::Family;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::Base;
 use rayon::prelude::*;
 
 use super::case::StressCase;
 use super::{Cell, Fault, Level, RECIPROCITY};
-use crate::Pair;
+use crate::measure::directions::Pair;
+use crate::measure::statistics::FLOOR;
 
 /// Wavelength and channel at which models are compared: gold is yellow there, films are neither dark nor bright by rule.
 const WAVELENGTH_NM: f64 = 525.0;
@@ -110,7 +112,7 @@ fn is_for(info: &ModelInfo, case: &StressCase) -> bool {
         (_, "lambert" | "oren-nayar") => layers.len() == 1 && ends_diffuse,
         (_, "fluorescence") => layers.len() == 2 && ends_diffuse,
         (_, "closed-form") => is_smooth(&Monochrome::new(&case.stack, WAVELENGTH_NM, CHANNEL)),
-        (Kind::Surface, "phong") => true,
+        (Kind::Surface, _) if info.shading().is_some_and(|model| model.facts().family == Family::Coefficients) => true,
         (Kind::Surface, _) | (_, "random-walk") => layers.len() == 1 && !ends_diffuse,
         (Kind::Density, _) => case.aim != super::Aim::Ordinary || layers.len() == 1,
         _ => true,
@@ -227,7 +229,7 @@ fn laws(
         if info.claims.reciprocal && info.kind != Kind::Density && model.estimator().is_none() && wi.z.min(wo.z) > 0.0 {
             let (f, back) = (value * wo.z, model.eval(stack, wo, wi) * wi.z);
             // Beside what is seen: a value that is nothing next to a white diffuser may be rounding in both.
-            let size = f.abs().max(back.abs()).max(crate::FLOOR * wi.z * wo.z);
+            let size = f.abs().max(back.abs()).max(FLOOR * wi.z * wo.z);
             asymmetry = asymmetry.max((f - back).abs() / size);
         }
     }

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use luthier_model::Quantity;
 
-use super::explain::EXPLANATIONS;
+use super::explain::explanations;
 use super::{Cell, FAILS, HOLDS, HOLDS_ALBEDO, Level, PITFALLS, Stability, Verdict};
-use crate::pages::format::{error, number};
+use crate::text::format::{error, number};
 
 /// Cases side by side in a table.
 const COLUMNS: usize = 12;
@@ -19,7 +19,7 @@ pub(super) fn markdown(stability: &Stability, command: &str) -> String {
     for level in Level::ALL {
         heat_map(&mut out, stability, level);
     }
-    explanations(&mut out, stability);
+    reasons(&mut out, stability);
     formulas(&mut out, stability);
     cases(&mut out, stability);
     out
@@ -163,16 +163,16 @@ fn text(cell: &Cell) -> String {
 
 /// The letter of an explanation, in the order of the list.
 fn letter(name: &str) -> String {
-    let index = EXPLANATIONS.iter().position(|e| e.name == name).unwrap_or(EXPLANATIONS.len());
+    let index = explanations().iter().position(|e| e.name == name).unwrap_or(explanations().len());
     let one = |i: usize| char::from(b'a' + (i % 26) as u8);
     if index < 26 { one(index).to_string() } else { format!("{}{}", one(index / 26 - 1), one(index)) }
 }
 
-fn explanations(out: &mut String, stability: &Stability) {
+fn reasons(out: &mut String, stability: &Stability) {
     out.push_str("\n## Explanations\n\nEach explanation covers the errors of certain methods on certain cases, up to a limit. A cell with an error beyond the limit counts as unexplained. The column *largest* has the largest error that an explanation covers.\n\n| | name | cells | largest | limit | reason |\n|---|---|--:|--:|--:|---|\n");
-    for explanation in EXPLANATIONS {
+    for explanation in explanations() {
         let cells: Vec<&Cell> =
-            stability.cells.iter().filter(|c| c.explanation.as_deref() == Some(explanation.name)).collect();
+            stability.cells.iter().filter(|c| c.explanation.as_deref() == Some(&explanation.name)).collect();
         if cells.is_empty() {
             continue;
         }
@@ -180,7 +180,7 @@ fn explanations(out: &mut String, stability: &Stability) {
         let _ = writeln!(
             out,
             "| {} | {} | {} | {} | {} | {} |",
-            letter(explanation.name),
+            letter(&explanation.name),
             explanation.name,
             cells.len(),
             error(largest),

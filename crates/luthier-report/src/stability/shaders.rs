@@ -1,14 +1,19 @@
 //! The shaders: tables in f64, and both forms on the adapter.
 
 use luthier_layers::models::elek;
+use luthier_manifest::Form;
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 
 use super::case::StressCase;
 use super::{Cell, Fault, Level};
-use crate::judge::{References, evaluate, run};
-use crate::measure::statistics::{brightest, relative_error};
-use crate::{Device, FLOOR, Form, Pair, ReportError, Subject, TableTerms, Weights};
+use crate::error::ReportError;
+use crate::measure::device::{Device, run};
+use crate::measure::directions::Pair;
+use crate::measure::references::{References, evaluate};
+use crate::measure::statistics::{FLOOR, brightest, relative_error};
+use crate::measure::subject::Subject;
+use crate::measure::table_terms::{TableTerms, Weights};
 
 /// Size below which a negative channel is rounding.
 const ROUNDING: f64 = 1e-6;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Cell, Level, Stability, Verdict};
-use crate::pages::format::{error, escape};
+use crate::text::format::{error, escape};
 
 /// Side of a cell, and room for the names, in SVG user units.
 const SIDE: f64 = 13.0;

@@ -93,7 +93,7 @@ fn cell(level: Level, fault: Option<Fault>, error: f64) -> Cell {
 /// A reason is for a level, methods, cases and faults, and ends at its limit. Nothing explains NaN in what ships.
 #[test]
 fn explanations_have_limits() {
-    let explained = |cell: &Cell| explain::explanation(cell).map(|e| e.name);
+    let explained = |cell: &Cell| explain::explanation(cell).map(|e| e.name.as_str());
     assert_eq!(explained(&cell(Level::F64, Some(Fault::Wrong), 0.9)), Some("NO_INVERSE_SQUARE"));
     assert_eq!(explained(&cell(Level::F64, Some(Fault::Wrong), 9.0)), None);
     assert_eq!(explained(&cell(Level::F64, Some(Fault::Negative), 0.1)), None);

@@ -9,9 +9,9 @@ use luthier_optics::stack::{Base, Distribution};
 use rayon::prelude::*;
 
 use super::{Measured, R2, fraction, users};
-use crate::measure::subject::{Table, color};
+use crate::error::ReportError;
+use crate::measure::subject::{Subject, Table, color};
 use crate::measure::table_terms::{AngleAxis, Weights};
-use crate::{ReportError, Subject};
 
 /// Most points of the scan.
 const POINTS_MAX: u32 = 48;

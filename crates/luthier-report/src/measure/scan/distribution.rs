@@ -4,11 +4,11 @@ use luthier_lut::AtlasLayout;
 use luthier_optics::microfacet::scaled_distribution;
 
 use super::{Measured, R2, Scan, User, fraction};
-use crate::judge::report::{AlphaPoint, Curves};
-use crate::measure::subject::Table;
+use crate::error::ReportError;
+use crate::measure::scan::report::{AlphaPoint, Curves};
+use crate::measure::subject::{Subject, Table};
 use crate::measure::table_terms::{AngleAxis, Weights};
-use crate::pages::format::rounded;
-use crate::{ReportError, Subject};
+use crate::text::format::rounded;
 
 /// Bands of alpha that a distribution's error is shown for.
 const ALPHA_BANDS: u32 = 64;

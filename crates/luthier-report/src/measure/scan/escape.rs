@@ -5,9 +5,8 @@ use luthier_lut::Axis;
 use rayon::prelude::*;
 
 use super::{DOMAIN_ALPHA, DOMAIN_COS_THETA, Measured, Scan, User, coordinates};
-use crate::Subject;
-use crate::judge::report::Curves;
-use crate::measure::subject::Table;
+use crate::measure::scan::report::Curves;
+use crate::measure::subject::{Subject, Table};
 use crate::measure::table_terms::Weights;
 
 /// Points along each axis in every cell of a tile.

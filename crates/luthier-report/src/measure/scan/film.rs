@@ -6,9 +6,8 @@ use luthier_optics::stack::FilmThickness;
 use rayon::prelude::*;
 
 use super::{Measured, Scan, User, coordinate};
-use crate::Subject;
-use crate::judge::report::Curves;
-use crate::measure::subject::{Table, color};
+use crate::measure::scan::report::Curves;
+use crate::measure::subject::{Subject, Table, color};
 use crate::measure::table_terms::Weights;
 
 /// Points along each axis: cosines and thicknesses.

@@ -5,11 +5,11 @@ use luthier_layers::twins::terms::Exact;
 use luthier_lut::incident_cosine;
 
 use super::{Measured, Scan, User, coordinate, coordinates};
-use crate::judge::report::{Curves, ReflectanceCurve};
-use crate::measure::subject::Table;
+use crate::error::ReportError;
+use crate::measure::scan::report::{Curves, ReflectanceCurve};
+use crate::measure::subject::{Subject, Table};
 use crate::measure::table_terms::{AngleAxis, Weights};
-use crate::pages::format::rounded;
-use crate::{ReportError, Subject};
+use crate::text::format::rounded;
 
 /// Points in every cell of a row.
 const POINTS_PER_CELL: u32 = 8;

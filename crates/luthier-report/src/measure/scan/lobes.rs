@@ -2,10 +2,10 @@
 
 use luthier_layers::twins::terms::Exact;
 
-use super::{Measured, Scan, User, coordinates, run};
-use crate::Subject;
-use crate::judge::report::Curves;
-use crate::measure::subject::Table;
+use super::{Measured, Scan, User, coordinates};
+use crate::measure::readers::run;
+use crate::measure::scan::report::Curves;
+use crate::measure::subject::{Subject, Table};
 use crate::measure::table_terms::Weights;
 
 /// Points in every interval between nodes.

@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::{Measured, Scan, User, coordinates};
-use crate::Subject;
-use crate::judge::report::Curves;
-use crate::measure::subject::Table;
+use crate::measure::scan::report::Curves;
+use crate::measure::subject::{Subject, Table};
 use crate::measure::table_terms::Weights;
 
 /// Points in every cell of a row.

@@ -1,9 +1,8 @@
 //! Check of thickness tiles: ranges and normalisation.
 
 use super::User;
-use crate::Subject;
-use crate::measure::subject::Table;
-use crate::pages::format::number;
+use crate::measure::subject::{Subject, Table};
+use crate::text::format::number;
 
 /// Half a unit in the last place of a half float, with room for one more rounding: what a shipped value may be off by,
 /// relative to itself.

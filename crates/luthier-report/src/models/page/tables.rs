@@ -1,18 +1,13 @@
 //! Tables of the page: one for each family of models, materials down, models across.
 
+use luthier_model::ShadingModel;
+
 use crate::models::{MaterialModels, ModelErrors, ModelsReport, Worst};
 
-/// Families of models: title, and how the names of its members begin.
-const FAMILIES: [(&str, &[&str]); 6] = [
-    ("One layer", &["microfacet", "phong"]),
-    ("Weidlich and Wilkie", &["weidlich-wilkie", "fluorescence"]),
-    ("Elek, Granier and Heidrich", &["elek", "flakes", "patina", "granier-heidrich"]),
-    ("Statistics of light", &["belcour", "yamaguchi"]),
-    ("Lobes fitted to the reference", &["lobes"]),
-    ("The reference itself", &["layered-mc"]),
-];
+/// The heading of what is no model: it comes last.
+const REFERENCE: &str = "The reference itself";
 
-/// The title for models of no family.
+/// The heading of models without one.
 const OTHERS: &str = "Others";
 
 /// Kind of error.
@@ -39,16 +34,17 @@ pub(super) fn best_model(material: &MaterialModels, kind: Kind) -> Option<&Model
 
 /// The tables of an error.
 pub(super) fn errors(report: &ModelsReport, kind: Kind) -> String {
-    let names: Vec<&str> =
-        report.materials.first().map_or_else(Vec::new, |m| m.models.iter().map(|e| e.name).collect());
-    let titles = FAMILIES.iter().map(|(title, _)| *title).chain([OTHERS]);
+    let models = report.materials.first().map_or(&[][..], |material| &material.models);
+    let mut titles: Vec<&str> = Vec::new();
+    for title in models.iter().map(heading) {
+        if !titles.contains(&title) {
+            titles.push(title);
+        }
+    }
     let mut out = String::new();
     for title in titles {
-        let members: Vec<usize> = (0..names.len()).filter(|i| family(names[*i]) == title).collect();
-        if members.is_empty() {
-            continue;
-        }
-        let mut head: Vec<String> = members.iter().map(|i| names[*i].to_owned()).collect();
+        let members: Vec<usize> = (0..models.len()).filter(|i| heading(&models[*i]) == title).collect();
+        let mut head: Vec<String> = members.iter().map(|i| models[*i].name.to_owned()).collect();
         head.insert(0, "material".to_owned());
         head.push("±".to_owned());
         if kind == Kind::Lobe {
@@ -60,9 +56,8 @@ pub(super) fn errors(report: &ModelsReport, kind: Kind) -> String {
     out
 }
 
-fn family(name: &str) -> &'static str {
-    let is_of = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
-    FAMILIES.iter().find(|(_, prefixes)| is_of(prefixes)).map_or(OTHERS, |(title, _)| title)
+fn heading(row: &ModelErrors) -> &'static str {
+    if row.is_model { ShadingModel::heading_of(row.name).unwrap_or(OTHERS) } else { REFERENCE }
 }
 
 fn row(material: &MaterialModels, members: &[usize], kind: Kind) -> Vec<String> {
@@ -120,10 +115,10 @@ mod tests {
     use crate::models::rows;
 
     #[test]
-    fn every_row_has_a_family() {
-        for row in rows() {
-            assert_ne!(family(row.name()), OTHERS, "{}", row.name());
+    fn every_row_has_a_heading() {
+        for row in rows().iter().map(|row| ModelErrors::new(row, Vec::new())) {
+            assert_ne!(heading(&row), OTHERS, "{}", row.name);
         }
-        assert_eq!(family("quite-new"), OTHERS);
+        assert_eq!(ShadingModel::heading_of("quite-new"), None);
     }
 }

@@ -1,10 +1,10 @@
 //! Charts of errors of `f cos_theta_i`.
 
-use super::frame::{Frame, Margin, Mark, Series};
-use super::scale::Scale;
+use crate::judge::profile::{ANGLE_BINS, Exceedance};
 use crate::judge::report::{Compared, MaterialReport, Report};
-use crate::pages::format::error;
-use crate::{ANGLE_BINS, Exceedance};
+use crate::svg::frame::{Frame, Margin, Mark, Series};
+use crate::svg::scale::Scale;
+use crate::text::format::error;
 
 /// Errors below this share the end of an axis.
 const SMALLEST: f64 = 1e-9;

@@ -1,9 +1,9 @@
 //! Charts of what the tables hold and how well.
 
-use super::frame::{Frame, Margin};
-use super::scale::Scale;
-use crate::judge::report::{AlphaPoint, ReflectanceCurve, TableReport};
-use crate::pages::format::bytes;
+use crate::measure::scan::report::{AlphaPoint, ReflectanceCurve, TableReport};
+use crate::svg::frame::{Frame, Margin};
+use crate::svg::scale::Scale;
+use crate::text::format::bytes;
 
 /// Reflectance of a Fresnel row over the angle, three channels.
 pub(crate) fn reflectance(name: &str, curve: &ReflectanceCurve) -> String {

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::materials::{angles, number_deg};
 use super::{anchor, cell, of_material};
-use crate::judge::exceptions::{Cause, Exception, Factor, Part};
+use crate::judge::exceptions::Exception;
 use crate::judge::report::{Compared, Report};
-use crate::pages::format::{error, escape, number, rounded, value};
+use crate::measure::causes::{Cause, Factor, Part};
+use crate::text::format::{angles, error, escape, number, rounded, value};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     let target = number(report.target_max_rel_err);
@@ -94,56 +94,7 @@ fn row(out: &mut String, report: &Report, exception: &Exception) {
         let _ = write!(small, ", {} {}", short(next), error(next.rel_err.abs()));
     }
     let _ = write!(small, " · {}", tally(&exception.tally));
-    let _ = write!(out, "<td>{}<small>{}</small></td></tr>", escape(&cause(&first.cause)), escape(&small));
-}
-
-/// A cause in words, with the error of the table there.
-pub(crate) fn cause(cause: &Cause) -> String {
-    match cause {
-        Cause::Fresnel { tile, cos_theta_d, expected, sampled, .. } => {
-            format!(
-                "reflectance tile {tile} at cos θ {}: {}",
-                number(rounded(*cos_theta_d, 3)),
-                off(*expected, *sampled)
-            )
-        }
-        Cause::Distribution { tile, alpha, theta_h_deg, expected, sampled, .. } => format!(
-            "distribution table {tile} at α {}, θₕ {}°: {}",
-            number(rounded(*alpha, 3)),
-            number_deg(*theta_h_deg),
-            off(*expected, *sampled)
-        ),
-        Cause::Phase { layer, cosines } => {
-            format!("phase row of layer {layer} at a sum of cosines of {}", number(rounded(*cosines, 3)))
-        }
-        Cause::Fgd { tile, alpha, cos_theta, expected, sampled, .. } => format!(
-            "albedo table {tile} at α {}, cos θ {}: {}",
-            number(rounded(*alpha, 3)),
-            number(rounded(*cos_theta, 3)),
-            off(*expected, *sampled)
-        ),
-        Cause::Escape { tile, alpha, cos_theta, expected, sampled, .. } => format!(
-            "escape table {tile} at α {}, cos θ {}: {}",
-            number(rounded(*alpha, 3)),
-            number(rounded(*cos_theta, 3)),
-            off(*expected, *sampled)
-        ),
-        Cause::Veil { expected, sampled } => format!("internal reflectance: {}", off(*expected, *sampled)),
-        Cause::Lobes { tile, cos_theta } => format!("rows of lobes {tile} at cos θ {}", number(rounded(*cos_theta, 3))),
-        Cause::Arithmetic => "f32 arithmetic".to_owned(),
-    }
-}
-
-/// Words on the value that a read gives and the value that it should give.
-fn off(expected: f64, sampled: f64) -> String {
-    let percent = 100.0 * (sampled - expected) / expected.abs();
-    let sign = if percent < 0.0 { "−" } else { "+" };
-    let relative = if percent.is_finite() {
-        format!(" ({sign}{}\u{a0}%)", number(rounded(percent.abs(), 2)))
-    } else {
-        String::new()
-    };
-    format!("{} for {}{relative}", value(sampled), value(expected))
+    let _ = write!(out, "<td>{}<small>{}</small></td></tr>", escape(&first.cause.words()), escape(&small));
 }
 
 fn short(part: &Part) -> String {

@@ -1,7 +1,7 @@
 //! Findings that a reader should know before trusting the rest.
 
-use crate::Report;
-use crate::pages::format::escape;
+use crate::judge::report::Report;
+use crate::text::format::escape;
 
 pub(super) fn write(out: &mut String, report: &Report) {
     let says = match report.findings.len() {

@@ -8,10 +8,12 @@ use base64::prelude::BASE64_STANDARD as STANDARD;
 use super::summary::shown;
 use super::trade::{FAMILY, of_shaders};
 use super::{anchor, of_material};
-use crate::Exhibits;
-use crate::judge::report::{Compared, MaterialReport, Report};
-use crate::pages::chart::{self, Spot, field, legend};
-use crate::pages::format::{bytes, error, escape, number};
+use crate::judge::evidence::Exhibits;
+use crate::judge::report::{Compared, Comparison, MaterialReport, Report};
+use crate::measure::scan::report::TableReport;
+use crate::pages::chart;
+use crate::svg::{Spot, field, legend};
+use crate::text::format::{bytes, error, escape, number};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     facts(out, report);
@@ -48,7 +50,7 @@ fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64>
 /// Bytes of the tiles that a material reads.
 fn table_bytes(report: &Report, material: &MaterialReport) -> f64 {
     let reads = |user: &String| user.split('/').next() == Some(material.name.as_str());
-    let of = |table: &crate::TableReport| {
+    let of = |table: &TableReport| {
         let read = table.tiles.iter().filter(|tile| tile.users.iter().any(reads)).count();
         table.texel_bytes as f64 * read as f64 / table.tiles.len().max(1) as f64
     };
@@ -103,7 +105,7 @@ fn facts(out: &mut String, report: &Report) {
 
 /// Number of values that were compared, and of those that are not finite.
 pub(super) fn samples(report: &Report) -> (u64, u64) {
-    let judged = |c: &&crate::Comparison| c.compared.is_judged(report.device.is_some());
+    let judged = |c: &&Comparison| c.compared.is_judged(report.device.is_some());
     let sets = report.materials.iter().flat_map(|m| m.comparisons.iter().filter(judged)).flat_map(|c| &c.sets);
     sets.fold((0, 0), |(all, bad), (_, s)| (all + 3 * s.pairs, bad + s.not_finite))
 }

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::cell;
-use crate::SeenLight;
 use crate::judge::report::Report;
-use crate::pages::format::{error, escape, number};
+use crate::measure::seen::SeenLight;
+use crate::text::format::{error, escape, number};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str(

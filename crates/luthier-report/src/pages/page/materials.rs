@@ -4,10 +4,13 @@ use luthier_manifest::ColorMode;
 use std::fmt::Write;
 
 use super::{anchor, cell, glance, of_material, pictures, summary, trade};
+use crate::judge::evidence::Exhibits;
 use crate::judge::report::{Compared, MaterialReport, Report};
-use crate::pages::chart::{self, legend};
-use crate::pages::format::{error, escape, number, value};
-use crate::{DirectionSet, ErrorSummary, Exhibits, Statistics};
+use crate::measure::directions::DirectionSet;
+use crate::measure::statistics::{ErrorSummary, Statistics};
+use crate::pages::chart;
+use crate::svg::legend;
+use crate::text::format::{angles, error, escape, value};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     out.push_str(
@@ -144,19 +147,6 @@ fn pair(statistics: &Statistics) -> String {
         ),
         (None, None) => "–".to_owned(),
     }
-}
-
-/// A pair of directions in words.
-pub(crate) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
-    // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
-    let theta = |w: [f32; 3]| libm::atan2(libm::hypot(f64::from(w[0]), f64::from(w[1])), f64::from(w[2])).to_degrees();
-    let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
-    let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
-    format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta(wi)), number_deg(theta(wo)), turn)
-}
-
-pub(super) fn number_deg(degrees: f64) -> String {
-    number((degrees * 1e4).round() / 1e4)
 }
 
 /// Colour mode of the tables of a material, in words.

@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use crate::judge::report::{Compared, Report};
+use crate::measure::directions::DirectionSet;
+use crate::measure::statistics::{DIM_FLOOR, PEAK_FRACTION};
 use crate::measure::table_terms::Weights;
-use crate::pages::format::{error, escape, number};
-use crate::{DIM_FLOOR, DirectionSet, PEAK_FRACTION};
+use crate::text::format::{error, escape, number};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     super::fold(out, "method", "Method", "references, directions and floors");

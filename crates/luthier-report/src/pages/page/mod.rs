@@ -13,13 +13,11 @@ mod summary;
 mod tables;
 mod trade;
 
-pub(crate) use exceptions::cause;
-pub(crate) use materials::angles;
-
 use std::fmt::Write;
 
-use crate::pages::format::escape;
-use crate::{Exhibits, Report};
+use crate::judge::evidence::Exhibits;
+use crate::judge::report::Report;
+use crate::text::format::escape;
 
 /// The whole document.
 pub(crate) fn html(report: &Report, exhibits: &Exhibits) -> String {

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as STANDARD;
 
-use crate::Exhibit;
+use crate::judge::evidence::Exhibit;
 use crate::judge::report::MaterialReport;
-use crate::pages::format::{error, escape};
+use crate::text::format::{error, escape};
 
 pub(super) fn write(out: &mut String, material: &MaterialReport, exhibits: &[Exhibit]) {
     if exhibits.is_empty() {

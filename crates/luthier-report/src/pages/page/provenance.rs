@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::judge::report::Report;
-use crate::pages::format::escape;
+use crate::text::format::escape;
 
 pub(super) fn write(out: &mut String, report: &Report) {
     super::fold(out, "provenance", "Provenance", "the command, and the origin of every figure");

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use crate::Exhibits;
+use crate::judge::evidence::Exhibits;
 use crate::judge::report::Report;
-use crate::pages::format::escape;
 use crate::stability::{FAILS, HOLDS, HOLDS_ALBEDO, heat_map_svg};
+use crate::text::format::escape;
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     let says = report.stability.as_ref().map_or_else(

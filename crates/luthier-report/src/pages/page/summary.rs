@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use crate::judge::report::{Compared, Report, WorstCase};
-use crate::pages::chart::{self, legend};
-use crate::pages::format::{error, escape, number, value};
+use crate::pages::chart;
+use crate::svg::legend;
+use crate::text::format::{angles, error, escape, number, value};
 
 use super::{anchor, cell, of_material};
 
@@ -80,12 +81,12 @@ fn at(worst: &WorstCase<'_>) -> String {
     let place = format!("{}, {}, {} set", worst.material, worst.compared.name(), worst.set.name());
     match (worst.statistics.not_finite_at, &worst.statistics.worst) {
         (Some((wi, wo)), _) => {
-            format!(" It is at {}: {}.", escape(&place), super::materials::angles(wi, wo))
+            format!(" It is at {}: {}.", escape(&place), angles(wi, wo))
         }
         (None, Some(pair)) => format!(
             " It is at {}: {}, where the value is {} and the reference {}.",
             escape(&place),
-            super::materials::angles(pair.wi, pair.wo),
+            angles(pair.wi, pair.wo),
             value(pair.found),
             value(pair.expected)
         ),

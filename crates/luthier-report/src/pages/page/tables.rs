@@ -5,11 +5,12 @@ use std::fmt::Write;
 use luthier_lut::{ErrorStats, TableKind};
 
 use super::cell;
-use crate::TARGET_MAX_REL_ERR;
-use crate::judge::report::{AlphaPoint, Curves, Report, TableReport, TileReport};
+use crate::judge::report::Report;
+use crate::measure::scan::report::{AlphaPoint, Curves, TableReport, TileReport};
 use crate::measure::scan::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, points};
+use crate::measure::statistics::TARGET_MAX_REL_ERR;
 use crate::pages::chart;
-use crate::pages::format::{axis, bytes, error, escape, number, uncertain};
+use crate::text::format::{axis, bytes, error, escape, number, uncertain};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();

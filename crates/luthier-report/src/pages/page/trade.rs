@@ -8,8 +8,8 @@ use luthier_manifest::{Budget, Candidate, CandidateForm, Search};
 use super::cell;
 use crate::judge::evidence::{Costs, ShaderCost};
 use crate::judge::report::{Compared, MaterialReport, Report};
-use crate::pages::chart::{Choice, Mark, Price, Series, legend, pareto};
-use crate::pages::format::{axis, bytes, error, escape, number};
+use crate::svg::{Choice, Mark, Price, Series, legend, pareto};
+use crate::text::format::{axis, bytes, error, escape, number};
 
 /// The instruction set that charts show; tables have all.
 pub(super) const FAMILY: &str = "rdna2";

@@ -1,5 +1,7 @@
 //! Scales from values to pixels, and their ticks.
 
+use crate::text::format::{number, rounded};
+
 /// One axis of a chart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scale {
@@ -77,8 +79,7 @@ impl Scale {
         let count = libm::floor(span / step + 1e-9) as u32;
         let tick = |i: u32| {
             let v = self.min + f64::from(i) * step;
-            let label =
-                if self.log { power_of_ten(v as i32) } else { crate::pages::format::number((v * 1e9).round() / 1e9) };
+            let label = if self.log { power_of_ten(v as i32) } else { number((v * 1e9).round() / 1e9) };
             ((v - self.min) / span, label)
         };
         (0..=count).map(tick).collect()
@@ -97,7 +98,7 @@ fn fine_ticks(min: f64, max: f64) -> impl Iterator<Item = (f64, String)> {
             _ => ("", 0),
         };
         let scaled = digit * libm::pow(10.0, f64::from(decade - shift));
-        let label = crate::pages::format::number(crate::pages::format::rounded(scaled, 3)) + unit;
+        let label = number(rounded(scaled, 3)) + unit;
         (min..=max).contains(&v).then_some((v, label))
     })
 }

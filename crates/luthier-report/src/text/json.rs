@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Serializer;
 use serde_json::ser::Formatter;
 
-use crate::ReportError;
+use crate::error::ReportError;
 
 /// The JSON of a value, with a final newline.
 ///

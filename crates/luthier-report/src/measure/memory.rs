@@ -1,6 +1,6 @@
 //! Results of earlier judgements, by the content of what was judged: texels, records and stacks, whatever their names and numbers in a bake.
 
-use std::fmt::Write as _;
+use std::fmt::{Debug, Write as _};
 
 use luthier_layers::lobes::{Lobes, Varied};
 use luthier_lut::TableKind;
@@ -10,9 +10,10 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::judge::{References, Settings};
-use crate::measure::scan::{tiles, users};
-use crate::{Device, Subject};
+use crate::measure::device::Device;
+use crate::measure::readers::{tiles, users};
+use crate::measure::references::References;
+use crate::measure::subject::Subject;
 
 /// Where the results of earlier judgements are. It may forget at any time.
 pub trait Memory: Sync {
@@ -96,9 +97,13 @@ impl<'a> Remembered<'a> {
         subject: &Subject<'_>,
         number: usize,
         device: Option<&dyn Device>,
-        settings: &Settings<'_>,
+        pairs_per_set: u32,
+        simulated: &dyn Debug,
     ) -> Value {
-        if self.memory.is_none() { Value::Null } else { self.inputs(subject, number, device, Some(settings)) }
+        if self.memory.is_none() {
+            return Value::Null;
+        }
+        self.inputs(subject, number, device, Some((pairs_per_set, simulated)))
     }
 
     fn inputs(
@@ -106,7 +111,7 @@ impl<'a> Remembered<'a> {
         subject: &Subject<'_>,
         number: usize,
         device: Option<&dyn Device>,
-        settings: Option<&Settings<'_>>,
+        settings: Option<(u32, &dyn Debug)>,
     ) -> Value {
         let entry = &subject.manifest.materials[number];
         // Where tiles lie decides the last digits of a device, and of nothing else.
@@ -116,8 +121,8 @@ impl<'a> Remembered<'a> {
         });
         json!({
             "subject": self.content(subject, number),
-            "pairs": settings.map(|settings| settings.pairs_per_set),
-            "simulated": settings.map(|settings| format!("{:?}", settings.simulated)),
+            "pairs": settings.map(|(pairs_per_set, _)| pairs_per_set),
+            "simulated": settings.map(|(_, simulated)| format!("{simulated:?}")),
             "device": on_device,
         })
     }

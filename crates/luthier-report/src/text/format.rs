@@ -110,6 +110,20 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
+/// A pair of directions in words.
+pub(crate) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
+    // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
+    let theta = |w: [f32; 3]| libm::atan2(libm::hypot(f64::from(w[0]), f64::from(w[1])), f64::from(w[2])).to_degrees();
+    let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
+    let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
+    format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta(wi)), number_deg(theta(wo)), turn)
+}
+
+/// An angle in degrees, to four decimals.
+pub(crate) fn number_deg(degrees: f64) -> String {
+    number((degrees * 1e4).round() / 1e4)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

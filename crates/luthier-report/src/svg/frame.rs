@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::scale::Scale;
-use crate::pages::format::escape;
+use crate::text::format::escape;
 
 /// A series: its class in the style sheet, its mark and its name in legends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,460 @@
+//! Causes of an error: the factors of a model, each read from the tables while all others are exact.
+
+use std::cell::RefCell;
+
+use glam::DVec3;
+use luthier_layers::lobes::Below;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::models::statistics::diffuse_base::Veil;
+use luthier_layers::models::statistics::energy::Energy;
+use luthier_layers::terms::{Exact, ShaderTerms, Terms};
+use luthier_lut::TableKind;
+use luthier_optics::Rgb;
+use luthier_optics::stack::Distribution;
+use serde::{Deserialize, Serialize};
+
+use crate::measure::directions::Pair;
+use crate::measure::statistics::{FLOOR, TARGET_MAX_REL_ERR, WorstPair, brightest, relative_error};
+use crate::measure::table_terms::TableTerms;
+use crate::text::format::{number, number_deg, rounded, value};
+
+/// A factor of the model that errs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Factor {
+    /// A Fresnel row, or a film tile.
+    Fresnel,
+    /// A distribution tile.
+    Distribution,
+    /// A phase row.
+    Phase,
+    /// A tile of the albedo table.
+    Fgd,
+    /// A tile of the escape table.
+    Escape,
+    /// The material's record of the layers above a diffuse base.
+    Veil,
+    /// The rows of lobes.
+    Lobes,
+    /// f32 arithmetic: what is left when f64 reads the same tables.
+    Arithmetic,
+}
+
+impl Factor {
+    /// All factors.
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Fresnel,
+        Self::Distribution,
+        Self::Phase,
+        Self::Fgd,
+        Self::Escape,
+        Self::Veil,
+        Self::Lobes,
+        Self::Arithmetic,
+    ];
+}
+
+/// Part of an error that one factor adds, all others being exact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// Signed change of the worst channel, relative to max(brightest channel of the reference, [`FLOOR`]).
+    pub rel_err: f64,
+    /// Cause of the change.
+    pub cause: Cause,
+}
+
+/// A factor, and where in its table it was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// A Fresnel row, or a film tile.
+    Fresnel {
+        /// Layer, from 0.
+        layer: u32,
+        /// Name of the row.
+        tile: String,
+        /// Cosine of the look-up.
+        cos_theta_d: f64,
+        /// Reflectance there, in the channel of the worst pair.
+        expected: f64,
+        /// Value that the row gives.
+        sampled: f64,
+    },
+    /// A distribution tile.
+    Distribution {
+        /// Layer, from 0.
+        layer: u32,
+        /// Name of the tile.
+        tile: String,
+        /// Slope parameter of the look-up.
+        alpha: f64,
+        /// Angle of the half vector, degrees.
+        theta_h_deg: f64,
+        /// `pi alpha^2 D` there.
+        expected: f64,
+        /// Value that the tile gives.
+        sampled: f64,
+    },
+    /// A phase row, in the channel of the worst pair.
+    Phase {
+        /// Layer, from 0.
+        layer: u32,
+        /// Sum of the cosines in the film.
+        cosines: f64,
+    },
+    /// A tile of the albedo table.
+    Fgd {
+        /// Layer, from 0.
+        layer: u32,
+        /// Name of the tile.
+        tile: String,
+        /// Slope parameter of the look-up.
+        alpha: f64,
+        /// Cosine of the look-up.
+        cos_theta: f64,
+        /// Share of the light that the interface sends back there, in the channel of the worst pair.
+        expected: f64,
+        /// Value that the tile gives.
+        sampled: f64,
+    },
+    /// A tile of the escape table.
+    Escape {
+        /// Layer, from 0.
+        layer: u32,
+        /// Name of the tile.
+        tile: String,
+        /// Slope parameter of the look-up.
+        alpha: f64,
+        /// Cosine of the look-up, in the medium below the layer.
+        cos_theta: f64,
+        /// Share of the lobe that is not totally reflected.
+        expected: f64,
+        /// Value that the tile gives.
+        sampled: f64,
+    },
+    /// The material's record of the layers above a diffuse base.
+    Veil {
+        /// Internal reflectance, in the channel of the worst pair.
+        expected: f64,
+        /// Value that the record gives.
+        sampled: f64,
+    },
+    /// The rows of lobes.
+    Lobes {
+        /// Name of the tile.
+        tile: String,
+        /// Cosine of the view.
+        cos_theta: f64,
+    },
+    /// f32 arithmetic.
+    Arithmetic,
+}
+
+impl Cause {
+    /// The factor alone.
+    pub fn factor(&self) -> Factor {
+        match self {
+            Self::Fresnel { .. } => Factor::Fresnel,
+            Self::Distribution { .. } => Factor::Distribution,
+            Self::Phase { .. } => Factor::Phase,
+            Self::Fgd { .. } => Factor::Fgd,
+            Self::Escape { .. } => Factor::Escape,
+            Self::Veil { .. } => Factor::Veil,
+            Self::Lobes { .. } => Factor::Lobes,
+            Self::Arithmetic => Factor::Arithmetic,
+        }
+    }
+
+    /// A cause in words, with the error of the table there.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Fresnel { tile, cos_theta_d, expected, sampled, .. } => {
+                format!(
+                    "reflectance tile {tile} at cos θ {}: {}",
+                    number(rounded(*cos_theta_d, 3)),
+                    off(*expected, *sampled)
+                )
+            }
+            Self::Distribution { tile, alpha, theta_h_deg, expected, sampled, .. } => format!(
+                "distribution table {tile} at α {}, θₕ {}°: {}",
+                number(rounded(*alpha, 3)),
+                number_deg(*theta_h_deg),
+                off(*expected, *sampled)
+            ),
+            Self::Phase { layer, cosines } => {
+                format!("phase row of layer {layer} at a sum of cosines of {}", number(rounded(*cosines, 3)))
+            }
+            Self::Fgd { tile, alpha, cos_theta, expected, sampled, .. } => format!(
+                "albedo table {tile} at α {}, cos θ {}: {}",
+                number(rounded(*alpha, 3)),
+                number(rounded(*cos_theta, 3)),
+                off(*expected, *sampled)
+            ),
+            Self::Escape { tile, alpha, cos_theta, expected, sampled, .. } => format!(
+                "escape table {tile} at α {}, cos θ {}: {}",
+                number(rounded(*alpha, 3)),
+                number(rounded(*cos_theta, 3)),
+                off(*expected, *sampled)
+            ),
+            Self::Veil { expected, sampled } => format!("internal reflectance: {}", off(*expected, *sampled)),
+            Self::Lobes { tile, cos_theta } => {
+                format!("rows of lobes {tile} at cos θ {}", number(rounded(*cos_theta, 3)))
+            }
+            Self::Arithmetic => "f32 arithmetic".to_owned(),
+        }
+    }
+}
+
+/// A pair that misses the target, with its worst channel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Miss {
+    pair: Pair,
+    channel: usize,
+    found: f64,
+    expected: f64,
+    /// Divisor of errors.
+    scale: f64,
+}
+
+impl Miss {
+    /// All pairs with a finite sample that misses.
+    pub(crate) fn among(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Vec<Self> {
+        let each = |((&pair, found), expected): ((&Pair, &Rgb), &Rgb)| {
+            let bright = brightest(expected);
+            let mut worst: Option<(usize, f64)> = None;
+            for channel in 0..3 {
+                let error = relative_error(found[channel], expected[channel], bright, FLOOR);
+                if error.is_finite() && worst.is_none_or(|(_, w)| error > w) {
+                    worst = Some((channel, error));
+                }
+            }
+            let (channel, error) = worst?;
+            let (found, expected, scale) = (found[channel], expected[channel], bright.max(FLOOR));
+            (error > TARGET_MAX_REL_ERR).then_some(Self { pair, channel, found, expected, scale })
+        };
+        pairs.iter().zip(found).zip(expected).filter_map(each).collect()
+    }
+
+    /// A pair, whether it misses or not.
+    pub(crate) fn at(pair: Pair, channel: usize, found: &Rgb, expected: &Rgb) -> Self {
+        Self {
+            pair,
+            channel,
+            found: found[channel],
+            expected: expected[channel],
+            scale: brightest(expected).max(FLOOR),
+        }
+    }
+
+    pub(crate) fn of(pair: &WorstPair, misses: &[Self]) -> Option<Self> {
+        misses.iter().find(|m| m.pair == (pair.wi, pair.wo)).copied()
+    }
+
+    /// The larger angle to the normal, degrees.
+    pub(crate) fn angle_deg(&self) -> f64 {
+        let theta = |w: [f32; 3]| {
+            let [x, y, z] = w.map(f64::from);
+            libm::atan2(libm::hypot(x, y), z).to_degrees()
+        };
+        theta(self.pair.0).max(theta(self.pair.1))
+    }
+}
+
+/// Terms that are needed to take an error apart.
+pub(crate) struct Factors<'a> {
+    pub(crate) twin: &'a Twin,
+    pub(crate) exact: &'a Exact,
+    /// The tables as the shader reads them; nothing for a shader that reads none.
+    pub(crate) tables: Option<&'a TableTerms<'a>>,
+    /// Whether a device made the values, and f32 arithmetic can be at fault.
+    pub(crate) on_device: bool,
+}
+
+/// Words on the value that a read gives and the value that it should give.
+fn off(expected: f64, sampled: f64) -> String {
+    let percent = 100.0 * (sampled - expected) / expected.abs();
+    let sign = if percent < 0.0 { "−" } else { "+" };
+    let relative = if percent.is_finite() {
+        format!(" ({sign}{}\u{a0}%)", number(rounded(percent.abs(), 2)))
+    } else {
+        String::new()
+    };
+    format!("{} for {}{relative}", value(sampled), value(expected))
+}
+
+impl Factors<'_> {
+    /// The parts of an error, largest first: each factor of each layer read from the tables while all others are exact, and f32 arithmetic
+    /// against f64 on the same tables. Products of errors, of second order, belong to no part.
+    pub(crate) fn parts(&self, miss: &Miss) -> Vec<Part> {
+        let [wi, wo] = [miss.pair.0, miss.pair.1].map(|w| DVec3::from(w.map(f64::from)));
+        let mut parts = Vec::new();
+        let mut without_arithmetic = miss.expected;
+        if let Some(tables) = self.tables {
+            let recorder = Mixed::new(self.exact, tables, None);
+            self.twin.eval(&recorder, wi, wo);
+            let mut seen = Vec::new();
+            for read in recorder.reads.into_inner() {
+                let part = (read.layer, read.factor());
+                if seen.contains(&part) {
+                    continue;
+                }
+                seen.push(part);
+                let mixed = Mixed::new(self.exact, tables, Some(part));
+                let value = self.twin.eval(&mixed, wi, wo)[miss.channel];
+                let rel_err = (value - miss.expected) / miss.scale;
+                parts.push(Part { rel_err, cause: read.cause(tables, miss.channel) });
+            }
+            without_arithmetic = self.twin.eval(tables, wi, wo)[miss.channel];
+        }
+        if self.on_device {
+            let rel_err = (miss.found - without_arithmetic) / miss.scale;
+            parts.push(Part { rel_err, cause: Cause::Arithmetic });
+        }
+        parts.retain(|part| part.rel_err.is_finite());
+        parts.sort_by(|a, b| b.rel_err.abs().total_cmp(&a.rel_err.abs()));
+        parts
+    }
+}
+
+/// Exact terms but for one factor of one layer, which is read from the tables; keeps a record of all that was asked for.
+struct Mixed<'a> {
+    exact: &'a Exact,
+    tables: &'a TableTerms<'a>,
+    from_tables: Option<(usize, Factor)>,
+    reads: RefCell<Vec<Read>>,
+}
+
+/// A term that the model asked for.
+struct Read {
+    layer: usize,
+    term: Term,
+}
+
+enum Term {
+    Fresnel { cos_theta_d: f64, expected: Rgb, sampled: Rgb },
+    Distribution { alpha: f64, theta_h: f64, expected: f64, sampled: f64 },
+    Phase { cosines: f64 },
+    Fgd { alpha: f64, cos_theta: f64, expected: Rgb, sampled: Rgb },
+    Escape { alpha: f64, cos_theta: f64, expected: f64, sampled: f64 },
+    Veil { expected: Rgb, sampled: Rgb },
+    Lobes { cos_theta: f64 },
+}
+
+impl<'a> Mixed<'a> {
+    fn new(exact: &'a Exact, tables: &'a TableTerms<'a>, from_tables: Option<(usize, Factor)>) -> Self {
+        Self { exact, tables, from_tables, reads: RefCell::new(Vec::new()) }
+    }
+
+    fn record<T>(&self, layer: usize, term: Term, expected: T, sampled: T) -> T {
+        let read = Read { layer, term };
+        let chosen = self.from_tables == Some((layer, read.factor()));
+        self.reads.borrow_mut().push(read);
+        if chosen { sampled } else { expected }
+    }
+}
+
+impl Terms for Mixed<'_> {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        let [expected, sampled] = [self.exact.fresnel(layer, cos_theta_d), self.tables.fresnel(layer, cos_theta_d)];
+        self.record(layer, Term::Fresnel { cos_theta_d, expected, sampled }, expected, sampled)
+    }
+
+    fn distribution(
+        &self,
+        layer: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
+        let expected = self.exact.distribution(layer, distribution, alpha, cos_theta_h, sin_theta_h_sq);
+        let sampled = self.tables.distribution(layer, distribution, alpha, cos_theta_h, sin_theta_h_sq);
+        let theta_h = libm::atan2(sin_theta_h_sq.sqrt(), cos_theta_h);
+        let term = Term::Distribution { alpha, theta_h, expected, sampled };
+        self.record(layer, term, expected, sampled)
+    }
+
+    /// The exact value is computed by the model.
+    fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        let sampled = self.tables.interference(layer, channel, cosines)?;
+        self.record(layer, Term::Phase { cosines }, None, Some(sampled))
+    }
+}
+
+impl Energy<3> for Mixed<'_> {
+    fn fgd(&self, layer: usize, cos_theta: f64, alpha: f64) -> Rgb {
+        let [expected, sampled] = [self.exact.fgd(layer, cos_theta, alpha), self.tables.fgd(layer, cos_theta, alpha)];
+        self.record(layer, Term::Fgd { alpha, cos_theta, expected, sampled }, expected, sampled)
+    }
+
+    fn escaping(&self, layer: usize, cos_theta: f64, alpha: f64, eta: f64) -> f64 {
+        let expected = self.exact.escaping(layer, cos_theta, alpha, eta);
+        let sampled = self.tables.escaping(layer, cos_theta, alpha, eta);
+        self.record(layer, Term::Escape { alpha, cos_theta, expected, sampled }, expected, sampled)
+    }
+}
+
+impl ShaderTerms for Mixed<'_> {
+    fn veil(&self) -> Veil<3> {
+        let [expected, sampled] = [self.exact.veil(), self.tables.veil()];
+        let term = Term::Veil { expected: expected.internal, sampled: sampled.internal };
+        self.record(0, term, expected, sampled)
+    }
+
+    fn below(&self, wo: DVec3) -> Option<Below> {
+        let [expected, sampled] = [self.exact.below(wo), self.tables.below(wo)];
+        self.record(0, Term::Lobes { cos_theta: wo.z }, expected, sampled)
+    }
+}
+
+impl Read {
+    fn factor(&self) -> Factor {
+        match self.term {
+            Term::Fresnel { .. } => Factor::Fresnel,
+            Term::Distribution { .. } => Factor::Distribution,
+            Term::Phase { .. } => Factor::Phase,
+            Term::Fgd { .. } => Factor::Fgd,
+            Term::Escape { .. } => Factor::Escape,
+            Term::Veil { .. } => Factor::Veil,
+            Term::Lobes { .. } => Factor::Lobes,
+        }
+    }
+
+    fn cause(&self, tables: &TableTerms<'_>, channel: usize) -> Cause {
+        let layer = self.layer as u32;
+        match self.term {
+            Term::Fresnel { cos_theta_d, expected, sampled } => Cause::Fresnel {
+                layer,
+                tile: tables.fresnel_name(self.layer).to_owned(),
+                cos_theta_d,
+                expected: expected[channel],
+                sampled: sampled[channel],
+            },
+            Term::Distribution { alpha, theta_h, expected, sampled } => Cause::Distribution {
+                layer,
+                tile: tables.name(TableKind::Distribution, self.layer).to_owned(),
+                alpha,
+                theta_h_deg: theta_h.to_degrees(),
+                expected,
+                sampled,
+            },
+            Term::Phase { cosines } => Cause::Phase { layer, cosines },
+            Term::Fgd { alpha, cos_theta, expected, sampled } => Cause::Fgd {
+                layer,
+                tile: tables.name(TableKind::Fgd, self.layer).to_owned(),
+                alpha,
+                cos_theta,
+                expected: expected[channel],
+                sampled: sampled[channel],
+            },
+            Term::Escape { alpha, cos_theta, expected, sampled } => {
+                let tile = tables.name(TableKind::Escape, self.layer).to_owned();
+                Cause::Escape { layer, tile, alpha, cos_theta, expected, sampled }
+            }
+            Term::Veil { expected, sampled } => Cause::Veil { expected: expected[channel], sampled: sampled[channel] },
+            Term::Lobes { cos_theta } => {
+                Cause::Lobes { tile: tables.name(TableKind::Lobes, self.layer).to_owned(), cos_theta }
+            }
+        }
+    }
+}

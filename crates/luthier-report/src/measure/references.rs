@@ -1,0 +1,94 @@
+//! The f64 side of a comparison: the twin of a material's shader, and its exact terms.
+
+use glam::DVec3;
+use luthier_layers::models::elek::{self, Layer};
+use luthier_layers::lobes::{Cover, Varying};
+use luthier_layers::twins::parts::Parts;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_manifest::{ColorMode, MaterialEntry, PatinaRecord, VaryingFactor};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
+use rayon::prelude::*;
+
+use crate::measure::directions::Pair;
+use crate::measure::subject::color;
+use crate::measure::table_terms::recorded_veil;
+
+/// The f64 twin of one material's shader, and its exact terms.
+pub(crate) struct References {
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) twin: Twin,
+    pub(crate) spectral: Exact,
+    pub(crate) three: Exact,
+    /// Exact terms of the form without tables, where these are not `three`.
+    pub(crate) level: Option<Exact>,
+    color: ColorMode,
+}
+
+impl References {
+    pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Self {
+        let three = Color::ThreeWavelengths(material.wavelengths_nm);
+        let color = color(material);
+        let model = material.model;
+        let varying = varying(material);
+        let twin = Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
+        Self {
+            layers: elek::layers(stack),
+            twin: twin.reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
+            spectral: Exact::varying(stack, Color::Spectral, varying),
+            three: Exact::varying(stack, three, varying),
+            level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
+            color: material.color,
+        }
+    }
+
+    /// All that decides the fit of lobes.
+    pub(crate) fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
+        self.baked().fitted()
+    }
+
+    /// The exact terms of the form without tables.
+    pub(crate) fn full(&self) -> &Exact {
+        self.level.as_ref().unwrap_or(&self.three)
+    }
+
+    /// The exact terms that the tables stand for.
+    pub(crate) fn baked(&self) -> &Exact {
+        match self.color {
+            ColorMode::Spectral => &self.spectral,
+            ColorMode::ThreeWavelengths => &self.three,
+        }
+    }
+}
+
+/// The parts of a model that a material chooses.
+pub(crate) fn parts(material: &MaterialEntry) -> Parts {
+    let (masking, reflectance) = material.parts();
+    let parts = Parts { masking, reflectance, internal_reflection: material.internal_reflection(), ..Parts::PLAIN };
+    material.constants.beams.map_or(parts, |beams| {
+        let weights = [beams.specular_weight, beams.diffuse_weight];
+        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+    })
+}
+
+/// The part of a material that its rows of lobes are over.
+fn varying(material: &MaterialEntry) -> Option<Varying> {
+    let record = material.constants.lobes?.varying?;
+    match record.factor {
+        VaryingFactor::AlphaFactor => Some(Varying::Alpha),
+        VaryingFactor::SlabFactor => Some(Varying::Slab),
+        VaryingFactor::FilmFactor => record.factors.map(Varying::Film),
+        VaryingFactor::Patina => {
+            let PatinaRecord { diffuse_albedo, base_alpha, tarnish, .. } = *material.constants.patina.as_ref()?;
+            Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
+        }
+    }
+}
+
+/// The model in f64 at exactly the f32 directions that the device gets.
+pub(crate) fn evaluate(twin: &Twin, terms: &(impl ShaderTerms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
+    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
+    pairs.par_iter().map(|&(wi, wo)| twin.eval(terms, wide(wi), wide(wo))).collect()
+}

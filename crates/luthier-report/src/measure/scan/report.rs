@@ -1,0 +1,92 @@
+//! Figures of a scan, as reports have them.
+
+use luthier_lut::{AtlasLayout, ErrorStats, TableKind, TexelFormat};
+use serde::{Deserialize, Serialize};
+
+use crate::measure::statistics::UNCERTAINTY_MARGIN;
+
+/// One table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableReport {
+    /// Kind of the table.
+    pub kind: TableKind,
+    /// Texels of the texture.
+    pub size: [u32; 2],
+    /// Axes, mappings and tiles.
+    pub layout: AtlasLayout,
+    /// Texel format.
+    pub format: TexelFormat,
+    /// Bytes of its texels, uncompressed.
+    pub texel_bytes: u64,
+    /// The file, relative to the manifest.
+    pub path: String,
+    /// One entry per tile.
+    pub tiles: Vec<TileReport>,
+}
+
+/// One tile of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TileReport {
+    /// Its name.
+    pub name: String,
+    /// Function that was tabulated.
+    pub model: String,
+    /// The layers that read it, as `material/layer`.
+    pub users: Vec<String>,
+    /// Its error as the baker measured it.
+    pub baker: ErrorStats,
+    /// Its error as measured here from the shipped texels, with 8-bit weights where a sampler filters the format;
+    /// absent for thickness maps, whose truth only the baker has, and for tiles that no layer reads.
+    pub judge: Option<ErrorStats>,
+    /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
+    pub uncertainty: Option<f64>,
+    /// The error that the baker aimed at as sampled, where no other was asked for.
+    #[serde(default)]
+    pub aim: Option<f64>,
+    /// Reads that were not finite; they are not part of `judge`.
+    pub not_finite: u64,
+    /// Curves that are drawn of the tile.
+    pub curves: Curves,
+}
+
+impl TileReport {
+    /// Error of the tile as sampled and the aim of the bake, if the error exceeds the aim: the error that was measured here or that the
+    /// baker states, whichever is more.
+    pub fn miss(&self) -> Option<(f64, f64)> {
+        let stated = (self.baker.worst.expected - self.baker.worst.sampled).abs();
+        let doubt = UNCERTAINTY_MARGIN * self.uncertainty.unwrap_or(0.0);
+        let found = self.judge.as_ref().map_or(0.0, |judge| judge.max_abs_err - doubt).max(stated);
+        self.aim.filter(|aim| found > *aim).map(|aim| (found, aim))
+    }
+}
+
+/// Curves of a tile, in four significant digits: for drawing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Curves {
+    /// No curves.
+    #[default]
+    None,
+    /// A Fresnel row, as read.
+    Reflectance(ReflectanceCurve),
+    /// The error of a distribution.
+    ByAlpha(Vec<AlphaPoint>),
+}
+
+/// A Fresnel row over the angle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReflectanceCurve {
+    /// Degrees from one point to the next; the first is at the normal.
+    pub step_deg: f64,
+    /// Reflectance, RGB.
+    pub rgb: Vec<[f64; 3]>,
+}
+
+/// The error of a distribution in a band of alpha.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AlphaPoint {
+    /// Middle of the band.
+    pub alpha: f64,
+    /// Largest error over the angle, as a fraction of the largest value at that alpha.
+    pub max_err_of_peak: f64,
+}
