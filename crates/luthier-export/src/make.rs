@@ -217,7 +217,7 @@ impl Package {
                 Target::SpirV => luthier_shader::emit_spirv(&set, form),
                 _ => luthier_shader::emit(&set, form, target).map(String::into_bytes),
             };
-            Ok(Shader { form, target, bytes: bytes? })
+            Ok(Shader { form, target, bytes: bytes?, interface: luthier_shader::interface(&set, form)? })
         };
         self.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
         let bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));

@@ -11,6 +11,7 @@ mod constants;
 mod distribution;
 mod error;
 mod functions;
+mod interface;
 mod limits;
 mod lock;
 mod manifest;
@@ -30,6 +31,7 @@ pub use constants::{
 };
 pub use error::ManifestError;
 pub use functions::{FunctionGroup, Functions};
+pub use interface::{FunctionEntry, Interface, StructureEntry};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_model::{

@@ -4,8 +4,8 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, Functions, InternalReflection, LayerKind, LayerRecord, LowerReflectance, ManifestError, MapEntry, Masking,
-    MaterialConstants, MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
+    Form, Functions, Interface, InternalReflection, LayerKind, LayerRecord, LowerReflectance, ManifestError, MapEntry,
+    Masking, MaterialConstants, MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -122,6 +122,9 @@ pub struct ShaderEntry {
     pub form: Form,
     /// The file.
     pub file: FileEntry,
+    /// What a program around it calls, fills and binds; absent from earlier bakes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interface: Option<Interface>,
 }
 
 /// One binding of group 0.
@@ -425,7 +428,12 @@ mod tests {
                 measured: 12,
             }],
             choice: None,
-            shaders: vec![ShaderEntry { target: Target::Wgsl, form: Form::Baked, file: file("shaders/baked.wgsl") }],
+            shaders: vec![ShaderEntry {
+                target: Target::Wgsl,
+                form: Form::Baked,
+                file: file("shaders/baked.wgsl"),
+                interface: Some(Interface::default()),
+            }],
             functions: Functions::default(),
             bindings: vec![BindingEntry {
                 binding: 1,
