@@ -55,9 +55,9 @@ impl Package {
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = files.add("materials.bin".to_owned(), bytes);
         let mut shader = |shader: &Shader| {
-            let &Shader { form, target, ref bytes } = shader;
+            let Shader { form, target, bytes, interface } = shader;
             let file = files.add(format!("shaders/{form}.{}", target.extension()), bytes.clone());
-            ShaderEntry { target, form, file }
+            ShaderEntry { target: *target, form: *form, file, interface: Some(interface.clone()) }
         };
         manifest.shaders = self.shaders.iter().map(&mut shader).collect();
         Ok(Encoded { manifest, files: files.0 })

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use luthier_lut::{Image, Picture, TableKind};
-use luthier_manifest::{Form, Manifest, MapSlot, MaterialEntry, Target};
+use luthier_manifest::{Form, Interface, Manifest, MapSlot, MaterialEntry, Target};
 use luthier_texture::Texture;
 
 use crate::{Compression, Folder, PackageError, publish};
@@ -41,6 +41,8 @@ pub struct Shader {
     pub target: Target,
     /// UTF-8 text, or the words of SPIR-V, little-endian.
     pub bytes: Vec<u8>,
+    /// What a program around it calls, fills and binds.
+    pub interface: Interface,
 }
 
 /// A map of a material.
@@ -59,9 +61,10 @@ pub struct Map {
 }
 
 impl Shader {
-    /// A shader in WGSL.
+    /// A shader in WGSL, whose interface is read from it.
     pub fn wgsl(form: Form, text: String) -> Self {
-        Self { form, target: Target::Wgsl, bytes: text.into_bytes() }
+        let interface = Interface::read(&text);
+        Self { form, target: Target::Wgsl, bytes: text.into_bytes(), interface }
     }
 
     /// The text; empty for SPIR-V.
@@ -133,8 +136,16 @@ impl Package {
     /// # Errors
     /// [`PackageError::NoShader`].
     pub fn wgsl(&self, form: Form) -> Result<&str, PackageError> {
+        self.shader(form).map(Shader::text)
+    }
+
+    /// The shader of a form in WGSL.
+    ///
+    /// # Errors
+    /// [`PackageError::NoShader`].
+    pub fn shader(&self, form: Form) -> Result<&Shader, PackageError> {
         let texts = || self.shaders.iter().filter(|s| s.target == Target::Wgsl);
-        texts().find(|s| s.form == form).map(Shader::text).ok_or_else(|| PackageError::NoShader {
+        texts().find(|s| s.form == form).ok_or_else(|| PackageError::NoShader {
             form,
             known: texts().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
         })

@@ -1,7 +1,7 @@
 //! Group 0, as the manifest lists it.
 
 use luthier_lut::{TableKind, TexelFormat};
-use luthier_manifest::{BindingEntry, material_buffer};
+use luthier_manifest::{BindingEntry, Interface, material_buffer};
 use wgpu::{BindGroupLayoutEntry, BindingType, ShaderStages};
 
 use crate::context::Context;
@@ -35,11 +35,11 @@ impl ShaderBindings {
         self.resources.iter().any(|(_, resource)| matches!(resource, Resource::Environment))
     }
 
-    /// Uploads the tables that the shader names.
-    pub(crate) fn new(context: &Context, package: &Package, wgsl: &str) -> Result<Self, GpuError> {
+    /// Uploads the tables that the shader reads.
+    pub(crate) fn new(context: &Context, package: &Package, interface: &Interface) -> Result<Self, GpuError> {
         let mut resources = Vec::new();
-        // A form binds what its text names: the full form needs no table.
-        for entry in package.manifest.bindings.iter().filter(|entry| wgsl.contains(&entry.name)) {
+        // The full form reads no table.
+        for entry in package.manifest.bindings.iter().filter(|entry| interface.binds(&entry.name)) {
             resources.push((entry.binding, resource(context, package, entry)?));
         }
         let entries: Vec<_> = resources.iter().map(|(binding, r)| layout_entry(*binding, r)).collect();

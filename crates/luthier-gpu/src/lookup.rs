@@ -1,6 +1,7 @@
 //! Reads of the tables through the shader's own look-up functions.
 
 use luthier_lut::TableKind;
+use luthier_manifest::FunctionEntry;
 
 use crate::context::Pass;
 use crate::evaluate::{CHUNK, WORKGROUP};
@@ -26,12 +27,13 @@ impl Scene {
     /// [`GpuError::NoTable`], [`GpuError::NoTile`], and whatever the device reports.
     pub fn lookup(&self, kind: TableKind, tile: u32, values: &[[f32; 2]]) -> Result<Vec<[f32; 4]>, GpuError> {
         let missing = || GpuError::NoTable { kind, form: self.form() };
-        let table = self.manifest.table(kind).filter(|_| self.reads(kind)).ok_or_else(missing)?;
+        let function = self.look_up(kind).ok_or_else(missing)?;
+        let table = self.manifest.table(kind).ok_or_else(missing)?;
         let count = table.layout.tiles;
         if tile >= count {
             return Err(GpuError::NoTile { kind, tile, count });
         }
-        let kernel = KERNEL.replace("KERNEL_LOOKUP", &call(kind, self.signature(kind).ok_or_else(missing)?));
+        let kernel = KERNEL.replace("KERNEL_LOOKUP", &call(function));
         let pipeline = self.pipeline(&self.lookups[kind as usize], &kernel)?;
 
         let mut read = Vec::with_capacity(values.len());
@@ -51,14 +53,13 @@ impl Scene {
 }
 
 /// The expression that reads a table, in terms of `at`: its components in their order are those of the look-up's arguments.
-fn call(kind: TableKind, (parameters, value): (&str, &str)) -> String {
+fn call(FunctionEntry { name, parameters, value }: &FunctionEntry) -> String {
     let mut components = "xyzw".chars();
-    let mut argument = |declared: &str| {
-        let kind = declared.split_once(": ").map_or(declared, |(_, kind)| kind);
-        components.by_ref().take(width(kind)).collect::<String>()
-    };
-    let arguments: Vec<String> = parameters.split(", ").map(|declared| format!("at.{}", argument(declared))).collect();
-    let read = format!("luthier_lookup_{}({})", kind.name(), arguments.join(", "));
+    let mut arguments = Vec::with_capacity(parameters.len());
+    for kind in parameters {
+        arguments.push(format!("at.{}", components.by_ref().take(width(kind)).collect::<String>()));
+    }
+    let read = format!("{name}({})", arguments.join(", "));
     match width(value) {
         4 => read,
         channels => format!("vec4<f32>({read}{})", ", 0.0".repeat(4 - channels)),

@@ -84,22 +84,25 @@ impl Scene {
         }
         let lines = [
             (
-                self.has("fn luthier_onto("),
+                self.interface.fills("LuthierLayerPlace", "normal"),
                 "let bumps = shading_own(material, layer, 0u);\n    if bumps.y > 0u {\n        \
                  let n = 2.0 * shading_bilinear(bumps, uv).xyz - 1.0;\n        \
                  own.normal = normalize(vec3<f32>(n.xy, max(n.z, 1e-3)));\n    }",
             ),
             (
-                self.has("alpha_factors: vec2"),
+                self.interface.fills("LuthierLayerPlace", "alpha_factors"),
                 "own.alpha_factors = shading_own_factor(material, layer, 1u, uv)\n        * \
                  vec2<f32>(shading_own_factor(material, layer, 2u, uv), shading_own_factor(material, layer, 3u, uv));",
             ),
             (
-                self.has("fn luthier_tangent("),
+                self.interface.fills("LuthierLayerPlace", "tangent"),
                 "let tangent = shading_own(material, layer, 4u);\n    if tangent.y > 0u {\n        \
                  own.tangent = luthier_tangent(shading_bilinear(tangent, uv).xy);\n    }",
             ),
-            (self.has("    slab_factor: f32,\n}"), "own.slab_factor = shading_own_factor(material, layer, 5u, uv);"),
+            (
+                self.interface.fills("LuthierLayerPlace", "slab_factor"),
+                "own.slab_factor = shading_own_factor(material, layer, 5u, uv);",
+            ),
         ];
         let fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
         let functions = include_str!("wgsl/surface_layers.wgsl")
@@ -108,7 +111,7 @@ impl Scene {
             .replace("$fill", &fill.join("\n    "));
         let call = |i| format!("surface.layers[{i}] = shading_layer_place(material, {i}u, maps.uv);");
         let mut calls: Vec<String> = (0..count).map(call).collect();
-        if self.has("fn luthier_metallic_place(") {
+        if self.interface.calls("luthier_metallic_place") {
             calls.push("surface = shading_metallic(surface, material, maps.uv);".to_owned());
             return (functions + include_str!("wgsl/surface_metallic.wgsl"), calls);
         }
@@ -118,8 +121,8 @@ impl Scene {
     /// `ShadingSurface`, what the emitted shader takes for a place, and the functions that fill, read and use it.
     pub(crate) fn surface_functions(&self) -> String {
         // What fluorescent bases send out is no factor times the light.
-        let takes_light = self.has("fn luthier_eval_lit(");
-        if !self.has("struct LuthierPlace") {
+        let takes_light = self.interface.calls("luthier_eval_lit");
+        if !self.has_places() {
             let lit = match takes_light {
                 true => "luthier_eval_lit(material, wi, wo, light)",
                 false => "luthier_eval(material, wi, wo) * light",
@@ -131,22 +134,25 @@ impl Scene {
             false => "luthier_eval_at(surface, material, wi, wo) * light",
         };
         let lines = [
-            (self.has("fn luthier_film_place("), "surface = luthier_film_place(surface, material, maps.uv);"),
+            (self.interface.calls("luthier_film_place"), "surface = luthier_film_place(surface, material, maps.uv);"),
             (
-                self.has("inner_normal: vec3"),
+                self.interface.fills("LuthierPlace", "inner_normal"),
                 "surface.inner_normal = normalize(surface.inner_normal \
                  + vec3<f32>(kernel_inputs.film_tilt, 0.0) * surface.inner_normal.z);",
             ),
             (
-                self.has("fn luthier_flake_normal("),
+                self.interface.calls("luthier_flake_normal"),
                 "surface.flake_normal = luthier_flake_normal(material, maps.uv, distance);\n    \
                  if maps.has_flakes {\n        \
                      surface.flake_normal = luthier_flake_tilt(material, maps.flake, distance);\n    \
                  }",
             ),
-            (self.has("fn luthier_patina_amount("), "surface.patina = luthier_patina_amount(material, maps.patina);"),
             (
-                self.has("fn luthier_glitter_normal("),
+                self.interface.calls("luthier_patina_amount"),
+                "surface.patina = luthier_patina_amount(material, maps.patina);",
+            ),
+            (
+                self.interface.calls("luthier_glitter_normal"),
                 "let glitter = luthier_glitter_normal(material, maps.uv);\n    \
                  surface.normal = select(surface.normal, glitter, glitter.z < 1.0);",
             ),
@@ -154,14 +160,18 @@ impl Scene {
         let (layers, calls) = self.layer_functions();
         let mut fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
         fill.extend(calls.iter().map(String::as_str));
-        if self.has("base_color: vec3") {
+        if self.interface.fills("LuthierPlace", "base_color") {
             fill.push(
                 "let albedo = shading_map_header(material, 7u);\n    if albedo.y > 0u {\n        \
                  surface.base_color = shading_bilinear(albedo, maps.uv).xyz;\n    }",
             );
         }
-        let below = if self.has("flake_normal: vec3") { "surface.flake_normal" } else { "vec3<f32>(0.0, 0.0, 1.0)" };
-        let patina = if self.has("patina: f32,") { "surface.patina" } else { "-1.0" };
+        let below = if self.interface.fills("LuthierPlace", "flake_normal") {
+            "surface.flake_normal"
+        } else {
+            "vec3<f32>(0.0, 0.0, 1.0)"
+        };
+        let patina = if self.interface.fills("LuthierPlace", "patina") { "surface.patina" } else { "-1.0" };
         let functions = include_str!("wgsl/surface.wgsl")
             .replace("$fill", &fill.join("\n    "))
             .replace("$lit", lit)

@@ -20,7 +20,7 @@ pub type Spot = (PlaceValues, [f32; 3], [f32; 3]);
 impl Scene {
     /// Whether the shader takes a place: [`Self::evaluate_at`] needs it.
     pub fn has_places(&self) -> bool {
-        self.has("struct LuthierPlace")
+        self.interface.has("LuthierPlace")
     }
 
     /// `luthier_eval_at` of a material: `f cos_theta_i`, linear RGB, at a place for each pair of directions. Values that the shader has no member
@@ -51,28 +51,28 @@ impl Scene {
     fn places_kernel(&self, layers: usize) -> String {
         let at = |word: usize, part: &str| format!("kernel_inputs[first + {word}u].{part}");
         let mut fill: Vec<String> = [
-            ("inner_normal: vec3", format!("place.inner_normal = {};", at(3, "xyz"))),
-            ("flake_normal: vec3", format!("place.flake_normal = {};", at(4, "xyz"))),
-            ("base_color: vec3", format!("place.base_color = {};", at(5, "xyz"))),
-            ("    patina: f32,", format!("place.patina = {};", at(5, "w"))),
-            ("    slope_variance: f32,", format!("place.slope_variance = {};", at(1, "w"))),
+            ("inner_normal", format!("place.inner_normal = {};", at(3, "xyz"))),
+            ("flake_normal", format!("place.flake_normal = {};", at(4, "xyz"))),
+            ("base_color", format!("place.base_color = {};", at(5, "xyz"))),
+            ("patina", format!("place.patina = {};", at(5, "w"))),
+            ("slope_variance", format!("place.slope_variance = {};", at(1, "w"))),
         ]
         .into_iter()
-        .filter(|(declared, _)| self.has(declared))
+        .filter(|(member, _)| self.interface.fills("LuthierPlace", member))
         .map(|(_, line)| line)
         .collect();
         for layer in 0..layers {
             let [first, second] = [0, 1].map(|word| PAIR_WORDS + LAYER_WORDS * layer + word);
             let members = [
-                (self.has("fn luthier_onto("), "normal", at(first, "xyz")),
-                (self.has("    slab_factor: f32,\n}"), "slab_factor", at(first, "w")),
-                (self.has("alpha_factors: vec2"), "alpha_factors", at(second, "xy")),
-                (self.has("fn luthier_tangent("), "tangent", format!("luthier_tangent({})", at(second, "zw"))),
+                ("normal", at(first, "xyz")),
+                ("slab_factor", at(first, "w")),
+                ("alpha_factors", at(second, "xy")),
+                ("tangent", format!("luthier_tangent({})", at(second, "zw"))),
             ];
-            let members = members.iter().filter(|(has, ..)| *has);
-            fill.extend(members.map(|(_, member, value)| format!("place.layers[{layer}].{member} = {value};")));
+            let members = members.iter().filter(|(member, _)| self.interface.fills("LuthierLayerPlace", member));
+            fill.extend(members.map(|(member, value)| format!("place.layers[{layer}].{member} = {value};")));
         }
-        if self.has("fn luthier_metallic_place(") {
+        if self.interface.calls("luthier_metallic_place") {
             let [color, metallic] = ["xyz", "w"].map(|part| at(6, part));
             let next = format!("luthier_metallic_place(place, material, {color}, {metallic})");
             fill.push(format!("if {metallic} >= 0.0 {{ place = {next}; }}"));

@@ -305,15 +305,15 @@ impl Scene {
 
     /// The environment by directions that the shader draws; by those of layer records where it has no such functions.
     fn drawn_around(&self) -> String {
-        if !self.has("fn luthier_sample(") {
+        if !self.interface.calls("luthier_sample") {
             return include_str!("wgsl/around/by_records.wgsl").to_owned();
         }
-        let prepared = match self.has("struct LuthierPlace") {
+        let prepared = match self.has_places() {
             true => "luthier_prepare_at(surface, material, wo)",
             false => "luthier_prepare(material, wo)",
         };
         // What fluorescent bases send out is no factor times the light.
-        let reflected = match self.has("fn luthier_light_lit(") {
+        let reflected = match self.interface.calls("luthier_light_lit") {
             true => "luthier_light_lit(prepared, wi, $radiance) / drawn.pdf",
             false => "drawn.weight * $radiance",
         };
@@ -327,7 +327,7 @@ impl Scene {
         let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
         let film = body(TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)");
         let shown = if self.bindings.has_surroundings() {
-            let place = if self.has("struct LuthierPlace") { "surface, " } else { "" };
+            let place = if self.has_places() { "surface, " } else { "" };
             format!(
                 "luthier_environment_lobes(luthier_prepare_lobes({place}material, vec3<f32>(wo.xy, max(wo.z, 1e-4))), frame, turn)"
             )

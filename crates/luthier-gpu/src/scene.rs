@@ -3,7 +3,7 @@
 use std::sync::{Mutex, OnceLock};
 
 use luthier_lut::TableKind;
-use luthier_manifest::{Form, LayerRecord, Manifest};
+use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
@@ -22,6 +22,8 @@ pub struct Scene {
     pub(crate) maps: Vec<Map>,
     form: Form,
     wgsl: String,
+    /// The part of the shader that kernels call and fill.
+    pub(crate) interface: Interface,
     pub(crate) bindings: ShaderBindings,
     /// Group 0 with the materials as baked.
     pub(crate) group: wgpu::BindGroup,
@@ -37,8 +39,9 @@ pub struct Scene {
 
 impl Scene {
     pub(crate) fn new(context: Context, package: &Package, form: Form) -> Result<Self, GpuError> {
-        let wgsl = package.wgsl(form)?;
-        let bindings = ShaderBindings::new(&context, package, wgsl)?;
+        let shader = package.shader(form)?;
+        let (wgsl, interface) = (shader.text(), shader.interface.clone());
+        let bindings = ShaderBindings::new(&context, package, &interface)?;
         let group = bindings.group(&context, &material_words(package), &Surroundings::black(&context)?)?;
         let kernel_group = kernel_layout(&context)?;
         let kernels = context.guarded("pipeline layout", || {
@@ -55,6 +58,7 @@ impl Scene {
             maps: package.maps.clone(),
             form,
             wgsl: wgsl.to_owned(),
+            interface,
             bindings,
             group,
             kernels,
@@ -77,7 +81,7 @@ impl Scene {
             return Ok(None);
         }
         // Layouts with the same entries are the same to the device, so the pipelines take the new groups.
-        let bindings = ShaderBindings::new(&self.context, package, &self.wgsl)?;
+        let bindings = ShaderBindings::new(&self.context, package, &self.interface)?;
         let group = bindings.group(&self.context, &material_words(package), &Surroundings::black(&self.context)?)?;
         Ok(Some(Self {
             context: self.context.clone(),
@@ -85,6 +89,7 @@ impl Scene {
             maps: package.maps.clone(),
             form: self.form,
             wgsl: self.wgsl.clone(),
+            interface: self.interface.clone(),
             bindings,
             group,
             kernels: self.kernels.clone(),
@@ -111,18 +116,12 @@ impl Scene {
 
     /// Whether the shader reads a table.
     pub(crate) fn reads(&self, kind: TableKind) -> bool {
-        self.wgsl.contains(&format!("fn luthier_lookup_{}(", kind.name()))
+        self.look_up(kind).is_some()
     }
 
-    /// Parameters and type of the value of the look-up of a table, as the shader declares them.
-    pub(crate) fn signature(&self, kind: TableKind) -> Option<(&str, &str)> {
-        let opening = format!("fn luthier_lookup_{}(", kind.name());
-        self.wgsl.lines().find_map(|line| line.strip_prefix(&opening)?.strip_suffix(" {")?.split_once(") -> "))
-    }
-
-    /// Whether the shader has a function or a member of a structure.
-    pub(crate) fn has(&self, declaration: &str) -> bool {
-        self.wgsl.contains(declaration)
+    /// The function that looks a table up.
+    pub(crate) fn look_up(&self, kind: TableKind) -> Option<&FunctionEntry> {
+        self.interface.function(&format!("luthier_lookup_{}", kind.name()))
     }
 
     /// The pipeline of a kernel.

@@ -49,7 +49,7 @@ impl Scene {
 
     /// `shading_pick`: what a part shows at a place.
     pub(crate) fn pick_function(&self) -> &'static str {
-        if self.has("fn luthier_pick(") {
+        if self.interface.calls("luthier_pick") {
             "fn shading_pick(part: vec4<u32>, uv: vec2<f32>) -> ShadingPick {\n    \
                  if part.y == 1u {\n        \
                      let pick = luthier_pick(part.x, uv);\n        \

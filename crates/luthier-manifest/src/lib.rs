@@ -23,6 +23,7 @@ mod distribution;
 mod error;
 mod file;
 mod functions;
+mod interface;
 mod limits;
 mod lock;
 mod manifest;
@@ -46,6 +47,7 @@ pub use constants::{
 pub use error::ManifestError;
 pub use file::FileEntry;
 pub use functions::{FunctionGroup, Functions};
+pub use interface::{FunctionEntry, Interface, StructureEntry};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_model::{

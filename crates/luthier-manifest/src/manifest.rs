@@ -8,6 +8,7 @@ use crate::choice::SceneChoice;
 use crate::error::ManifestError;
 use crate::file::FileEntry;
 use crate::functions::Functions;
+use crate::interface::Interface;
 use crate::limits::MaterialTexture;
 use crate::material::MaterialEntry;
 use crate::search::Search;
@@ -81,6 +82,9 @@ pub struct ShaderEntry {
     pub form: Form,
     /// The file.
     pub file: FileEntry,
+    /// What a program around it calls, fills and binds; absent from earlier bakes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interface: Option<Interface>,
 }
 
 /// One binding of group 0.
@@ -325,7 +329,12 @@ mod tests {
                 measured: 12,
             }],
             choice: None,
-            shaders: vec![ShaderEntry { target: Target::Wgsl, form: Form::Baked, file: file("shaders/baked.wgsl") }],
+            shaders: vec![ShaderEntry {
+                target: Target::Wgsl,
+                form: Form::Baked,
+                file: file("shaders/baked.wgsl"),
+                interface: Some(Interface::default()),
+            }],
             functions: Functions::default(),
             bindings: vec![BindingEntry {
                 binding: 1,

@@ -37,7 +37,7 @@ mod set;
 mod style;
 mod validate;
 
-pub use emit::{complete, emit, emit_constant};
+pub use emit::{complete, emit, emit_constant, interface};
 pub use error::ShaderError;
 pub use languages::spirv::{complete_spirv, emit_spirv, library_spirv, spirv_words};
 pub use library::library;

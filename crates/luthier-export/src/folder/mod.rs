@@ -133,7 +133,10 @@ impl Folder {
         let tables = manifest.tables.iter().map(table).collect::<Result<_, PackageError>>()?;
         let texts = manifest.shaders.iter().filter(|s| s.target == Target::Wgsl);
         let shaders = texts
-            .map(|entry| Ok(Shader::wgsl(entry.form, self.text(&entry.file)?)))
+            .map(|entry| {
+                let read = Shader::wgsl(entry.form, self.text(&entry.file)?);
+                Ok(Shader { interface: entry.interface.clone().unwrap_or(read.interface), ..read })
+            })
             .collect::<Result<_, PackageError>>()?;
         let mut package = Package::from_parts(manifest.clone(), tables, shaders)?;
         for (material, entry) in (0..).zip(&manifest.materials) {

@@ -4,10 +4,11 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use luthier_layers::lobes::Below;
-use luthier_layers::twins::real_time::Twin;
 use luthier_layers::models::statistics::diffuse_base::Veil;
 use luthier_layers::models::statistics::energy::Energy;
-use luthier_layers::terms::{Exact, ShaderTerms, Terms};
+use luthier_layers::terms::Terms;
+use luthier_layers::twins::real_time::Twin;
+use luthier_layers::twins::terms::{Exact, ShaderTerms};
 use luthier_lut::TableKind;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;

@@ -1,11 +1,11 @@
 //! The f64 side of a comparison: the twin of a material's shader, and its exact terms.
 
 use glam::DVec3;
-use luthier_layers::models::elek::{self, Layer};
 use luthier_layers::lobes::{Cover, Varying};
+use luthier_layers::models::elek::{self, Layer};
 use luthier_layers::twins::parts::Parts;
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_layers::twins::terms::{Exact, ShaderTerms};
 use luthier_manifest::{ColorMode, MaterialEntry, PatinaRecord, VaryingFactor};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

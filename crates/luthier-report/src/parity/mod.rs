@@ -5,7 +5,7 @@ mod sets;
 mod tolerances;
 
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::terms::ShaderTerms;
+use luthier_layers::twins::terms::ShaderTerms;
 use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_optics::Rgb;
 use rayon::prelude::*;

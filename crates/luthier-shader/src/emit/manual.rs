@@ -65,6 +65,16 @@ const FUNCTIONS: [(&str, &str); 24] = [
     ("luthier_layer(material, index), luthier_layer_count(material)", "the layers as records, from the top"),
 ];
 
+/// Structures that a program fills.
+pub(crate) const STRUCTURES: [&str; 2] = ["LuthierPlace", "LuthierLayerPlace"];
+
+/// Whether a program around a shader may call a function: the manual names it, or it is a look-up.
+pub(crate) fn is_public(function: &str) -> bool {
+    let mut named =
+        FUNCTIONS.iter().flat_map(|(calls, _)| calls.split("), ")).filter_map(|call| call.split('(').next());
+    function.starts_with("luthier_lookup_") || named.any(|name| name == function)
+}
+
 /// The manual of a text, which was made of this WGSL.
 pub(super) fn manual(
     set: &MaterialSet<'_>,

@@ -2,7 +2,9 @@
 
 mod manual;
 
-use self::manual::manual;
+use luthier_manifest::Interface;
+
+use self::manual::{STRUCTURES, is_public, manual};
 use crate::compose::{Buffer, compose};
 use crate::languages::{glsl, hlsl, msl};
 use crate::{Form, MaterialSet, ShaderError, Target, bindings, validate};
@@ -40,6 +42,17 @@ pub fn emit_constant(set: &MaterialSet<'_>, form: Form, target: Target) -> Resul
         1 => text(set, form, target, Part::Constant),
         count => Err(ShaderError::NotOne(count)),
     }
+}
+
+/// The part of a shader that a program around it calls, fills and binds: functions of its manual and look-ups, and the structures of places.
+///
+/// # Errors
+/// As [`emit`].
+pub fn interface(set: &MaterialSet<'_>, form: Form) -> Result<Interface, ShaderError> {
+    let mut interface = Interface::read(&compose(set, form, Buffer::Storage)?);
+    interface.functions.retain(|function| is_public(&function.name));
+    interface.structures.retain(|structure| STRUCTURES.contains(&structure.name.as_str()));
+    Ok(interface)
 }
 
 /// A complete fragment shader around the snippet: `luthier_eval` for interpolated directions and a flat material number.

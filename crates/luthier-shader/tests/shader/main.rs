@@ -10,6 +10,7 @@ mod face;
 mod features;
 mod fluorescent;
 mod golden;
+mod interface;
 mod judges;
 mod library;
 mod lobes;

@@ -21,7 +21,7 @@ pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) ->
             Target::SpirV => luthier_shader::emit_spirv(&set, form),
             _ => luthier_shader::emit(&set, form, target).map(String::into_bytes),
         };
-        Ok(Shader { form, target, bytes: bytes? })
+        Ok(Shader { form, target, bytes: bytes?, interface: luthier_shader::interface(&set, form)? })
     };
     package.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
     manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));

@@ -10,7 +10,7 @@ mod phase;
 pub(crate) mod report;
 mod thickness;
 
-use luthier_layers::terms::Exact;
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
 use luthier_manifest::MaterialEntry;
 use serde::{Deserialize, Serialize};
