@@ -12,6 +12,7 @@ mod memory_bake;
 #[cfg(feature = "gpu")]
 mod meshes;
 mod model_inputs;
+mod numbers;
 #[cfg(feature = "gpu")]
 mod picture;
 mod progress;

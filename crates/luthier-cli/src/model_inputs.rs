@@ -15,6 +15,7 @@ use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
 use crate::directions::Angles;
+use crate::numbers::{not_negative, number, share, wavelength};
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of some models")]
@@ -45,7 +46,7 @@ pub(crate) struct ModelInputs {
     #[arg(conflicts_with_all = ["furnace", "alpha_factor", "slab_factor", "film_factor", "slope_variance"])]
     pub(crate) matrix: Option<PathBuf>,
     /// Wavelength of the light, when it is not the one seen (fluorescence)
-    #[arg(long, value_name = "NM", value_parser = crate::cli::wavelength)]
+    #[arg(long, value_name = "NM", value_parser = wavelength)]
     #[arg(requires = "matrix", requires = "wavelength")]
     pub(crate) excitation: Option<f64>,
     /// Random samples per value (random-walk, layered-mc and its kind); 4096 unless given
@@ -301,16 +302,4 @@ impl FromStr for BaseColor {
         let rgb = values.ok().and_then(|values| Rgb::try_from(values).ok());
         rgb.map(Self).ok_or_else(|| "expected three numbers from 0 to 1, such as 0.8,0.3,0.1".to_owned())
     }
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "expected a number".to_owned())
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    number(text).ok().filter(|x| *x >= 0.0).ok_or_else(|| "expected a number from 0 up".to_owned())
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    number(text).ok().filter(|x| (0.0..=1.0).contains(x)).ok_or_else(|| "expected a number from 0 to 1".to_owned())
 }

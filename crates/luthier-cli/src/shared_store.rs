@@ -7,7 +7,6 @@ use luthier_terminal::{Failure, Outcome};
 
 #[cfg(feature = "remote")]
 pub(crate) use self::remote::{below, close};
-use crate::store::StoreOptions;
 
 /// Variable with the address of the store; empty for none.
 const VARIABLE: &str = "LUTHIER_STORE";
@@ -22,11 +21,10 @@ pub(crate) fn address(text: &str) -> Result<String, String> {
 }
 
 /// The address that is asked for.
-fn asked(options: &StoreOptions) -> Outcome<Option<String>> {
+fn asked(url: Option<&str>) -> Outcome<Option<String>> {
     let refused = |reason| Failure::Usage(anyhow::anyhow!("variable {VARIABLE}: {reason}"));
-    match &options.store {
-        _ if options.no_cache => Ok(None),
-        Some(url) => Ok(Some(url.clone())),
+    match url {
+        Some(url) => Ok(Some(url.to_owned())),
         None => match env::var(VARIABLE) {
             Ok(url) if !url.is_empty() => address(&url).map(Some).map_err(refused),
             Ok(_) | Err(VarError::NotPresent) => Ok(None),
@@ -37,8 +35,8 @@ fn asked(options: &StoreOptions) -> Outcome<Option<String>> {
 
 /// The store of the process, because this build has no other.
 #[cfg(not(feature = "remote"))]
-pub(crate) fn below(near: &'static dyn Store, options: &StoreOptions) -> Outcome<&'static dyn Store> {
-    asked(options).map(|_| near)
+pub(crate) fn below(near: &'static dyn Store, url: Option<&str>) -> Outcome<&'static dyn Store> {
+    asked(url).map(|_| near)
 }
 
 /// Nothing: this build has no shared stores.
@@ -83,11 +81,11 @@ mod remote {
     }
 
     /// The store of the process, with what machines share below it where that is asked for.
-    pub(crate) fn below(near: &'static dyn Store, options: &StoreOptions) -> Outcome<&'static dyn Store> {
+    pub(crate) fn below(near: &'static dyn Store, url: Option<&str>) -> Outcome<&'static dyn Store> {
         if let Some(both) = BOTH.get() {
             return Ok(both);
         }
-        let Some(url) = asked(options)? else { return Ok(near) };
+        let Some(url) = asked(url)? else { return Ok(near) };
         let far = RemoteStore::open(&url).map_err(|error| Failure::Usage(error.into()))?;
         Ok(BOTH.get_or_init(|| Both { near, far }))
     }

@@ -58,8 +58,8 @@ pub(crate) fn store() -> Outcome<&'static dyn Store> {
         Opened::Memory(store) => store,
     };
     match OPTIONS.get() {
-        Some(options) => shared_store::below(near, options),
-        None => Ok(near),
+        Some(options) if !options.no_cache => shared_store::below(near, options.store.as_deref()),
+        _ => Ok(near),
     }
 }
 

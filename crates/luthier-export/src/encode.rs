@@ -7,9 +7,9 @@ use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, Tile, V
 use luthier_manifest::{FileEntry, Manifest, ShaderEntry, TableEntry, material_buffer};
 use luthier_texture::{Metadata, exr, ktx2, png};
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 
-use crate::{GENERATOR, MANIFEST, Package, PackageError, Shader, Table, publish};
+use crate::origins::from_folder;
+use crate::{GENERATOR, MANIFEST, Package, PackageError, Shader, Table, publish, sha256};
 
 /// Whether texels are compressed inside KTX2 files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,6 +31,15 @@ pub struct Encoded {
 }
 
 impl Package {
+    /// Publishes the package in a folder as `luthier bake` does: texels compressed, sources named by their paths from the folder. The folder changes
+    /// at once or not at all.
+    ///
+    /// # Errors
+    /// Those of [`Package::encode`] and [`Encoded::write`](crate::Encoded::write).
+    pub fn write(&self, folder: &Path) -> Result<(), PackageError> {
+        self.encode(Compression::Zstd)?.for_folder(folder).write(folder)
+    }
+
     /// Encodes tables (KTX2, their unrounded values as EXR, a picture as PNG), shaders, maps and the material buffer.
     ///
     /// # Errors
@@ -104,6 +113,17 @@ impl Part {
 }
 
 impl Encoded {
+    /// The package as it is published in a folder: its manifest names files by their paths from there.
+    #[must_use]
+    pub fn for_folder(mut self, folder: &Path) -> Self {
+        let manifest = &mut self.manifest;
+        let materials = manifest.materials.iter_mut().map(|material| &mut material.source);
+        let surfaces = manifest.surfaces.iter_mut().map(|surface| &mut surface.source);
+        let scene = manifest.choice.iter_mut().map(|choice| &mut choice.source);
+        materials.chain(surfaces).chain(scene).for_each(|source| *source = from_folder(folder, source));
+        self
+    }
+
     /// Files under names that contain the hashes of their contents, before the extension: `tables/fresnel.0123456789abcdef.ktx2`. The manifest keeps its name, so
     /// that its replacement alone switches from one bake to the next.
     #[must_use]
@@ -156,11 +176,6 @@ impl Encoded {
         stale.sort();
         Ok(stale)
     }
-}
-
-/// SHA-256 in hex.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Files by their paths.

@@ -8,7 +8,7 @@ use luthier_manifest::{Form, ManifestError};
 use luthier_texture::TextureError;
 use thiserror::Error;
 
-use crate::folder::MAX_FILE_BYTES;
+use crate::MAX_FILE_BYTES;
 
 /// Why a package cannot be read, written, or used.
 #[derive(Debug, Error)]

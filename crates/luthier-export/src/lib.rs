@@ -5,23 +5,31 @@
 //!
 //! [`Package::write`] encodes a package and publishes it as a whole; [`Package::read`] reads it back, and [`Folder`] reads parts of one. This crate
 //! depends on nothing that bakes: so does the runtime, `luthier-gpu`. Packages are made by the crate `luthier`.
+//!
+//! Modules, each of which uses those before it alone: hash, input, origins, error, publish, package, encode, folder.
 
 mod encode;
 mod error;
 mod folder;
+mod hash;
 pub mod input;
 mod origins;
 mod package;
 mod publish;
 
-pub use encode::{Compression, Encoded, sha256};
+pub use encode::{Compression, Encoded};
 pub use error::PackageError;
-pub use folder::{Folder, MANIFEST, MAX_FILE_BYTES};
+pub use folder::Folder;
+pub use hash::sha256;
 pub use origins::{label, origin, plain};
 pub use package::{Map, Package, Shader, Table};
 pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_beside, shared, wait};
 
-pub(crate) use publish::READY;
+/// File name of the manifest.
+pub const MANIFEST: &str = "manifest.json";
+
+/// Most bytes of any file of a bake: the texels of the largest texture, and as much again for what is around them.
+pub const MAX_FILE_BYTES: u64 = 2 * luthier_texture::MAX_BYTES;
 
 /// Program and version, as manifests and reports name it.
 pub const GENERATOR: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));

@@ -2,8 +2,6 @@
 
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf, absolute};
 
-use crate::Encoded;
-
 /// A path as messages and manifests have it: with forward slashes everywhere.
 pub fn label(path: &Path) -> String {
     path.to_string_lossy().replace(MAIN_SEPARATOR, "/")
@@ -24,26 +22,13 @@ pub fn plain(path: &Path) -> PathBuf {
     plain
 }
 
-impl Encoded {
-    /// The package as it is published in a folder: its manifest names files by their paths from there.
-    #[must_use]
-    pub fn for_folder(mut self, folder: &Path) -> Self {
-        let manifest = &mut self.manifest;
-        let materials = manifest.materials.iter_mut().map(|material| &mut material.source);
-        let surfaces = manifest.surfaces.iter_mut().map(|surface| &mut surface.source);
-        let scene = manifest.choice.iter_mut().map(|choice| &mut choice.source);
-        materials.chain(surfaces).chain(scene).for_each(|source| *source = from_folder(folder, source));
-        self
-    }
-}
-
 /// The path of a file from the current folder, where `source` is its path from the folder of a manifest.
 pub fn origin(folder: &Path, source: &str) -> PathBuf {
     plain(&folder.join(source))
 }
 
 /// The path from a folder to a file. It stays as it is where there is none: to another drive.
-fn from_folder(folder: &Path, source: &str) -> String {
+pub(crate) fn from_folder(folder: &Path, source: &str) -> String {
     let (Ok(folder), Ok(file)) = (absolute(folder), absolute(source)) else { return source.to_owned() };
     let (folder, file) = (plain(&folder), plain(&file));
     let shared = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();

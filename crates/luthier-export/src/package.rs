@@ -1,12 +1,10 @@
 //! A package: all that a bake made, in memory.
 
-use std::path::Path;
-
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{Form, Interface, Manifest, MapSlot, MaterialEntry, Target};
 use luthier_texture::Texture;
 
-use crate::{Compression, Folder, PackageError, publish};
+use crate::PackageError;
 
 /// A bake in memory: the manifest, the texels of its tables, its shaders, the maps of its materials.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,24 +72,6 @@ impl Shader {
 }
 
 impl Package {
-    /// Reads the bake in a folder: its manifest, tables, shaders in WGSL, and maps. While luthier publishes into the folder, this waits.
-    ///
-    /// # Errors
-    /// [`PackageError`] when a file is missing, damaged, from another bake or outside the folder; those of [`Package::from_parts`].
-    pub fn read(folder: &Path) -> Result<Self, PackageError> {
-        let _lock = publish::shared(folder);
-        Folder::open(folder)?.package()
-    }
-
-    /// Publishes the package in a folder as `luthier bake` does: texels compressed, sources named by their paths from the folder. The folder changes
-    /// at once or not at all.
-    ///
-    /// # Errors
-    /// Those of [`Package::encode`] and [`Encoded::write`](crate::Encoded::write).
-    pub fn write(&self, folder: &Path) -> Result<(), PackageError> {
-        self.encode(Compression::Zstd)?.for_folder(folder).write(folder)
-    }
-
     /// A package of parts in memory, without maps. Tables may come in any order.
     ///
     /// # Errors

@@ -1,10 +1,9 @@
 //! Options of `fit`.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::Args;
-
-use crate::verb::fit::Thicknesses;
 
 const EXAMPLES: &str = "\
 The lobe is a CSV file as `luthier eval` prints one: a line of names, theta_i,phi_i,theta_o,phi_o,r,g,b, then angles in degrees and f cos theta_i in each. \
@@ -19,6 +18,21 @@ Examples:
   luthier fit lobe.csv -o fitted.toml
   luthier fit lobe.csv --film 50,800 --lean -o fitted.toml
   luthier fit - --json";
+
+/// Thinnest and thickest film, nm.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Thicknesses(pub(crate) [f64; 2]);
+
+impl FromStr for Thicknesses {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|nm| (1.0..=1e4).contains(nm));
+        let pair = text.split_once(',').and_then(|(min, max)| Some([number(min)?, number(max)?]));
+        let pair = pair.filter(|[min, max]| min < max);
+        pair.map(Self).ok_or_else(|| "expected MIN,MAX in nm, 1 to 10000 and ascending, such as 50,800".to_owned())
+    }
+}
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

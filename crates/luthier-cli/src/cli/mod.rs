@@ -13,6 +13,7 @@ use luthier_terminal::{Sources, named};
 
 use crate::directions::Angles;
 use crate::model_inputs::ModelInputs;
+use crate::numbers::{angle, positive, wavelength};
 use crate::store::StoreOptions;
 
 const AFTER_HELP: &str = "\
@@ -382,7 +383,7 @@ mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
 
 mod fit;
-pub(crate) use fit::FitOptions;
+pub(crate) use fit::{FitOptions, Thicknesses};
 
 mod gallery;
 pub(crate) use gallery::GalleryOptions;
@@ -655,27 +656,6 @@ pub(crate) struct IorOptions {
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-pub(crate) fn wavelength(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
-        _ => Err("expected a wavelength from 360 to 830 nm".to_owned()),
-    }
-}
-
-fn angle(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if (0.0..=90.0).contains(&value) => Ok(value),
-        _ => Err("expected an angle from 0 to 90 degrees".to_owned()),
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a positive number, such as 1e-3".to_owned()),
-    }
 }
 
 #[cfg(test)]

@@ -2,30 +2,14 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::str::FromStr;
 
 use luthier_layers::beam_fit::{Fitted, Form, fit, samples};
 use luthier_material::DEFAULT_WAVELENGTHS_NM;
 use luthier_terminal::{Failure, Outcome, deliver, print};
 use serde_json::json;
 
-use crate::cli::FitOptions;
+use crate::cli::{FitOptions, Thicknesses};
 use crate::input;
-
-/// Thinnest and thickest film, nm.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Thicknesses([f64; 2]);
-
-impl FromStr for Thicknesses {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|nm| (1.0..=1e4).contains(nm));
-        let pair = text.split_once(',').and_then(|(min, max)| Some([number(min)?, number(max)?]));
-        let pair = pair.filter(|[min, max]| min < max);
-        pair.map(Self).ok_or_else(|| "expected MIN,MAX in nm, 1 to 10000 and ascending, such as 50,800".to_owned())
-    }
-}
 
 /// Fits a lobe.
 pub(crate) fn run(options: &FitOptions) -> Outcome {

@@ -6,16 +6,11 @@ use std::path::{Component, Path, PathBuf};
 
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FileEntry, Manifest, MapEntry, TableEntry, Target};
-use luthier_texture::{MAX_BYTES, Texture, ktx2, picture};
+use luthier_texture::{Texture, ktx2, picture};
 use sha2::{Digest, Sha256};
 
-use crate::{Map, Package, PackageError, READY, Shader, Table};
-
-/// File name of the manifest.
-pub const MANIFEST: &str = "manifest.json";
-
-/// Most bytes of any file of a bake: the texels of the largest texture, and as much again for what is around them.
-pub const MAX_FILE_BYTES: u64 = 2 * MAX_BYTES;
+use crate::publish::{self, READY};
+use crate::{MANIFEST, MAX_FILE_BYTES, Map, Package, PackageError, Shader, Table};
 
 /// A bake in its folder, of which nothing is believed before it is checked: the manifest's schema, that files are regular ones within the
 /// folder, their sizes and hashes, and that texels are those that the manifest describes.
@@ -27,6 +22,17 @@ pub struct Folder {
     named: PathBuf,
     manifest: Manifest,
     sha256: String,
+}
+
+impl Package {
+    /// Reads the bake in a folder: its manifest, tables, shaders in WGSL, and maps. While luthier publishes into the folder, this waits.
+    ///
+    /// # Errors
+    /// [`PackageError`] when a file is missing, damaged, from another bake or outside the folder; those of [`Package::from_parts`].
+    pub fn read(folder: &Path) -> Result<Self, PackageError> {
+        let _lock = publish::shared(folder);
+        Folder::open(folder)?.package()
+    }
 }
 
 impl Folder {
