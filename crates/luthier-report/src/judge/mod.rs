@@ -11,8 +11,8 @@ pub(crate) mod report;
 use std::fmt;
 
 use glam::DVec3;
+use luthier_layers::layers::{Below, Layer, Layers};
 use luthier_layers::lobes::{Cover, Varying};
-use luthier_layers::models::elek::{self, Layer};
 use luthier_layers::twins::parts::Parts;
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::{Exact, ShaderTerms};
@@ -337,7 +337,7 @@ impl References {
         let varying = varying(material);
         let twin = Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
         Self {
-            layers: elek::layers(stack),
+            layers: Layers::isotropic_rgb(stack).layers,
             twin: twin.reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
             spectral: Exact::varying(stack, Color::Spectral, varying),
             three: Exact::varying(stack, three, varying),
@@ -520,7 +520,7 @@ fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], fi
         if record.kind == LayerKind::Diffuse {
             break;
         }
-        alpha = alpha.max(layer.alpha);
+        alpha = alpha.max(layer.surface.alpha_x);
         recorded = recorded.max(record.alpha);
         if (alpha - recorded).abs() > 1e-6 {
             findings.push(format!(
@@ -529,13 +529,11 @@ fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], fi
                 format::number(alpha)
             ));
         }
-        if let elek::Below::Dielectric { eta, .. } = layer.below
-            && (eta - record.eta).abs() > 1e-6
-        {
+        if matches!(layer.below, Below::Dielectric { .. }) && (layer.eta() - record.eta).abs() > 1e-6 {
             findings.push(format!(
                 "{material}, layer {i}: the shader's relative index is {}, the material file's {}.",
                 format::number(record.eta),
-                format::number(eta)
+                format::number(layer.eta())
             ));
         }
     }
