@@ -1,7 +1,7 @@
 //! Layer records: what a shader needs of each layer.
 
 use luthier_layers::layers::ALPHA_MIN;
-use luthier_layers::models::elek::{self, Below};
+use luthier_layers::layers::{Below, Layers};
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
     InternalReflection, LayerKind, LayerRecord, LowerReflectance, Masking, Reflectance, ReflectanceCurve,
@@ -69,15 +69,16 @@ impl Parts {
 /// The records of a stack, without tiles.
 pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) -> Vec<LayerRecord> {
     let nodes = Color::ThreeWavelengths(wavelengths_nm).nodes();
-    elek::layers(stack)
+    Layers::isotropic_rgb(stack)
+        .layers
         .iter()
         .enumerate()
         .map(|(i, layer)| {
             let surface = &stack.layers[i].surface;
             let mut record = LayerRecord {
                 kind: LayerKind::Conductor,
-                distribution: layer.distribution,
-                alpha: layer.alpha,
+                distribution: layer.surface.distribution,
+                alpha: layer.surface.alpha_x,
                 alpha_xy: [surface.alpha_x, surface.alpha_y].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0)),
                 rotation: surface.rotation,
                 eta: 1.0,
@@ -85,16 +86,14 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
                 ..LayerRecord::default()
             };
             match layer.below {
-                Below::Dielectric { eta, optical_depth } => {
+                Below::Dielectric { optical_depth, .. } => {
                     record.kind = LayerKind::Dielectric;
-                    record.eta = eta.clamp(1.0 / INDEX_MAX, INDEX_MAX);
+                    record.eta = layer.eta().clamp(1.0 / INDEX_MAX, INDEX_MAX);
                     record.optical_depth = optical_depth.map(|depth| depth.min(DEPTH_MAX));
                 }
                 Below::Conductor => {}
-                Below::Diffuse(diffuse) => {
-                    record.kind = LayerKind::Diffuse;
-                    record.albedo = diffuse.albedo;
-                    record.sigma = diffuse.sigma;
+                Below::Diffuse { albedo, sigma } => {
+                    (record.kind, record.albedo, record.sigma) = (LayerKind::Diffuse, albedo, sigma);
                 }
             }
             if let Some(interface) = Interface::of(stack, i) {

@@ -158,7 +158,7 @@ fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     let is_elek = |text: &&String| text.contains("fn luthier_eval_elek");
     let pairs: Vec<Pair> = ParitySet::ALL
         .iter()
-        .flat_map(|set| set.pairs(PAIRS, &luthier_layers::models::elek::layers(&material.stack)))
+        .flat_map(|set| set.pairs(PAIRS, &luthier_layers::layers::Layers::isotropic_rgb(&material.stack).layers))
         .collect();
     let mut values = |text: &String| -> Outcome<Vec<[f32; 3]>> {
         package.shaders = vec![Shader::wgsl(Form::Baked, text.clone())];

@@ -59,7 +59,7 @@ pub(crate) fn run(options: &ThroughputOptions) -> Outcome {
 }
 
 fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome<Vec<Time>> {
-    let layers = luthier_layers::models::elek::layers(&material.stack);
+    let layers = luthier_layers::layers::Layers::isotropic_rgb(&material.stack).layers;
     let pairs: Vec<Pair> =
         [ParitySet::Uniform, ParitySet::NearSpecular].iter().flat_map(|set| set.pairs(PAIRS / 2, &layers)).collect();
     let package = |material: &Material| Bake::lit().package(std::slice::from_ref(material), &MemoryStore::default());

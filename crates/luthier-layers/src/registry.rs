@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::models::belcour::Belcour;
 use crate::models::densities::Density;
 use crate::models::diffuse::{Lambert, OrenNayar};
-use crate::models::elek_model::Elek;
+use crate::models::elek::Elek;
 use crate::models::granier_heidrich::GranierHeidrich;
 use crate::models::microfacet::{Microfacet, VARIANTS};
 use crate::models::phong::Phong;

@@ -1,13 +1,13 @@
-//! Terms of the models in colour that tables stand in for.
+//! Terms of the models that tables stand in for.
 
-use luthier_optics::Rgb;
 use luthier_optics::microfacet;
 use luthier_optics::stack::Distribution;
 
-/// The factors of a model that can be read from tables. Layers are numbered from the top.
-pub trait Terms {
+/// The factors of a model that can be read from tables, in `C` channels. Layers are numbered from the top. A
+/// [`Monochrome`](crate::monochrome::Monochrome) stack computes its own.
+pub trait Terms<const C: usize = 3> {
     /// Fresnel reflectance of the interface of a layer.
-    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> [f64; C];
 
     /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h; the closed
     /// form unless a table holds it.

@@ -69,7 +69,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
     let (mut evaluations, mut has_timestamps) = (0, true);
     for (n, material) in materials.iter().enumerate() {
         let subjects = subjects(&gpu, material, options)?;
-        let layers = luthier_layers::models::elek::layers(&material.stack);
+        let layers = luthier_layers::layers::Layers::isotropic_rgb(&material.stack).layers;
         let pairs: Vec<luthier_report::Pair> = [ParitySet::Uniform, ParitySet::NearSpecular]
             .iter()
             .flat_map(|set| set.pairs(PAIRS / 2, &layers))

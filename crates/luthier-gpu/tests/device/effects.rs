@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use luthier_gpu::{Package, RenderSettings, Scene, Shader};
 use luthier_layers::effects::flakes::Flakes;
 use luthier_layers::effects::heterogeneous::Map;
-use luthier_layers::models::elek;
+use luthier_layers::models::elek::Elek;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::terms::Terms;
 use luthier_lut::Image;
@@ -166,8 +166,8 @@ fn flakes_tilt_the_layers_below_on_the_device() {
     let (mut error, mut changed) = (0.0f64, 0);
     for ((wi, wo), found) in directions.iter().zip(scene.evaluate(0, &pairs).unwrap()) {
         let normal = flakes().normal(DVec2::new(wi.x, wi.y) + 1.0, 3.0);
-        let expected = elek::eval_below(&layers, &terms, *wi, *wo, normal);
-        let plain = elek::eval(&layers, &terms, *wi, *wo);
+        let expected = Elek::default().eval_below(&layers, &terms, *wi, *wo, normal);
+        let plain = Elek::default().eval_with(&layers, &terms, *wi, *wo);
         for c in 0..3 {
             error = error.max((f64::from(found[c]) - expected[c]).abs() / expected[c].max(0.05));
         }
@@ -191,7 +191,8 @@ fn patina_blends_two_stacks_on_the_device() {
     let pairs: Vec<_> = maps.iter().map(|&m| ([0.0, 0.0, (m + 0.5) as f32], wo.as_vec3().to_array())).collect();
     let grown = coated();
     let bare = vec![effects().patina.unwrap().bare];
-    let eval = |records: &[LayerRecord]| elek::eval(&model_layers(records), &RecordTerms(records), wi, wo);
+    let eval =
+        |records: &[LayerRecord]| Elek::default().eval_with(&model_layers(records), &RecordTerms(records), wi, wo);
     let (grown_value, bare_value) = (eval(&grown), eval(&bare));
     let cos_theta_d = 0.5 * (wi + wo).length();
     let passed = 1.0 - RecordTerms(&grown).fresnel(0, cos_theta_d)[0];

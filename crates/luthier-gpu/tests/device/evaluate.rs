@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use luthier_gpu::GpuError;
-use luthier_layers::models::elek::{self, Layer};
+use luthier_layers::layers::Layer;
+use luthier_layers::models::elek::Elek;
 use luthier_layers::terms::Terms;
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
 use luthier_manifest::LayerRecord;
@@ -110,7 +111,7 @@ fn worst(layers: &[Layer], terms: &impl Terms, pairs: &[Pair], device: &[[f32; 3
             continue;
         }
         let double = |v: &[f32; 3]| DVec3::from_array(v.map(f64::from));
-        let expected = elek::eval(layers, terms, double(wi), double(wo));
+        let expected = Elek::default().eval_with(layers, terms, double(wi), double(wo));
         for c in 0..3 {
             let error = (f64::from(got[c]) - expected[c]).abs() / expected[c].abs().max(FLOOR);
             if error > worst.0 {

@@ -3,12 +3,11 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::models::elek::{Below, Layer};
+use luthier_layers::layers::{Below, Layer};
 use luthier_layers::terms::Terms;
-use luthier_manifest::InternalReflection;
 use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::Rgb;
-use luthier_optics::stack::{Diffuse, Distribution};
+use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
 pub(crate) struct RecordTerms<'a>(pub(crate) &'a [LayerRecord]);
@@ -74,14 +73,13 @@ pub(crate) fn model_layers(records: &[LayerRecord]) -> Vec<Layer> {
     records
         .iter()
         .map(|r| Layer {
-            distribution: r.distribution,
-            alpha: r.alpha,
+            surface: Surface::isotropic(r.distribution, r.alpha),
+            above: 1.0,
             below: match r.kind {
-                LayerKind::Dielectric => Below::Dielectric { eta: r.eta, optical_depth: r.optical_depth },
+                LayerKind::Dielectric => Below::Dielectric { ior: r.eta, optical_depth: r.optical_depth },
                 LayerKind::Conductor => Below::Conductor,
-                LayerKind::Diffuse => Below::Diffuse(Diffuse { albedo: r.albedo, sigma: r.sigma }),
+                LayerKind::Diffuse => Below::Diffuse { albedo: r.albedo, sigma: r.sigma },
             },
-            internal_reflection: InternalReflection::Facets,
         })
         .collect()
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use luthier::{Bake, MemoryStore};
 use luthier_export::{GENERATOR, Shader};
 use luthier_gpu::Gpu;
-use luthier_layers::models::elek;
+use luthier_layers::layers::Layers;
 use luthier_layers::twins::parts::Parts;
 use luthier_layers::twins::shaded::Shaded;
 use luthier_manifest::{ColorMode, Form, FunctionGroup, Functions, ShadingModel};
@@ -98,7 +98,7 @@ fn measured(case: &Case, model: ShadingModel, gpu: &Gpu, pairs: u32) -> Outcome<
 
 /// Pairs of directions: half all over the hemisphere, half near the mirrored one.
 fn directions(material: &Material, count: u32) -> Vec<Pair> {
-    let layers = elek::layers(&material.stack);
+    let layers = Layers::isotropic_rgb(&material.stack).layers;
     let of = |set: ParitySet, count: u32| set.pairs(count, &layers);
     let near = if layers.is_empty() { ParitySet::Uniform } else { ParitySet::NearSpecular };
     [of(ParitySet::Uniform, count.div_ceil(2)), of(near, count / 2)].concat()

@@ -11,8 +11,8 @@ use luthier_layers::effects::heterogeneous::{self, Map, Switch};
 use luthier_layers::effects::patina::PatinaAt;
 use luthier_layers::effects::textured::TextureSample;
 use luthier_layers::formulas::oren_nayar;
-use luthier_layers::models::elek;
-use luthier_layers::models::elek_model::Elek;
+use luthier_layers::layers::Layers;
+use luthier_layers::models::elek::Elek;
 use luthier_layers::models::statistics::evaluate::Prepared;
 use luthier_layers::models::weidlich_wilkie_sampling::Sampler;
 use luthier_layers::monochrome::Monochrome;
@@ -116,8 +116,8 @@ fn weidlich_wilkie_density(bencher: Bencher<'_, '_>) {
 fn elek_rgb(bencher: Bencher<'_, '_>, color: &str) {
     let stack = coated_conductor();
     let color = if color == "spectral" { Color::Spectral } else { Color::ThreeWavelengths([645.0, 525.0, 445.0]) };
-    let (layers, terms) = (elek::layers(&stack), Exact::new(&stack, color));
-    each(bencher, &draws(), |draw| elek::eval(&layers, &terms, draw.wi, draw.wo));
+    let (layers, terms) = (Layers::isotropic_rgb(&stack).layers, Exact::new(&stack, color));
+    each(bencher, &draws(), |draw| Elek::default().eval_with(&layers, &terms, draw.wi, draw.wo));
 }
 
 /// The stack at one wavelength.

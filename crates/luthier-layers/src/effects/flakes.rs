@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
-use crate::models::elek_model;
+use crate::models::elek::Elek;
 use crate::monochrome::Monochrome;
 use crate::noise::hash;
 
@@ -68,7 +68,7 @@ impl Flakes {
     /// `f cos_theta_i` of Elek's model with the flakes at a texture coordinate, seen from a distance. The flake tilts what lies
     /// below the first interface and nothing else.
     pub fn eval(&self, stack: &Monochrome, uv: DVec2, distance: f64, wi: DVec3, wo: DVec3) -> f64 {
-        elek_model::eval_below(stack, [1.0; 2], wi, wo, self.normal(uv, distance))
+        Elek::default().eval_tinted(stack, [1.0; 2], wi, wo, self.normal(uv, distance))
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::frame;
 use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
-use crate::models::elek_model;
+use crate::models::elek::Elek;
 use crate::monochrome::Monochrome;
 
 /// Patina over the layers of a stack, at one wavelength (Elek 2010, section 4.2): the stack's first layer is the patina.
@@ -68,11 +68,11 @@ impl Patina {
 
         let mut value = 0.0;
         if amount < 1.0 {
-            value += (1.0 - amount) * elek_model::eval_below(&bare, [tarnish, tarnish], wi, wo, DVec3::Z);
+            value += (1.0 - amount) * Elek::default().eval_tinted(&bare, [tarnish, tarnish], wi, wo, DVec3::Z);
         }
         if amount > 0.0 {
             let passed = grown.layers.first().map_or(1.0, |l| 1.0 - l.reflectance(frame::cos_theta_d(wi, wo)));
-            let layered = elek_model::eval_below(&grown, [1.0, tarnish], wi, wo, DVec3::Z);
+            let layered = Elek::default().eval_tinted(&grown, [1.0, tarnish], wi, wo, DVec3::Z);
             value += amount * (layered + passed * self.diffuse_albedo * FRAC_1_PI * wi.z);
         }
         value
@@ -122,7 +122,6 @@ impl Model for PatinaAt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::models::elek_model::Elek;
     use crate::monochrome::MonochromeBelow;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;

@@ -118,7 +118,7 @@ impl Estimator for Textured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::models::elek_model::Elek;
+    use crate::models::elek::Elek;
     use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;

@@ -13,7 +13,7 @@ use luthier_optics::stack::{Distribution, Surface};
 use luthier_optics::{microfacet, visible_normals};
 
 use crate::frame::half_vector;
-use crate::monochrome::Optics;
+use crate::terms::Terms;
 
 /// Slope parameters below this one are evaluated as this one: a lobe 0.006 degrees wide. A model of finite lobes has no other
 /// way to show a mirror.
@@ -42,6 +42,7 @@ pub(crate) fn masked_lobe(
     };
     Some(Lobe { cos_theta_d, masking: masked, value: density(wh) * (masked / (4.0 * wo.z)) })
 }
+
 /// The micro-surface in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -109,10 +110,17 @@ impl Facets {
         masked_lobe(masking, [wi, wo], alpha, |wh| self.density(wh), |w| self.lambda(w))
     }
 
-    /// [`Facets::lobe`] with the distribution of a layer of [`Optics`].
-    pub fn lobe_of(&self, optics: &impl Optics, layer: usize, masking: Masking, wi: DVec3, wo: DVec3) -> Option<Lobe> {
+    /// [`Facets::lobe`] with the distribution that [`Terms`] have of a layer.
+    pub fn lobe_of<const C: usize>(
+        &self,
+        terms: &impl Terms<C>,
+        layer: usize,
+        masking: Masking,
+        wi: DVec3,
+        wo: DVec3,
+    ) -> Option<Lobe> {
         let alpha = libm::sqrt(self.alpha_x * self.alpha_y);
-        let scaled = |alpha, cos, sin_sq| optics.distribution(layer, alpha, cos, sin_sq);
+        let scaled = |alpha, cos, sin_sq| terms.distribution(layer, self.distribution, alpha, cos, sin_sq);
         masked_lobe(masking, [wi, wo], alpha, |wh| self.density_by(wh, scaled), |w| self.lambda(w))
     }
 

@@ -3,18 +3,16 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
-use luthier_optics::Rgb;
-use luthier_optics::stack::Diffuse;
 
 /// BRDF of a rough diffuse base, with its inter-reflection term (Oren and Nayar 1994, "Generalization of Lambert's
 /// Reflectance Model", eq. 26-30). Lambert, albedo/pi, at `sigma = 0`. Both directions above the horizon.
 ///
 /// The model is reciprocal; it may exceed unit albedo slightly at grazing angles for large sigma and albedo near 1.
-pub fn brdf(diffuse: &Diffuse, wi: DVec3, wo: DVec3) -> Rgb {
-    if diffuse.sigma == 0.0 {
-        return diffuse.albedo.map(|rho| rho * FRAC_1_PI);
+pub fn brdf<const C: usize>(albedo: [f64; C], sigma: f64, wi: DVec3, wo: DVec3) -> [f64; C] {
+    if sigma == 0.0 {
+        return albedo.map(|rho| rho * FRAC_1_PI);
     }
-    let sigma_sq = diffuse.sigma * diffuse.sigma;
+    let sigma_sq = sigma * sigma;
     let sin_i = libm::sqrt(wi.x * wi.x + wi.y * wi.y);
     let sin_o = libm::sqrt(wo.x * wo.x + wo.y * wo.y);
     let theta_i = libm::atan2(sin_i, wi.z);
@@ -32,11 +30,11 @@ pub fn brdf(diffuse: &Diffuse, wi: DVec3, wo: DVec3) -> Rgb {
     let c3 = 0.125 * sigma_sq / (sigma_sq + 0.09) * angles * angles;
     let direct = c1 + cos_phi * c2 * libm::tan(beta) + (1.0 - cos_phi.abs()) * c3 * libm::tan(0.5 * (alpha + beta));
     let bounced = 0.17 * sigma_sq / (sigma_sq + 0.13) * (1.0 - cos_phi * back * back);
-    diffuse.albedo.map(|rho| FRAC_1_PI * (rho * direct + rho * rho * bounced).max(0.0))
+    albedo.map(|rho| FRAC_1_PI * (rho * direct + rho * rho * bounced).max(0.0))
 }
 
 /// [`brdf`] of a single albedo.
 pub fn brdf_scalar(albedo: f64, sigma: f64, wi: DVec3, wo: DVec3) -> f64 {
-    let [value, ..] = brdf(&Diffuse { albedo: [albedo; 3], sigma }, wi, wo);
+    let [value] = brdf([albedo], sigma, wi, wo);
     value
 }

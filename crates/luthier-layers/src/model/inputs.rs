@@ -17,7 +17,7 @@ pub enum Input {
     InnerNormal,
     /// A second stack, see [`Model::stack_index`](crate::model::Model::stack_index).
     OtherStack,
-    /// The light of an environment ([`elek_model::environment`](crate::models::elek_model::environment)).
+    /// The light of an environment ([`elek::environment`](crate::models::elek::environment)).
     Environment,
     /// A re-radiation matrix ([`fluorescence`](crate::effects::fluorescence)).
     Matrix,

@@ -18,198 +18,188 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_model::InternalReflection;
-use luthier_optics::Rgb;
+use luthier_model::{InternalReflection, ShadingModel};
 use luthier_optics::masking::v_cavity;
-use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 
-use crate::formulas::oren_nayar;
-use crate::formulas::refraction::{REFRACTION_WAVELENGTH_NM, refract};
-use crate::frame;
-use crate::frame::{off, onto};
-use crate::layers::ALPHA_MIN;
+use crate::formulas::facets::Lobe;
+use crate::formulas::refraction::refract;
+use crate::frame::half_vector;
+use crate::layers::{ALPHA_MIN, Layer, Layers};
+use crate::model::{Claims, Input, Kind, Model, ModelInfo};
+use crate::models::path::{PathModel, Tilts, walk};
+use crate::monochrome::Monochrome;
 use crate::terms::Terms;
 
-/// One layer as the model sees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Layer {
-    /// Slope distribution.
-    pub distribution: Distribution,
-    /// Isotropic slope parameter, at least [`ALPHA_MIN`].
-    pub alpha: f64,
-    /// Material below the interface.
-    pub below: Below,
-    /// Light from below that the interface lets out.
+/// The real-time model. Layers are isotropic ([`Layers::isotropic`]); at one wavelength, as a [`Model`], its own index bends the
+/// directions, where the colour form has one scalar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Elek {
+    /// Light from below that interfaces let out.
     pub internal_reflection: InternalReflection,
 }
 
-/// Material that follows below an interface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Below {
-    /// A transparent medium: real index below over index above, and the optical depth of the slab.
-    Dielectric {
-        /// Index below over index above.
-        eta: f64,
-        /// Optical depth along the normal.
-        optical_depth: Rgb,
-    },
-    /// A conductor: nothing lies below.
-    Conductor,
-    /// The layer is a diffuse base, without an interface of its own.
-    Diffuse(Diffuse),
-}
-
-/// The layers of a stack as the model sees them.
-pub fn layers(stack: &Stack) -> Vec<Layer> {
-    let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
-    let mut out = Vec::with_capacity(stack.layers.len());
-    for layer in &stack.layers {
-        let below = match &layer.base {
-            Base::Dielectric { ior, slab } => {
-                let index = ior.at(REFRACTION_WAVELENGTH_NM).re;
-                let eta = index / above;
-                above = index;
-                Below::Dielectric { eta, optical_depth: slab.optical_depth() }
-            }
-            Base::Conductor { .. } => Below::Conductor,
-            Base::Diffuse(diffuse) => Below::Diffuse(*diffuse),
-        };
-        out.push(Layer {
-            distribution: layer.surface.distribution,
-            alpha: layer.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0),
-            below,
-            internal_reflection: InternalReflection::Facets,
-        });
+impl Elek {
+    /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
+    /// horizon. Finite for all unit directions. Reciprocal: every factor of eq. 2 is symmetric in the two directions with T_12 and T_21
+    /// at the half vector.
+    pub fn eval_with<const C: usize>(
+        &self,
+        layers: &[Layer<C>],
+        terms: &impl Terms<C>,
+        wi: DVec3,
+        wo: DVec3,
+    ) -> [f64; C] {
+        self.eval_below(layers, terms, wi, wo, DVec3::Z)
     }
-    out
-}
 
-/// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
-/// horizon. Finite for all unit directions. Reciprocal: every factor of eq. 2 is symmetric in the two directions with T_12 and T_21
-/// at the half vector.
-pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
-    eval_below(layers, terms, wi, wo, DVec3::Z)
-}
-
-/// [`eval`] with another normal below the first interface (unit, in the surface's frame): what flakes in the coat look like
-/// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
-/// in the paper's code; layers below see nothing when it hides either of them.
-pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Rgb {
-    eval_tilted(layers, terms, wi, wo, Tilts { below: normal_below, own: &[] })
-}
-
-/// [`eval`] with other normals of interfaces.
-pub(crate) fn eval_tilted(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, tilts: Tilts<'_>) -> Rgb {
-    let Walked { mut interfaces, base } = walk(layers, terms, wi, wo, tilts);
-    if let Some(AtBase { diffuse, wi_local, wo_local, passed, .. }) = base {
-        add(&mut interfaces, passed, oren_nayar::brdf(&diffuse, wi_local, wo_local));
+    /// [`Self::eval_with`] with another normal below the first interface (unit, in the surface's frame): what flakes in the coat look like
+    /// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
+    /// in the paper's code; layers below see nothing when it hides either of them.
+    pub fn eval_below<const C: usize>(
+        &self,
+        layers: &[Layer<C>],
+        terms: &impl Terms<C>,
+        wi: DVec3,
+        wo: DVec3,
+        normal_below: DVec3,
+    ) -> [f64; C] {
+        walk(self, layers, terms, wi, wo, Tilts { below: normal_below, own: &[] }).value()
     }
-    interfaces
-}
 
-/// Normals of interfaces that are not those of the surface, all unit.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Tilts<'a> {
-    /// Normal below the first interface, in its frame: all that lies there is turned.
-    pub(crate) below: DVec3,
-    /// Normals of interfaces alone, from the top down, in the frame of the surface; those that are missing are +z.
-    pub(crate) own: &'a [DVec3],
-}
-
-impl Tilts<'_> {
-    /// Nothing is tilted.
-    pub(crate) const NONE: Self = Self { below: DVec3::Z, own: &[] };
-
-    /// The own normal of an interface.
-    pub(crate) fn of(&self, layer: usize) -> DVec3 {
-        self.own.get(layer).copied().unwrap_or(DVec3::Z)
+    /// [`Self::eval_below`] of a stack, with factors on the reflectance of the first interface and of all others.
+    pub(crate) fn eval_tinted(
+        self,
+        stack: &Monochrome,
+        tint: [f64; 2],
+        wi: DVec3,
+        wo: DVec3,
+        normal_below: DVec3,
+    ) -> f64 {
+        let layers = Layers::from(stack).isotropic().layers;
+        let [value] = self.eval_below(&layers, &Tinted { stack, tint }, wi, wo, normal_below);
+        value
     }
 }
 
-/// A way down through the layers.
-pub(crate) struct Walked {
-    /// f cos_theta_i of the interfaces.
-    pub(crate) interfaces: Rgb,
-    /// Light at the diffuse base, where the layers end with one and light comes there and back.
-    pub(crate) base: Option<AtBase>,
-}
-
-/// Light at a diffuse base below interfaces.
-pub(crate) struct AtBase {
-    diffuse: Diffuse,
-    wi_local: DVec3,
-    wo_local: DVec3,
-    /// The cosine of the light outside times `down` times `up`.
-    passed: Rgb,
-    /// Share that comes down: T_12 of each interface, and what slabs leave on the way of `wi`.
-    pub(crate) down: Rgb,
-    /// Share of what the base sends up that comes out: t of each interface, and what slabs leave on the way of `wo`.
-    pub(crate) up: Rgb,
-}
-
-/// The way down to the base and back: what interfaces send to `wo`, and what is left of the light at a diffuse base.
-pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, tilts: Tilts<'_>) -> Walked {
-    if wi.z <= 0.0 || wo.z <= 0.0 {
-        return Walked { interfaces: [0.0; 3], base: None };
+impl PathModel for Elek {
+    fn internal_reflection(&self) -> InternalReflection {
+        self.internal_reflection
     }
-    let (mut wi_local, mut wo_local) = (wi, wo);
-    let mut throughput = [wi.z; 3];
-    let (mut down, mut up) = ([1.0; 3], [1.0; 3]);
-    let mut total = [0.0; 3];
-    let mut alpha_above = ALPHA_MIN;
 
-    for (i, layer) in layers.iter().enumerate() {
-        let normal = tilts.of(i);
-        let Some((wi_here, wo_here, facing)) = onto(normal, wi_local, wo_local) else { break };
-        (wi_local, wo_local) = (wi_here, wo_here);
-        (0..3).for_each(|c| (throughput[c], down[c]) = (throughput[c] * facing, down[c] * facing));
-        if let Below::Diffuse(diffuse) = layer.below {
-            let base = AtBase { diffuse, wi_local, wo_local, passed: throughput, down, up };
-            return Walked { interfaces: total, base: Some(base) };
-        }
-        let alpha = layer.alpha.max(alpha_above);
-        alpha_above = alpha;
+    fn cosines(&self, cos_theta_i: f64) -> [f64; 2] {
+        [cos_theta_i, 1.0]
+    }
 
-        let Some((wh, cos_theta_d)) = frame::half_vector(wi_local, wo_local) else { break };
+    /// A layer is never smoother than one above it.
+    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
+        let (wh, cos_theta_d) = half_vector(wi, wo)?;
+        let (last, above) = layers.split_last()?;
+        let alpha = layers.iter().map(|layer| layer.surface.alpha_x).fold(ALPHA_MIN, f64::max);
         let sin_theta_h_sq = wh.x * wh.x + wh.y * wh.y;
-        let f = terms.fresnel(i, cos_theta_d);
-        let d = terms.distribution(i, layer.distribution, alpha, wh.z, sin_theta_h_sq) / (PI * alpha * alpha);
-        let g = v_cavity(wi_local.z, wo_local.z, wh.z, cos_theta_d);
-        let geometry = d * g / (4.0 * wi_local.z * wo_local.z);
-        add(&mut total, throughput, f.map(|f| f * geometry));
-
-        let Below::Dielectric { eta, optical_depth } = layer.below else { break };
-        let (Some(mut wi_below), Some(mut wo_below)) = (refract(wi_local, eta), refract(wo_local, eta)) else { break };
-        if i == 0 && tilts.below != DVec3::Z {
-            (wi_below, wo_below) = (frame::local(tilts.below, wi_below), frame::local(tilts.below, wo_below));
-            if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
-                break;
-            }
-        }
-        let Some((wi_level, wo_level, facing)) = off(normal, wi_below, wo_below) else { break };
-        (wi_below, wo_below) = (wi_level, wo_level);
-        let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
-        let transmitted = f.map(|f| 1.0 - f);
-        let (entered, left) = match layer.internal_reflection {
-            InternalReflection::Facets => (transmitted, transmitted.map(|transmitted| (1.0 - g) + transmitted * g)),
-            InternalReflection::None => (transmitted, [1.0; 3]),
-            InternalReflection::Directions => {
-                [wi_local, wo_local].map(|w| terms.fresnel(i, w.z.min(1.0)).map(|f| 1.0 - f)).into()
-            }
-        };
-        for c in 0..3 {
-            let absorbed = libm::exp(-optical_depth[c] * path);
-            throughput[c] *= entered[c] * absorbed * left[c] * facing;
-            down[c] *= facing * entered[c] * libm::exp(-optical_depth[c] / wi_below.z);
-            up[c] *= left[c] * libm::exp(-optical_depth[c] / wo_below.z);
-        }
-        (wi_local, wo_local) = (wi_below, wo_below);
+        let scaled = terms.distribution(above.len(), last.surface.distribution, alpha, wh.z, sin_theta_h_sq);
+        let masking = v_cavity(wi.z, wo.z, wh.z, cos_theta_d);
+        let value = scaled / (PI * alpha * alpha) * masking / (4.0 * wi.z * wo.z);
+        Some(Lobe { cos_theta_d, masking, value })
     }
-    Walked { interfaces: total, base: None }
+
+    fn refracted(&self, eta: f64, wi: DVec3, wo: DVec3) -> Option<[DVec3; 2]> {
+        Some([refract(wi, eta)?, refract(wo, eta)?])
+    }
+
+    fn sent(&self, passed: f64, _cosines: f64, reflectance: f64, lobe: f64) -> f64 {
+        passed * (reflectance * lobe)
+    }
+
+    fn kept(&self, entered: f64, left: f64, absorbed: f64) -> f64 {
+        entered * absorbed * left
+    }
 }
 
-fn add(total: &mut Rgb, weight: Rgb, value: Rgb) {
-    for c in 0..3 {
-        total[c] += weight[c] * value[c];
+impl Model for Elek {
+    fn info(&self) -> ModelInfo {
+        ModelInfo {
+            name: ShadingModel::Elek.name(),
+            kind: Kind::Layered,
+            claims: Claims::RECIPROCAL,
+            source: "Elek 2010, eq. 2-4 and Algorithm 1",
+            domain: "any number of isotropic interfaces above a conductor or a diffuse base; alpha from 1e-3",
+            leaves_out: "bounces between layers, 1/n^2, blur by refraction (stood for by the roughness clamp)",
+            inputs: &[Input::Environment],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        let [value] = self.eval_with(&Layers::from(stack).isotropic().layers, stack, wi, wo);
+        value
+    }
+}
+
+/// Light of an environment that a smooth first interface would mirror (Algorithm 1, lines 28 and 29): its reflectance at the
+/// angle of `wo`, times the radiance from the mirror direction. `environment` is to be blurred to the interface's
+/// roughness, which this term cannot do by itself.
+pub fn environment(stack: &Monochrome, wo: DVec3, environment: impl FnOnce(DVec3) -> f64) -> f64 {
+    match stack.layers.first() {
+        Some(layer) if wo.z > 0.0 => {
+            let reflectance = layer.reflectance(wo.z.min(1.0));
+            if reflectance == 0.0 { 0.0 } else { reflectance * environment(DVec3::new(-wo.x, -wo.y, wo.z)) }
+        }
+        _ => 0.0,
+    }
+}
+
+/// Terms of a stack at one wavelength, with factors on the reflectance of the first interface and of all others.
+struct Tinted<'a> {
+    stack: &'a Monochrome,
+    tint: [f64; 2],
+}
+
+impl Terms<1> for Tinted<'_> {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> [f64; 1] {
+        self.stack.fresnel(layer, cos_theta_d).map(|reflectance| self.tint[layer.min(1)] * reflectance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::twins::terms;
+    use luthier_optics::color::Color;
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{self, Base, Distribution, Slab, Stack, Surface};
+
+    fn lacquer() -> Stack {
+        let coat = Base::Dielectric {
+            ior: Ior::constant(1.5, 0.0).unwrap(),
+            slab: Slab { thickness_um: 10.0, absorption_per_um: [0.01, 0.02, 0.03] },
+        };
+        let metal = Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() };
+        let layer = |alpha, base| stack::Layer {
+            films: Vec::new(),
+            surface: Surface::isotropic(Distribution::Beckmann, alpha),
+            base,
+        };
+        Stack { exterior: Ior::vacuum(), layers: vec![layer(0.05, coat), layer(0.3, metal)] }
+    }
+
+    /// Oracle: the colour form, which is tested against other programs.
+    #[test]
+    fn one_wavelength_at_a_time_is_the_colour_form() {
+        let stack = lacquer();
+        let (wi, wo) = (DVec3::new(0.3, 0.1, 0.7).normalize(), DVec3::new(-0.2, 0.2, 0.9).normalize());
+        let exact = terms::Exact::new(&stack, Color::ThreeWavelengths([645.0, 525.0, 445.0]));
+        let rgb = Elek::default().eval_with(&Layers::isotropic_rgb(&stack).layers, &exact, wi, wo);
+        for (channel, wavelength) in [645.0, 525.0, 445.0].into_iter().enumerate() {
+            let found = Elek::default().eval(&Monochrome::new(&stack, wavelength, channel), wi, wo);
+            assert!((found - rgb[channel]).abs() < 1e-15 + 1e-13 * found, "{found} {}", rgb[channel]);
+        }
+    }
+
+    #[test]
+    fn the_environment_is_mirrored_by_fresnel() {
+        let stack = Monochrome::new(&lacquer(), 550.0, 0);
+        let wo = DVec3::new(0.5f64.sqrt(), 0.0, 0.5f64.sqrt());
+        let found = environment(&stack, wo, |w| if w.x < 0.0 { 2.0 } else { 0.0 });
+        // Fresnel at 45 degrees, n = 1.5: physics of the interface to ten digits.
+        assert!((found - 2.0 * 0.0502399110).abs() < 1e-9, "{found}");
     }
 }

@@ -30,6 +30,7 @@
 //!   without a cosine;
 //! - no half-wave shifts: indices have to rise from outside to inside.
 
+use std::array::from_fn;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
@@ -41,7 +42,8 @@ use crate::formulas::refraction::refract;
 use crate::layers::ALPHA_MIN;
 use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
 use crate::models::phong::lobe;
-use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::terms::Terms;
 
 /// A film as the model takes it, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -249,7 +251,8 @@ impl Model for GranierHeidrich {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        self.eval_with(stack, stack, wi, wo)
+        let [value] = self.eval_with(std::array::from_ref(stack), stack, wi, wo);
+        value
     }
 
     fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
@@ -258,38 +261,50 @@ impl Model for GranierHeidrich {
 }
 
 impl GranierHeidrich {
-    /// [`Model::eval`] with optical terms that may come from elsewhere.
-    pub fn eval_with(&self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
+    /// [`Model::eval`] at the wavelengths of some channels, with terms that may come from elsewhere; each wavelength bends directions by its
+    /// own index.
+    pub fn eval_with<const C: usize>(
+        &self,
+        stacks: &[Monochrome; C],
+        terms: &impl Terms<C>,
+        wi: DVec3,
+        wo: DVec3,
+    ) -> [f64; C] {
         if wi.z <= 0.0 || wo.z <= 0.0 {
+            return [0.0; C];
+        }
+        let films = stacks.each_ref().map(|stack| self.film(stack));
+        let bare = if films.iter().all(Option::is_none) { terms.fresnel(0, 1.0) } else { [0.0; C] };
+        from_fn(|c| {
+            let stack = &stacks[c];
+            let base = match stack.layers.last().map(|l| l.below) {
+                Some(MonochromeBelow::Diffuse { albedo, .. }) => albedo,
+                _ => 0.0,
+            };
+            let (specular, diffuse) = match (films[c], stack.layers.first()) {
+                (Some(film), Some(layer)) => {
+                    let beams = film.beams(wi, wo);
+                    let [r, t] = film.scaled(&beams);
+                    let [specular, diffuse] = [beams.cosines, 2.0].map(|cosines| match film.waves_inside {
+                        Some(_) => terms.interference(0, c, cosines).unwrap_or_else(|| layer.interference(cosines)),
+                        None => 0.0,
+                    });
+                    (superpose(r, t, specular), film.diffuse_by(diffuse))
+                }
+                (None, Some(layer)) => (self.bare_specular(layer, bare[c], wi, wo), 1.0),
+                (_, None) => (0.0, 0.0),
+            };
+            self.specular_weight * specular + self.diffuse_weight * base * diffuse * FRAC_1_PI * wi.z
+        })
+    }
+
+    /// Light that an object without a film mirrors, whose reflectance at normal incidence is `f`.
+    fn bare_specular(&self, layer: &MonochromeLayer, f: f64, wi: DVec3, wo: DVec3) -> f64 {
+        if matches!(layer.below, MonochromeBelow::Diffuse { .. }) {
             return 0.0;
         }
-        let base = match stack.layers.last().map(|l| l.below) {
-            Some(MonochromeBelow::Diffuse { albedo, .. }) => albedo,
-            _ => 0.0,
-        };
-        let (specular, diffuse) = match (self.film(stack), stack.layers.first()) {
-            (Some(film), _) => {
-                let beams = film.beams(wi, wo);
-                let [r, t] = film.scaled(&beams);
-                let interference = |cosines| film.waves_inside.map_or(0.0, |_| optics.interference(0, cosines));
-                (superpose(r, t, interference(beams.cosines)), film.diffuse_by(interference(2.0)))
-            }
-            (None, Some(layer)) => {
-                let [e, _] = self.exponents_of(layer.surface.alpha_isotropic());
-                let f = optics.reflectance(0, 1.0);
-                let reflected = match layer.below {
-                    MonochromeBelow::Diffuse { .. } => 0.0,
-                    _ => {
-                        schlick(f, wi.z.min(1.0))
-                            * ((e + 1.0) / (2.0 * PI))
-                            * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e)
-                    }
-                };
-                (reflected, 1.0)
-            }
-            (None, None) => (0.0, 0.0),
-        };
-        self.specular_weight * specular + self.diffuse_weight * base * diffuse * FRAC_1_PI * wi.z
+        let [e, _] = self.exponents_of(layer.surface.alpha_isotropic());
+        schlick(f, wi.z.min(1.0)) * ((e + 1.0) / (2.0 * PI)) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e)
     }
 }
 

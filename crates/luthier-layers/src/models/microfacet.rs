@@ -3,16 +3,18 @@
 use glam::DVec3;
 use luthier_model::{Masking, ShadingModel};
 use luthier_optics::Rgb;
-use luthier_optics::stack::Distribution;
+use luthier_optics::stack::{Distribution, Surface};
 
-use crate::formulas::facets::Facets;
+use crate::formulas::facets::{Facets, Lobe};
 use crate::formulas::interface_fresnel::{Fresnel, LazanyiMemo};
 use crate::formulas::normals::{Normals, NormalsMemo};
 use crate::formulas::oren_nayar;
 use crate::frame::cos_theta_d;
+use crate::layers::{Below, Layer};
 use crate::memo::Memo;
 use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer, Optics};
+use crate::monochrome::Monochrome;
+use crate::terms::Terms;
 
 /// Parts of a microfacet model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,32 +147,37 @@ impl Microfacet {
         Self { components, normals: NormalsMemo::new(), fits: Memo::new() }
     }
 
-    /// `f cos_theta_i` but for the reflectance, and the angle for that.
-    fn lobe(&self, layer: &MonochromeLayer, optics: &impl Optics, wi: DVec3, wo: DVec3) -> Option<(f64, f64)> {
+    /// The facets of the first layer that reflect `wi` to `wo`.
+    fn lobe<const C: usize>(&self, surface: &Surface, terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let Components { normals, masking, .. } = self.components;
-        let lobe = match normals {
-            Normals::Surface => Facets::new(&layer.surface).lobe_of(optics, 0, masking, wi, wo),
-            _ => normals.lobe(&self.normals, &layer.surface, masking, wi, wo),
-        };
-        lobe.map(|lobe| (lobe.value, lobe.cos_theta_d))
+        match normals {
+            Normals::Surface => Facets::new(surface).lobe_of(terms, 0, masking, wi, wo),
+            _ => normals.lobe(&self.normals, surface, masking, wi, wo),
+        }
     }
 
-    /// [`Model::eval`] with optical terms that may come from elsewhere; of the components, these are the surface's own distribution
-    /// and the exact reflectance.
-    pub fn eval_with(&self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
-        let Some(layer) = stack.layers.first() else { return 0.0 };
+    /// [`Model::eval`] of the first layer with terms that may come from elsewhere; of the components, these are the surface's own distribution
+    /// and the reflectance.
+    pub fn eval_with<const C: usize>(&self, layer: &Layer<C>, terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> [f64; C] {
+        self.eval_by(layer, terms, |cos_theta_d| terms.fresnel(0, cos_theta_d), wi, wo)
+    }
+
+    fn eval_by<const C: usize>(
+        &self,
+        layer: &Layer<C>,
+        terms: &impl Terms<C>,
+        reflectance: impl FnOnce(f64) -> [f64; C],
+        wi: DVec3,
+        wo: DVec3,
+    ) -> [f64; C] {
         if wi.z <= 0.0 || wo.z <= 0.0 {
-            return 0.0;
+            return [0.0; C];
         }
-        if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
-            return wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
+        if let Below::Diffuse { albedo, sigma } = layer.below {
+            return oren_nayar::brdf(albedo, sigma, wi, wo).map(|f| wi.z * f);
         }
-        let Some((value, cos_theta_d)) = self.lobe(layer, optics, wi, wo) else { return 0.0 };
-        let reflectance = match self.components.fresnel {
-            Fresnel::Exact => optics.reflectance(0, cos_theta_d),
-            other => other.reflectance(&self.fits, layer, cos_theta_d),
-        };
-        reflectance * value
+        let Some(lobe) = self.lobe(&layer.surface, terms, wi, wo) else { return [0.0; C] };
+        reflectance(lobe.cos_theta_d).map(|reflectance| reflectance * lobe.value)
     }
 }
 
@@ -201,12 +208,16 @@ impl Model for Microfacet {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        self.eval_with(stack, stack, wi, wo)
+        let Some(layer) = stack.layers.first() else { return 0.0 };
+        let reflectance = |cos_theta_d| [self.components.fresnel.reflectance(&self.fits, layer, cos_theta_d)];
+        let [value] = self.eval_by(&layer.into(), stack, reflectance, wi, wo);
+        value
     }
 
     fn eval_rgb(&self, channels: &[(f64, Monochrome); 3], wi: DVec3, wo: DVec3) -> Option<Rgb> {
         let reflectance = self.components.fresnel.rgb(channels, cos_theta_d(wi, wo))?;
-        let (value, _) = self.lobe(channels[0].1.layers.first()?, &channels[0].1, wi, wo).unwrap_or((0.0, 0.0));
+        let first = &channels[0].1;
+        let value = self.lobe(&first.layers.first()?.surface, first, wi, wo).map_or(0.0, |lobe| lobe.value);
         Some(reflectance.map(|r| r * value))
     }
 

@@ -6,25 +6,12 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::interface::Interface;
-use luthier_optics::microfacet;
 use luthier_optics::schlick::schlick;
 use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// The optical terms of a stack at one wavelength, by number of the layer from the top: what models do not compute themselves. A
-/// [`Monochrome`] computes them; tables stand in for it.
-pub trait Optics {
-    /// Reflectance of an interface, see [`MonochromeLayer::reflectance`].
-    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64;
-
-    /// `pi alpha^2 D` of the layer's distribution, see [`microfacet::scaled_distribution`].
-    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64;
-
-    /// `2 cos(2 Phi)` of the first film of a layer for the sum of the cosines in it (Granier and Heidrich 2003, eq. 3 and 19); 0
-    /// without a film.
-    fn interference(&self, layer: usize, cosines: f64) -> f64;
-}
+use crate::terms::Terms;
 
 /// A stack at one wavelength, for one colour channel.
 ///
@@ -130,20 +117,9 @@ impl Monochrome {
     }
 }
 
-impl Optics for Monochrome {
-    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64 {
-        self.layers.get(layer).map_or(0.0, |layer| layer.reflectance(cos_theta_i))
-    }
-
-    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
-        self.layers.get(layer).map_or(0.0, |layer| {
-            microfacet::scaled_distribution(layer.surface.distribution, alpha, cos_theta_h, sin_theta_h_sq)
-        })
-    }
-
-    fn interference(&self, layer: usize, cosines: f64) -> f64 {
-        let film = self.layers.get(layer).and_then(|layer| layer.films.first());
-        film.map_or(0.0, |film| 2.0 * libm::cos(2.0 * PI * film.ior.re * film.waves * cosines))
+impl Terms<1> for Monochrome {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> [f64; 1] {
+        [self.layers.get(layer).map_or(0.0, |layer| layer.reflectance(cos_theta_d))]
     }
 }
 
@@ -168,6 +144,11 @@ impl MonochromeLayer {
             return None;
         }
         Some(coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i))
+    }
+
+    /// `2 cos(2 Phi)` of the first film for the sum of the cosines in it (Granier and Heidrich 2003, eq. 3 and 19); 0 without a film.
+    pub fn interference(&self, cosines: f64) -> f64 {
+        self.films.first().map_or(0.0, |film| 2.0 * libm::cos(2.0 * PI * film.ior.re * film.waves * cosines))
     }
 
     /// Index below over index above; 1 where nothing is transmitted.
@@ -221,7 +202,7 @@ mod tests {
         };
         let value = |one: &Monochrome| {
             let MonochromeBelow::Dielectric { optical_depth, .. } = one.layers[0].below else { return 0.0 };
-            one.reflectance(0, 0.7) * optical_depth
+            one.layers[0].reflectance(0.7) * optical_depth
         };
         let sample = |wavelength_nm, n| IorSample { wavelength_nm, n, k: 0.0 };
         let spectral = Ior::sampled(vec![sample(400.0, 1.7), sample(700.0, 1.4)]).unwrap();

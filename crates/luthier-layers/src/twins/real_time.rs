@@ -6,28 +6,26 @@
 //! Schlick's; reflectances from
 //! [`Terms`]. Belcour's and Yamaguchi's models have one spread for all three channels, too.
 
-use std::cell::RefCell;
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
-use luthier_model::{ModelPart, Reflectance, ShadingModel};
+use luthier_model::{Masking, ModelPart, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
 
 use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
-use crate::layers::ALPHA_MIN;
-use crate::layers::Layers;
-use crate::lobes;
-use crate::models::elek::{self, Tilts};
+use crate::layers::{ALPHA_MIN, Below, Layers};
+use crate::models::elek::Elek;
 use crate::models::granier_heidrich::GranierHeidrich;
 use crate::models::microfacet::{Components, Microfacet};
+use crate::models::path::{Tilts, walk};
 use crate::models::phong::Coefficients;
 use crate::models::statistics::diffuse_base::DiffuseBase;
 use crate::models::statistics::evaluate::{Follow, evaluate};
 use crate::models::statistics::spread::{Covariance, Spread};
 use crate::models::weidlich_wilkie::WeidlichWilkie;
-use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::terms::Terms;
 use crate::twins::parts::{Parts, Reflectances};
 use crate::twins::terms::ShaderTerms;
@@ -65,15 +63,15 @@ pub struct Twin {
 
 #[derive(Debug)]
 enum Kind {
-    Elek(Vec<elek::Layer>),
-    WeidlichWilkie(WeidlichWilkie, [Monochrome; 3]),
+    Elek(Elek, Layers),
+    WeidlichWilkie(WeidlichWilkie, Layers),
     GranierHeidrich(GranierHeidrich, [Monochrome; 3]),
     Phong([Coefficients; 3]),
-    Microfacet(Box<(Microfacet, [Monochrome; 3])>),
+    Microfacet(Box<Microfacet>, Layers),
     /// The first interface, with light from below where there is an interface.
-    Lobes(Box<(Microfacet, [Monochrome; 3])>, bool),
-    Belcour(Layers<3>),
-    Yamaguchi(Layers<3>),
+    Lobes(Box<Microfacet>, Layers),
+    Belcour(Layers),
+    Yamaguchi(Layers),
 }
 
 impl Twin {
@@ -87,15 +85,13 @@ impl Twin {
     pub fn with(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Self {
         let is_chosen = model.takes(ModelPart::Reflectance) && parts.reflectance != Reflectance::Table;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
-        let channels = || channels(stack, wavelengths_nm).map(|one| bend_alike(one, stack));
+        let Parts { masking, internal_reflection, .. } = parts;
+        let microfacet = |masking| Box::new(Microfacet::new(Components { masking, ..Components::PLAIN }));
         let kind = match model {
-            ShadingModel::Elek => {
-                let one = |layer| elek::Layer { internal_reflection: parts.internal_reflection, ..layer };
-                Kind::Elek(elek::layers(stack).into_iter().map(one).collect())
-            }
+            ShadingModel::Elek => Kind::Elek(Elek { internal_reflection }, Layers::isotropic_rgb(stack)),
             ShadingModel::WeidlichWilkie => {
-                let Parts { internal_reflection, .. } = parts;
-                Kind::WeidlichWilkie(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }, channels())
+                let model = WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() };
+                Kind::WeidlichWilkie(model, Layers::rgb(stack))
             }
             ShadingModel::GranierHeidrich => {
                 Kind::GranierHeidrich(parts.beams, granier_channels(stack, wavelengths_nm))
@@ -103,16 +99,8 @@ impl Twin {
             ShadingModel::Phong => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
             ShadingModel::Belcour => Kind::Belcour(Layers::rgb(stack)),
             ShadingModel::Yamaguchi => Kind::Yamaguchi(Layers::rgb(stack)),
-            ShadingModel::Microfacet => {
-                let components = Components { masking: parts.masking, ..Components::PLAIN };
-                Kind::Microfacet(Box::new((Microfacet::new(components), channels())))
-            }
-            ShadingModel::Lobes => {
-                let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
-                let first = self::channels(&lobes::shown(stack), wavelengths_nm);
-                let first = first.map(|one| bend_alike(one, stack));
-                Kind::Lobes(Box::new((Microfacet::new(Components::PLAIN), first)), is_interface)
-            }
+            ShadingModel::Microfacet => Kind::Microfacet(microfacet(masking), Layers::rgb(stack)),
+            ShadingModel::Lobes => Kind::Lobes(microfacet(Masking::Smith), Layers::rgb(stack)),
         };
         Self { kind, reflectances, reradiation: None, normals: Vec::new() }
     }
@@ -121,7 +109,7 @@ impl Twin {
     /// [`luthier_optics::reradiation::rgb`]), which take the place of its albedo in `elek` and `weidlich-wilkie`.
     #[must_use]
     pub fn reradiating(self, rows: Option<[Rgb; 3]>) -> Self {
-        let is_chain = matches!(self.kind, Kind::Elek(_) | Kind::WeidlichWilkie(..));
+        let is_chain = matches!(self.kind, Kind::Elek(..) | Kind::WeidlichWilkie(..));
         Self { reradiation: rows.filter(|_| is_chain), ..self }
     }
 
@@ -155,31 +143,19 @@ impl Twin {
 
     fn lit_on(&self, terms: &impl ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
         let tilts = Tilts { below: under.flake_normal, own: &self.normals };
-        let (interfaces, passages) = match (&self.kind, self.reradiation) {
-            (Kind::Elek(layers), Some(_)) => {
-                let elek::Walked { interfaces, base } = elek::walk(layers, terms, wi, wo, tilts);
-                (interfaces, base.map(|base| (base.down, base.up)))
-            }
-            (Kind::WeidlichWilkie(model, stacks), Some(_)) => {
-                let walk = |stack: &Monochrome, optics: &Channel<'_, _>| model.walk(stack, optics, wi, wo, tilts);
-                let [r, g, b] = each(terms, stacks, walk);
-                let interfaces = [r.interfaces, g.interfaces, b.interfaces];
-                let (down, up) = match (&r.base, &g.base, &b.base) {
-                    (Some(r), Some(g), Some(b)) => ([r.down, g.down, b.down], [r.up, g.up, b.up]),
-                    _ => ([0.0; 3], [0.0; 3]),
-                };
-                (interfaces, Some((down, up)))
-            }
+        let walked = match (&self.kind, self.reradiation) {
+            (Kind::Elek(model, layers), Some(_)) => walk(model, &layers.layers, terms, wi, wo, tilts),
+            (Kind::WeidlichWilkie(model, layers), Some(_)) => walk(model, &layers.layers, terms, wi, wo, tilts),
             _ => {
                 let plain = self.eval_on(terms, under, wi, wo);
                 return [0, 1, 2].map(|c| plain[c] * light[c]);
             }
         };
         let rows = self.reradiation.unwrap_or_default();
-        let (down, up) = passages.unwrap_or_default();
+        let (down, up) = walked.base.map(|base| (base.down, base.up)).unwrap_or_default();
         [0, 1, 2].map(|i: usize| {
             let emitted: f64 = (0..3).map(|j| rows[i][j] * down[j] * light[j]).sum();
-            interfaces[i] * light[i] + wi.z * FRAC_1_PI * up[i] * emitted
+            walked.interfaces[i] * light[i] + wi.z * FRAC_1_PI * up[i] * emitted
         })
     }
 
@@ -198,68 +174,52 @@ impl Twin {
         let &Under { flake_normal, inner_normal, slope_variance, base_color } = under;
         let tilts = Tilts { below: flake_normal, own: &self.normals };
         match &self.kind {
-            Kind::Elek(layers) => elek::eval_tilted(layers, terms, wi, wo, tilts),
-            Kind::WeidlichWilkie(model, stacks) => {
-                each(terms, stacks, |stack, optics| model.eval_tilted(stack, optics, wi, wo, tilts))
-            }
-            Kind::GranierHeidrich(model, stacks) => {
-                let model = model.leaning(inner_normal);
-                each(terms, stacks, |stack, optics| model.eval_with(stack, optics, wi, wo))
-            }
+            Kind::Elek(model, layers) => walk(model, &layers.layers, terms, wi, wo, tilts).value(),
+            Kind::WeidlichWilkie(model, layers) => walk(model, &layers.layers, terms, wi, wo, tilts).value(),
+            Kind::GranierHeidrich(model, stacks) => model.leaning(inner_normal).eval_with(stacks, terms, wi, wo),
             Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),
             Kind::Yamaguchi(layers) => statistical::<Covariance>(layers, terms, wi, wo),
             Kind::Phong(channels) => channels.map(|coefficients| coefficients.eval(wi, wo)),
-            Kind::Lobes(one, is_interface) => {
-                let first = each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo));
-                let below = if *is_interface && wi.z > 0.0 { terms.below(wo) } else { None };
-                let below = below.map(|below| match slope_variance > 0.0 {
-                    true => below.widened(wo, slope_variance),
-                    false => below,
-                });
-                let below = below.map(|below| match base_color {
-                    Some(albedo) => below.over_base(albedo),
-                    None => below,
-                });
-                let below = below.map_or([0.0; 3], |below| match one.1[1].layers[0].below {
-                    MonochromeBelow::Dielectric { ior, .. } if flake_normal != DVec3::Z => {
-                        below.tilted(flake_normal, ior / one.1[1].exterior).eval(wi)
-                    }
-                    _ => below.eval(wi),
-                });
+            Kind::Microfacet(model, layers) => first_layer(model, layers, terms, wi, wo),
+            Kind::Lobes(model, layers) => {
+                let first = first_layer(model, layers, terms, wi, wo);
+                let below = match layers.layers.first().map(|layer| layer.below) {
+                    Some(Below::Dielectric { .. } | Below::Conductor) if wi.z > 0.0 => terms.below(wo),
+                    _ => None,
+                };
+                let Some(mut below) = below else { return first };
+                if slope_variance > 0.0 {
+                    below = below.widened(wo, slope_variance);
+                }
+                if let Some(albedo) = base_color {
+                    below = below.over_base(albedo);
+                }
+                if let Below::Dielectric { ior, .. } = layers.layers[0].below
+                    && flake_normal != DVec3::Z
+                {
+                    below = below.tilted(flake_normal, ior / layers.exterior);
+                }
+                let below = below.eval(wi);
                 [0, 1, 2].map(|c: usize| first[c] + below[c])
             }
-            Kind::Microfacet(one) => each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo)),
         }
     }
 }
 
+/// The first layer alone; nothing where there is none.
+fn first_layer(model: &Microfacet, layers: &Layers, terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
+    layers.layers.first().map_or([0.0; 3], |layer| model.eval_with(layer, terms, wi, wo))
+}
+
 /// Belcour's or Yamaguchi's model: three channels that share directions and spreads, as their shader has them.
-fn statistical<S: Spread>(layers: &Layers<3>, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
+fn statistical<S: Spread>(layers: &Layers, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
     let base = DiffuseBase::veiled(layers, terms.veil());
     evaluate::<S, 3>(layers, terms, base.as_ref(), Follow::Eye, wi, wo)
 }
 
-/// A model at each channel's wavelength.
-fn each<T: Terms, R>(terms: &T, stacks: &[Monochrome; 3], eval: impl Fn(&Monochrome, &Channel<'_, T>) -> R) -> [R; 3] {
-    let memory = Memory::default();
-    [0, 1, 2].map(|channel| eval(&stacks[channel], &Channel { terms, stacks, channel, memory: &memory }))
-}
-
-/// The stack at each wavelength, slope parameters clamped as in layer records.
-fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
-    let clamped = |alpha: f64| alpha.clamp(ALPHA_MIN, 1.0);
-    [0, 1, 2].map(|channel| {
-        let mut one = Monochrome::new(stack, wavelengths_nm[channel], channel);
-        for Surface { alpha_x, alpha_y, .. } in one.layers.iter_mut().map(|layer| &mut layer.surface) {
-            (*alpha_x, *alpha_y) = (clamped(*alpha_x), clamped(*alpha_y));
-        }
-        one
-    })
-}
-
 /// Stacks of the channels with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
 fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
-    let mut channels = channels(stack, wavelengths_nm);
+    let mut channels = [0, 1, 2].map(|c| Monochrome::new(stack, wavelengths_nm[c], c));
     for one in &mut channels {
         for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
             let alpha = given.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0);
@@ -288,50 +248,6 @@ fn coefficients(stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> [Coeff
     let [diffuse, specular] = Coefficients::in_color(stack, &color);
     let Coefficients { exponent, .. } = Coefficients::of(&Monochrome::new(stack, wavelengths_nm[1], 1));
     [0, 1, 2].map(|c| Coefficients { diffuse: diffuse[c], specular: specular[c], exponent })
-}
-
-/// Values of terms during one evaluation, by layer and arguments.
-#[derive(Debug, Default)]
-struct Memory {
-    reflectances: RefCell<Vec<(usize, f64, Rgb)>>,
-    distributions: RefCell<Vec<(usize, [f64; 3], f64)>>,
-}
-
-/// Terms as one channel sees them.
-struct Channel<'a, T> {
-    terms: &'a T,
-    stacks: &'a [Monochrome; 3],
-    channel: usize,
-    memory: &'a Memory,
-}
-
-impl<T: Terms> Optics for Channel<'_, T> {
-    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64 {
-        let mut known = self.memory.reflectances.borrow_mut();
-        if let Some((.., rgb)) = known.iter().find(|(l, cos, _)| (*l, *cos) == (layer, cos_theta_i)) {
-            return rgb[self.channel];
-        }
-        let rgb = self.terms.fresnel(layer, cos_theta_i);
-        known.push((layer, cos_theta_i, rgb));
-        rgb[self.channel]
-    }
-
-    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
-        let arguments = [alpha, cos_theta_h, sin_theta_h_sq];
-        let mut known = self.memory.distributions.borrow_mut();
-        if let Some((.., value)) = known.iter().find(|(l, a, _)| (*l, *a) == (layer, arguments)) {
-            return *value;
-        }
-        let Some(surface) = self.stacks[self.channel].layers.get(layer).map(|layer| layer.surface) else { return 0.0 };
-        let value = self.terms.distribution(layer, surface.distribution, alpha, cos_theta_h, sin_theta_h_sq);
-        known.push((layer, arguments, value));
-        value
-    }
-
-    fn interference(&self, layer: usize, cosines: f64) -> f64 {
-        let tabulated = self.terms.interference(layer, self.channel, cosines);
-        tabulated.unwrap_or_else(|| self.stacks[self.channel].interference(layer, cosines))
-    }
 }
 
 #[cfg(test)]

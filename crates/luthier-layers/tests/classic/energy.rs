@@ -6,7 +6,7 @@ use glam::DVec3;
 use luthier_layers::luthier_model::Masking;
 use luthier_layers::model::Model;
 use luthier_layers::models::belcour::Belcour;
-use luthier_layers::models::elek_model::Elek;
+use luthier_layers::models::elek::Elek;
 use luthier_layers::models::granier_heidrich::GranierHeidrich;
 use luthier_layers::models::microfacet::{Components, Microfacet};
 use luthier_layers::models::phong::Phong;

@@ -7,7 +7,7 @@ use luthier_layers::formulas::facets::Facets;
 use luthier_layers::formulas::oren_nayar;
 use luthier_layers::luthier_model::{InternalReflection, Masking};
 use luthier_layers::model::Model;
-use luthier_layers::models::elek_model::Elek;
+use luthier_layers::models::elek::Elek;
 use luthier_layers::models::microfacet::{Components, Microfacet};
 use luthier_layers::models::weidlich_wilkie::{Refraction, WeidlichWilkie};
 use luthier_layers::models::weidlich_wilkie_corrected::WeidlichWilkieCorrected;

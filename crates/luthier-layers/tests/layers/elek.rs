@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::layers::ALPHA_MIN;
+use luthier_layers::layers::{ALPHA_MIN, Below, Layer, Layers};
 use luthier_layers::luthier_model::InternalReflection;
-use luthier_layers::models::elek::{self, Below, Layer};
+use luthier_layers::models::elek::Elek;
 use luthier_layers::terms::Terms;
 use luthier_layers::twins::terms::Exact;
 use luthier_optics::Rgb;
@@ -13,7 +13,7 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::quadrature::gauss_legendre;
-use luthier_optics::stack::{self, Base, Diffuse, Distribution, Slab, Stack, Surface};
+use luthier_optics::stack::{self, Base, Distribution, Slab, Stack, Surface};
 
 use crate::directions::direction;
 
@@ -41,28 +41,21 @@ impl<const N: usize> Terms for Plain<N> {
 }
 
 const LAMBERT: Layer = Layer {
-    distribution: Distribution::Ggx,
-    alpha: ALPHA_MIN,
-    below: Below::Diffuse(Diffuse { albedo: [0.2, 0.5, 0.8], sigma: 0.0 }),
-    internal_reflection: InternalReflection::Facets,
+    surface: Surface { distribution: Distribution::Ggx, alpha_x: ALPHA_MIN, alpha_y: ALPHA_MIN, rotation: 0.0 },
+    above: 1.0,
+    below: Below::Diffuse { albedo: [0.2, 0.5, 0.8], sigma: 0.0 },
 };
 
 fn coat(alpha: f64, eta: f64, optical_depth: Rgb) -> Layer {
     Layer {
-        distribution: Distribution::Beckmann,
-        alpha,
-        below: Below::Dielectric { eta, optical_depth },
-        internal_reflection: InternalReflection::Facets,
+        surface: Surface::isotropic(Distribution::Beckmann, alpha),
+        above: 1.0,
+        below: Below::Dielectric { ior: eta, optical_depth },
     }
 }
 
 fn mirror(alpha: f64) -> Layer {
-    Layer {
-        distribution: Distribution::Ggx,
-        alpha,
-        below: Below::Conductor,
-        internal_reflection: InternalReflection::Facets,
-    }
+    Layer { surface: Surface::isotropic(Distribution::Ggx, alpha), above: 1.0, below: Below::Conductor }
 }
 
 fn pairs() -> Vec<(DVec3, DVec3)> {
@@ -77,7 +70,7 @@ fn pairs() -> Vec<(DVec3, DVec3)> {
 #[test]
 fn a_diffuse_base_alone_is_lambert() {
     for (wi, wo) in pairs() {
-        let found = elek::eval(&[LAMBERT], &Plain([]), wi, wo);
+        let found = Elek::default().eval_with(&[LAMBERT], &Plain([]), wi, wo);
         for (f, albedo) in found.into_iter().zip([0.2, 0.5, 0.8]) {
             assert!((f - albedo * wi.z / PI).abs() < 1e-15);
         }
@@ -89,8 +82,8 @@ fn an_index_matched_clear_coat_cannot_be_seen() {
     // F = 0 leaves t = (1 - G) + G, whatever G.
     for alpha in [ALPHA_MIN, 0.3, 1.0] {
         for (wi, wo) in pairs() {
-            let bare = elek::eval(&[LAMBERT], &Plain([]), wi, wo);
-            let coated = elek::eval(&[coat(alpha, 1.0, [0.0; 3]), LAMBERT], &Plain([0.0]), wi, wo);
+            let bare = Elek::default().eval_with(&[LAMBERT], &Plain([]), wi, wo);
+            let coated = Elek::default().eval_with(&[coat(alpha, 1.0, [0.0; 3]), LAMBERT], &Plain([0.0]), wi, wo);
             for (a, b) in bare.into_iter().zip(coated) {
                 assert!((a - b).abs() <= 1e-14 * a, "{a} {b}");
             }
@@ -109,13 +102,14 @@ fn internal_reflection_is_a_factor_on_what_lies_below() {
     };
     let mut least: f64 = 1.0;
     for (wi, wo) in pairs() {
-        let bare = elek::eval(&[LAMBERT], &Plain([]), wi, wo);
-        let facets = coat(0.3, 1.0, [0.0; 3]);
-        let none = Layer { internal_reflection: InternalReflection::None, ..facets };
+        let bare = Elek::default().eval_with(&[LAMBERT], &Plain([]), wi, wo);
         let g = hidden(wi, wo);
         least = least.min(g);
-        for (top, t) in [(facets, (1.0 - g) + (1.0 - f) * g), (none, 1.0)] {
-            let coated = elek::eval(&[top, LAMBERT], &Plain([f]), wi, wo);
+        for (internal_reflection, t) in
+            [(InternalReflection::Facets, (1.0 - g) + (1.0 - f) * g), (InternalReflection::None, 1.0)]
+        {
+            let layers = [coat(0.3, 1.0, [0.0; 3]), LAMBERT];
+            let coated = Elek { internal_reflection }.eval_with(&layers, &Plain([f]), wi, wo);
             for (found, bare) in coated.into_iter().zip(bare) {
                 assert!((found - (1.0 - f) * t * bare).abs() <= 1e-13 * bare, "{found} {bare} {t}");
             }
@@ -129,7 +123,7 @@ fn slabs_absorb_along_the_refracted_paths() {
     let (eta, depth) = (1.5, [0.1, 1.0, 0.0]);
     for (theta_i, theta_o) in [(0.0f64, 0.0f64), (30.0, 60.0), (80.0, 45.0), (89.0, 89.0)] {
         let (wi, wo) = (direction(theta_i, 0.0), direction(theta_o, 140.0));
-        let at = |depth| elek::eval(&[coat(0.1, eta, depth), LAMBERT], &Plain([0.0]), wi, wo);
+        let at = |depth| Elek::default().eval_with(&[coat(0.1, eta, depth), LAMBERT], &Plain([0.0]), wi, wo);
         // Snell's law in angles.
         let cos_t = |deg: f64| (deg.to_radians().sin() / eta).asin().cos();
         let path = 1.0 / cos_t(theta_i) + 1.0 / cos_t(theta_o);
@@ -145,8 +139,8 @@ fn a_layer_is_never_smoother_than_the_one_above() {
     for (above, middle, base, seen) in [(0.4, 0.1, 0.2, 0.4), (0.1, 0.5, 0.2, 0.5), (0.1, 0.2, 0.3, 0.3)] {
         for (wi, wo) in pairs() {
             let layers = [coat(above, 1.0, [0.0; 3]), coat(middle, 1.0, [0.0; 3]), mirror(base)];
-            let found = elek::eval(&layers, &terms, wi, wo);
-            let alone = elek::eval(&[mirror(seen)], &Plain([0.7]), wi, wo);
+            let found = Elek::default().eval_with(&layers, &terms, wi, wo);
+            let alone = Elek::default().eval_with(&[mirror(seen)], &Plain([0.7]), wi, wo);
             assert!((found[0] - alone[0]).abs() <= 1e-12 * alone[0], "{found:?} {alone:?}");
         }
     }
@@ -175,7 +169,7 @@ fn albedo(layers: &[Layer], terms: &impl Terms, alpha: f64, eta: f64, wo: DVec3)
             }
             let wi = DVec3::new(wi_below.x * eta, wi_below.y * eta, cos_i_sq.sqrt());
             let jacobian = eta * eta * wi_below.z / wi.z * 4.0 * below.dot(h);
-            sum += elek::eval(layers, terms, wi, wo)[0] * jacobian * measure;
+            sum += Elek::default().eval_with(layers, terms, wi, wo)[0] * jacobian * measure;
         }
     }
     sum
@@ -233,7 +227,12 @@ fn values_of_the_published_model() {
     };
     let terms = Exact::new(&stack, Color::ThreeWavelengths(wavelengths));
     for ([theta_i, phi_i, theta_o, phi_o], expected) in TWO_LAYERS {
-        let found = elek::eval(&elek::layers(&stack), &terms, direction(theta_i, phi_i), direction(theta_o, phi_o));
+        let found = Elek::default().eval_with(
+            &Layers::isotropic_rgb(&stack).layers,
+            &terms,
+            direction(theta_i, phi_i),
+            direction(theta_o, phi_o),
+        );
         for (a, b) in found.into_iter().zip(expected) {
             assert!((a / b - 1.0).abs() < 1e-11, "{theta_i} {theta_o}: {found:?} {expected:?}");
         }
@@ -252,9 +251,10 @@ fn layers_take_the_description_as_it_is_meant() {
         exterior: Ior::constant(1.2, 0.0).unwrap(),
         layers: vec![layer(brushed, dielectric(1.5)), layer(Surface::smooth(), dielectric(1.35))],
     };
-    let [top, bottom] = elek::layers(&stack)[..] else { panic!("two layers") };
-    assert!((top.alpha - 0.2).abs() < 1e-15);
-    assert_eq!(bottom.alpha, ALPHA_MIN);
-    assert_eq!(top.below, Below::Dielectric { eta: 1.5 / 1.2, optical_depth: [2.0, 1.0, 0.0] });
-    assert_eq!(bottom.below, Below::Dielectric { eta: 1.35 / 1.5, optical_depth: [2.0, 1.0, 0.0] });
+    let [top, bottom] = Layers::isotropic_rgb(&stack).layers[..] else { panic!("two layers") };
+    assert!((top.surface.alpha_x - 0.2).abs() < 1e-15);
+    assert_eq!(bottom.surface.alpha_x, ALPHA_MIN);
+    assert_eq!((top.eta(), bottom.eta()), (1.5 / 1.2, 1.35 / 1.5));
+    assert_eq!(top.below, Below::Dielectric { ior: 1.5, optical_depth: [2.0, 1.0, 0.0] });
+    assert_eq!(bottom.below, Below::Dielectric { ior: 1.35, optical_depth: [2.0, 1.0, 0.0] });
 }

@@ -1,7 +1,8 @@
 //! Laws of Elek's model for every stack and pair of directions.
 
 use glam::DVec3;
-use luthier_layers::models::elek;
+use luthier_layers::layers::Layers;
+use luthier_layers::models::elek::Elek;
 use luthier_layers::twins::terms::Exact;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
@@ -72,9 +73,9 @@ proptest! {
     #[test]
     fn it_is_finite_and_not_negative(stack in stack(), wi in upward(), wo in upward()) {
         let terms = Exact::new(&stack, WAVELENGTHS);
-        let layers = elek::layers(&stack);
+        let layers = Layers::isotropic_rgb(&stack).layers;
         for wo in [wo, wi, DVec3::new(-wi.x, -wi.y, wi.z), -wi, DVec3::new(wo.x, wo.y, 0.0), -wo] {
-            for f in elek::eval(&layers, &terms, wi, wo) {
+            for f in Elek::default().eval_with(&layers, &terms, wi, wo) {
                 prop_assert!(f.is_finite() && f >= 0.0, "{f} from {wi} to {wo}");
                 prop_assert!(wo.z > 0.0 || f == 0.0);
             }
@@ -87,9 +88,9 @@ proptest! {
         prop_assume!(wi.z > 0.0 && wo.z > 0.0);
         let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer] };
         let terms = Exact::new(&stack, WAVELENGTHS);
-        let layers = elek::layers(&stack);
-        let there = elek::eval(&layers, &terms, wi, wo).map(|f| f / wi.z);
-        let back = elek::eval(&layers, &terms, wo, wi).map(|f| f / wo.z);
+        let layers = Layers::isotropic_rgb(&stack).layers;
+        let there = Elek::default().eval_with(&layers, &terms, wi, wo).map(|f| f / wi.z);
+        let back = Elek::default().eval_with(&layers, &terms, wo, wi).map(|f| f / wo.z);
         for (a, b) in there.into_iter().zip(back) {
             prop_assert!((a - b).abs() <= 1e-9 * a.abs() + 1e-200, "{a} {b}");
         }
@@ -108,7 +109,7 @@ fn directions_that_cancel_give_nothing() {
     let terms = Exact::new(&stack, WAVELENGTHS);
     let tiny = DVec3::new(1.0, 0.0, f64::MIN_POSITIVE);
     for (wi, wo) in [(DVec3::X, -DVec3::X), (tiny, -DVec3::X), (tiny, DVec3::new(-1.0, 0.0, f64::MIN_POSITIVE))] {
-        for f in elek::eval(&elek::layers(&stack), &terms, wi, wo) {
+        for f in Elek::default().eval_with(&Layers::isotropic_rgb(&stack).layers, &terms, wi, wo) {
             assert!(f >= 0.0 && f.is_finite(), "{f}");
         }
     }

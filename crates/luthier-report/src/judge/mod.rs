@@ -8,7 +8,7 @@ pub(crate) mod report;
 
 use std::fmt;
 
-use luthier_layers::models::elek::{self, Layer};
+use luthier_layers::layers::{Below, Layer};
 use luthier_manifest::{ColorMode, Form, LayerKind, LayerRecord, Manifest, ShadingModel};
 use luthier_optics::Rgb;
 use serde::{Deserialize, Serialize};
@@ -375,7 +375,7 @@ fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], fi
         if record.kind == LayerKind::Diffuse {
             break;
         }
-        alpha = alpha.max(layer.alpha);
+        alpha = alpha.max(layer.surface.alpha_x);
         recorded = recorded.max(record.alpha);
         if (alpha - recorded).abs() > 1e-6 {
             findings.push(format!(
@@ -384,13 +384,11 @@ fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], fi
                 format::number(alpha)
             ));
         }
-        if let elek::Below::Dielectric { eta, .. } = layer.below
-            && (eta - record.eta).abs() > 1e-6
-        {
+        if matches!(layer.below, Below::Dielectric { .. }) && (layer.eta() - record.eta).abs() > 1e-6 {
             findings.push(format!(
                 "{material}, layer {i}: the shader's relative index is {}, the material file's {}.",
                 format::number(record.eta),
-                format::number(eta)
+                format::number(layer.eta())
             ));
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use luthier_layers::models::elek::{Below, Layer};
+use luthier_layers::layers::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
 /// `(wi, wo)`: unit to f32 precision, above the horizon, in the local frame.
@@ -107,14 +107,12 @@ pub(crate) fn spreads(layers: &[Layer]) -> Vec<f64> {
     let mut out = Vec::new();
     let (mut eta_above, mut alpha_above) = (1.0, 0.0_f64);
     for layer in layers {
-        let eta = match layer.below {
-            Below::Diffuse(_) => break,
-            Below::Conductor => 1.0,
-            Below::Dielectric { eta, .. } => eta,
-        };
-        alpha_above = alpha_above.max(layer.alpha);
+        if matches!(layer.below, Below::Diffuse { .. }) {
+            break;
+        }
+        alpha_above = alpha_above.max(layer.surface.alpha_x);
         out.push(alpha_above * eta_above);
-        eta_above *= eta;
+        eta_above *= layer.eta();
     }
     if out.is_empty() {
         out.push(0.25);
@@ -162,27 +160,15 @@ pub(crate) fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use luthier_layers::layers::ALPHA_MIN;
-    use luthier_manifest::InternalReflection;
-    use luthier_optics::stack::Distribution;
+    use luthier_optics::stack::{Distribution, Surface};
 
     use super::*;
 
     fn coat_on_metal(alpha: f64) -> Vec<Layer> {
-        let coat = Below::Dielectric { eta: 1.5, optical_depth: [0.0; 3] };
-        vec![
-            Layer {
-                distribution: Distribution::Ggx,
-                alpha: ALPHA_MIN,
-                below: coat,
-                internal_reflection: InternalReflection::Facets,
-            },
-            Layer {
-                distribution: Distribution::Beckmann,
-                alpha,
-                below: Below::Conductor,
-                internal_reflection: InternalReflection::Facets,
-            },
-        ]
+        let layer =
+            |distribution, alpha, below| Layer { surface: Surface::isotropic(distribution, alpha), above: 1.0, below };
+        let coat = Below::Dielectric { ior: 1.5, optical_depth: [0.0; 3] };
+        vec![layer(Distribution::Ggx, ALPHA_MIN, coat), layer(Distribution::Beckmann, alpha, Below::Conductor)]
     }
 
     #[test]
@@ -230,12 +216,8 @@ mod tests {
 
     #[test]
     fn highlights_stay_within_the_reach_of_the_widest_lobe() {
-        let layers = vec![Layer {
-            distribution: Distribution::Ggx,
-            alpha: 0.02,
-            below: Below::Conductor,
-            internal_reflection: InternalReflection::Facets,
-        }];
+        let surface = Surface::isotropic(Distribution::Ggx, 0.02);
+        let layers = [Layer { surface, above: 1.0, below: Below::Conductor }];
         for (wi, wo) in DirectionSet::Highlight.pairs(2000, &layers) {
             let wh = DVec3::from(wi.map(f64::from)) + DVec3::from(wo.map(f64::from));
             let slope = libm::hypot(wh.x, wh.y) / wh.z;

@@ -1,8 +1,8 @@
 //! The f64 side of a comparison: the twin of a material's shader, and its exact terms.
 
 use glam::DVec3;
+use luthier_layers::layers::{Layer, Layers};
 use luthier_layers::lobes::{Cover, Varying};
-use luthier_layers::models::elek::{self, Layer};
 use luthier_layers::twins::parts::Parts;
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::{Exact, ShaderTerms};
@@ -35,7 +35,7 @@ impl References {
         let varying = varying(material);
         let twin = Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
         Self {
-            layers: elek::layers(stack),
+            layers: Layers::isotropic_rgb(stack).layers,
             twin: twin.reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
             spectral: Exact::varying(stack, Color::Spectral, varying),
             three: Exact::varying(stack, three, varying),

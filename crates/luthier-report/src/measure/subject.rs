@@ -1,6 +1,6 @@
 //! The subject of a judgement: manifest, decoded tables, stacks.
 
-use luthier_layers::models::elek::{self, Below};
+use luthier_layers::layers::{Below, Layer, Layers};
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MapSlot, MaterialEntry, TableEntry};
 use luthier_optics::color::Color;
@@ -96,7 +96,7 @@ impl Subject<'_> {
             return Err(ReportError::MaterialCount { manifest, stacks });
         }
         for (material, stack) in self.manifest.materials.iter().zip(&self.stacks) {
-            let layers = elek::layers(stack);
+            let layers = Layers::isotropic_rgb(stack).layers;
             let differs = |layer| ReportError::Layers { material: material.name.clone(), layer };
             if layers.len() != material.layers.len() {
                 return Err(differs(layers.len().min(material.layers.len())));
@@ -111,11 +111,11 @@ impl Subject<'_> {
     }
 }
 
-fn same_kind(layer: &elek::Layer, record: &LayerRecord) -> bool {
-    let named = record.distribution == layer.distribution;
+fn same_kind(layer: &Layer, record: &LayerRecord) -> bool {
+    let named = record.distribution == layer.surface.distribution;
     match layer.below {
         Below::Dielectric { .. } => record.kind == LayerKind::Dielectric && named,
         Below::Conductor => record.kind == LayerKind::Conductor && named,
-        Below::Diffuse(_) => record.kind == LayerKind::Diffuse,
+        Below::Diffuse { .. } => record.kind == LayerKind::Diffuse,
     }
 }

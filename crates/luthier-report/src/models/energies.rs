@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::models::{THETAS_DEG, direction};
     use luthier_layers::directional_albedo::directional_albedo;
-    use luthier_layers::models::elek_model::Elek;
+    use luthier_layers::models::elek::Elek;
     use luthier_layers::models::microfacet::{Components, Microfacet};
     use luthier_layers::models::phong::Phong;
     use luthier_optics::ior::Ior;

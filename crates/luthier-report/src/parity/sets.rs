@@ -1,7 +1,7 @@
 //! Directions of the parity run.
 
 use glam::DVec3;
-use luthier_layers::models::elek::{Below, Layer};
+use luthier_layers::layers::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::{
@@ -97,12 +97,11 @@ fn all_spreads(layers: &[Layer]) -> Vec<f64> {
     let mut all = spreads(layers);
     let mut eta_above = 1.0;
     for layer in layers {
-        let own = layer.alpha * eta_above;
-        match layer.below {
-            Below::Diffuse(_) => break,
-            Below::Conductor => {}
-            Below::Dielectric { eta, .. } => eta_above *= eta,
+        let own = layer.surface.alpha_x * eta_above;
+        if matches!(layer.below, Below::Diffuse { .. }) {
+            break;
         }
+        eta_above *= layer.eta();
         if !all.contains(&own) {
             all.push(own);
         }
@@ -143,27 +142,15 @@ fn opposite(n: u32) -> Pair {
 
 #[cfg(test)]
 mod tests {
-    use luthier_optics::stack::Distribution;
+    use luthier_optics::stack::{Distribution, Surface};
 
     use super::*;
-    use luthier_manifest::InternalReflection;
 
     fn layers() -> Vec<Layer> {
-        let coat = Below::Dielectric { eta: 1.5, optical_depth: [0.0; 3] };
-        vec![
-            Layer {
-                distribution: Distribution::Ggx,
-                alpha: 0.2,
-                below: coat,
-                internal_reflection: InternalReflection::Facets,
-            },
-            Layer {
-                distribution: Distribution::Beckmann,
-                alpha: 0.05,
-                below: Below::Conductor,
-                internal_reflection: InternalReflection::Facets,
-            },
-        ]
+        let layer =
+            |distribution, alpha, below| Layer { surface: Surface::isotropic(distribution, alpha), above: 1.0, below };
+        let coat = Below::Dielectric { ior: 1.5, optical_depth: [0.0; 3] };
+        vec![layer(Distribution::Ggx, 0.2, coat), layer(Distribution::Beckmann, 0.05, Below::Conductor)]
     }
 
     #[test]

@@ -145,7 +145,7 @@ pub fn at_places(
 ) -> Result<Option<AtPlaces>, ReportError> {
     let Some(places) = Places::of(subject, material) else { return Ok(None) };
     let entry = &subject.manifest.materials[material];
-    let layers = luthier_layers::models::elek::layers(&subject.stacks[material]);
+    let layers = luthier_layers::layers::Layers::isotropic_rgb(&subject.stacks[material]).layers;
     // All over the hemisphere, and in highlights.
     let sets = [DirectionSet::Random, DirectionSet::Highlight];
     let pairs = sets.map(|set| set.pairs(count.div_ceil(2), &layers));

@@ -1,7 +1,7 @@
 //! Directions of the light and of the eye on a case.
 
 use glam::DVec3;
-use luthier_layers::models::elek::Layer;
+use luthier_layers::layers::Layer;
 
 use crate::measure::directions::{Pair, direction, halton, log_uniform, mirrored, rounded};
 use crate::parity::ParitySet;

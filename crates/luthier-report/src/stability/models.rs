@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
+use luthier_layers::layers::Layers;
 use luthier_layers::model::{Estimate, Estimator, Inputs, Kind, Model, ModelInfo};
-use luthier_layers::models::elek;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::references::closed_form::ClosedForm;
 use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
@@ -43,7 +43,7 @@ pub fn model_cells(cases: &[StressCase], progress: &(dyn Fn() + Sync)) -> Vec<Ce
         .par_iter()
         .map(|case| {
             let stack = Monochrome::new(&case.stack, WAVELENGTH_NM, CHANNEL);
-            let pairs = case.aim.pairs(&elek::layers(&case.stack));
+            let pairs = case.aim.pairs(&Layers::isotropic_rgb(&case.stack).layers);
             let truths: Vec<Estimate> = case.aim.thetas_deg().iter().map(|&theta| truth(&stack, eye(theta))).collect();
             let cells = models
                 .iter()

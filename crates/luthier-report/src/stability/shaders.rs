@@ -1,6 +1,6 @@
 //! The shaders: tables in f64, and both forms on the adapter.
 
-use luthier_layers::models::elek;
+use luthier_layers::layers::Layers;
 use luthier_manifest::Form;
 use luthier_optics::Rgb;
 use rayon::prelude::*;
@@ -44,7 +44,7 @@ pub fn shader_cells(
         .into_par_iter()
         .map(|number| {
             let (stack, entry) = (&cases[number].stack, &subject.manifest.materials[number]);
-            let pairs = cases[number].aim.pairs(&elek::layers(stack));
+            let pairs = cases[number].aim.pairs(&Layers::isotropic_rgb(stack).layers);
             let references = References::new(stack, entry);
             let twin = &references.twin;
             let terms = TableTerms::new(subject, number, Weights::EightBit)?;

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use luthier_layers::models::elek::{self, Below};
+use luthier_layers::layers::{self, Below, Layers};
 use luthier_layers::models::statistics::diffuse_base::Veil;
 use luthier_layers::models::statistics::energy::{Energy, ExactEnergy, FacetCache};
 use luthier_layers::models::statistics::total_reflection::escaping_share;
@@ -64,11 +64,12 @@ impl Bake {
         for (name, stack) in &named {
             let exact = Exact::new(stack, Color::Spectral);
             let mut records = Vec::new();
-            for (l, layer) in elek::layers(stack).iter().enumerate() {
+            for (l, layer) in Layers::isotropic_rgb(stack).layers.iter().enumerate() {
                 let mut record = record(layer);
                 if record.kind != LayerKind::Diffuse {
                     record.tiles[TableKind::Fresnel] = Some(rows.len() as u32);
-                    record.tiles[TableKind::Distribution] = Some(u32::from(layer.distribution == Distribution::Ggx));
+                    record.tiles[TableKind::Distribution] =
+                        Some(u32::from(layer.surface.distribution == Distribution::Ggx));
                     let row: Vec<_> = (0..128).map(|i| exact.fresnel(l, fresnel_axis.node(i))).collect();
                     rows.push((format!("{name}/{l}"), row));
                 }
@@ -343,22 +344,22 @@ pub(crate) fn table(
     (entry, texels)
 }
 
-fn record(layer: &elek::Layer) -> LayerRecord {
+fn record(layer: &layers::Layer) -> LayerRecord {
     let mut record = LayerRecord {
         kind: LayerKind::Conductor,
-        distribution: layer.distribution,
-        alpha: layer.alpha,
-        alpha_xy: [layer.alpha; 2],
+        distribution: layer.surface.distribution,
+        alpha: layer.surface.alpha_x,
+        alpha_xy: [layer.surface.alpha_x; 2],
         eta: 1.0,
         ior_n: [1.0; 3],
         ..LayerRecord::default()
     };
     match layer.below {
         Below::Conductor => {}
-        Below::Dielectric { eta, optical_depth } => {
-            (record.kind, record.eta, record.optical_depth) = (LayerKind::Dielectric, eta, optical_depth);
+        Below::Dielectric { optical_depth, .. } => {
+            (record.kind, record.eta, record.optical_depth) = (LayerKind::Dielectric, layer.eta(), optical_depth);
         }
-        Below::Diffuse(Diffuse { albedo, sigma }) => {
+        Below::Diffuse { albedo, sigma } => {
             (record.kind, record.albedo, record.sigma) = (LayerKind::Diffuse, albedo, sigma);
         }
     }

@@ -362,7 +362,7 @@ fn patina_mixes_the_light_of_two_ends() {
                         let of_base = read(3, 0.0);
                         (0..3).for_each(|c| row.wide[c] -= (1.0 - cover) * of_base[c]);
                         let base = Diffuse { albedo: bare.albedo, sigma: bare.sigma };
-                        oren_nayar::brdf(&base, light, eye).map(|f| f * light.z)
+                        oren_nayar::brdf(base.albedo, base.sigma, light, eye).map(|f| f * light.z)
                     }
                     _ => facets(bare),
                 });

@@ -3,7 +3,7 @@
 use luthier_layers::directional_albedo::DirectionalAlbedo;
 use luthier_layers::furnace::furnace;
 use luthier_layers::model::{Estimate, Model};
-use luthier_layers::models::elek_model::{Elek, environment};
+use luthier_layers::models::elek::{Elek, environment};
 use luthier_layers::models::microfacet::Microfacet;
 use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
 use luthier_layers::twins::parts::Parts;

@@ -14,7 +14,7 @@ const NAMING: [(&str, &str); 22] = [
     ("export/src/energy.rs", "names the model that returns what the simulation does"),
     ("layers/src/lobes/mod.rs", "is the model"),
     ("layers/src/models/belcour/mod.rs", "is the model"),
-    ("layers/src/models/elek_model.rs", "is the model"),
+    ("layers/src/models/elek.rs", "is the model"),
     ("layers/src/models/granier_heidrich.rs", "is the model"),
     ("layers/src/models/microfacet.rs", "is the model"),
     ("layers/src/models/phong.rs", "is the model"),

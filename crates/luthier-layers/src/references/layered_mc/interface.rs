@@ -171,5 +171,5 @@ fn diffuse_brdf(diffuse: &Diffuse, a: DVec3, b: DVec3) -> f64 {
     if diffuse.sigma == 0.0 {
         return diffuse.albedo[0] / PI;
     }
-    oren_nayar::brdf(diffuse, b, a)[0]
+    oren_nayar::brdf_scalar(diffuse.albedo[0], diffuse.sigma, b, a)
 }

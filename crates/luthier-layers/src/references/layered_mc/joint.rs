@@ -203,7 +203,7 @@ impl JointInterface {
                 let (direction, u) = stream.direction_and_uniform();
                 let sin = u.sqrt();
                 let b = DVec3::new(sin * direction.x, sin * direction.y, (1.0 - u).sqrt());
-                let brdf = oren_nayar::brdf(diffuse, b, a.direction);
+                let brdf = oren_nayar::brdf(diffuse.albedo, diffuse.sigma, b, a.direction);
                 Some((Sided { direction: b, ..a }, brdf.map(|brdf| PI * brdf), false))
             }
             Kind::Rough(rough) => {

@@ -1,0 +1,137 @@
+//! The walk of Weidlich and Wilkie's model and of Elek's form of it: down through the layers along refracted directions, and back.
+
+use std::array::from_fn;
+
+use glam::DVec3;
+use luthier_model::InternalReflection;
+
+use crate::formulas::facets::Lobe;
+use crate::formulas::oren_nayar;
+use crate::frame::{self, off, onto};
+use crate::layers::{Below, Layer};
+use crate::terms::Terms;
+
+/// A model that walks, by the steps that are its own. Factors are multiplied in the order of each model.
+pub(crate) trait PathModel {
+    /// Light from below that interfaces let out.
+    fn internal_reflection(&self) -> InternalReflection;
+
+    /// The cosine of the light outside: the factor on light that falls in, and that on light that an interface or the base sends back.
+    fn cosines(&self, cos_theta_i: f64) -> [f64; 2];
+
+    /// The facets of the last of some layers that reflect `wi` to `wo`.
+    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe>;
+
+    /// Both directions in the medium below, pointing up; `None` where either is totally reflected or leaves upward.
+    fn refracted(&self, eta: f64, wi: DVec3, wo: DVec3) -> Option<[DVec3; 2]>;
+
+    /// Light that an interface sends back, of `passed` that comes to it; `cosines` is that outside over that of the medium above.
+    fn sent(&self, passed: f64, cosines: f64, reflectance: f64, lobe: f64) -> f64;
+
+    /// Share of light that comes through an interface and its slab, and back.
+    fn kept(&self, entered: f64, left: f64, absorbed: f64) -> f64;
+}
+
+/// Normals of interfaces that are not those of the surface, all unit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tilts<'a> {
+    /// Normal below the first interface, in its frame: all that lies there is turned.
+    pub(crate) below: DVec3,
+    /// Normals of interfaces alone, from the top down, in the frame of the surface; those that are missing are +z.
+    pub(crate) own: &'a [DVec3],
+}
+
+impl Tilts<'_> {
+    /// Nothing is tilted.
+    pub(crate) const NONE: Self = Self { below: DVec3::Z, own: &[] };
+}
+
+/// A way down through the layers and back.
+pub(crate) struct Walked<const C: usize> {
+    /// f cos_theta_i of the interfaces.
+    pub(crate) interfaces: [f64; C],
+    /// Light of the diffuse base, where the layers end with one and light comes there and back.
+    pub(crate) base: Option<AtBase<C>>,
+}
+
+/// Light of a diffuse base below interfaces.
+pub(crate) struct AtBase<const C: usize> {
+    /// f cos_theta_i of the base.
+    value: [f64; C],
+    /// Share that comes down: T_12 of each interface, and what slabs leave on the way of `wi`.
+    pub(crate) down: [f64; C],
+    /// Share of what the base sends up that comes out: t of each interface, and what slabs leave on the way of `wo`.
+    pub(crate) up: [f64; C],
+}
+
+impl<const C: usize> Walked<C> {
+    /// f cos_theta_i of interfaces and base.
+    pub(crate) fn value(&self) -> [f64; C] {
+        match &self.base {
+            Some(base) => from_fn(|c| self.interfaces[c] + base.value[c]),
+            None => self.interfaces,
+        }
+    }
+}
+
+/// The way of light from `wi` through the layers to `wo`.
+pub(crate) fn walk<const C: usize>(
+    model: &impl PathModel,
+    layers: &[Layer<C>],
+    terms: &impl Terms<C>,
+    wi: DVec3,
+    wo: DVec3,
+    tilts: Tilts<'_>,
+) -> Walked<C> {
+    let mut interfaces = [0.0; C];
+    if wi.z <= 0.0 || wo.z <= 0.0 {
+        return Walked { interfaces, base: None };
+    }
+    let (mut wi_local, mut wo_local) = (wi, wo);
+    let [falling, returning] = model.cosines(wi.z);
+    let (mut passed, mut down, mut up) = ([falling; C], [1.0; C], [1.0; C]);
+    for (i, layer) in layers.iter().enumerate() {
+        let normal = tilts.own.get(i).copied().unwrap_or(DVec3::Z);
+        let Some((wi_here, wo_here, facing)) = onto(normal, wi_local, wo_local) else { break };
+        (wi_local, wo_local) = (wi_here, wo_here);
+        (0..C).for_each(|c| (passed[c], down[c]) = (passed[c] * facing, down[c] * facing));
+        if let Below::Diffuse { albedo, sigma } = layer.below {
+            let brdf = oren_nayar::brdf(albedo, sigma, wi_local, wo_local);
+            let value = from_fn(|c| passed[c] * returning * brdf[c]);
+            return Walked { interfaces, base: Some(AtBase { value, down, up }) };
+        }
+        let Some(lobe) = model.facets(&layers[..=i], terms, wi_local, wo_local) else { break };
+        let reflected = terms.fresnel(i, lobe.cos_theta_d);
+        for c in 0..C {
+            interfaces[c] += model.sent(passed[c], returning / wi_local.z, reflected[c], lobe.value);
+        }
+
+        let Below::Dielectric { optical_depth, .. } = layer.below else { break };
+        let Some([mut wi_below, mut wo_below]) = model.refracted(layer.eta(), wi_local, wo_local) else { break };
+        if i == 0 && tilts.below != DVec3::Z {
+            (wi_below, wo_below) = (frame::local(tilts.below, wi_below), frame::local(tilts.below, wo_below));
+            if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
+                break;
+            }
+        }
+        let Some((wi_below, wo_below, facing)) = off(normal, wi_below, wo_below) else { break };
+        let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
+        let transmitted = reflected.map(|reflected| 1.0 - reflected);
+        let (entered, left) = match model.internal_reflection() {
+            InternalReflection::Facets => {
+                (transmitted, transmitted.map(|transmitted| (1.0 - lobe.masking) + transmitted * lobe.masking))
+            }
+            InternalReflection::None => (transmitted, [1.0; C]),
+            InternalReflection::Directions => {
+                [wi_local, wo_local].map(|w| terms.fresnel(i, w.z.min(1.0)).map(|f| 1.0 - f)).into()
+            }
+        };
+        for c in 0..C {
+            passed[c] *= model.kept(entered[c], left[c], libm::exp(-optical_depth[c] * path)) * facing;
+            down[c] *= facing * entered[c] * libm::exp(-optical_depth[c] / wi_below.z);
+            up[c] *= left[c] * libm::exp(-optical_depth[c] / wo_below.z);
+        }
+        (wi_local, wo_local) = (wi_below, wo_below);
+    }
+    Walked { interfaces, base: None }
+}
