@@ -501,10 +501,9 @@ fn extremes(out: &mut Collector) {
     let range = "arguments from the least to the largest double, cosines down to 0: distance from the interval 0 to 1";
     let indices = || EXTREME.into_iter().flat_map(|n| EXTREME.map(|k| Complex64::new(n, k)));
     // The modulus of what is squared twice must be a number: of real materials it is below 1e3.
-    let usable = |ior: &Complex64| ior.l1_norm() > 1e-75 && ior.l1_norm() < 1e75;
     let bare = largest(
         indices()
-            .filter(usable)
+            .filter(|ior| ior.l1_norm() > 1e-75 && ior.l1_norm() < 1e75)
             .flat_map(|ior| cosines().map(move |cos| beyond_unit(interface(Complex64::ONE, ior, cos).unpolarised()))),
     );
     out.ours(
