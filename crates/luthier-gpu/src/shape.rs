@@ -1,5 +1,7 @@
 //! Shapes that are rendered, and the camera that sees them.
 
+use glam::DVec3;
+
 use crate::GpuError;
 use crate::error::setting;
 
@@ -83,23 +85,16 @@ impl Camera {
 
     /// The words of the camera in `picture.wgsl`: eye; target; half the picture to the right; half the picture up.
     pub(crate) fn words(&self) -> [[f32; 4]; 4] {
-        let forward = unit(self.sight());
-        let right = unit(cross(forward, [0.0, 1.0, 0.0]));
-        let up = cross(right, forward);
-        let half = |v: [f64; 3]| v.map(|x| (x * f64::from(self.half_extent)) as f32);
-        [self.eye, self.target, half(right), half(up)].map(|[x, y, z]| [x, y, z, 0.0])
+        let sight = self.sight();
+        let forward = sight / sight.length();
+        let level = forward.cross(DVec3::Y);
+        let right = level / level.length();
+        let up = right.cross(forward);
+        let [right, up] = [right, up].map(|v| (v * f64::from(self.half_extent)).as_vec3().to_array());
+        [self.eye, self.target, right, up].map(|[x, y, z]| [x, y, z, 0.0])
     }
 
-    fn sight(&self) -> [f64; 3] {
-        [0, 1, 2].map(|c| f64::from(self.target[c]) - f64::from(self.eye[c]))
+    fn sight(&self) -> DVec3 {
+        DVec3::from(self.target.map(f64::from)) - DVec3::from(self.eye.map(f64::from))
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    v.map(|x| x / length)
 }

@@ -155,7 +155,6 @@ fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     let Ok(gpu) = luthier_gpu::Gpu::open() else { return Ok(vec![None; texts.len()]) };
     let mut package = Bake::lit().package(std::slice::from_ref(material), &MemoryStore::default())?;
     // Phong's shader would read another buffer.
-    let is_elek = |text: &&String| text.contains("fn luthier_eval_elek");
     let pairs: Vec<Pair> = ParitySet::ALL
         .iter()
         .flat_map(|set| set.pairs(PAIRS, &luthier_layers::layers::Layers::isotropic_rgb(&material.stack).layers))
@@ -167,7 +166,7 @@ fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     let exact = values(&texts[0])?;
     let mut errors = Vec::with_capacity(texts.len());
     for text in texts {
-        errors.push(if is_elek(&text) {
+        errors.push(if text.contains("fn luthier_eval_elek") {
             let found = values(text)?;
             let error = |(found, exact): (&[f32; 3], &[f32; 3])| {
                 let scale = exact.iter().fold(FLOOR, |scale, &channel| scale.max(f64::from(channel)));

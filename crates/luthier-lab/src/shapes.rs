@@ -13,11 +13,10 @@ use crate::cli::ShapesOptions;
 pub(crate) fn run(options: &ShapesOptions) -> Outcome {
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let family = Family::Rdna2;
-    let simpler = || materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material);
     let mut keys: Vec<(ShadingModel, Form, String)> = Vec::new();
     let mut kernels = vec![Kernel::empty(Harness::Bare).map_err(Failure::input)?];
     for model in ShadingModel::ALL {
-        for mut material in simpler() {
+        for mut material in materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material) {
             material.bake.model = Some(model);
             let shape = luthier_scene::shape_of(model, &luthier_scene::shape(&material.stack));
             // What is no matter of shape, and what would make two materials of one shape differ.

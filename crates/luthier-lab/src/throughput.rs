@@ -38,6 +38,18 @@ impl Time {
     fn net(&self) -> f64 {
         self.spread.median - self.harness
     }
+
+    fn json(&self) -> Value {
+        json!({
+            "material": self.material,
+            "shader": self.name,
+            "constant": self.constant,
+            "median_ns": self.spread.median,
+            "mad_ns": self.spread.mad,
+            "harness_ns": self.harness,
+            "net_ns": self.net(),
+        })
+    }
 }
 
 /// Times the shaders of the papers, as a page.
@@ -162,17 +174,6 @@ fn over(rows: &[Time], row: &Time, role: Role) -> f64 {
 }
 
 fn data(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> Value {
-    let row = |row: &Time| {
-        json!({
-            "material": row.material,
-            "shader": row.name,
-            "constant": row.constant,
-            "median_ns": row.spread.median,
-            "mad_ns": row.spread.mad,
-            "harness_ns": row.harness,
-            "net_ns": row.net(),
-        })
-    };
     json!({
         "schema": SCHEMA,
         "generator": GENERATOR,
@@ -180,6 +181,6 @@ fn data(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> Value {
         "evaluations": options.evaluations,
         "warm_up": WARM_UP,
         "repeats": options.repeats,
-        "rows": rows.iter().map(row).collect::<Vec<_>>(),
+        "rows": rows.iter().map(Time::json).collect::<Vec<_>>(),
     })
 }

@@ -82,8 +82,8 @@ fn page(judged: &[Judged], options: &VaryingOptions) -> Result<String, std::fmt:
     for varying in
         [Varying::Alpha, Varying::Slab, Varying::Film(FILM_NM.map(|nm| 2.0 * nm / (FILM_NM[0] + FILM_NM[1])))]
     {
-        let factor = |of_eight: &f64| format!("{:.3}", varying.factor(place(varying, *of_eight)));
-        let factors: Vec<String> = PLACES.iter().map(factor).collect();
+        let factors: Vec<String> =
+            PLACES.iter().map(|of_eight| format!("{:.3}", varying.factor(place(varying, *of_eight)))).collect();
         writeln!(out, "\nFactors on {}: {}.", words(varying), factors.join(", "))?;
     }
     for (title, error) in TABLES {
@@ -135,8 +135,8 @@ fn place(varying: Varying, of_eight: f64) -> f64 {
 /// The stack with a film of 100 to 500 nm on its first interface alone.
 fn filmed(subject: &ModelSubject) -> ModelSubject {
     let mut stack = subject.stack.clone();
-    let film = |ior| Film { ior, thickness: FilmThickness { min_nm: FILM_NM[1], max_nm: FILM_NM[0] } };
-    let films = Ior::constant(FILM_INDEX, 0.0).map(film);
+    let films = Ior::constant(FILM_INDEX, 0.0)
+        .map(|ior| Film { ior, thickness: FilmThickness { min_nm: FILM_NM[1], max_nm: FILM_NM[0] } });
     stack.layers[0].films = films.into_iter().collect();
     ModelSubject { stack, name: subject.name.clone(), ..*subject }
 }

@@ -1,6 +1,6 @@
 //! Figures of the course of Weidlich and Wilkie about the look of materials.
 
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -126,8 +126,8 @@ fn metals(studio: &Studio) -> Outcome<Made> {
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     let dark = even_sky(0.0)?;
-    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
-    let lit = studio.pictures(&materials, Form::Full, Shape::Sphere, light)?;
+    let lit =
+        studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
     let room = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
     for ((_, material), ((picture, lit), room)) in all.iter().zip(pictures.iter().zip(&lit).zip(&room)) {
         let name = &material.name;
@@ -190,8 +190,9 @@ fn samples(studio: &Studio) -> Outcome<Made> {
     measured(studio, &mut made, &all)?;
     let mut pictures: Labelled = Vec::new();
     for (label, material) in &all {
-        let look = |_, settings: &mut RenderSettings| settings.exposure = exposure(&material.name);
-        let shown = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, look)?;
+        let shown = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, |_, settings| {
+            settings.exposure = exposure(&material.name)
+        })?;
         for picture in shown {
             let middle = picture.texel(picture.width / 2, picture.height / 2);
             let [lightness, chroma, _] = lightness_chroma_hue([0, 1, 2].map(|c: usize| f64::from(middle[c])));

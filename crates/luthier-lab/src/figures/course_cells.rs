@@ -1,6 +1,6 @@
 //! The figure of the course of Weidlich and Wilkie about tilted cells alone, without the stone below them.
 
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_gpu::Shape;
 use luthier_manifest::Form;
 use luthier_terminal::Outcome;
 
@@ -50,12 +50,13 @@ fn cells(studio: &Studio) -> Outcome<Made> {
         );
         let material = by_course(&label.replace(' ', "-"), &layers)?;
         // Directions would be drawn about the level surface, which misses what tilted cells mirror.
-        let look = |_, settings: &mut RenderSettings| settings.environment_samples = 0;
-        let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
-        for lit in studio.pictures(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, light)? {
+        for lit in studio.pictures(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, |_, settings| {
+            one_light(settings, &dark, KEY)
+        })? {
             made.measure(format!("{label}: scatter of the highlight"), spot(&lit).scatter());
         }
-        let picture = studio.pictures(&[material], Form::Baked, Shape::Sphere, look)?;
+        let picture =
+            studio.pictures(&[material], Form::Baked, Shape::Sphere, |_, settings| settings.environment_samples = 0)?;
         made.measure(format!("{label}: sparkles"), picture.first().map_or(0.0, sparkles));
         pictures.extend(picture.into_iter().map(|picture| (label.to_owned(), picture)));
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use luthier_gpu::{Environment, Light, RenderSettings, Shape};
+use luthier_gpu::{Environment, Light, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, InternalReflection};
 use luthier_material::Material;
@@ -389,8 +389,8 @@ fn parts(studio: &Studio) -> Outcome<Made> {
     // Under a light from the eye, in the middle of the ball: less what the coat mirrors, the base through an absorbing coat over
     // that through a clear one.
     let dark = even_sky(0.0)?;
-    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
-    let lit = studio.pictures(&materials, Form::Full, Shape::Sphere, light)?;
+    let lit =
+        studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
     let [coat, _, clear, absorbs, _] = [0, 1, 2, 3, 4].map(|i: usize| color_at(&lit[i], [0.0; 2]));
     for (c, channel) in ["R", "G", "B"].into_iter().enumerate() {
         let left = (absorbs[c] - coat[c]) / (clear[c] - coat[c]);
@@ -427,8 +427,7 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
     }
     made.apart("d below against without bumps", &pictures[3], &level)?;
     let dark = even_sky(0.0)?;
-    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
-    let lit = studio.pictures(&materials, Form::Full, Shape::Torus, light)?;
+    let lit = studio.pictures(&materials, Form::Full, Shape::Torus, |_, settings| one_light(settings, &dark, KEY))?;
     let labels = all.iter().map(|(name, _)| *name).chain(["without bumps"]);
     for ((label, picture), lit) in labels.zip(pictures.iter().chain([&level])).zip(&lit) {
         made.measure(format!("{label}: saturation"), saturation(middle(picture, 0.8)));

@@ -288,7 +288,7 @@ fn lepidolite(studio: &Studio) -> Outcome<Made> {
         combined,
     ];
     let labels = ["a close-up", "b dark tiles", "bright tiles", "larger tiles", "marble", "combined"];
-    let near = |n: usize| {
+    let all = pictures(studio, &materials, &surfaces, |n: usize| {
         if n > 0 {
             return square(studio);
         }
@@ -296,8 +296,7 @@ fn lepidolite(studio: &Studio) -> Outcome<Made> {
         settings.camera = Camera { target: [0.25, -0.1, 0.0], half_extent: 0.65, ..settings.camera };
         settings.environment_samples = 0;
         Ok(settings)
-    };
-    let all = pictures(studio, &materials, &surfaces, near)?;
+    })?;
     for (label, picture) in labels.iter().zip(&all).skip(1).filter(|(label, _)| !label.contains("larger")) {
         made.measure(format!("{label}: lightness L* of the middle"), lightness_chroma_hue(middle(picture, 0.2))[0]);
         made.measure(format!("{label}: share of edges"), edges(picture));

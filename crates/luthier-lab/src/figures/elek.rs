@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-use luthier_gpu::{Camera, Environment, Light, RenderSettings, Shape, Sky};
+use luthier_gpu::{Camera, Environment, Light, Shape, Sky};
 use luthier_lut::{Image, TexelFormat, WeightBits, bilinear};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping, FresnelMapping, Material};
@@ -228,18 +228,6 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let metals = sharp()?;
     let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3])).map_err(luthier_gpu::GpuError::from)?);
-    let look = |n: usize, settings: &mut RenderSettings| {
-        let alpha = SHARP[n];
-        let [extent, distance] = [ZOOM[0] * alpha, ZOOM[1]].map(|v| v as f32);
-        settings.camera = Camera { eye: [0.0, 0.0, distance], target: [0.0; 3], half_extent: extent };
-        settings.lights = vec![Light::Directional { direction: [0.0, 0.0, 1.0], irradiance: [1.0; 3] }];
-        settings.light_angular_radius = 0.0;
-        settings.environment = dark.clone();
-        settings.environment_samples = 1;
-        settings.samples = 1;
-        // The peak is F D / 4 with D = 1 / (pi m^2): to about 1.
-        settings.exposure = (8.0 * PI * alpha * alpha) as f32;
-    };
     let render = |form: Form, angle: Option<DistributionMapping>| {
         let mut variants = metals.clone();
         for variant in &mut variants {
@@ -247,7 +235,18 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
                 elek_tables(&mut variant.bake, angle);
             }
         }
-        studio.pictures(&variants, form, Shape::Sphere, look)
+        studio.pictures(&variants, form, Shape::Sphere, |n: usize, settings| {
+            let alpha = SHARP[n];
+            let [extent, distance] = [ZOOM[0] * alpha, ZOOM[1]].map(|v| v as f32);
+            settings.camera = Camera { eye: [0.0, 0.0, distance], target: [0.0; 3], half_extent: extent };
+            settings.lights = vec![Light::Directional { direction: [0.0, 0.0, 1.0], irradiance: [1.0; 3] }];
+            settings.light_angular_radius = 0.0;
+            settings.environment = dark.clone();
+            settings.environment_samples = 1;
+            settings.samples = 1;
+            // The peak is F D / 4 with D = 1 / (pi m^2): to about 1.
+            settings.exposure = (8.0 * PI * alpha * alpha) as f32;
+        })
     };
     let full = render(Form::Full, None)?;
     let tables = [

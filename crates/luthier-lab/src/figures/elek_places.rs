@@ -187,12 +187,12 @@ fn patina(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let copper = crusted()?;
     let mut materials = Vec::new();
-    let map = || VariationSource::Image(PictureRef::plain("patina.png"));
     for (i, extent) in EXTENTS.into_iter().enumerate() {
         let mut stage = shaded(&copper, &format!("stage-{i}"), ShadingModel::Elek);
         let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
         let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
-        (patina.extent, patina.transition, patina.map) = (extent, TRANSITION, map());
+        (patina.extent, patina.transition, patina.map) =
+            (extent, TRANSITION, VariationSource::Image(PictureRef::plain("patina.png")));
         materials.push(mapped(stage));
     }
     let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;

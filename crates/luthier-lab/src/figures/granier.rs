@@ -363,8 +363,8 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
         .chain([coating("half", rising, 170.0, 0.5 * TILT_DEG)])
         .map(|coating| Coating { diffuse: 0.0, ..coating })
         .collect();
-    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
-    let lit = studio.pictures(&materials(&bare)?, Form::Baked, Shape::Sphere, light)?;
+    let lit = studio
+        .pictures(&materials(&bare)?, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
     for (label, picture) in labels.iter().chain([&"7 degrees"]).zip(&lit) {
         let beam = less(picture, &lit[0], label == &"parallel");
         let [red, green, blue] = centres(&beam).map(|[x, y]| libm::hypot(x, y));
@@ -451,8 +451,9 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         extent_um: FLAT_UM,
         frequency: 4,
     });
-    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
-    let lit = studio.pictures(&materials(&bare.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, light)?;
+    let lit = studio.pictures(&materials(&bare.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, |_, settings| {
+        one_light(settings, &dark, FROM_EYE)
+    })?;
     for (label, pair) in ["1.5, 1.6, 1.8", "1.4, 1.45, 1.6"].into_iter().zip(lit.chunks_exact(2)) {
         let [red, green, blue] = centres(&less(&pair[1], &pair[0], false)).map(|[x, y]| libm::hypot(x, y));
         if label.starts_with("1.5") {
@@ -482,11 +483,6 @@ fn combined(studio: &Studio) -> Outcome<Made> {
             .for_each(|film| film.waves = thickness_nm / WAVELENGTHS_NM[1]);
         here.layers.first().map_or(0.0, |layer| layer.reflectance(cos_theta))
     };
-    let two_beams = |thickness_nm: f64, theta: f64| {
-        let (sin, cos) = libm::sincos(theta);
-        film(1.6, thickness_nm / WAVELENGTHS_NM[1], 130.0)
-            .specular(DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos))
-    };
     let curves = |point: &dyn Fn(u32) -> (f64, f64, f64), last: u32| {
         let curve = |name: &str, color, value: &dyn Fn(f64, f64) -> f64| {
             let points = (0..=last).map(|i| {
@@ -496,7 +492,11 @@ fn combined(studio: &Studio) -> Outcome<Made> {
             Curve { name: name.to_owned(), color, points: points.collect() }
         };
         vec![
-            curve("two beams (eq. 5), lobes of height one", PlotColor::Ink, &two_beams),
+            curve("two beams (eq. 5), lobes of height one", PlotColor::Ink, &|thickness_nm: f64, theta: f64| {
+                let (sin, cos) = libm::sincos(theta);
+                film(1.6, thickness_nm / WAVELENGTHS_NM[1], 130.0)
+                    .specular(DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos))
+            }),
             curve("exact, film of index 1.6 on an object of index 2", PlotColor::Red, &|d, theta| {
                 exact(d, libm::cos(theta))
             }),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use luthier::{Bake, MemoryStore};
 use luthier_export::Package;
-use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, Simulated, SimulationSettings, model};
+use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, SimulationSettings, model};
 use luthier_layers::model::Estimate;
 use luthier_layers::registry;
 use luthier_lut::Image;
@@ -85,12 +85,13 @@ impl Studio {
     /// Renders each material of a bake on the stage, linear. `adjust` may change the settings of the n-th.
     pub(crate) fn staged(&self, package: &Package, adjust: impl Fn(usize, &mut RenderSettings)) -> Outcome<Vec<Image>> {
         let scene = self.gpu()?.scene(package, Form::Baked)?;
-        let render = |n: usize| {
-            let mut settings = self.stage()?;
-            adjust(n, &mut settings);
-            Ok(scene.render(&[n as u32], &settings)?)
-        };
-        (0..package.manifest.materials.len()).map(render).collect()
+        (0..package.manifest.materials.len())
+            .map(|n: usize| {
+                let mut settings = self.stage()?;
+                adjust(n, &mut settings);
+                Ok(scene.render(&[n as u32], &settings)?)
+            })
+            .collect()
     }
 
     /// Bakes materials and renders each, linear. `adjust` may change the settings of the n-th.
@@ -113,12 +114,13 @@ impl Studio {
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
         let scene = self.gpu()?.scene(package, form)?;
-        let render = |n: usize| {
-            let mut settings = self.settings(shape)?;
-            adjust(n, &mut settings);
-            Ok(scene.render(&[n as u32], &settings)?)
-        };
-        (0..package.manifest.materials.len()).map(render).collect()
+        (0..package.manifest.materials.len())
+            .map(|n: usize| {
+                let mut settings = self.settings(shape)?;
+                adjust(n, &mut settings);
+                Ok(scene.render(&[n as u32], &settings)?)
+            })
+            .collect()
     }
 
     /// A ball by a model in f64, under two lights and nothing else.
@@ -142,8 +144,7 @@ impl Studio {
             let pairs: Vec<_> =
                 pairs.iter().map(|(wi, wo)| (wi.as_vec3().to_array(), wo.as_vec3().to_array())).collect();
             let values = scene.simulate(0, &pairs, self.paths, &SimulationSettings::default())?;
-            let estimates = |v: Simulated| [0, 1, 2].map(|c: usize| Estimate::known(v.mean[c], v.std_err[c]));
-            Ok(values.into_iter().map(estimates).collect())
+            Ok(values.into_iter().map(|v| [0, 1, 2].map(|c: usize| Estimate::known(v.mean[c], v.std_err[c]))).collect())
         })
     }
 }
@@ -151,11 +152,12 @@ impl Studio {
 /// The material of a text.
 pub(crate) fn material(label: &str, text: &str) -> Outcome<Material> {
     let parsed = parse(label, text, &|_| Err(ErrorKind::NotFound.into()));
-    let wrong = |errors: Vec<luthier_material::Diagnostic>| {
-        let messages: Vec<String> = errors.into_iter().map(|e| e.render(text)).collect();
-        Failure::Input(anyhow::anyhow!(messages.join("\n")))
-    };
-    Ok(parsed.map_err(wrong)?.material)
+    Ok(parsed
+        .map_err(|errors| {
+            let messages: Vec<String> = errors.into_iter().map(|e| e.render(text)).collect();
+            Failure::Input(anyhow::anyhow!(messages.join("\n")))
+        })?
+        .material)
 }
 
 /// A material of some layers by a model, its colours at three wavelengths.

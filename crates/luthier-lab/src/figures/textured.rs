@@ -382,8 +382,9 @@ fn bumps(studio: &Studio) -> Outcome<Made> {
     for (label, coat, base) in all {
         let material = layered(&format!("bumps-{label}"), &layers(coat, base), ShadingModel::WeidlichWilkie)?;
         // Directions are drawn about the level surface: steep bumps need more.
-        let drawn = |_, settings: &mut RenderSettings| settings.environment_samples = 128;
-        shown.extend(studio.pictures(&[mapped(material)], Form::Full, Shape::Torus, drawn)?);
+        shown.extend(studio.pictures(&[mapped(material)], Form::Full, Shape::Torus, |_, settings| {
+            settings.environment_samples = 128
+        })?);
     }
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
         measure(&mut made, &format!("{label} against flat"), picture, &shown[0])?;

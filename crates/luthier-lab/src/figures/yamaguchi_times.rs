@@ -47,8 +47,8 @@ fn times(_: &Studio) -> Outcome<Made> {
     for (material, colors) in MATERIALS {
         let ways = ["belcour", "yamaguchi"];
         let [isotropic, anisotropic] = ways.map(|way| medians(&all, material, way));
-        let more = |(a, b): (&[f64; 2], &[f64; 2])| [a[0], 100.0 * (b[1] / a[1] - 1.0)];
-        let points: Vec<[f64; 2]> = isotropic.iter().zip(&anisotropic).map(more).collect();
+        let points: Vec<[f64; 2]> =
+            isotropic.iter().zip(&anisotropic).map(|(a, b)| [a[0], 100.0 * (b[1] / a[1] - 1.0)]).collect();
         for [samples, percent] in &points {
             made.measure(format!("{material}, {samples} samples: percent more than belcour"), *percent);
         }

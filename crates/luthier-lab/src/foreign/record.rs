@@ -57,8 +57,8 @@ impl Data {
             return Ok(Self::default());
         }
         let text = std::fs::read_to_string(path).map_err(files(path, "read"))?;
-        let invalid = |error| Failure::Input(anyhow::Error::new(error).context(path.display().to_string()));
-        serde_json::from_str(&text).map_err(invalid)
+        serde_json::from_str(&text)
+            .map_err(|error| Failure::Input(anyhow::Error::new(error).context(path.display().to_string())))
     }
 
     pub(super) fn write(&self, path: &Path) -> Outcome {

@@ -6,7 +6,7 @@ use luthier::Source;
 use luthier::refusals::of_model;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{Form, Masking, ShadingModel};
-use luthier_material::{Diagnostic, Material, left_out};
+use luthier_material::{Material, left_out};
 use luthier_terminal::{Outcome, valid};
 
 use super::samples::Sample;
@@ -108,7 +108,7 @@ fn some(sample: &Sample, of_values: &[Shown], which: Shown) -> String {
 /// Whether a file with this model is refused because of the key.
 fn is_refused(material: &Material, at: &str, model: ShadingModel) -> bool {
     let place = material.places.span(at);
-    let is_there = |doubt: &Diagnostic| doubt.span.start < place.end && place.start < doubt.span.end;
     let doubts = of_model(material, Some(model));
-    material.places.has(at) && doubts.iter().any(|doubt| doubt.is_error() && is_there(doubt))
+    material.places.has(at)
+        && doubts.iter().any(|doubt| doubt.is_error() && doubt.span.start < place.end && place.start < doubt.span.end)
 }

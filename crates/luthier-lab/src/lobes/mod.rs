@@ -115,10 +115,9 @@ pub(crate) fn run(options: &LobesOptions) -> Outcome {
     ];
     let total = groups.iter().map(|(.., subjects)| subjects.len()).sum::<usize>() as u64;
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
-    let progress = || bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     let judged = groups.iter().filter(|(.., subjects)| !subjects.is_empty()).map(|(title, choice, subjects)| Group {
         title,
-        stacks: judge_all(subjects, *choice, options, &progress),
+        stacks: judge_all(subjects, *choice, options, &|| bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, total)),
         choice: *choice,
     });
     let judged: Vec<Group> = judged.collect();

@@ -87,8 +87,7 @@ fn place(views: &[ViewError], quantity: usize) -> String {
 
 /// Largest noise of a quantity.
 fn noise(stack: &Judged, quantity: usize) -> f64 {
-    let of = |view: &ViewError| [view.lobe_floor, view.albedo.std_err][quantity];
-    stack.errors.iter().map(of).fold(0.0, f64::max)
+    stack.errors.iter().map(|view| [view.lobe_floor, view.albedo.std_err][quantity]).fold(0.0, f64::max)
 }
 
 /// Median, 95th percentile and largest of a value of stacks.

@@ -146,13 +146,12 @@ impl Subject {
                     note(model.name(), started);
                 }
             }
-            let time = |(way, runs): (String, Vec<f64>)| Time {
+            times.extend(runs.into_iter().map(|(way, runs)| Time {
                 material: self.name.clone(),
                 way,
                 samples,
                 spread: Spread::of(&runs),
-            };
-            times.extend(runs.into_iter().map(time));
+            }));
         }
         Ok(times)
     }
@@ -194,13 +193,23 @@ fn mean_square(image: &Image) -> f64 {
     image.data.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>() / image.data.len() as f64
 }
 
-fn data(gpu: &Gpu, options: &SimulationOptions, times: &[Time], errors: &[Error]) -> Value {
-    let time = |Time { material, way, samples, spread }: &Time| json!({ "material": material, "way": way, "samples": samples, "median_ms": spread.median, "mad_ms": spread.mad });
-    let error = |Error { material, turn, mean, noise, rms }: &Error| {
+impl Time {
+    fn json(&self) -> Value {
+        let Self { material, way, samples, spread } = self;
+        json!({ "material": material, "way": way, "samples": samples, "median_ms": spread.median, "mad_ms": spread.mad })
+    }
+}
+
+impl Error {
+    fn json(&self) -> Value {
+        let Self { material, turn, mean, noise, rms } = self;
         let models: serde_json::Map<String, Value> =
             MODELS.iter().zip(rms).map(|(model, rms)| (model.name().to_owned(), json!(rms))).collect();
         json!({ "material": material, "turn_deg": turn, "mean": mean, "noise": noise, "rms_err": models })
-    };
+    }
+}
+
+fn data(gpu: &Gpu, options: &SimulationOptions, times: &[Time], errors: &[Error]) -> Value {
     json!({
         "schema": SCHEMA,
         "generator": GENERATOR,
@@ -210,7 +219,7 @@ fn data(gpu: &Gpu, options: &SimulationOptions, times: &[Time], errors: &[Error]
         "repeats": options.repeats,
         "size": options.size,
         "samples": options.samples,
-        "times": times.iter().map(time).collect::<Vec<_>>(),
-        "errors": errors.iter().map(error).collect::<Vec<_>>(),
+        "times": times.iter().map(Time::json).collect::<Vec<_>>(),
+        "errors": errors.iter().map(Error::json).collect::<Vec<_>>(),
     })
 }

@@ -47,11 +47,10 @@ impl Subject<'_> {
 
     /// Texels spread evenly, the first and the last of both axes among them, with their values.
     fn texels(&self, most: u32) -> Vec<([u32; 2], Vec<f64>)> {
-        let along = |size: u32| -> Vec<u32> {
+        let [xs, ys] = self.size().map(|size: u32| -> Vec<u32> {
             let count = size.min(most);
             (0..count).map(|i| if count < 2 { 0 } else { i * (size - 1) / (count - 1) }).collect()
-        };
-        let [xs, ys] = self.size().map(along);
+        });
         // A row has texels to spare.
         let xs = if ys.len() == 1 { spread(self.image.width, most * most) } else { xs };
         let ys = if xs.len() == 1 { spread(self.image.height, most * most) } else { ys };

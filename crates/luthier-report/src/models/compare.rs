@@ -28,11 +28,12 @@ pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f6
         d if d < 0.0 => -0.5,
         _ => 0.0,
     };
-    let cell_noise = |cell: usize| {
-        let own = found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell));
-        libm::sqrt(reference.cell_variance(cell) + own)
-    };
-    let lobe_noise: f64 = (0..reference.energies.len()).map(cell_noise).sum();
+    let lobe_noise: f64 = (0..reference.energies.len())
+        .map(|cell: usize| {
+            let own = found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell));
+            libm::sqrt(reference.cell_variance(cell) + own)
+        })
+        .sum();
     ViewError {
         wavelength_nm,
         theta_deg,

@@ -69,8 +69,9 @@ impl Histogram {
     /// Variance of a sum of the cells' energies with factors.
     pub(super) fn variance(&self, factor: impl Fn(usize) -> f64) -> f64 {
         if !self.families.is_empty() {
-            let sum = |energies: &[f64]| energies.iter().enumerate().map(|(cell, energy)| factor(cell) * energy).sum();
-            return self.variance_between(sum);
+            return self.variance_between(|energies| {
+                energies.iter().enumerate().map(|(cell, energy)| factor(cell) * energy).sum()
+            });
         }
         let (mut mean, mut square) = (0.0, 0.0);
         for (cell, (energy, squared)) in self.energies.iter().zip(&self.squares).enumerate() {

@@ -175,8 +175,7 @@ fn first_facets(sets: &[JointPaths], cells: &Cells, is_symmetric: bool) -> Vec<R
     let sum = |of: &dyn Fn(&JointPaths) -> Rgb| {
         sets.iter().map(of).fold([0.0; 3], |sum, rgb| [0, 1, 2].map(|c: usize| sum[c] + rgb[c]))
     };
-    let values = |wi: DVec3| sum(&|paths| paths.first_facet(wi, cells.wo));
-    let rough = Energies::of_values(values, cells, is_symmetric);
+    let rough = Energies::of_values(|wi| sum(&|paths| paths.first_facet(wi, cells.wo)), cells, is_symmetric);
     let mirrored = sum(&|paths| paths.mirrored(cells.wo));
     let energy =
         |cell: usize| [0, 1, 2].map(|c: usize| rough[c].energies[cell] + if cell == 0 { mirrored[c] } else { 0.0 });

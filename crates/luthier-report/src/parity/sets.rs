@@ -75,13 +75,14 @@ impl ParitySet {
             Self::Uniform => DirectionSet::Random.pairs(count, layers),
             Self::NearSpecular | Self::Smooth => {
                 let spreads = all_spreads(layers);
-                let pair = |n: u32| {
-                    let [a, b, c, d] = halton(n / spreads.len() as u32);
-                    let wi = direction(1.0 - a, b);
-                    let wo = mirrored(wi, LOBE_REACH * c * spreads[n as usize % spreads.len()], d);
-                    (rounded(wi, GRAZING_COS_MIN), rounded(wo, GRAZING_COS_MIN))
-                };
-                (0..count).map(pair).collect()
+                (0..count)
+                    .map(|n: u32| {
+                        let [a, b, c, d] = halton(n / spreads.len() as u32);
+                        let wi = direction(1.0 - a, b);
+                        let wo = mirrored(wi, LOBE_REACH * c * spreads[n as usize % spreads.len()], d);
+                        (rounded(wi, GRAZING_COS_MIN), rounded(wo, GRAZING_COS_MIN))
+                    })
+                    .collect()
             }
             Self::Grazing => {
                 let spreads = all_spreads(layers);

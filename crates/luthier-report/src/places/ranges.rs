@@ -39,8 +39,9 @@ impl Places {
             let is_shown = !is_own || map.layer.is_some_and(|layer| shown.contains(&(layer, map.slot)));
             let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
-            let range = |c: usize| texels(&map.picture, c).map(|value| factor[c] * value);
-            is_shown.then(|| (map.slot, map.layer, [0, 1, 2].map(range)))
+            is_shown.then(|| {
+                (map.slot, map.layer, [0, 1, 2].map(|c: usize| texels(&map.picture, c).map(|value| factor[c] * value)))
+            })
         });
         let film = entry.layers.first().filter(|layer| layer.varies()).map(|layer| {
             let texels = subject.textures.iter().find(|(kind, _)| *kind == TableKind::Thickness);
@@ -83,12 +84,11 @@ impl Places {
                 MapSlot::Thickness if layer.is_none_or(|layer| layer == 0) => place.slab_factor = r,
                 MapSlot::Patina => {
                     let shape = constants.patina.as_ref();
-                    let amount = |p: &luthier_manifest::PatinaRecord| {
+                    place.patina = shape.map(|p| {
                         let (extent, transition, base_alpha) = (p.extent, p.transition, p.base_alpha);
                         Patina { extent, transition, diffuse_albedo: 0.0, base_alpha, tarnish: 1.0 }.amount(drawn[0])
                             as f32
-                    };
-                    place.patina = shape.map(amount);
+                    });
                 }
                 MapSlot::FlakeNormal => {
                     let flake = normal([drawn[0], drawn[1]]).map(f64::from);

@@ -45,8 +45,7 @@ impl<'a> Rows<'a> {
         let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
         let shaded =
             Shaded::of_terms(|part, _, _| terms(part), entry.model, stack, nm, color(entry), place, parts(entry));
-        let missing = || ReportError::Model { material: entry.name.clone(), model: entry.model };
-        shaded.map(Self).ok_or_else(missing)
+        shaded.map(Self).ok_or_else(|| ReportError::Model { material: entry.name.clone(), model: entry.model })
     }
 
     /// `f cos_theta_i`, RGB, of unit directions to the light and to the eye.
@@ -76,11 +75,6 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
         slab_factor: own.slab_factor.into(),
         f0: None,
     };
-    let growth = |amount: f32| {
-        let patina = entry.constants.patina.as_ref()?;
-        let (diffuse_albedo, base_alpha, tarnish) = (patina.diffuse_albedo, patina.base_alpha, patina.tarnish);
-        Some(Growth { amount: amount.into(), diffuse_albedo, base_alpha, tarnish })
-    };
     let mut place = Place {
         sample: TextureSample {
             normal: wide(values.normal),
@@ -94,7 +88,11 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             inner_normal: wide(values.inner_normal),
             ..Under::NONE
         },
-        patina: values.patina.and_then(growth),
+        patina: values.patina.and_then(|amount: f32| {
+            let patina = entry.constants.patina.as_ref()?;
+            let (diffuse_albedo, base_alpha, tarnish) = (patina.diffuse_albedo, patina.base_alpha, patina.tarnish);
+            Some(Growth { amount: amount.into(), diffuse_albedo, base_alpha, tarnish })
+        }),
         base_color: values.base_color.map(rgb),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
         layers: values.layers.iter().map(layer).collect(),

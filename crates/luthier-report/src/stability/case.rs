@@ -124,8 +124,7 @@ fn sweeps(cases: &mut Cases) {
         &counts,
         "coats of alpha 0.05 and indices 1.3 and 1.5 in turn, over white; number of layers",
         |count| {
-            let index = |i: usize| if i.is_multiple_of(2) { 1.3 } else { 1.5 };
-            let coats = (0..count as usize - 1).map(|i| coat(0.05, index(i), 0.0));
+            let coats = (0..count as usize - 1).map(|i| coat(0.05, if i.is_multiple_of(2) { 1.3 } else { 1.5 }, 0.0));
             in_air(coats.chain([diffuse([0.8; 3], 0.0)]).collect())
         },
     );

@@ -181,11 +181,12 @@ const POINTS: [usize; 2] = [20, 28];
 fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
     let rule = gauss_legendre(points);
     let crowded = |start: f64, length: f64| {
-        let node = move |&(t, weight): &(f64, f64)| {
-            let t4 = t * t * t * t;
-            (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
-        };
-        rule.iter().map(node).collect::<Vec<_>>()
+        rule.iter()
+            .map(move |&(t, weight)| {
+                let t4 = t * t * t * t;
+                (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
+            })
+            .collect::<Vec<_>>()
     };
     let theta_o = libm::atan2(wo.x, wo.z);
     let is_isotropic = stack.layers.iter().all(|layer| layer.surface.alpha_x == layer.surface.alpha_y);

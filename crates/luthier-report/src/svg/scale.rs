@@ -77,12 +77,13 @@ impl Scale {
         }
         let step = if self.log { libm::ceil(span / 7.0) } else { self.step };
         let count = libm::floor(span / step + 1e-9) as u32;
-        let tick = |i: u32| {
-            let v = self.min + f64::from(i) * step;
-            let label = if self.log { power_of_ten(v as i32) } else { number((v * 1e9).round() / 1e9) };
-            ((v - self.min) / span, label)
-        };
-        (0..=count).map(tick).collect()
+        (0..=count)
+            .map(|i: u32| {
+                let v = self.min + f64::from(i) * step;
+                let label = if self.log { power_of_ten(v as i32) } else { number((v * 1e9).round() / 1e9) };
+                ((v - self.min) / span, label)
+            })
+            .collect()
     }
 }
 

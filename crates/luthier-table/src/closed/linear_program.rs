@@ -1,11 +1,15 @@
 //! Small dense linear programs by an interior-point method.
 
+use super::cholesky::{cholesky, dot, solve};
+
 /// Steps after which a program is given up.
 const STEPS: usize = 60;
 /// Complementarity at which a program is solved: limits are bounds of errors, of which three digits count.
 const GAP: f64 = 1e-10;
 /// Part of the way to the boundary that a step goes.
 const STAY_INSIDE: f64 = 0.99;
+/// Share by which the diagonal of the normal equations is raised, so that the last steps have a factor, too.
+const RAISED: f64 = 1e-13;
 
 /// The x with the least `cost . x` among those with `rows[i] . x <= limits[i]`, to some eight digits; none where the method finds no such x.
 ///
@@ -24,7 +28,9 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
             return Some(x);
         }
         let weights: Vec<f64> = (0..rows.len()).map(|i| duals[i] / slacks[i]).collect();
-        let factor = cholesky(normal_matrix(n, rows, &weights))?;
+        let mut normal = normal_matrix(n, rows, &weights);
+        (0..n).for_each(|i| normal[i][i] *= 1.0 + RAISED);
+        let factor = cholesky(normal)?;
         let step = |products: &[f64]| {
             let inner: Vec<f64> = (0..rows.len()).map(|i| (duals[i] * primal[i] - products[i]) / slacks[i]).collect();
             let right: Vec<f64> = transposed(rows, &inner).iter().zip(&dual).map(|(a, d)| -d - a).collect();
@@ -57,10 +63,6 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
     // The last steps fight rounding: what holds the limits will do.
     let holds = rows.iter().zip(limits).all(|(row, limit)| dot(row, &x) <= limit + 1e-7);
     holds.then_some(x)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn mean_product(a: &[f64], b: &[f64]) -> f64 {
@@ -96,36 +98,6 @@ fn normal_matrix(n: usize, rows: &[Vec<f64>], weights: &[f64]) -> Vec<Vec<f64>> 
         }
     }
     matrix
-}
-
-/// The lower Cholesky factor; none of a matrix that is not positive definite.
-fn cholesky(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
-    for i in 0..matrix.len() {
-        let (before, rest) = matrix.split_at_mut(i);
-        let row = &mut rest[0];
-        for j in 0..i {
-            row[j] = (row[j] - dot(&row[..j], &before[j][..j])) / before[j][j];
-        }
-        let pivot = row[i] * (1.0 + 1e-13) - dot(&row[..i], &row[..i]);
-        if pivot <= 0.0 || !pivot.is_finite() {
-            return None;
-        }
-        row[i] = pivot.sqrt();
-    }
-    Some(matrix)
-}
-
-/// The solution for a lower factor L of L L^T.
-fn solve(factor: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
-    let n = right.len();
-    for i in 0..n {
-        right[i] = (right[i] - dot(&factor[i][..i], &right[..i])) / factor[i][i];
-    }
-    for i in (0..n).rev() {
-        let below: f64 = (i + 1..n).map(|j| factor[j][i] * right[j]).sum();
-        right[i] = (right[i] - below) / factor[i][i];
-    }
-    right
 }
 
 #[cfg(test)]

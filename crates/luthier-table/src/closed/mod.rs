@@ -1,5 +1,6 @@
 //! Split sums in closed form: a few multiplications instead of a table.
 
+mod cholesky;
 mod fit;
 mod linear_program;
 mod minimax;

@@ -3,6 +3,7 @@
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
 use luthier_optics::stack::Distribution;
 
+use super::cholesky::{cholesky, dot, solve};
 use super::rational::{Polynomial, Rational};
 use super::{ClosedForm, STRETCH};
 use crate::Layout;
@@ -147,26 +148,13 @@ fn second_differences(values: &[f64]) -> Vec<f64> {
 
 /// Factors of columns whose sum is nearest to the target: the normal equations by Cholesky's factors.
 fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Vec<f64> {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let n = columns.len();
-    let mut factor: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| product(a, b)).collect()).collect();
-    let mut x: Vec<f64> = columns.iter().map(|a| product(a, target)).collect();
-    let ridge = RIDGE * (0..n).map(|i| factor[i][i]).fold(0.0, f64::max);
-    for i in 0..n {
-        factor[i][i] += ridge;
-        for j in 0..=i {
-            let inner: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
-            let left = factor[i][j] - inner;
-            factor[i][j] = if i == j { left.sqrt() } else { left / factor[j][j] };
-        }
-        let inner: f64 = (0..i).map(|k| factor[i][k] * x[k]).sum();
-        x[i] = (x[i] - inner) / factor[i][i];
-    }
-    for i in (0..n).rev() {
-        let inner: f64 = (i + 1..n).map(|k| factor[k][i] * x[k]).sum();
-        x[i] = (x[i] - inner) / factor[i][i];
-    }
-    x
+    let mut normal: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+    let ridge = RIDGE * (0..n).map(|i| normal[i][i]).fold(0.0, f64::max);
+    (0..n).for_each(|i| normal[i][i] += ridge);
+    let right = columns.iter().map(|a| dot(a, target)).collect();
+    // The ridge makes it positive definite, unless values are no numbers.
+    cholesky(normal).map_or_else(|| vec![f64::NAN; n], |factor| solve(&factor, right))
 }
 
 #[cfg(test)]

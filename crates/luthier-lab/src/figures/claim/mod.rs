@@ -43,12 +43,11 @@ impl Check {
     /// Whether a comparison holds, and its text with the numbers.
     fn outcome(&self, figure: &str, measured: &[Measured]) -> Outcome<(bool, String)> {
         let value = |name: &str| {
-            let missing = || {
+            measured.iter().find(|m| m.what == name).map(|m| m.value).ok_or_else(|| {
                 Failure::Input(anyhow::anyhow!(
                     "{figure}: the claim is about `{name}`, which was not measured; make the figure anew"
                 ))
-            };
-            measured.iter().find(|m| m.what == name).map(|m| m.value).ok_or_else(missing)
+            })
         };
         match *self {
             Self::Falls(names) => {

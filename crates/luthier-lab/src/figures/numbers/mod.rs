@@ -77,8 +77,7 @@ pub(crate) fn blown_out(image: &Image) -> f64 {
 
 /// Share of the middle half of a picture where another differs, by more than rounding.
 pub(crate) fn middle_differs(a: &Image, b: &Image) -> f64 {
-    let is_other = |(a, b): (&[f32], &[f32])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3);
-    share(texels(a, 0.5).zip(texels(b, 0.5)).map(is_other))
+    share(texels(a, 0.5).zip(texels(b, 0.5)).map(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3)))
 }
 
 fn median(image: &Image) -> f64 {

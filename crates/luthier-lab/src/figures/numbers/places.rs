@@ -88,11 +88,12 @@ pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
 
 /// How green the pixels of the middle half of a picture are against red, row by row: -1 is red, 1 is green.
 pub(crate) fn greenness(image: &Image) -> Vec<f64> {
-    let one = |texel: &[f32]| {
-        let [red, green] = [texel[0], texel[1]].map(f64::from);
-        (green - red) / (green + red).max(1e-9)
-    };
-    texels(image, 0.5).map(one).collect()
+    texels(image, 0.5)
+        .map(|texel| {
+            let [red, green] = [texel[0], texel[1]].map(f64::from);
+            (green - red) / (green + red).max(1e-9)
+        })
+        .collect()
 }
 
 /// The steepest change between neighbours in the rows of a square, as a share of the range of values: at most one pair in a

@@ -196,12 +196,13 @@ pub(super) fn of_shaders<'a>(report: &Report, material: &MaterialReport, costs: 
     let reads_d = report.tables.iter().any(|t| t.kind == TableKind::Distribution);
     let rows = || costs.rows.iter().filter(|r| r.material == material.name && !r.constant);
     // Shaders that read no table of D are listed as closed whatever the bake has.
-    let is_ours = |r: &&ShaderCost| {
-        let has_other =
-            rows().any(|o| (o.model, &o.form, &o.family) == (r.model, &r.form, &r.family) && o.closed != r.closed);
-        !has_other || r.closed != reads_d
-    };
-    let ours: Vec<&ShaderCost> = rows().filter(is_ours).collect();
+    let ours: Vec<&ShaderCost> = rows()
+        .filter(|r| {
+            let has_other =
+                rows().any(|o| (o.model, &o.form, &o.family) == (r.model, &r.form, &r.family) && o.closed != r.closed);
+            !has_other || r.closed != reads_d
+        })
+        .collect();
     let of_family = ours.iter().filter(|r| r.family == FAMILY);
     let cycles = |row: &ShaderCost| {
         let same = ours.iter().filter(|o| (o.model, &o.form) == (row.model, &row.form));

@@ -41,8 +41,8 @@ pub(super) fn clipped_rgb([luma, cx, cz]: [f64; 3]) -> [f64; 3] {
 /// CIE 1976 L*a*b* of linear RGB, white (1, 1, 1).
 fn lab(rgb: [f64; 3]) -> [f64; 3] {
     const DELTA: f64 = 6.0 / 29.0;
-    let root = |t: f64| if t > DELTA * DELTA * DELTA { libm::cbrt(t) } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 };
-    let [x, y, z] = relative_xyz(rgb).map(root);
+    let [x, y, z] = relative_xyz(rgb)
+        .map(|t: f64| if t > DELTA * DELTA * DELTA { libm::cbrt(t) } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 });
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
