@@ -121,7 +121,7 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
         &Silent,
         &MemoryStore::default(),
         results,
-    );
+    )?;
     let rows = &plan.tiles[TableKind::Fresnel as usize].tiles;
     let error = |layer: usize| {
         let (_, key) = rows.get(plan.records[0].layers[layer].tiles[TableKind::Fresnel]? as usize)?;
@@ -153,7 +153,7 @@ pub fn bake_with(
     let Planned { plan, results, searches } = plan(materials, &options, read_image, observer, store)?;
     let layouts = layouts(&plan)?;
     let Plan { settings, graph, tiles, records } = plan;
-    let mut results = graph.run(observer, store, results);
+    let mut results = graph.run(observer, store, results)?;
     let is_asked = !options.search || !budget(materials, &options.budget)?.of_texels().is_empty();
     let aim = |kind: TableKind| (!is_asked && is_left(&settings, kind)).then_some(AIM);
     let mut atlases = Vec::with_capacity(layouts.len());

@@ -9,6 +9,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BakeError {
+    /// The observer cancelled the bake.
+    #[error("the bake was cancelled")]
+    Cancelled,
     /// A bake without materials.
     #[error("no materials to bake")]
     Empty,
@@ -134,7 +137,8 @@ impl BakeError {
             Self::Conflict { material, setting, .. } | Self::Blocks { material, setting, .. } => {
                 Some((*material, setting))
             }
-            Self::Empty
+            Self::Cancelled
+            | Self::Empty
             | Self::TooManyTiles { .. }
             | Self::TooManyLayers { .. }
             | Self::Budget { .. }

@@ -149,7 +149,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .collect();
     let only_rows = fresnel::candidates(&plan, false);
     let steps = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4].map(|max_abs| step(only_rows.as_ref(), max_abs)).to_vec();
-    let results = plan.graph.intermediate().run(&Silent, &MemoryStore::default(), Results::default());
+    let results = plan.graph.intermediate().run(&Silent, &MemoryStore::default(), Results::default())?;
     let albedos = albedos(&plan, &results);
     let distributions = distributions();
     Ok(Goals { row, rows: found, families, steps, albedos, distributions })

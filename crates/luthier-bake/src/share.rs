@@ -58,10 +58,10 @@ pub fn bake_share(
 ) -> Result<(), BakeError> {
     let fixed = Fixed::new(materials, options, read_image)?;
     if let Some(fits) = lobes::fits(&fixed.plan.graph) {
-        fits.share(share, |_| true).run(observer, store, Results::default());
+        fits.share(share, |_| true).run(observer, store, Results::default())?;
     }
     let graph = certain(&fixed, materials, options, read_image, store)?;
-    graph.share(share, is_apart).run(observer, store, Results::default());
+    graph.share(share, is_apart).run(observer, store, Results::default())?;
     Ok(())
 }
 

@@ -17,9 +17,10 @@ pub use self::job::{JobKind, Key};
 pub(crate) use self::kept::result_of;
 pub use self::kept::{Function, kept};
 pub use self::store::{MemoryStore, Store, Task};
+use crate::error::BakeError;
 use crate::tile::TileData;
 
-/// Told what happens, from any thread. It cannot change what is computed.
+/// Told what happens, from any thread. It may end a bake early, and cannot change what is computed.
 pub trait Observer: Sync {
     /// The number of jobs is known.
     fn planned(&self, jobs: usize);
@@ -29,6 +30,10 @@ pub trait Observer: Sync {
     fn batch(&self, kind: JobKind, running: bool);
     /// So many jobs of a kind need not run, because a store has their results.
     fn found(&self, _kind: JobKind, _jobs: usize) {}
+    /// Whether the bake is to end with [`BakeError::Cancelled`]. Asked before each job; jobs that run are finished, and the store keeps their results.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// An observer that does nothing.
@@ -210,7 +215,15 @@ impl Graph {
     }
 
     /// Runs every job without a result on the rayon pool, except jobs whose dependants are all stored already. Kinds run in their order, which puts dependencies first; jobs of one kind run side by side.
-    pub(crate) fn run(mut self, observer: &dyn Observer, store: &dyn Store, mut results: Results) -> Results {
+    ///
+    /// # Errors
+    /// [`BakeError::Cancelled`].
+    pub(crate) fn run(
+        mut self,
+        observer: &dyn Observer,
+        store: &dyn Store,
+        mut results: Results,
+    ) -> Result<Results, BakeError> {
         let missing = self.missing(store, &mut results, observer);
         for (&place, jobs) in &mut self.jobs {
             jobs.retain(|&key, _| missing.contains(&(place, key)));
@@ -221,19 +234,22 @@ impl Graph {
                 continue;
             }
             observer.batch(kind, true);
-            let done: Vec<(Key, Arc<Artefact>)> = jobs
+            let done: Result<Vec<(Key, Arc<Artefact>)>, BakeError> = jobs
                 .into_par_iter()
                 .map(|(key, entry)| {
+                    if observer.is_cancelled() {
+                        return Err(BakeError::Cancelled);
+                    }
                     let artefact = Arc::new(entry.job.run(&Inputs(&results)));
                     store.put(&entry.task(), &artefact);
                     observer.finished(kind);
-                    (key, artefact)
+                    Ok((key, artefact))
                 })
                 .collect();
-            results.0.extend(done);
             observer.batch(kind, false);
+            results.0.extend(done?);
         }
-        results
+        Ok(results)
     }
 }
 

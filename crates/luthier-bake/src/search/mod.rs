@@ -142,7 +142,7 @@ pub(crate) fn plan(
     let mut fixed = Fixed::new(materials, options, read_image)?;
     let (mut results, mut searches) = (Results::default(), Vec::new());
     if let Some(fits) = lobes::fits(&fixed.plan.graph).filter(|_| options.fits) {
-        results = fits.run(observer, store, results);
+        results = fits.run(observer, store, results)?;
         let limits = fixed.asked.of_lobes();
         let decided = lobes::decide(&mut fixed.settings, &fixed.plan, materials, &results, &limits, options.locked);
         searches.extend(decided.map_err(|(refusal, errors)| {
@@ -160,7 +160,7 @@ pub(crate) fn plan(
         let mut settings = fixed.settings.clone();
         decisions.iter().for_each(|decision| settings.apply(decision.kind, &decision.candidate.form));
         let plan = planner::plan(materials, settings, read_image)?;
-        results = exact(&plan, &decisions.iter().map(|d| d.kind).collect::<Vec<_>>()).run(observer, store, results);
+        results = exact(&plan, &decisions.iter().map(|d| d.kind).collect::<Vec<_>>()).run(observer, store, results)?;
         if let Some(kept) = kept_decisions(&plan, &results, &decisions) {
             searches.extend(kept);
             return Ok(Planned { plan, results, searches });
@@ -168,7 +168,7 @@ pub(crate) fn plan(
     }
     // Costly tables are made once; candidates are compared with them.
     if is_asked {
-        results = fixed.plan.graph.intermediate().run(observer, store, results);
+        results = fixed.plan.graph.intermediate().run(observer, store, results)?;
     }
     let mut found = found(&fixed, &results, store);
     let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
@@ -221,7 +221,7 @@ pub(crate) fn plan(
         drop(last.take());
         let plan = last.insert(planner::plan(materials, settings, read_image)?);
         // The measurement of the bake itself climbs to the worst points; it has the last word.
-        results = exact(plan, &searched).run(observer, store, results);
+        results = exact(plan, &searched).run(observer, store, results)?;
         let mut is_confirmed = true;
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
             is_confirmed &= kind.confirm(choice, plan.worst(&results, kind.kind, &kind.left_out));
