@@ -23,6 +23,17 @@ pub use emit::of_materials;
 pub use entries::source_hash;
 
 /// How a package is made, beside what its materials say. The default is all that `luthier bake` writes.
+///
+/// ```
+/// use luthier::{Bake, Form, MemoryStore, Target};
+///
+/// let text = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// let chalk = luthier::parse("chalk.toml", text)?;
+/// let bake = Bake { targets: vec![Target::Msl], ..Bake::default() }.in_forms(&[Form::Baked]);
+/// let package = bake.package(&[chalk], &MemoryStore::default())?;
+/// assert!(package.shaders[0].text().contains("metal::float3"));
+/// # Ok::<(), luthier::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct Bake<'a> {
     /// Models, and forms of the shaders.

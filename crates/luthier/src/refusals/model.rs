@@ -9,6 +9,18 @@ use luthier_model::Quantity;
 use super::parts::of_parts;
 
 /// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+///
+/// let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n\
+///             [[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+/// let coat = luthier::parse("coat.toml", text)?;
+/// assert!(refusals::of_model(&coat, None).is_empty());
+/// // One interface alone: the layer below is left out.
+/// assert!(!refusals::of_model(&coat, Some(ShadingModel::Microfacet)).is_empty());
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let dropped = left_out(material, model);

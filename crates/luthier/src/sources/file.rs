@@ -9,6 +9,14 @@ use luthier_material::{Diagnostic, FileKind, Severity};
 use crate::Error;
 
 /// A TOML file that was read, before it is parsed.
+///
+/// ```
+/// use luthier::TomlFile;
+/// use luthier_material::FileKind;
+///
+/// let file = TomlFile { path: "shelf.toml".into(), bytes: b"scene = 1".to_vec() };
+/// assert_eq!(file.kind(), FileKind::Scene);
+/// ```
 #[derive(Debug, Clone)]
 pub struct TomlFile {
     /// The file.

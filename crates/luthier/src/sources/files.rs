@@ -13,6 +13,24 @@ use crate::{Error, paths};
 type Found = (PathBuf, Result<TomlFile, Error>);
 
 /// The TOML files of one package, each read once. Surfaces are parsed: they name materials.
+///
+/// ```
+/// use luthier::{Bake, Files, MemoryStore, Shading, Sources};
+///
+/// let folder = tempfile::tempdir()?;
+/// let gold = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
+/// std::fs::create_dir(folder.path().join("metals"))?;
+/// std::fs::write(folder.path().join("metals/gold.toml"), gold)?;
+/// std::fs::write(folder.path().join("chalk.toml"), "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n")?;
+///
+/// for (name, _, files) in Files::packages(&[folder.path().to_owned()])? {
+///     let mut sources = Sources::of(files);
+///     sources.refuse(&Shading::default());
+///     let package = Bake::default().of(&sources, &MemoryStore::default())?;
+///     assert_eq!(package.manifest.materials[0].name, if name == "metals" { "gold" } else { "chalk" });
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Files {
     /// Scene files.

@@ -10,6 +10,16 @@ use super::TomlFile;
 use crate::{Error, paths, refusals};
 
 /// A material file that was read, and its material or its errors.
+///
+/// ```
+/// use luthier::Source;
+///
+/// let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 20\n";
+/// let source = Source::of_text("gold.toml".as_ref(), text.to_owned());
+/// assert!(source.material().is_none());
+/// let error = &source.diagnostics()[0];
+/// assert_eq!((error.line, error.hint.as_deref()), (6, Some("20 per cent is `roughness = 0.2`")));
+/// ```
 #[derive(Debug, Clone)]
 pub struct Source {
     /// The file, as it was named or found.
@@ -92,6 +102,13 @@ impl Source {
 }
 
 /// The material of a text that names no other files. `label` is its file in messages and in the manifest.
+///
+/// ```
+/// let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
+/// assert_eq!(luthier::parse("gold.toml", text)?.stack.layers.len(), 1);
+/// assert!(luthier::parse("gold.toml", "schema = 1").is_err());
+/// # Ok::<(), luthier::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::Refused`] with everything that is wrong.

@@ -11,7 +11,7 @@ use luthier_material::{Diagnostic, Surface, SurfaceCells, parse_surface};
 use super::TomlFile;
 use crate::sha256;
 
-/// A surface file that was read, and its surface or its errors.
+/// A surface file that was read, and its surface or its errors. [`surface_map`] evaluates the entry of one.
 #[derive(Debug, Clone)]
 pub struct SurfaceSource {
     /// The file.
