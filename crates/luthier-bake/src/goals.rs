@@ -109,12 +109,9 @@ pub struct Goals {
 /// See [`BakeError`].
 pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goals, BakeError> {
     let plan = planner::plan(materials, planner::settings(materials)?, read_image)?;
-    let names = |kind: TableKind| plan.tiles[kind as usize].tiles.clone();
-    let rows: Vec<(String, Truth)> = names(TableKind::Fresnel)
-        .into_par_iter()
-        .filter_map(|(name, key)| Some((name, Truth::new(plan.graph.get(key)?))))
-        .collect();
-    let elek: Vec<f64> = rows.par_iter().map(|(_, truth)| elek_error(truth)).collect();
+    let tiles = &plan.tiles[TableKind::Fresnel as usize].tiles;
+    let rows: Vec<Truth> = tiles.par_iter().filter_map(|(_, key)| Some(Truth::new(plan.graph.get(*key)?))).collect();
+    let elek: Vec<f64> = rows.par_iter().map(elek_error).collect();
     let families: Vec<Family> = [FORMATS.as_slice(), &BEYOND_CORE]
         .concat()
         .into_par_iter()
@@ -123,7 +120,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
             let family = |mapping: Mapping| {
                 let shape = RowShape { axis: axis("cos_theta", "", [0.0, 1.0], size, mapping), format, base };
                 let gains = rows.iter().zip(&elek).filter(|(_, elek)| **elek > 0.0);
-                let gains = gains.map(|((_, truth), elek)| elek / truth.error(&shape, false).max_abs);
+                let gains = gains.map(|(truth, elek)| elek / truth.error(&shape, false).max_abs);
                 Family { base, format, least_gain: gains.fold(f64::INFINITY, f64::min), axis: shape.axis }
             };
             // The fitted maps: exponents in twentieths from 1 to 4, bends in twentieths to 1.
@@ -137,7 +134,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
     let best = core.cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });
     let Some(row) = best else { return Err(BakeError::Empty) };
     let shape = RowShape { axis: row.axis.clone(), format: row.format, base: row.base };
-    let found: Vec<RowGoal> = names(TableKind::Fresnel)
+    let found: Vec<RowGoal> = tiles
         .iter()
         .zip(&elek)
         .filter_map(|((name, key), &elek)| {

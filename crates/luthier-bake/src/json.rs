@@ -16,29 +16,32 @@ pub(crate) fn ior(ior: &Ior) -> Value {
 }
 
 pub(crate) fn interface(interface: &Interface) -> Value {
-    let films: Vec<Value> =
-        interface.films.iter().map(|f| json!({"ior": ior(&f.ior), "thickness_nm": f.thickness.nominal_nm()})).collect();
+    let films: Vec<Value> = interface.films.iter().map(film).collect();
     json!({"above": ior(&interface.above), "films": films, "below": ior(&interface.below)})
 }
 
 pub(crate) fn stack(stack: &Stack) -> Value {
-    let film = |film: &Film| json!({"ior": ior(&film.ior), "thickness_nm": film.thickness.nominal_nm()});
-    let layer = |layer: &Layer| {
-        let Surface { distribution, alpha_x, alpha_y, rotation } = layer.surface;
-        let base = match &layer.base {
-            Base::Dielectric { ior: index, slab } => {
-                json!({"ior": ior(index), "thickness_um": slab.thickness_um, "absorption_per_um": slab.absorption_per_um})
-            }
-            Base::Conductor { ior: index } => json!({"conductor": ior(index)}),
-            Base::Diffuse(diffuse) => json!({"albedo": diffuse.albedo, "sigma": diffuse.sigma}),
-        };
-        json!({
-            "films": layer.films.iter().map(film).collect::<Vec<_>>(),
-            "surface": [distribution_of(distribution), json!(alpha_x), json!(alpha_y), json!(rotation)],
-            "base": base,
-        })
-    };
     json!({"exterior": ior(&stack.exterior), "layers": stack.layers.iter().map(layer).collect::<Vec<_>>()})
+}
+
+fn layer(layer: &Layer) -> Value {
+    let Surface { distribution, alpha_x, alpha_y, rotation } = layer.surface;
+    let base = match &layer.base {
+        Base::Dielectric { ior: index, slab } => {
+            json!({"ior": ior(index), "thickness_um": slab.thickness_um, "absorption_per_um": slab.absorption_per_um})
+        }
+        Base::Conductor { ior: index } => json!({"conductor": ior(index)}),
+        Base::Diffuse(diffuse) => json!({"albedo": diffuse.albedo, "sigma": diffuse.sigma}),
+    };
+    json!({
+        "films": layer.films.iter().map(film).collect::<Vec<_>>(),
+        "surface": [distribution_of(distribution), json!(alpha_x), json!(alpha_y), json!(rotation)],
+        "base": base,
+    })
+}
+
+fn film(film: &Film) -> Value {
+    json!({"ior": ior(&film.ior), "thickness_nm": film.thickness.nominal_nm()})
 }
 
 /// A name, or a name with the parameters that make another surface.

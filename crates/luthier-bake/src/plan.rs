@@ -62,8 +62,8 @@ impl Plan {
     pub(crate) fn reader(&self, kind: TableKind, tile: u32) -> Option<(usize, Option<usize>)> {
         self.records.iter().enumerate().find_map(|(number, PlannedLayers { layers, bare })| {
             let layer = layers.iter().position(|layer| layer.tiles[kind] == Some(tile));
-            let is_bare = || bare.as_ref().is_some_and(|record| record.tiles[kind] == Some(tile));
-            layer.map(|layer| (number, Some(layer))).or_else(|| is_bare().then_some((number, Some(1))))
+            let of_bare = bare.as_ref().filter(|record| record.tiles[kind] == Some(tile)).map(|_| 1);
+            layer.or(of_bare).map(|layer| (number, Some(layer)))
         })
     }
 

@@ -99,9 +99,9 @@ impl<'a> Field<'a> {
 
 /// Bilinear in an image that repeats; texel centres at (i + 1/2) / size.
 fn periodic(image: &Image, uv: [f64; 2]) -> f64 {
-    let wrap = |t: f64| t - libm::floor(t);
     let (w, h) = (f64::from(image.width), f64::from(image.height));
-    let (x, y) = (wrap(uv[0]) * w, wrap(uv[1]) * h);
+    let [u, v] = uv.map(|t| t - libm::floor(t));
+    let (x, y) = (u * w, v * h);
     let base = [libm::floor(x - 0.5), libm::floor(y - 0.5)];
     let fraction = [x - 0.5 - base[0], y - 0.5 - base[1]];
     let texel = |i: f64, j: f64| {

@@ -41,13 +41,11 @@ fn wavelengths(stack: &Stack, base: usize, color: &Color) -> Vec<WavelengthNode>
     if interfaces.iter().all(Interface::is_achromatic) {
         return vec![WavelengthNode { weight: [1.0; 3], ..nodes[nodes.len() / 2] }];
     }
-    let reflectances = |cos| {
-        interfaces
-            .iter()
-            .map(move |i| (i, cos))
-            .map(|(i, cos)| nodes.iter().map(|n| i.at(n.wavelength_nm, 0).reflectance(cos)).collect::<Vec<f64>>())
-            .collect::<Vec<_>>()
-    };
-    let spectra: Vec<Vec<f64>> = SPECTRUM_COS_THETA.into_iter().flat_map(reflectances).collect();
+    let mut spectra: Vec<Vec<f64>> = Vec::new();
+    for cos in SPECTRUM_COS_THETA {
+        for interface in &interfaces {
+            spectra.push(nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect());
+        }
+    }
     color.sparse_nodes(&spectra, SPECTRUM_TOLERANCE)
 }

@@ -57,8 +57,8 @@ impl Sky {
 
     /// Concentration of its sharpest light that shines.
     pub(crate) fn sharpness(&self) -> f32 {
-        let shines = |light: &&SoftLight| light.radiance.iter().any(|v| *v > 0.0);
-        self.lights.iter().filter(shines).map(|light| light.sharpness).fold(1.0, f32::max)
+        let shining = self.lights.iter().filter(|light| light.radiance.iter().any(|v| *v > 0.0));
+        shining.map(|light| light.sharpness).fold(1.0, f32::max)
     }
 
     pub(crate) fn check(&self) -> Result<(), EnvironmentError> {

@@ -151,8 +151,8 @@ impl PageMaterial {
 impl PageLook {
     fn new(look: &Look, package: &Package, sets: &[PageSet]) -> Option<Self> {
         let entry = package.manifest.materials.get(look.material as usize)?;
-        let in_set = |(i, set): (usize, &PageSet)| Some((i, set.place(look.package, look.material)?));
-        let (set, number) = sets.iter().enumerate().find_map(in_set)?;
+        let mut places = sets.iter().map(|set| set.place(look.package, look.material)).enumerate();
+        let (set, number) = places.find_map(|(i, place)| Some((i, place?)))?;
         let lobes = entry.constants.lobes.and_then(|lobes| lobes.error);
         Some(Self {
             set,
@@ -187,12 +187,12 @@ fn tiles(entry: &MaterialEntry, kind: TableKind) -> Vec<usize> {
 
 /// Bytes of the tiles that a material reads.
 fn table_bytes(package: &Package, entry: &MaterialEntry) -> u64 {
-    let of = |table: &luthier_manifest::TableEntry| {
+    let bytes = package.manifest.tables.iter().map(|table| {
         let [width, height] = table.layout.tile_size();
         let tile = u64::from(width) * u64::from(height) * u64::from(table.format.texel_bytes());
         tile * tiles(entry, table.kind).len() as u64
-    };
-    package.manifest.tables.iter().map(of).sum()
+    });
+    bytes.sum()
 }
 
 /// The largest error of the tiles that a material reads.

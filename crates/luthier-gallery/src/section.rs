@@ -65,8 +65,8 @@ fn boundary(out: &mut String, part: &Part, top: f64, bottom: f64) {
 
 /// The colour of a part for displays.
 fn srgb(part: &Part) -> [f64; 3] {
-    let encode = |v: f64| if v > 0.003_130_8 { 1.055 * libm::pow(v, 1.0 / 2.4) - 0.055 } else { 12.92 * v };
-    part.color.map(|v| encode(v.clamp(0.0, 1.0)))
+    let linear = part.color.map(|v| v.clamp(0.0, 1.0));
+    linear.map(|v| if v > 0.003_130_8 { 1.055 * libm::pow(v, 1.0 / 2.4) - 0.055 } else { 12.92 * v })
 }
 
 fn hex(part: &Part) -> String {

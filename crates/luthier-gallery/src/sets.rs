@@ -170,9 +170,10 @@ pub(crate) fn tables(package: &Package, is_read: impl Fn(&str) -> bool) -> Resul
 /// The image with four channels.
 fn widened(image: luthier_lut::Image) -> luthier_lut::Image {
     let channels = image.channels as usize;
-    let texel = |t: &[f32]| [0, 1, 2, 3].map(|c| t.get(c).copied().unwrap_or(if c == 3 { 1.0 } else { 0.0 }));
-    let data = image.data.chunks_exact(channels).flat_map(texel).collect();
-    luthier_lut::Image { channels: 4, data, ..image }
+    let texels = image.data.chunks_exact(channels);
+    let data =
+        texels.flat_map(|t| [0.0, 0.0, 0.0, 1.0].into_iter().enumerate().map(|(c, none)| *t.get(c).unwrap_or(&none)));
+    luthier_lut::Image { channels: 4, data: data.collect(), ..image }
 }
 
 /// Numbers of the material buffer that the code of the page has, as lines of GLSL.
@@ -196,9 +197,9 @@ pub(crate) fn is_blurred(entry: &MaterialEntry) -> bool {
     if entry.shown_layer_maps(Form::Baked).next().is_some() {
         return false;
     }
-    let interfaces = || entry.records().filter(|layer| layer.kind != LayerKind::Diffuse);
+    let mut interfaces = entry.records().filter(|layer| layer.kind != LayerKind::Diffuse);
     entry.shows_lobes()
-        || interfaces().all(|layer| {
+        || interfaces.all(|layer| {
             let has = |kind: TableKind| layer.tiles[kind].is_some();
             has(TableKind::Film) || (has(TableKind::Fresnel) && has(TableKind::Fgd))
         })

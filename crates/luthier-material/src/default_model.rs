@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use luthier_model::{DefaultFor, Feature, Form, ShadingModel};
-use luthier_optics::stack::{Base, Layer, Surface};
+use luthier_optics::stack::{Base, Layer};
 
 use crate::bake_settings::SODIUM_D_NM;
 use crate::left_out::{LeftOut, left_out};
@@ -58,11 +58,10 @@ impl Material {
 
     /// Whether light bounces more than once on it: it has several layers, or facets.
     pub fn has_further_bounces(&self) -> bool {
-        let is_rough = |layer: &Layer| {
-            let Surface { alpha_x, alpha_y, .. } = layer.surface;
-            !matches!(layer.base, Base::Diffuse(_)) && alpha_x.max(alpha_y) > ONE_BOUNCE_ALPHA
-        };
-        self.is_stack() || self.stack.layers.first().is_some_and(is_rough)
+        self.is_stack()
+            || self.stack.layers.first().is_some_and(|Layer { surface, base, .. }| {
+                !matches!(base, Base::Diffuse(_)) && surface.alpha_x.max(surface.alpha_y) > ONE_BOUNCE_ALPHA
+            })
     }
 
     /// Whether an interface below the first may reflect much: a metal, one with an F0 that is large or in textures, or one to a thinner medium. Layers

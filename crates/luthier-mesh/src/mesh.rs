@@ -106,8 +106,8 @@ fn fit(soup: &mut Soup) -> Result<(), MeshError> {
     let length = |at: [f64; 3]| (0..3).map(|c| (at[c] - centre[c]) * (at[c] - centre[c])).sum::<f64>().sqrt();
     let radius = shown().map(|i| length(position(i))).fold(0.0, f64::max);
     for vertex in &mut soup.vertices {
-        let far = |c: usize| ((f64::from(vertex.position[c]) - centre[c]) / radius).clamp(-FAR, FAR);
-        vertex.position = [0, 1, 2].map(|c| far(c) as f32);
+        let scaled = [0, 1, 2].map(|c: usize| (f64::from(vertex.position[c]) - centre[c]) / radius);
+        vertex.position = scaled.map(|v| v.clamp(-FAR, FAR) as f32);
     }
     Ok(())
 }

@@ -58,10 +58,9 @@ impl Canvas {
     /// The texture of the difference; `None` while the pictures have other sizes.
     pub(crate) fn difference(&mut self, context: &Context, gain: f32) -> Option<&TextureHandle> {
         let [Some(a), Some(b)] = [&self.sides[0].picture, &self.sides[1].picture] else { return None };
-        let is_of = |(of, [c, d]): &(f32, [Picture; 2])| {
+        if !self.of_difference.as_ref().is_some_and(|(of, [c, d]): &(f32, [Picture; 2])| {
             *of == gain && Arc::ptr_eq(&c.image, &a.image) && Arc::ptr_eq(&d.image, &b.image)
-        };
-        if !self.of_difference.as_ref().is_some_and(is_of) {
+        }) {
             let rgb8 = difference(&a.image, &b.image, gain)?;
             self.difference.set(context, "difference", [a.image.width as usize, a.image.height as usize], &rgb8);
             self.of_difference = Some((gain, [a.clone(), b.clone()]));

@@ -48,8 +48,8 @@ impl Files {
         let differs = |new: &&Entry| old(&new.label).map(|old| &old.material) != Some(&new.material);
         let changed = entries.iter().filter(differs).map(|entry| entry.label.clone()).collect();
         self.entries = entries;
-        let place = |label: String| self.entries.iter().position(|entry| entry.label == label);
-        self.selected = before.and_then(place).unwrap_or(0);
+        self.selected =
+            before.and_then(|label| self.entries.iter().position(|entry| entry.label == label)).unwrap_or(0);
         changed
     }
 

@@ -94,8 +94,7 @@ impl App {
             moving,
         };
         let paths = self.comparison.paths;
-        let is_same = |(_, of, for_paths, last)| (of, for_paths, last) == (*baked, paths, view);
-        if !self.paint_order.is_some_and(is_same) {
+        if !self.paint_order.is_some_and(|(_, of, for_paths, last)| (of, for_paths, last) == (*baked, paths, view)) {
             let version = self.paint_order.map_or(1, |(last, ..)| last + 1);
             self.paint_order = Some((version, *baked, paths, view));
             let environment = Arc::clone(self.surroundings.environment(self.look.surroundings));

@@ -36,22 +36,21 @@ pub(crate) enum Refusal {
 
 /// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
 fn front(candidates: &[Candidate]) -> Vec<usize> {
-    let beats =
-        |a: &Candidate, b: &Candidate| a.bytes <= b.bytes && a.cost <= b.cost && a.error.max_abs <= b.error.max_abs;
-    let is_equal = |a: &Candidate, b: &Candidate| beats(a, b) && beats(b, a);
     let is_beaten = |i: usize| {
-        candidates
-            .iter()
-            .enumerate()
-            .any(|(j, other)| j != i && beats(other, &candidates[i]) && (j < i || !is_equal(other, &candidates[i])))
+        let mut others = candidates.iter().enumerate().filter(|(j, _)| *j != i);
+        others.any(|(j, other)| beats(other, &candidates[i]) && (j < i || !beats(&candidates[i], other)))
     };
     (0..candidates.len()).filter(|&i| !is_beaten(i)).collect()
 }
 
+/// Whether a candidate is as good as another in each respect, or better.
+fn beats(a: &Candidate, b: &Candidate) -> bool {
+    a.bytes <= b.bytes && a.cost <= b.cost && a.error.max_abs <= b.error.max_abs
+}
+
 /// Bytes first, then cost, then error.
 fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
-    let rest = || a.cost.total_cmp(&b.cost).then(a.error.max_abs.total_cmp(&b.error.max_abs));
-    a.bytes.cmp(&b.bytes).then_with(rest)
+    a.bytes.cmp(&b.bytes).then_with(|| a.cost.total_cmp(&b.cost).then(a.error.max_abs.total_cmp(&b.error.max_abs)))
 }
 
 /// One candidate for each kind: together of the fewest bytes, then the lowest cost, among those that hold. `fixed_bytes` are those of
@@ -63,8 +62,7 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
 /// [`Refusal`] when none holds: what comes nearest, and what would do.
 pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, Refusal> {
     if budget.limits_errors() {
-        let holds = |c: &Candidate| budget.excess(&c.error) <= 1.0;
-        return match cheapest(found, budget, fixed_bytes, &holds) {
+        return match cheapest(found, budget, fixed_bytes, &|c: &Candidate| budget.excess(&c.error) <= 1.0) {
             Some(chosen) => Ok(chosen),
             None => Err(nearest(found, budget, fixed_bytes)),
         };

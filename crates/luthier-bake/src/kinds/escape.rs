@@ -30,8 +30,8 @@ impl Kind for Table {
 
     /// A tile for a layer that totally reflects some of the lobes of an interface below; other layers need none.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
-        let job = |eta| EscapeJob { eta, axes: site.shape.axes(), format: site.shape.format };
-        Ok((site.record.eta > 1.0).then(|| Arc::new(job(site.record.eta)) as Arc<dyn Job>))
+        let job = EscapeJob { eta: site.record.eta, axes: site.shape.axes(), format: site.shape.format };
+        Ok((job.eta > 1.0).then(|| Arc::new(job) as Arc<dyn Job>))
     }
 }
 

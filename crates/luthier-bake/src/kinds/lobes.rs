@@ -51,22 +51,20 @@ impl Kind for Table {
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
         let Site { material, layer, shape, .. } = site;
         let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
-        let job = || LobesJob {
-            fit: fit(material, site.lobes.is_some()),
-            most: site.lobes,
-            tile: 0,
-            axes: shape.axes(),
-            format: shape.format,
-        };
-        Ok(is_first.then(|| Arc::new(job()) as Arc<dyn Job>))
+        if !is_first {
+            return Ok(None);
+        }
+        let (fit, axes, format) = (fit(material, site.lobes.is_some()), shape.axes(), shape.format);
+        Ok(Some(Arc::new(LobesJob { fit, most: site.lobes, tile: 0, axes, format })))
     }
 
     /// A tile for every other node over what a texture scales, or over the azimuth.
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
         let Site { material, shape, lobes: most, .. } = *site;
         let fit = fit(material, most.is_some());
-        let job = |tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format: shape.format };
-        (1..Varied::tiles_of(&fit.stack, fit.varying)).map(|tile| Arc::new(job(tile)) as Arc<dyn Job>).collect()
+        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying), shape.format);
+        let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format });
+        jobs.map(|job| Arc::new(job) as Arc<dyn Job>).collect()
     }
 }
 
@@ -92,8 +90,9 @@ pub const VARIED_LAYERS_MAX: usize = 16;
 
 /// Whether a material of the model `lobes` has more layers than are fitted.
 pub fn is_too_deep(material: &Material) -> bool {
-    let is_varied = || Varied::tiles_of(&shown(&material.stack), varying(material)) > 1;
-    material.stack.layers.len() > VARIED_LAYERS_MAX && material.model().is_fitted() && is_varied()
+    material.stack.layers.len() > VARIED_LAYERS_MAX
+        && material.model().is_fitted()
+        && Varied::tiles_of(&shown(&material.stack), varying(material)) > 1
 }
 
 /// Whether rows of a material have the light of a diffuse base.
@@ -228,20 +227,6 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
     });
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
-    let over = |varying| VaryingRecord {
-        factor: match varying {
-            Varying::Alpha => VaryingFactor::AlphaFactor,
-            Varying::Slab => VaryingFactor::SlabFactor,
-            Varying::Film(_) => VaryingFactor::FilmFactor,
-            Varying::Patina(_) => VaryingFactor::Patina,
-        },
-        factors: match varying {
-            Varying::Film(factors) => Some(factors),
-            Varying::Alpha | Varying::Slab | Varying::Patina(_) => None,
-        },
-        tiles: varied.nodes.len() as u32,
-        least_spread: varied.least_spread(),
-    };
     LobesRecord {
         index: lobes.frame.index,
         falloff: wide.falloff(),
@@ -249,7 +234,20 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_cot_sq: cot_sq,
         critical_width: width,
         critical_plain_share: plain_share,
-        varying: varied.varying().map(over),
+        varying: varied.varying().map(|varying| VaryingRecord {
+            factor: match varying {
+                Varying::Alpha => VaryingFactor::AlphaFactor,
+                Varying::Slab => VaryingFactor::SlabFactor,
+                Varying::Film(_) => VaryingFactor::FilmFactor,
+                Varying::Patina(_) => VaryingFactor::Patina,
+            },
+            factors: match varying {
+                Varying::Film(factors) => Some(factors),
+                Varying::Alpha | Varying::Slab | Varying::Patina(_) => None,
+            },
+            tiles: varied.nodes.len() as u32,
+            least_spread: varied.least_spread(),
+        }),
         axes,
         painted: lobes.frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
             albedo,
@@ -428,12 +426,6 @@ impl Job for LobesJob {
         };
         let error = (1..most + 3).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
-        let factor = |varying: Varying| match (varying, varying.factor(self.tile as f64)) {
-            (Varying::Patina(_), amount) if amount > 1.0 => {
-                " with all layers, and none of the light of its patina".to_owned()
-            }
-            (_, factor) => format!(" with {factor:.4} of its {}", factor_name(varying)),
-        };
         let azimuth = |axes: Axes| {
             let [cos, sin] = axes.azimuth(tile as f64);
             format!(
@@ -441,7 +433,13 @@ impl Job for LobesJob {
                 libm::atan2(sin, cos).to_degrees()
             )
         };
-        let here = varied.varying().map(factor).or(lobes.frame.axes.map(azimuth)).unwrap_or_default();
+        let factors = varied.varying().map(|varying: Varying| match (varying, varying.factor(self.tile as f64)) {
+            (Varying::Patina(_), amount) if amount > 1.0 => {
+                " with all layers, and none of the light of its patina".to_owned()
+            }
+            (_, factor) => format!(" with {factor:.4} of its {}", factor_name(varying)),
+        });
+        let here = factors.or(lobes.frame.axes.map(azimuth)).unwrap_or_default();
         let model = format!(
             "{} fitted to the simulated stack{here}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",

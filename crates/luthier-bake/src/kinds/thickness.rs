@@ -52,10 +52,9 @@ impl Kind for Table {
 
 /// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
 fn default_format(materials: &[Material]) -> TexelFormat {
-    let reads_slopes = |material: &Material| {
-        material.model().reads_some(TableKind::Phase) || material.bake.asks_for(TableKind::Thickness)
-    };
-    if materials.iter().any(reads_slopes) { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
+    let reads_slopes =
+        (materials.iter()).any(|m| m.model().reads_some(TableKind::Phase) || m.bake.asks_for(TableKind::Thickness));
+    if reads_slopes { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
 }
 
 #[derive(Debug)]

@@ -37,8 +37,7 @@ pub(super) fn kept(
     addresses.for_each(|address| text.push_str(&address.to_string()));
     // As text: the names of forms are part of the values.
     let task = Task::new(SEARCH, Key::of(text.as_bytes()), Artefact::decode::<String>);
-    let read = |artefact: Arc<Artefact>| serde_json::from_str(artefact.get::<String>()?).ok();
-    if let Some(found) = store.get(&task).and_then(read) {
+    if let Some(found) = store.get(&task).and_then(|artefact| serde_json::from_str(artefact.get::<String>()?).ok()) {
         return found;
     }
     let found = search();

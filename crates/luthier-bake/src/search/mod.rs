@@ -86,9 +86,6 @@ impl Fixed {
 
     /// The decisions of the lock for the kinds that a bake without a stated budget searches, where it has one for each of them.
     fn locked(&self, options: &Options<'_>) -> Option<Vec<Decision>> {
-        let is_open = |kind: &TableKind| {
-            !self.plan.tiles[*kind as usize].tiles.is_empty() && !self.settings.asked(*kind).is_any()
-        };
         let decision = |kind: TableKind| {
             let is_fit = |decision: &&Decision| match &decision.candidate.form {
                 CandidateForm::ClosedForm => true,
@@ -96,7 +93,9 @@ impl Fixed {
             };
             options.locked.iter().find(|decision| decision.kind == kind).filter(is_fit).cloned()
         };
-        let open = SEARCHED_BY_DEFAULT.into_iter().filter(is_open);
+        let open = SEARCHED_BY_DEFAULT
+            .into_iter()
+            .filter(|kind| !self.plan.tiles[*kind as usize].tiles.is_empty() && !self.settings.asked(*kind).is_any());
         let decisions: Vec<Decision> = open.map(decision).collect::<Option<_>>()?;
         (!decisions.is_empty()).then_some(decisions)
     }

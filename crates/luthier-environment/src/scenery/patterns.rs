@@ -31,8 +31,7 @@ pub(super) fn noise(at: [f64; 3]) -> f64 {
 
 /// Five octaves of noise, in 0..1.
 pub(super) fn clouds(d: [f64; 3], scale: f64) -> f64 {
-    let octave = |k: i32| noise(d.map(|v| (v + 3.0) * scale * f64::from(1 << k))) * f64::from(16 >> k) / 31.0;
-    (0..5).map(octave).sum()
+    (0..5).map(|k: i32| noise(d.map(|v| (v + 3.0) * scale * f64::from(1 << k))) * f64::from(16 >> k) / 31.0).sum()
 }
 
 pub(super) fn mix(a: [f64; 3], b: [f64; 3], weight: f64) -> [f64; 3] {

@@ -307,8 +307,8 @@ fn level() -> Vec<[f64; 2]> {
 
 /// Parts with room for what rises into them from below, and falls into them from above.
 fn with_room(mut parts: Vec<Part>) -> Vec<Part> {
-    let reach = |part: &Part| part.outline.iter().fold(0.0, |most: f64, [_, y]| most.max(y.abs()));
-    let reaches: Vec<f64> = parts.iter().map(reach).collect();
+    let outlines = parts.iter().map(|part| part.outline.iter());
+    let reaches: Vec<f64> = outlines.map(|line| line.fold(0.0, |most: f64, [_, y]| most.max(y.abs()))).collect();
     for (i, part) in parts.iter_mut().enumerate() {
         let next = reaches.get(i + 1).copied().unwrap_or(0.0);
         // Lines of films run in parallel with the interface that they coat.

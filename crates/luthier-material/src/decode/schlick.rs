@@ -127,6 +127,5 @@ fn most(ior: &Ior) -> f64 {
 
 /// The real index of a medium times a factor; `None` where that is no index.
 fn relative(above: &Ior, factor: f64) -> Option<Ior> {
-    let times = |s: &IorSample| IorSample { n: s.n * factor, k: 0.0, ..*s };
-    Ior::sampled(above.samples().iter().map(times).collect()).ok()
+    Ior::sampled(above.samples().iter().map(|s| IorSample { n: s.n * factor, k: 0.0, ..*s }).collect()).ok()
 }

@@ -72,13 +72,10 @@ pub(crate) fn unit(table: &Table, key: &Key) -> Option<&'static str> {
         return None;
     }
     let suffix = SUFFIXES.iter().find(|(ending, _)| key.name.ends_with(ending)).map(|(_, unit)| *unit);
-    let named = || {
-        let is_it = |(owner, name, _): &&(&str, &str, &'static str)| {
-            *name == key.name && (owner.is_empty() || *owner == table.name)
-        };
-        NAMES.iter().find(is_it).map(|(_, _, unit)| *unit)
-    };
-    suffix.or_else(named).or_else(|| PURES.contains(&key.name).then_some(PURE))
+    let mut named =
+        NAMES.iter().filter(|(owner, name, _)| *name == key.name && (owner.is_empty() || *owner == table.name));
+    let named = named.next().map(|(_, _, unit)| *unit);
+    suffix.or(named).or_else(|| PURES.contains(&key.name).then_some(PURE))
 }
 
 /// Whether a value has numbers of its own; a version is none.

@@ -28,8 +28,7 @@ const CUT_HEIGHT: f64 = -0.06;
 
 /// The model, ready for rays.
 pub fn mesh() -> Mesh {
-    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-    let file = soup(GLB, &no_files).expect("a test reads it");
+    let file = soup(GLB, &|_| Err(std::io::ErrorKind::NotFound.into())).expect("a test reads it");
     Mesh::new(file.soup).expect("a test makes it")
 }
 

@@ -92,8 +92,8 @@ pub fn encode_picture(picture: &Picture) -> Result<Vec<u8>, TextureError> {
         PictureSamples::Bits8(values) => values.clone(),
         PictureSamples::Bits16(values) => values.iter().flat_map(|value| value.to_be_bytes()).collect(),
         PictureSamples::Float(values) => {
-            let code = |value: &f32| (value.clamp(0.0, 1.0) * 65535.0).round() as u16;
-            values.iter().flat_map(|value| code(value).to_be_bytes()).collect()
+            let codes = values.iter().map(|value| (value.clamp(0.0, 1.0) * 65535.0).round() as u16);
+            codes.flat_map(u16::to_be_bytes).collect()
         }
     };
     let size = if matches!(picture.samples, PictureSamples::Bits8(_)) { 1 } else { 2 };
@@ -198,10 +198,9 @@ fn chunks(file: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
 
 /// Refuses palettes that do not consist of 1 to 256 colours (section 11.2.2 of the PNG specification): the decoder reads beyond their end.
 fn check_palette(file: &[u8]) -> Result<(), TextureError> {
-    let is_wrong = |(kind, data): (&[u8; 4], &[u8])| {
+    if chunks(file).any(|(kind, data): (&[u8; 4], &[u8])| {
         kind == b"PLTE" && !(data.len().is_multiple_of(3) && (3..=768).contains(&data.len()))
-    };
-    if chunks(file).any(is_wrong) {
+    }) {
         return Err(TextureError::malformed(Container::Png, "the palette does not consist of 1 to 256 colours"));
     }
     Ok(())

@@ -54,8 +54,8 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         } else {
             Slider::new(&mut comparison.divider, 0.0..=1.0).show_value(false)
         };
-        let is_held = |response: &Response| response.is_pointer_button_down_on() || response.dragged();
-        app.is_still |= is_held(&ui.add(slider.clamping(SliderClamping::Edits)));
+        let response = ui.add(slider.clamping(SliderClamping::Edits));
+        app.is_still |= response.is_pointer_button_down_on() || response.dragged();
     });
     for line in report(app.progress, app.differences) {
         ui.label(RichText::new(line).weak().size(12.0));

@@ -85,8 +85,7 @@ fn paint(part: &Part, dark: bool) -> Color32 {
 
 /// The upper boundary of a part, from left to right.
 fn outline(sketch: Rect, part: &Part, top: f32) -> impl Iterator<Item = eframe::egui::Pos2> {
-    let place = move |[x, y]: &[f64; 2]| pos2(sketch.left() + WIDTH * *x as f32, top - WIDTH * *y as f32);
-    part.outline.iter().map(place)
+    part.outline.iter().map(move |[x, y]: &[f64; 2]| pos2(sketch.left() + WIDTH * *x as f32, top - WIDTH * *y as f32))
 }
 
 /// Fills all below the upper boundary of a part.

@@ -34,8 +34,8 @@ impl<T> Latest<T> {
 
     /// Waits for a value; `None` when the slot is closed.
     pub(crate) fn wait(&self) -> Option<T> {
-        let waits = |slot: &mut Slot<T>| slot.value.is_none() && !slot.closed;
-        let mut slot = self.changed.wait_while(self.lock(), waits).unwrap_or_else(PoisonError::into_inner);
+        let filled = self.changed.wait_while(self.lock(), |slot| slot.value.is_none() && !slot.closed);
+        let mut slot = filled.unwrap_or_else(PoisonError::into_inner);
         if slot.closed { None } else { slot.value.take() }
     }
 

@@ -8,7 +8,6 @@ use luthier_optics::albedo::{Effort, FacetStatistics, crossed_albedo};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::interpolation::cubic_stencil;
-use luthier_optics::ior::Ior;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
@@ -229,8 +228,9 @@ impl CrossedJob {
             .into_par_iter()
             .map(|point| {
                 let u = [point % count, point / count].map(|i| f64::from(i) / f64::from(CROSSED_PROBES));
-                let family = |n: u32| crossing(u, walks, seed(!(point * CROSSED_FAMILIES + n)));
-                let (families, read): (Vec<Rgb>, Rgb) = ((0..CROSSED_FAMILIES).map(family).collect(), grid.at(u));
+                let seeds = (0..CROSSED_FAMILIES).map(|n| seed(!(point * CROSSED_FAMILIES + n)));
+                let (families, read): (Vec<Rgb>, Rgb) =
+                    (seeds.map(|seed| crossing(u, walks, seed)).collect(), grid.at(u));
                 (0..3).map(|c| off(families.iter().map(|rgb| rgb[c]), read[c])).fold(0.0, f64::max)
             })
             .collect();
@@ -241,8 +241,8 @@ impl CrossedJob {
 
     /// Index below over index above at one wavelength for all: dispersion changes this small part by a few percent of itself.
     fn eta(&self) -> f64 {
-        let index = |ior: &Ior| ior.at(REFRACTION_WAVELENGTH_NM).re;
-        index(&self.interface.below) / index(&self.interface.above)
+        let Interface { above, below, .. } = &self.interface;
+        below.at(REFRACTION_WAVELENGTH_NM).re / above.at(REFRACTION_WAVELENGTH_NM).re
     }
 
     /// The crossed part as a function of coordinates, number of walks and seed.

@@ -12,7 +12,7 @@ use luthier_manifest::{CandidateForm, MeasuredError};
 use luthier_material::{BakeSettings, Material};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::FacetStatistics;
-use luthier_optics::color::{Color, WavelengthNode, luminance};
+use luthier_optics::color::{Color, luminance};
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Distribution};
 use rayon::prelude::*;
@@ -152,12 +152,12 @@ impl FgdTruthJob {
 
     /// The cosines below which all light is totally reflected, at the wavelengths that have one.
     fn critical_cosines(&self) -> Vec<f64> {
-        let critical = |node: &WavelengthNode| {
+        let cosines = self.color.nodes().into_iter().filter_map(|node| {
             let at = self.interface.at(node.wavelength_nm, 0);
             let eta = at.below.re / at.above.re;
             (eta < 1.0 && at.f0.is_none()).then(|| ((1.0 - eta) * (1.0 + eta)).sqrt())
-        };
-        self.color.nodes().iter().filter_map(critical).collect()
+        });
+        cosines.collect()
     }
 
     /// Coordinates around the critical angles, where smooth tables are worst: in every cell that has one, and beside it.
