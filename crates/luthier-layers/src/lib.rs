@@ -8,8 +8,10 @@
 //! | layer | modules |
 //! |---|---|
 //! | directions, numbers | [`angles`], [`frame`], [`noise`]: gradient noise and cells |
-//! | descriptions of a stack | [`monochrome`] at one wavelength, [`layers`] in channels that share their directions |
+//! | factors of models | [`terms`] that tables stand in for |
+//! | a stack at one wavelength | [`monochrome`] |
 //! | formulas | [`formulas`] that models share |
+//! | a stack in channels | [`layers`], whose channels share their directions |
 //! | the trait | [`model`]: `Model`, its inputs and its estimates; [`directional_albedo`] and [`furnace`] integrate any |
 //! | models | [`models`], each under its name |
 //! | references | [`references`]: random walks through one rough interface or a rough stack, a closed form for a smooth one |

@@ -252,8 +252,9 @@ pub fn crossed_albedo(
         return 0.0;
     }
     let cos_theta_i = cos_theta_i.clamp(COS_THETA_MIN, 1.0);
-    let each = |index| crossed_and_returned(distribution, alpha, facets, cos_theta_i, Walk { seed, index });
-    (0..walks).map(each).sum::<f64>() / f64::from(walks)
+    let returned =
+        (0..walks).map(|index| crossed_and_returned(distribution, alpha, facets, cos_theta_i, Walk { seed, index }));
+    returned.sum::<f64>() / f64::from(walks)
 }
 
 /// Spreads a weight over four neighbouring nodes so that cubics integrate exactly.

@@ -79,24 +79,32 @@ impl Normals {
         wo: DVec3,
     ) -> Option<Lobe> {
         let alpha = surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0);
-        let translate = || match self {
-            Self::Surface | Self::Slopes(_) => None,
-            Self::BlinnPhong => BlinnPhong::new(exponent(alpha).max(EXPONENT_MIN)).map(Isotropic::BlinnPhong).ok(),
-            Self::Abc => Abc::new(2.0 / (alpha * alpha), 2.0).map(Isotropic::Abc).ok(),
-            Self::Sgd => Sgd::new(alpha * alpha, 1.0).map(Isotropic::Sgd).ok(),
-        };
         let ndf = match self {
             Self::Surface => return Facets::new(surface).lobe(masking, wi, wo),
             Self::Slopes(distribution) => {
                 return Facets::new(&Surface { distribution, ..*surface }).lobe(masking, wi, wo);
             }
-            Self::BlinnPhong | Self::Abc | Self::Sgd => memo.distributions.get(alpha.to_bits(), translate)?,
+            Self::BlinnPhong | Self::Abc | Self::Sgd => {
+                memo.distributions.get(alpha.to_bits(), || self.isotropic(alpha))?
+            }
         };
-        let lambda = |w: DVec3| {
-            let key = [alpha.to_bits(), w.z.to_bits()];
-            memo.lambdas.get(key, || 1.0 / smith_g1_of(&ndf, w.z) - 1.0)
-        };
-        masked_lobe(masking, [wi, wo], alpha, |wh| ndf.density(wh.z, wh.x * wh.x + wh.y * wh.y), lambda)
+        masked_lobe(
+            masking,
+            [wi, wo],
+            alpha,
+            |wh| ndf.density(wh.z, wh.x * wh.x + wh.y * wh.y),
+            |w| memo.lambdas.get([alpha, w.z].map(f64::to_bits), || 1.0 / smith_g1_of(&ndf, w.z) - 1.0),
+        )
+    }
+
+    /// The distribution that has parameters of its own, translated from alpha; `None` for one of slopes.
+    fn isotropic(self, alpha: f64) -> Option<Isotropic> {
+        match self {
+            Self::Surface | Self::Slopes(_) => None,
+            Self::BlinnPhong => BlinnPhong::new(exponent(alpha).max(EXPONENT_MIN)).map(Isotropic::BlinnPhong).ok(),
+            Self::Abc => Abc::new(2.0 / (alpha * alpha), 2.0).map(Isotropic::Abc).ok(),
+            Self::Sgd => Sgd::new(alpha * alpha, 1.0).map(Isotropic::Sgd).ok(),
+        }
     }
 }
 

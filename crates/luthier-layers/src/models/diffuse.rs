@@ -67,13 +67,15 @@ fn base(stack: &Monochrome, wi: DVec3, wo: DVec3, brdf: impl Fn(f64, f64) -> f64
 
 /// The base alone, white; nothing where there is none.
 fn white_base(stack: &Monochrome) -> Monochrome {
-    let white = |layer: &MonochromeLayer| match layer.below {
-        MonochromeBelow::Diffuse { sigma, .. } => {
-            Some(MonochromeLayer { below: MonochromeBelow::Diffuse { albedo: 1.0, sigma }, ..layer.clone() })
+    let mut layers: Vec<MonochromeLayer> = stack.layers.last().cloned().into_iter().collect();
+    layers.retain_mut(|layer| match &mut layer.below {
+        MonochromeBelow::Diffuse { albedo, .. } => {
+            *albedo = 1.0;
+            true
         }
-        MonochromeBelow::Dielectric { .. } | MonochromeBelow::Conductor { .. } => None,
-    };
-    Monochrome { exterior: stack.exterior, layers: stack.layers.last().and_then(white).into_iter().collect() }
+        MonochromeBelow::Dielectric { .. } | MonochromeBelow::Conductor { .. } => false,
+    });
+    Monochrome { exterior: stack.exterior, layers }
 }
 
 #[cfg(test)]

@@ -220,19 +220,14 @@ impl GranierHeidrich {
     /// The film of a stack, or `None` when its first interface has none and nothing transparent below.
     pub fn film(&self, stack: &Monochrome) -> Option<Film> {
         let layer = stack.layers.first()?;
-        let exponents = self.exponents_of(layer.surface.alpha_isotropic());
-        let film = |ior: f64, waves_inside| Film {
-            eta: ior / layer.above,
-            f0: layer.f0,
-            waves_inside,
-            inner_normal: self.inner_normal,
-            exponents,
+        let (ior, waves_inside) = match (layer.films.first(), layer.below) {
+            (Some(first), _) => (first.ior.re, Some(first.ior.re * first.waves)),
+            (None, MonochromeBelow::Dielectric { ior, .. }) => (ior, None),
+            (None, MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. }) => return None,
         };
-        match (layer.films.first(), layer.below) {
-            (Some(first), _) => Some(film(first.ior.re, Some(first.ior.re * first.waves))),
-            (None, MonochromeBelow::Dielectric { ior, .. }) => Some(film(ior, None)),
-            (None, MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. }) => None,
-        }
+        let exponents = self.exponents_of(layer.surface.alpha_isotropic());
+        let inner_normal = self.inner_normal;
+        Some(Film { eta: ior / layer.above, f0: layer.f0, waves_inside, inner_normal, exponents })
     }
 }
 

@@ -209,8 +209,8 @@ impl Model for Microfacet {
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
         let Some(layer) = stack.layers.first() else { return 0.0 };
-        let reflectance = |cos_theta_d| [self.components.fresnel.reflectance(&self.fits, layer, cos_theta_d)];
-        let [value] = self.eval_by(&layer.into(), stack, reflectance, wi, wo);
+        let fresnel = self.components.fresnel;
+        let [value] = self.eval_by(&layer.into(), stack, |cos| [fresnel.reflectance(&self.fits, layer, cos)], wi, wo);
         value
     }
 

@@ -77,8 +77,14 @@ impl MonochromeBelow {
 impl Monochrome {
     /// Interfaces without films under vacuum, from the top down: the micro-surface of each, and the material below it.
     pub fn bare(interfaces: &[(Surface, MonochromeBelow)]) -> Self {
-        let layer = |&(surface, below)| MonochromeLayer { surface, above: 1.0, films: Vec::new(), below, f0: None };
-        Self::joined(1.0, interfaces.iter().map(layer).collect())
+        let layers = interfaces.iter().map(|&(surface, below)| MonochromeLayer {
+            surface,
+            above: 1.0,
+            films: Vec::new(),
+            below,
+            f0: None,
+        });
+        Self::joined(1.0, layers.collect())
     }
 
     /// Layers under a medium of index `exterior`, from the top down; the index above each becomes that of the medium there.
@@ -96,24 +102,8 @@ impl Monochrome {
     /// The stack at a wavelength, for channel 0, 1 or 2.
     pub fn new(stack: &Stack, wavelength_nm: f64, channel: usize) -> Self {
         let exterior = stack.exterior.at(wavelength_nm).re;
-        let layer = |layer: &Layer| {
-            let below = match &layer.base {
-                Base::Dielectric { ior, slab } => {
-                    let complex_ior = ior.at(wavelength_nm);
-                    let optical_depth = slab.optical_depth()[channel];
-                    MonochromeBelow::Dielectric { ior: complex_ior.re, complex_ior, optical_depth }
-                }
-                Base::Conductor { ior } => MonochromeBelow::Conductor { ior: ior.at(wavelength_nm) },
-                Base::Diffuse(d) => MonochromeBelow::Diffuse { albedo: d.albedo[channel], sigma: d.sigma },
-            };
-            let films = layer.films.iter().map(|film| film.at(wavelength_nm)).collect();
-            let f0 = match &layer.base {
-                Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f0().map(|f0| f0[channel]),
-                Base::Diffuse(_) => None,
-            };
-            MonochromeLayer { surface: layer.surface, above: exterior, films, below, f0 }
-        };
-        Self::joined(exterior, stack.layers.iter().map(layer).collect())
+        let layers = stack.layers.iter().map(|layer| MonochromeLayer::new(layer, exterior, wavelength_nm, channel));
+        Self::joined(exterior, layers.collect())
     }
 }
 
@@ -124,6 +114,24 @@ impl Terms<1> for Monochrome {
 }
 
 impl MonochromeLayer {
+    fn new(layer: &Layer, above: f64, wavelength_nm: f64, channel: usize) -> Self {
+        let below = match &layer.base {
+            Base::Dielectric { ior, slab } => {
+                let complex_ior = ior.at(wavelength_nm);
+                let optical_depth = slab.optical_depth()[channel];
+                MonochromeBelow::Dielectric { ior: complex_ior.re, complex_ior, optical_depth }
+            }
+            Base::Conductor { ior } => MonochromeBelow::Conductor { ior: ior.at(wavelength_nm) },
+            Base::Diffuse(d) => MonochromeBelow::Diffuse { albedo: d.albedo[channel], sigma: d.sigma },
+        };
+        let films = layer.films.iter().map(|film| film.at(wavelength_nm)).collect();
+        let f0 = match &layer.base {
+            Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f0().map(|f0| f0[channel]),
+            Base::Diffuse(_) => None,
+        };
+        Self { surface: layer.surface, above, films, below, f0 }
+    }
+
     /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
         match self.f0 {

@@ -91,14 +91,17 @@ impl Reflectances {
     /// The reflectances of a model that chooses them; curves leave films out. `color` is the colour of curves, `wavelengths_nm` those of
     /// Fresnel's equations.
     pub fn of(stack: &Stack, wavelengths_nm: [f64; 3], color: Color, reflectance: Reflectance) -> Self {
-        let bare = |interface: Interface| Interface { films: Vec::new(), ..interface }.sampled(&color);
-        let own = |interface: Interface| match reflectance {
-            Reflectance::Table => None,
-            Reflectance::Exact => Some(Own::Exact(interface.sampled(&Color::ThreeWavelengths(wavelengths_nm)))),
-            Reflectance::Approximate => Some(Own::Schlick(bare(interface).schlick())),
-            Reflectance::Lazanyi => Some(Own::Corrected(bare(interface).lazanyi())),
-        };
-        Self((0..stack.layers.len()).map(|layer| Interface::of(stack, layer).and_then(own)).collect())
+        let own = (0..stack.layers.len()).map(|layer| {
+            let interface = Interface::of(stack, layer)?;
+            let bare = Interface { films: Vec::new(), ..interface.clone() };
+            match reflectance {
+                Reflectance::Table => None,
+                Reflectance::Exact => Some(Own::Exact(interface.sampled(&Color::ThreeWavelengths(wavelengths_nm)))),
+                Reflectance::Approximate => Some(Own::Schlick(bare.sampled(&color).schlick())),
+                Reflectance::Lazanyi => Some(Own::Corrected(bare.sampled(&color).lazanyi())),
+            }
+        });
+        Self(own.collect())
     }
 
     /// Terms with these reflectances.

@@ -71,9 +71,9 @@ pub struct Growth {
 #[derive(Debug)]
 pub struct Shaded<T = Exact> {
     place: Place,
-    layers: Layers<T>,
+    layers: PartTwin<T>,
     /// The layers below the first, where patina leaves them bare.
-    bare: Option<Layers<T>>,
+    bare: Option<PartTwin<T>>,
     /// Whether the model is `lobes`, whose light is linear in the amount of patina.
     has_lobes: bool,
 }
@@ -89,14 +89,15 @@ pub enum Part {
     Bare,
 }
 
+/// The twin of a part, with its terms and the reflectances that take the place of theirs.
 #[derive(Debug)]
-struct Layers<T> {
+struct PartTwin<T> {
     twin: Twin,
     terms: T,
     reflectances: Reflectances,
 }
 
-impl<T> Layers<T> {
+impl<T> PartTwin<T> {
     fn terms(&self) -> Chosen<'_, T> {
         self.reflectances.over(&self.terms)
     }
@@ -203,7 +204,7 @@ impl<T: ShaderTerms> Shaded<T> {
                 Twin::with(model, &first, wavelengths_nm, color, facets).reradiating(reradiation).tilting(normals);
             let reflectance = if model.takes(ModelPart::Reflectance) { parts.reflectance } else { Reflectance::Table };
             let reflectances = Reflectances::of(here, wavelengths_nm, color, reflectance);
-            Some(Layers { twin, terms: terms(part, here, &whole)?, reflectances })
+            Some(PartTwin { twin, terms: terms(part, here, &whole)?, reflectances })
         };
         let (all, bare) = match patina {
             None => (layers(Part::All, &whole)?, None),
@@ -246,15 +247,12 @@ impl<T: ShaderTerms> Shaded<T> {
         let dull = patina.tarnish.map(|tarnish| 1.0 + (tarnish - 1.0) * amount);
         let passed = terms.fresnel(0, frame::cos_theta_d(wi, wo)).map(|reflected| 1.0 - reflected);
         let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
-        let mut add = |share: f64, layers: &Layers<T>, first: Rgb, under: &Under| {
-            if share > 0.0 {
-                let tarnished = Tarnished { terms: layers.terms(), first, below: dull };
-                let part = layers.twin.eval_over(&tarnished, under, wi, wo);
-                (0..3).for_each(|c| value[c] += share * part[c]);
-            }
-        };
-        add(1.0 - amount, bare, dull, &Under::NONE);
-        add(amount, &self.layers, [1.0; 3], under);
+        let ends = [(1.0 - amount, bare, dull, &Under::NONE), (amount, &self.layers, [1.0; 3], under)];
+        for (share, layers, first, under) in ends.into_iter().filter(|(share, ..)| *share > 0.0) {
+            let tarnished = Tarnished { terms: layers.terms(), first, below: dull };
+            let part = layers.twin.eval_over(&tarnished, under, wi, wo);
+            (0..3).for_each(|c| value[c] += share * part[c]);
+        }
         value
     }
 }
@@ -352,21 +350,24 @@ fn is_isotropic(model: ShadingModel, surface: &Surface) -> bool {
 /// The stack with the indices that it has at one wavelength, at all of them: its shaders bend directions by those, and not by the common
 /// one.
 pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
-    let still = |ior: &Ior| {
-        let here = ior.at(wavelength_nm);
-        // The index was valid in its file, and is at every wavelength.
-        ior.with_samples(vec![IorSample { wavelength_nm, n: here.re, k: here.im }]).unwrap_or_else(|_| ior.clone())
-    };
     let mut here = stack.clone();
-    here.exterior = still(&here.exterior);
+    hold(&mut here.exterior, wavelength_nm);
     for layer in &mut here.layers {
-        layer.films.iter_mut().for_each(|film| film.ior = still(&film.ior));
-        match &mut layer.base {
-            Base::Dielectric { ior, .. } | Base::Conductor { ior } => *ior = still(ior),
-            Base::Diffuse(_) => {}
+        layer.films.iter_mut().for_each(|film| hold(&mut film.ior, wavelength_nm));
+        if let Base::Dielectric { ior, .. } | Base::Conductor { ior } = &mut layer.base {
+            hold(ior, wavelength_nm);
         }
     }
     here
+}
+
+/// Holds an index at its value at one wavelength.
+fn hold(ior: &mut Ior, wavelength_nm: f64) {
+    let here = ior.at(wavelength_nm);
+    // The index was valid in its file, and is at every wavelength.
+    if let Ok(still) = ior.with_samples(vec![IorSample { wavelength_nm, n: here.re, k: here.im }]) {
+        *ior = still;
+    }
 }
 
 /// Terms whose reflectances are dimmed, those of the first layer and those of the layers below.

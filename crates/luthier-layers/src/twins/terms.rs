@@ -100,8 +100,8 @@ impl Exact {
 
     /// F0 of an interface of Schlick's, and the one whose energies are in tables.
     fn f0(&self, layer: usize) -> Option<[Rgb; 2]> {
-        let of = |stack: &Stack| Interface::of(stack, layer)?.below.f0();
-        Some([of(&self.stack)?, of(&self.nominal.as_ref()?.stack)?])
+        let nominal = &self.nominal.as_ref()?.stack;
+        Some([Interface::of(&self.stack, layer)?.below.f0()?, Interface::of(nominal, layer)?.below.f0()?])
     }
 
     /// The stack whose energies are in tables: this one with every F0 of the nominal one.
@@ -140,8 +140,8 @@ impl Energy<3> for Exact {
         match &self.energies {
             Energies::Facets(prepared) => {
                 let given = self.facets(prepared).0.fgd(layer, cos_theta_i, alpha);
-                let passing = |c: usize, [here, nominal]: [Rgb; 2]| (1.0 - here[c]) / (1.0 - nominal[c]).max(1e-6);
-                self.f0(layer).map_or(given, |f0| [0, 1, 2].map(|c: usize| 1.0 - passing(c, f0) * (1.0 - given[c])))
+                let Some([here, nominal]) = self.f0(layer) else { return given };
+                [0, 1, 2].map(|c: usize| 1.0 - (1.0 - here[c]) / (1.0 - nominal[c]).max(1e-6) * (1.0 - given[c]))
             }
             Energies::Level(_) => self.fresnel(layer, cos_theta_i),
         }

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_optics::stack::{Diffuse, Surface};
+use luthier_optics::stack::Surface;
 
 use super::InterfaceMode;
 use super::chance::Chance;
@@ -32,7 +32,7 @@ pub(crate) struct Interface {
 enum Kind {
     Smooth(Optics),
     Rough(Rough),
-    Diffuse(Diffuse),
+    Diffuse { albedo: f64, sigma: f64 },
 }
 
 impl Interface {
@@ -40,7 +40,7 @@ impl Interface {
     pub(crate) fn new(layer: &MonochromeLayer, mode: InterfaceMode) -> Self {
         let surface = &layer.surface;
         let kind = match layer.below {
-            MonochromeBelow::Diffuse { albedo, sigma } => Kind::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
+            MonochromeBelow::Diffuse { albedo, sigma } => Kind::Diffuse { albedo, sigma },
             MonochromeBelow::Conductor { .. } | MonochromeBelow::Dielectric { .. } => {
                 let optics = Optics::of(layer);
                 match Facets::new(surface) {
@@ -66,14 +66,14 @@ impl Interface {
 
     /// Whether it is a diffuse base that reflects nothing.
     pub(crate) fn is_black(&self) -> bool {
-        matches!(&self.kind, Kind::Diffuse(diffuse) if diffuse.albedo == [0.0; 3])
+        matches!(self.kind, Kind::Diffuse { albedo: 0.0, .. })
     }
 
     /// Index of the medium on a side; `None` at a diffuse base, which does not know it.
     pub(crate) fn index(&self, side: Side) -> Option<f64> {
         match &self.kind {
             Kind::Smooth(optics) | Kind::Rough(Rough { optics, .. }) => Some(optics.index(side)),
-            Kind::Diffuse(_) => None,
+            Kind::Diffuse { .. } => None,
         }
     }
 
@@ -82,11 +82,11 @@ impl Interface {
     pub(crate) fn scatter(&self, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
         match &self.kind {
             Kind::Smooth(optics) => Some(scatter_smooth(optics, stream, a)),
-            Kind::Diffuse(diffuse) => {
+            &Kind::Diffuse { albedo, sigma } => {
                 let (direction, u) = stream.direction_and_uniform();
                 let sin = u.sqrt();
                 let b = DVec3::new(sin * direction.x, sin * direction.y, (1.0 - u).sqrt());
-                Some((Sided { direction: b, ..a }, PI * diffuse_brdf(diffuse, a.direction, b)))
+                Some((Sided { direction: b, ..a }, PI * diffuse_brdf(albedo, sigma, a.direction, b)))
             }
             Kind::Rough(rough) => {
                 let a = self.turned(a);
@@ -103,7 +103,7 @@ impl Interface {
     pub(crate) fn kernel(&self, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
         match &self.kind {
             Kind::Smooth(_) => 0.0,
-            Kind::Diffuse(diffuse) => diffuse_brdf(diffuse, a.direction, b.direction) * b.direction.z,
+            &Kind::Diffuse { albedo, sigma } => diffuse_brdf(albedo, sigma, a.direction, b.direction) * b.direction.z,
             Kind::Rough(rough) => {
                 let (a, b) = (self.turned(a), self.turned(b));
                 match self.mode {
@@ -120,7 +120,7 @@ impl Interface {
     pub(crate) fn densities(&self, a: Sided, b: Sided) -> (f64, f64) {
         let (forth, back) = match &self.kind {
             Kind::Smooth(_) => (1.0, 1.0),
-            Kind::Diffuse(_) => (b.direction.z / PI, a.direction.z / PI),
+            Kind::Diffuse { .. } => (b.direction.z / PI, a.direction.z / PI),
             Kind::Rough(rough) => {
                 let (a, b) = (self.turned(a), self.turned(b));
                 let (forth, back) = rough.phases(a, b);
@@ -167,9 +167,9 @@ pub(super) fn scatter_smooth<O: Chance>(optics: &O, stream: &mut Stream, a: Side
     (Sided { side: a.side.other(), direction: DVec3::new(-x * eta_it, -y * eta_it, cos_theta_t) }, chosen.kept)
 }
 
-fn diffuse_brdf(diffuse: &Diffuse, a: DVec3, b: DVec3) -> f64 {
-    if diffuse.sigma == 0.0 {
-        return diffuse.albedo[0] / PI;
+fn diffuse_brdf(albedo: f64, sigma: f64, a: DVec3, b: DVec3) -> f64 {
+    if sigma == 0.0 {
+        return albedo / PI;
     }
-    oren_nayar::brdf_scalar(diffuse.albedo[0], diffuse.sigma, b, a)
+    oren_nayar::brdf_scalar(albedo, sigma, b, a)
 }
