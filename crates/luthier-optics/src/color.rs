@@ -145,7 +145,8 @@ fn cie_1931_d65() -> &'static [WavelengthNode] {
 
 pub(crate) type Matrix = [[f64; 3]; 3];
 
-pub(crate) fn multiply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+/// A matrix of rows times a vector.
+pub fn multiply(m: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|r: usize| m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2])
 }
 

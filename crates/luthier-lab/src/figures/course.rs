@@ -231,13 +231,12 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
     }
     let labels = THICKNESSES.iter().map(f64::to_string);
     made.sheet("course-varnish", labels.zip(pictures).collect(), 6);
-    let axis = |label: &str, range, step| PlotAxis { label: label.to_owned(), range, step };
     made.plot(
         "course-varnish-colour",
         Plot {
             title: "Colour of the middle of the balls against the thickness of the varnish".to_owned(),
-            x: axis("thickness of the varnish", [0.0, 15.0], 2.5),
-            y: axis("CIE 1976 lightness and chroma; hue", [0.0, 120.0], 20.0),
+            x: PlotAxis::new("thickness of the varnish", [0.0, 15.0], 2.5),
+            y: PlotAxis::new("CIE 1976 lightness and chroma; hue", [0.0, 120.0], 20.0),
             curves: curves.to_vec(),
         },
     );

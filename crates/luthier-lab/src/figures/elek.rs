@@ -277,13 +277,12 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
     shown.push(("full".to_owned(), full[SHOWN].clone()));
     shown.push(("MIP level 3".to_owned(), mipped));
     made.sheet("elek-4", shown, 5);
-    let axis = |label: &str| PlotAxis { label: label.to_owned(), range: [0.0, 1.0], step: 0.0 };
     made.plot(
         "elek-4-error",
         Plot {
             title: "Error of the table of D against the slope parameter".to_owned(),
-            x: axis("slope parameter m"),
-            y: axis("largest error of a highlight over its peak"),
+            x: PlotAxis::new("slope parameter m", [0.0, 1.0], 0.0),
+            y: PlotAxis::new("largest error of a highlight over its peak", [0.0, 1.0], 0.0),
             curves,
         },
     );

@@ -321,8 +321,8 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
         "granier-3-thickness",
         Plot {
             title: "Diffuse coefficient against the thickness of the film".to_owned(),
-            x: axis("thickness of the film, nm", [0.0, 700.0], 100.0),
-            y: axis("diffuse coefficient (eq. 18)", [0.0, 2.0], 0.5),
+            x: PlotAxis::new("thickness of the film, nm", [0.0, 700.0], 100.0),
+            y: PlotAxis::new("diffuse coefficient (eq. 18)", [0.0, 2.0], 0.5),
             curves,
         },
     );
@@ -510,13 +510,13 @@ fn combined(studio: &Studio) -> Outcome<Made> {
             made.measure(format!("525 nm, {what}, {}: largest", curve.name), largest);
         }
     }
-    let y = || axis("reflectance in the mirror direction, 525 nm", [0.0, 2.0], 0.5);
+    let y = PlotAxis::new("reflectance in the mirror direction, 525 nm", [0.0, 2.0], 0.5);
     made.plot(
         "granier-6-thickness",
         Plot {
             title: "Reflectance at the normal against the thickness of the film".to_owned(),
-            x: axis("thickness of the film, nm", [0.0, 700.0], 100.0),
-            y: y(),
+            x: PlotAxis::new("thickness of the film, nm", [0.0, 700.0], 100.0),
+            y: y.clone(),
             curves: over_thickness,
         },
     );
@@ -524,8 +524,8 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         "granier-6-angle",
         Plot {
             title: "Reflectance in the mirror direction against the angle, film of 208 nm".to_owned(),
-            x: axis("angle to the normal, degrees", [0.0, 90.0], 15.0),
-            y: y(),
+            x: PlotAxis::new("angle to the normal, degrees", [0.0, 90.0], 15.0),
+            y: y.clone(),
             curves: over_angle,
         },
     );
@@ -535,10 +535,6 @@ fn combined(studio: &Studio) -> Outcome<Made> {
 /// A film in air, `waves` wavelengths of vacuum thick.
 fn film(ior: f64, waves: f64, exponent: f64) -> Film {
     Film { eta: ior, f0: None, waves_inside: Some(ior * waves), inner_normal: DVec3::Z, exponents: [exponent; 2] }
-}
-
-fn axis(label: &str, range: [f64; 2], step: f64) -> PlotAxis {
-    PlotAxis { label: label.to_owned(), range, step }
 }
 
 /// Largest channel less the smallest, as a display shows them, mean over the picture.

@@ -57,17 +57,11 @@ fn times(_: &Studio) -> Outcome<Made> {
         }
         percent.push(Curve { name: material.to_owned(), color: colors[0], points });
     }
-    let x = || PlotAxis { label: "samples of a pixel".to_owned(), range: [0.0, 2048.0], step: 512.0 };
-    let y = |label: &str, curves: &[Curve]| {
-        let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
-        let [least, most] = values.fold([0.0, 0.0_f64], |[least, most], v| [v.min(least), v.max(most)]);
-        let step = round_step((most - least) / 5.0);
-        PlotAxis { label: label.to_owned(), range: [step * (least / step).floor(), step * (most / step).ceil()], step }
-    };
+    let x = PlotAxis::new("samples of a pixel", [0.0, 2048.0], 512.0);
     let title = "Time of a picture against the samples of a pixel".to_owned();
-    made.plot("yamaguchi-5", Plot { title, x: x(), y: y("milliseconds", &absolute), curves: absolute });
+    made.plot("yamaguchi-5", Plot { title, x: x.clone(), y: axis_over("milliseconds", &absolute), curves: absolute });
     let title = "Time of Yamaguchi's model over Belcour's".to_owned();
-    made.plot("yamaguchi-5-more", Plot { title, x: x(), y: y("percent more", &percent), curves: percent });
+    made.plot("yamaguchi-5-more", Plot { title, x, y: axis_over("percent more", &percent), curves: percent });
     Ok(made)
 }
 
@@ -75,4 +69,12 @@ fn times(_: &Studio) -> Outcome<Made> {
 fn round_step(step: f64) -> f64 {
     let power = libm::exp10(libm::log10(step.max(1e-9)).floor());
     [1.0, 2.0, 5.0].map(|digit| digit * power).into_iter().find(|round| *round >= step).unwrap_or(10.0 * power)
+}
+
+/// An axis over the values of curves, in round steps.
+fn axis_over(label: &str, curves: &[Curve]) -> PlotAxis {
+    let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
+    let [least, most] = values.fold([0.0, 0.0_f64], |[least, most], v| [v.min(least), v.max(most)]);
+    let step = round_step((most - least) / 5.0);
+    PlotAxis::new(label, [step * (least / step).floor(), step * (most / step).ceil()], step)
 }

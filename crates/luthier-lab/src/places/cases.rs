@@ -313,9 +313,12 @@ fn glitter(materials: &[Material], n: usize) -> Spot {
     at(format!("place.normal = luthier_glitter_normal(material, {text});"), place)
 }
 
+fn cells(seed: u32, frequency: f64, materials: &[u32]) -> CellsRecord {
+    CellsRecord { seed, frequency, materials: materials.to_vec() }
+}
+
 /// Grains of two materials, and particles of the first on top.
 fn grains() -> SurfaceEntry {
-    let cells = |seed, frequency, materials: &[u32]| CellsRecord { seed, frequency, materials: materials.to_vec() };
     SurfaceEntry {
         name: "s".to_owned(),
         source: "s.toml".to_owned(),
@@ -328,12 +331,11 @@ fn grains() -> SurfaceEntry {
 
 /// One material, and the other where noise or larger cells say so.
 fn switched() -> SurfaceEntry {
-    let cells = |material| CellsRecord { seed: 11, frequency: 8.0, materials: vec![material] };
     let noise = SwitchBy::Noise { seed: 13, frequency: 6.0, octaves: 4, between: [-0.05, 0.1] };
     let tiles = SwitchBy::Tiles { seed: 14, frequency: 10.0, share: 0.4 };
     SurfaceEntry {
-        cells: cells(0),
-        switches: [noise, tiles].map(|by| SwitchRecord { by, cells: cells(1) }).to_vec(),
+        cells: cells(11, 8.0, &[0]),
+        switches: [noise, tiles].map(|by| SwitchRecord { by, cells: cells(11, 8.0, &[1]) }).to_vec(),
         glitter: None,
         ..grains()
     }

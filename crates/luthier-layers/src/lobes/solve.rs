@@ -1,4 +1,5 @@
-//! Small dense systems of least squares, in a fixed order of operations: bytes depend on them.
+//! Small dense systems of least squares, in a fixed order of operations: bytes of fitted lobes depend on them. So `levenberg-marquardt` and
+//! `nalgebra`, which fit beams, have no place here: products of nalgebra are fused on some machines.
 
 /// The solution of `a x = b` for a symmetric positive matrix, by Gaussian elimination with pivots on the diagonal alone. Unknowns without
 /// a pivot are 0.

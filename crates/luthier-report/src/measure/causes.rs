@@ -14,10 +14,10 @@ use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::measure::directions::Pair;
+use crate::measure::directions::{Pair, wide};
 use crate::measure::statistics::{FLOOR, TARGET_MAX_REL_ERR, WorstPair, brightest, relative_error};
 use crate::measure::table_terms::TableTerms;
-use crate::text::format::{number, number_deg, rounded, value};
+use crate::text::format::{number, number_deg, rounded, theta_deg, value};
 
 /// A factor of the model that errs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -53,6 +53,20 @@ impl Factor {
         Self::Lobes,
         Self::Arithmetic,
     ];
+
+    /// The name in reports.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Fresnel => "Fresnel",
+            Self::Distribution => "distribution",
+            Self::Phase => "phase",
+            Self::Fgd => "albedo",
+            Self::Escape => "escape",
+            Self::Veil => "internal reflectance",
+            Self::Lobes => "rows of lobes",
+            Self::Arithmetic => "arithmetic",
+        }
+    }
 }
 
 /// Part of an error that one factor adds, all others being exact.
@@ -253,11 +267,7 @@ impl Miss {
 
     /// The larger angle to the normal, degrees.
     pub(crate) fn angle_deg(&self) -> f64 {
-        let theta = |w: [f32; 3]| {
-            let [x, y, z] = w.map(f64::from);
-            libm::atan2(libm::hypot(x, y), z).to_degrees()
-        };
-        theta(self.pair.0).max(theta(self.pair.1))
+        theta_deg(self.pair.0).max(theta_deg(self.pair.1))
     }
 }
 
@@ -287,7 +297,7 @@ impl Factors<'_> {
     /// The parts of an error, largest first: each factor of each layer read from the tables while all others are exact, and f32 arithmetic
     /// against f64 on the same tables. Products of errors, of second order, belong to no part.
     pub(crate) fn parts(&self, miss: &Miss) -> Vec<Part> {
-        let [wi, wo] = [miss.pair.0, miss.pair.1].map(|w| DVec3::from(w.map(f64::from)));
+        let [wi, wo] = [miss.pair.0, miss.pair.1].map(wide);
         let mut parts = Vec::new();
         let mut without_arithmetic = miss.expected;
         if let Some(tables) = self.tables {

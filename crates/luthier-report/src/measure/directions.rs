@@ -157,6 +157,16 @@ pub(crate) fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
     [w.x as f32, w.y as f32, w.z.max(smallest_cos) as f32]
 }
 
+/// A direction of a device, in f64.
+pub(crate) fn wide(w: [f32; 3]) -> DVec3 {
+    DVec3::from(w.map(f64::from))
+}
+
+/// The opposite direction.
+pub(crate) fn down(w: [f32; 3]) -> [f32; 3] {
+    w.map(|x| -x)
+}
+
 #[cfg(test)]
 mod tests {
     use luthier_layers::layers::ALPHA_MIN;

@@ -1,6 +1,5 @@
 //! The f64 side of a comparison: the twin of a material's shader, and its exact terms.
 
-use glam::DVec3;
 use luthier_layers::layers::{Layer, Layers};
 use luthier_layers::lobes::{Cover, Varying};
 use luthier_layers::twins::parts::Parts;
@@ -12,7 +11,7 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
-use crate::measure::directions::Pair;
+use crate::measure::directions::{Pair, wide};
 use crate::measure::subject::color;
 use crate::measure::table_terms::recorded_veil;
 
@@ -89,6 +88,5 @@ fn varying(material: &MaterialEntry) -> Option<Varying> {
 
 /// The model in f64 at exactly the f32 directions that the device gets.
 pub(crate) fn evaluate(twin: &Twin, terms: &(impl ShaderTerms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
-    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
     pairs.par_iter().map(|&(wi, wo)| twin.eval(terms, wide(wi), wide(wo))).collect()
 }

@@ -124,16 +124,20 @@ impl Row {
     }
 }
 
-/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered, and surfaces
-/// of one layer that shaders have. Not those that spread two stacks, of which a material has one.
-fn rows() -> Vec<Row> {
-    let is_judged = |info: ModelInfo| match info.kind {
+/// Whether a model has a row.
+fn is_judged(info: &ModelInfo) -> bool {
+    match info.kind {
         Kind::Surface => info.shading().is_some(),
         Kind::Layered => true,
         Kind::Place => !info.inputs.contains(&Input::OtherStack),
         Kind::Density | Kind::Reference => false,
-    };
-    let judged = models().into_iter().filter(|model| is_judged(model.info())).map(Row::Model);
+    }
+}
+
+/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered, and surfaces
+/// of one layer that shaders have. Not those that spread two stacks, of which a material has one.
+fn rows() -> Vec<Row> {
+    let judged = models().into_iter().filter(|model| is_judged(&model.info())).map(Row::Model);
     judged.chain([Row::Paths(InterfaceMode::OneFacet), Row::Paths(InterfaceMode::SmithWalk)]).collect()
 }
 

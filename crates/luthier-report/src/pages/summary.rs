@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::judge::report::{Compared, Report};
 use crate::measure::seen::SeenLight;
 use crate::places::{PlaceErrors, SimulatedAt};
-use crate::text::format::{bytes, error, number};
+use crate::text::format::{bytes, error, none, number};
 
 /// Findings listed by name.
 const SHOWN: usize = 10;
@@ -74,7 +74,7 @@ fn limits(out: &mut String, report: &Report) {
         );
     }
     for limit in &report.limits {
-        let found = limit.found.map_or_else(|| "–".to_owned(), error);
+        let found = limit.found.map_or_else(none, error);
         let (quantity, by) = (line(&limit.quantity), line(&limit.stated_by));
         let _ = writeln!(out, "| {quantity} | {by} | {} | {found} | {} |", error(limit.limit), word(limit.is_held));
     }
@@ -120,7 +120,6 @@ fn materials(out: &mut String, report: &Report) {
         compared.name()
     );
     for m in &report.materials {
-        let none = || "–".to_owned();
         let comparison = m.comparison(compared);
         let seen = comparison.and_then(|c| c.seen.iter().find(|s| s.light == SeenLight::Daylight));
         let lobe = m.against_reference.iter().find(|a| a.model == m.model);
@@ -149,7 +148,6 @@ fn places(out: &mut String, report: &Report) {
          |---|---|--:|--:|--:|--:|--:|\n",
     );
     for (material, at) in at() {
-        let none = || "–".to_owned();
         let largest = |errors: &Option<PlaceErrors>| errors.as_ref().map_or_else(none, |e| error(e.max_error()));
         let worst = |of: fn(&SimulatedAt) -> [f64; 2]| {
             at.simulated.as_ref().map_or_else(none, |s| {

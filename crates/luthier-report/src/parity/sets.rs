@@ -5,7 +5,7 @@ use luthier_layers::layers::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::{
-    DirectionSet, GRAZING_COS_MIN, LOBE_REACH, Pair, direction, halton, log_uniform, mirrored, rounded, spreads,
+    DirectionSet, GRAZING_COS_MIN, LOBE_REACH, Pair, direction, down, halton, log_uniform, mirrored, rounded, spreads,
 };
 
 /// Set of directions at which a shader is compared with its twin.
@@ -128,7 +128,6 @@ fn grazing(n: u32, spreads: &[f64]) -> Pair {
 fn opposite(n: u32) -> Pair {
     let [a, b, c, d] = halton(n / 4);
     let up = rounded(direction(1.0 - a, b), GRAZING_COS_MIN);
-    let down = |w: [f32; 3]| w.map(|x| -x);
     match n % 4 {
         0 => {
             let wi = direction(log_uniform(GRAZING_COS_MIN, a), b);

@@ -8,7 +8,6 @@ mod ranges;
 mod rows;
 mod simulated;
 
-use glam::DVec3;
 use luthier_manifest::{Form, PlaceValues};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
@@ -20,7 +19,7 @@ pub use simulated::{SimulatedAt, SimulatedErrors, SimulatedSettings, simulated, 
 
 use crate::error::ReportError;
 use crate::measure::device::{Device, run_at};
-use crate::measure::directions::{DirectionSet, Pair};
+use crate::measure::directions::{DirectionSet, Pair, wide};
 use crate::measure::scan::DOMAIN_COS_THETA;
 use crate::measure::statistics::{ErrorSummary, FLOOR, brightest, relative_error, summarise};
 use crate::measure::subject::Subject;
@@ -156,7 +155,6 @@ pub fn at_places(
         })
         .collect();
     let weights = device.map_or(Weights::EightBit, |(_, weights)| weights);
-    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
     let rows = |spot: &Spot| {
         let rows = Rows::new(subject, material, &spot.place, weights)?;
         Ok(rows.eval(wide(spot.pair.0), wide(spot.pair.1)))

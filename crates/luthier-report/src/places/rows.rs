@@ -11,6 +11,7 @@ use luthier_optics::Rgb;
 use luthier_optics::schlick::metallic_roughness;
 
 use crate::error::ReportError;
+use crate::measure::directions::wide;
 use crate::measure::references::parts;
 use crate::measure::subject::{Subject, color};
 use crate::measure::table_terms::{TableTerms, Weights};
@@ -63,7 +64,6 @@ pub(super) fn exact(subject: &Subject<'_>, material: usize, values: &PlaceValues
 
 /// The place of the f64 twin: exactly the numbers that the device gets.
 pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
-    let wide = |[x, y, z]: [f32; 3]| DVec3::new(x.into(), y.into(), z.into());
     let rgb = |color: [f32; 3]| color.map(f64::from);
     let layer = |own: &LayerValues| LayerSample {
         normal: wide(own.normal),

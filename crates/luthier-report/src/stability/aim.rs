@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier_layers::layers::Layer;
 
-use crate::measure::directions::{Pair, direction, halton, log_uniform, mirrored, rounded};
+use crate::measure::directions::{Pair, direction, down, halton, log_uniform, mirrored, rounded};
 use crate::parity::ParitySet;
 
 /// Smallest cosine of a stressed direction.
@@ -64,7 +64,6 @@ impl Aim {
     fn pair(self, n: u32) -> Pair {
         let [a, b, c, d] = halton(n);
         let near = |w: DVec3| rounded(w, COS_MIN);
-        let down = |w: [f32; 3]| w.map(|x| -x);
         let grazing = |u, v| direction(log_uniform(COS_MIN, u), v);
         match self {
             Self::Ordinary | Self::Retro => {

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::case::StressCase;
 use super::{Cell, Fault, Level, RECIPROCITY};
-use crate::measure::directions::Pair;
+use crate::measure::directions::{Pair, wide};
 use crate::measure::statistics::FLOOR;
 
 /// Wavelength and channel at which models are compared: gold is yellow there, films are neither dark nor bright by rule.
@@ -216,10 +216,9 @@ fn laws(
     pairs: &[Pair],
     stride: usize,
 ) -> (Option<Fault>, f64) {
-    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from)).normalize();
     let mut asymmetry = 0.0_f64;
     for &(wi, wo) in pairs.iter().step_by(stride) {
-        let (wi, wo) = (wide(wi), wide(wo));
+        let (wi, wo) = (wide(wi).normalize(), wide(wo).normalize());
         let value = model.eval(stack, wi, wo);
         if !value.is_finite() {
             return (Some(Fault::NotFinite), 0.0);

@@ -27,6 +27,13 @@ pub struct PlotAxis {
     pub step: f64,
 }
 
+impl PlotAxis {
+    /// An axis from its parts.
+    pub fn new(label: &str, range: [f64; 2], step: f64) -> Self {
+        Self { label: label.to_owned(), range, step }
+    }
+}
+
 /// A named line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
@@ -111,12 +118,11 @@ mod tests {
 
     #[test]
     fn a_plot_is_a_file_with_all_its_curves() {
-        let axis = |step| PlotAxis { label: "a < b".to_owned(), range: [0.0, 2.0], step };
         let curve = |name: &str, color| Curve { name: name.to_owned(), color, points: vec![[0.0, 1e-3], [2.0, 1.0]] };
         let plot = Plot {
             title: "t".to_owned(),
-            x: axis(1.0),
-            y: axis(0.0),
+            x: PlotAxis::new("a < b", [0.0, 2.0], 1.0),
+            y: PlotAxis::new("a < b", [0.0, 2.0], 0.0),
             curves: vec![curve("one", PlotColor::Ink), curve("two", PlotColor::Red)],
         };
         let text = plot.to_svg();

@@ -52,6 +52,11 @@ pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
+/// A dash, where there is no value.
+pub(crate) fn none() -> String {
+    "–".to_owned()
+}
+
 /// A size: `6.0 KiB`.
 pub(crate) fn bytes(count: u64) -> String {
     let units = [(1 << 20, "MiB"), (1 << 10, "KiB")];
@@ -112,11 +117,16 @@ pub(crate) fn escape(text: &str) -> String {
 
 /// A pair of directions in words.
 pub(crate) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
-    // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
-    let theta = |w: [f32; 3]| libm::atan2(libm::hypot(f64::from(w[0]), f64::from(w[1])), f64::from(w[2])).to_degrees();
     let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
     let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
-    format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta(wi)), number_deg(theta(wo)), turn)
+    format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta_deg(wi)), number_deg(theta_deg(wo)), turn)
+}
+
+/// Angle of a direction to the normal.
+pub(crate) fn theta_deg(w: [f32; 3]) -> f64 {
+    // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
+    let [x, y, z] = w.map(f64::from);
+    libm::atan2(libm::hypot(x, y), z).to_degrees()
 }
 
 /// An angle in degrees, to four decimals.

@@ -1,4 +1,4 @@
-//! Small dense matrices.
+//! Small dense matrices, in a fixed order of operations: bytes of tables depend on them.
 
 /// A square matrix.
 #[derive(Debug, Clone)]

@@ -6,7 +6,7 @@ use super::{anchor, cell, of_material};
 use crate::judge::exceptions::Exception;
 use crate::judge::report::{Compared, Report};
 use crate::measure::causes::{Cause, Factor, Part};
-use crate::text::format::{angles, error, escape, number, rounded, value};
+use crate::text::format::{angles, error, escape, none, number, rounded, value};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     let target = number(report.target_max_rel_err);
@@ -112,22 +112,12 @@ fn short(part: &Part) -> String {
 
 /// The factors that cause the misses, in words.
 fn tally(tally: &[(Factor, u64)]) -> String {
-    let name = |factor| match factor {
-        Factor::Fresnel => "Fresnel",
-        Factor::Distribution => "distribution",
-        Factor::Phase => "phase",
-        Factor::Fgd => "albedo",
-        Factor::Escape => "escape",
-        Factor::Veil => "internal reflectance",
-        Factor::Lobes => "rows of lobes",
-        Factor::Arithmetic => "arithmetic",
-    };
     let total: u64 = tally.iter().map(|(_, count)| count).sum();
     match tally {
         [] => "no pair was examined".to_owned(),
-        [(factor, _)] => format!("all pairs above the target: {}", name(*factor)),
+        [(factor, _)] => format!("all pairs above the target: {}", factor.name()),
         several => {
-            let each = several.iter().map(|(factor, count)| format!("{} {}", name(*factor), share(*count, total)));
+            let each = several.iter().map(|(factor, count)| format!("{} {}", factor.name(), share(*count, total)));
             format!("pairs above the target: {}", each.collect::<Vec<_>>().join(", "))
         }
     }
@@ -136,7 +126,7 @@ fn tally(tally: &[(Factor, u64)]) -> String {
 /// A percentage in two significant digits.
 fn share(part: u64, whole: u64) -> String {
     if whole == 0 {
-        return "–".to_owned();
+        return none();
     }
     format!("{}\u{a0}%", number(rounded(100.0 * part as f64 / whole as f64, 2)))
 }

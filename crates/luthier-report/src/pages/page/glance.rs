@@ -13,7 +13,7 @@ use crate::judge::report::{Compared, Comparison, MaterialReport, Report};
 use crate::measure::scan::report::TableReport;
 use crate::pages::chart;
 use crate::svg::{Spot, field, legend};
-use crate::text::format::{bytes, error, escape, number};
+use crate::text::format::{bytes, error, escape, none, number};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     facts(out, report);
@@ -23,7 +23,7 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
 
 /// Error and cost of a material in a line.
 pub(super) fn line(report: &Report, material: &MaterialReport) -> String {
-    let found = material.comparison(judged(report)).map_or_else(|| "–".to_owned(), |c| error(c.max_error()));
+    let found = material.comparison(judged(report)).map_or_else(none, |c| error(c.max_error()));
     let paid = match cycles(report, material, "baked") {
         Some(cycles) => format!("{} cycles", number(cycles)),
         None => bytes(table_bytes(report, material) as u64),
@@ -68,7 +68,7 @@ fn facts(out: &mut String, report: &Report) {
     let errors = all().filter_map(|m| m.comparison(judged(report))).map(|c| c.max_error()).collect();
     let of = |form| spread(all().filter_map(|m| cycles(report, m, form)).collect());
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
-    let accurate = spread(errors).map_or(("–".to_owned(), "no material".to_owned()), |[least, median, largest]| {
+    let accurate = spread(errors).map_or((none(), "no material".to_owned()), |[least, median, largest]| {
         let most = format!(
             "median of the largest errors of all materials; they range from {} to {}",
             error(least),

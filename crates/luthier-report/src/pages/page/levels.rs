@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::cell;
 use crate::judge::report::Report;
 use crate::measure::seen::SeenLight;
-use crate::text::format::{error, escape, number};
+use crate::text::format::{error, escape, none, number};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str(
@@ -14,7 +14,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
          compared</th><th>unit</th><th class=\"n\">largest</th><th>where</th></tr></thead><tbody>",
     );
     let mut row = |level: &str, what: &str, unit: &str, found: Option<(f64, String)>, missing: &str| {
-        let (value, place) = found.map_or(("–".to_owned(), missing.to_owned()), |(v, p)| (error(v), p));
+        let (value, place) = found.map_or((none(), missing.to_owned()), |(v, p)| (error(v), p));
         let (place, value) = (escape(&place), cell(&value));
         let _ = write!(
             out,

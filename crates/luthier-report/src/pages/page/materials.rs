@@ -10,7 +10,7 @@ use crate::measure::directions::DirectionSet;
 use crate::measure::statistics::{ErrorSummary, Statistics};
 use crate::pages::chart;
 use crate::svg::legend;
-use crate::text::format::{angles, error, escape, value};
+use crate::text::format::{angles, error, escape, none, value};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     out.push_str(
@@ -100,7 +100,7 @@ fn seen(out: &mut String, material: &MaterialReport) {
                 out.push_str(&cell(&error(value)));
             }
             out.push_str(&cell(&format!("{:.2} %", 100.0 * seen.above_one)));
-            let at = seen.worst.map_or_else(|| "–".to_owned(), |(wi, wo)| angles(wi, wo));
+            let at = seen.worst.map_or_else(none, |(wi, wo)| angles(wi, wo));
             let _ = write!(out, "<td>{at}</td></tr>");
         }
     }
@@ -145,7 +145,7 @@ fn pair(statistics: &Statistics) -> String {
             value(w.found),
             value(w.expected)
         ),
-        (None, None) => "–".to_owned(),
+        (None, None) => none(),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::measure::scan::report::{AlphaPoint, Curves, TableReport, TileReport};
 use crate::measure::scan::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, points};
 use crate::measure::statistics::TARGET_MAX_REL_ERR;
 use crate::pages::chart;
-use crate::text::format::{axis, bytes, error, escape, number, uncertain};
+use crate::text::format::{axis, bytes, error, escape, none, number, uncertain};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
@@ -120,7 +120,7 @@ fn how(table: &TableReport, points: u32) -> String {
 
 fn users(tile: &TileReport) -> String {
     if tile.users.is_empty() {
-        return "–".to_owned();
+        return none();
     }
     const SHOWN: usize = 3;
     let mut text = escape(&tile.users.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", "));

@@ -9,7 +9,7 @@ use super::cell;
 use crate::judge::evidence::{Costs, ShaderCost};
 use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::svg::{Choice, Mark, Price, Series, legend, pareto};
-use crate::text::format::{axis, bytes, error, escape, number};
+use crate::text::format::{axis, bytes, error, escape, none, number};
 
 /// The instruction set that charts show; tables have all.
 pub(super) const FAMILY: &str = "rdna2";
@@ -85,7 +85,7 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
             cell(&number(*cost)),
             cell(&error(found.max_abs)),
             cell(&error(found.max_rel)),
-            cell(&found.delta_e.map_or_else(|| "–".to_owned(), error)),
+            cell(&found.delta_e.map_or_else(none, error)),
             if i == search.chosen { "yes" } else { "" }
         );
     }
@@ -276,10 +276,9 @@ fn model_rows(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>
         }
         for form in ["baked", "full"] {
             let shader = shaders.iter().find(|s| s.row.model == a.model && s.row.form == form);
-            let words = shader.map_or_else(
-                || "–".to_owned(),
-                |s| s.cycles.iter().map(|(family, cycles)| format!("{cycles} {family}")).collect::<Vec<_>>().join(", "),
-            );
+            let words = shader.map_or_else(none, |s| {
+                s.cycles.iter().map(|(family, cycles)| format!("{cycles} {family}")).collect::<Vec<_>>().join(", ")
+            });
             let _ = write!(out, "<td>{}</td>", escape(&words));
         }
         out.push_str("</tr>");

@@ -1,5 +1,7 @@
 //! Colour spaces of FLIP. Linear RGB has Rec.709 primaries and D65 white.
 
+use luthier_optics::color::multiply;
+
 /// Matrix to XYZ, rows; exact fractions of the Rec.709 primaries.
 const TO_XYZ: [[f64; 3]; 3] = [
     [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
@@ -14,13 +16,9 @@ const FROM_XYZ: [[f64; 3]; 3] = [
     [0.055_639_419_851_975_45, -0.204_011_206_123_909_1, 1.057_148_977_187_533_4],
 ];
 
-fn product(matrix: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
-    matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
-}
-
 /// XYZ over that of white.
 fn relative_xyz(rgb: [f64; 3]) -> [f64; 3] {
-    let (xyz, white) = (product(&TO_XYZ, rgb), product(&TO_XYZ, [1.0; 3]));
+    let (xyz, white) = (multiply(&TO_XYZ, rgb), multiply(&TO_XYZ, [1.0; 3]));
     [0, 1, 2].map(|c| xyz[c] / white[c])
 }
 
@@ -33,9 +31,9 @@ pub(super) fn opponent(rgb: [f64; 3]) -> [f64; 3] {
 /// Back to linear RGB, clipped to what a display shows.
 pub(super) fn clipped_rgb([luma, cx, cz]: [f64; 3]) -> [f64; 3] {
     let y = (luma + 16.0) / 116.0;
-    let white = product(&TO_XYZ, [1.0; 3]);
+    let white = multiply(&TO_XYZ, [1.0; 3]);
     let xyz = [(y + cx / 500.0) * white[0], y * white[1], (y - cz / 200.0) * white[2]];
-    product(&FROM_XYZ, xyz).map(|v| v.clamp(0.0, 1.0))
+    multiply(&FROM_XYZ, xyz).map(|v| v.clamp(0.0, 1.0))
 }
 
 /// CIE 1976 L*a*b* of linear RGB, white (1, 1, 1).

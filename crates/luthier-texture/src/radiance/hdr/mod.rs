@@ -1,6 +1,7 @@
 //! Radiance pictures: scanlines of RGBE or XYZE texels, flat or with runs of either kind.
 //!
 //! A value is the mantissa over 256 times 2^(exponent - 128), without the half step that Radiance adds, as most readers take it.
+//! The reader of `image` knows one order of scanlines alone, and no XYZE.
 
 use luthier_lut::Image;
 
