@@ -5,16 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::sources::sources;
 
 /// Crates whose rooms have no order yet. This list may only shrink.
-const WITHOUT_ORDER: [&str; 8] = [
-    "luthier-cli",
-    "luthier-export",
-    "luthier-gpu",
-    "luthier-lab",
-    "luthier-layers",
-    "luthier-optics",
-    "luthier-report",
-    "luthier-shader",
-];
+const WITHOUT_ORDER: [&str; 2] = ["luthier-gpu", "luthier-shader"];
 
 /// For each room the rooms that it uses.
 type Rooms = BTreeMap<String, BTreeSet<String>>;
