@@ -1,6 +1,6 @@
 //! Choice of the second picture, and what is known of the two.
 
-use eframe::egui::{ComboBox, Response, RichText, Slider, SliderClamping, Ui};
+use eframe::egui::{ComboBox, RichText, Slider, SliderClamping, Ui};
 use luthier_manifest::{Form, ShadingModel};
 
 use crate::app::App;
