@@ -3,8 +3,6 @@
 use crate::context::Pass;
 use crate::{GpuError, Scene};
 
-pub(crate) const KERNEL: &str = include_str!("wgsl/evaluate.wgsl");
-
 /// Threads of a workgroup in the evaluation and look-up kernels.
 pub(crate) const WORKGROUP: usize = 64;
 

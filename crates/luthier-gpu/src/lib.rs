@@ -7,6 +7,9 @@
 //! Every call blocks until the device has answered. Group 0 is the shader's, as the manifest lists it; group 1
 //! belongs to the kernels of this crate (`src/wgsl`), which are appended to the text of the shader.
 //!
+//! Modules, each on those above it: `error`; `context`, `light`, `shape`, `tone`; `surroundings`, `bindings`, `floor`, `mesh`; `scene`, a package on a
+//! device; `gpu`, `evaluate`, `shown`, `maps`; `places`, `lookup`, `time`; `render`, `simulate`.
+//!
 //! Simplifications: one device at a time, compute passes only (the renderer is a compute kernel, so that it runs wherever
 //! evaluation does), shapes that rays meet in closed form without shadows, meshes with shadows and with little light between their parts, and a
 //! timeout per submission in place of cancellation.
@@ -15,6 +18,7 @@ mod bindings;
 mod context;
 mod error;
 mod evaluate;
+mod floor;
 mod gpu;
 mod light;
 mod lookup;

@@ -1,18 +1,9 @@
-//! Meshes for the renderer: their words, the kernel that meets them, and the floor as surfaces above it see it.
+//! Meshes for the renderer: their words, and the kernel that meets them.
 
-use std::sync::Arc;
-
-use luthier_environment::{Environment, EnvironmentError};
-use luthier_lut::Image;
 use luthier_mesh::Mesh;
 
-use crate::{Light, RenderSettings, Scene, Shape};
-
-/// Distances from the axis at which a floor begins to fade into what is behind, and has faded.
-const FADE: [f32; 2] = [2.5, 9.0];
-
-/// Squared radius of the sphere that shades a floor in place of the shown part, which fills about so much of the unit sphere.
-const BALL_SQ: f64 = 0.4;
+use crate::Shape;
+use crate::floor::FADE;
 
 /// The parts of the kernel that depend on the shape: markers in `shading.wgsl`, `around` and `render.wgsl`, and what stands there for closed shapes and for
 /// meshes.
@@ -79,79 +70,4 @@ pub(crate) fn words(mesh: &Mesh, light_angular_radius: f32, first: usize) -> Vec
     }
     words.extend(mesh.plain().iter().map(|color| float(*color, 0.0)));
     words
-}
-
-/// An environment with a floor in its lower half, and all that decides it.
-#[derive(Debug)]
-pub(crate) struct Grounded {
-    from: Arc<Environment>,
-    lights: Vec<Light>,
-    mesh: Arc<Mesh>,
-    environment: Arc<Environment>,
-}
-
-impl Scene {
-    /// The surroundings of the shown part where no rays are sent to the floor: the floor is in them. They are kept for the next picture.
-    pub(crate) fn grounded(&self, settings: &RenderSettings) -> Result<Arc<Environment>, EnvironmentError> {
-        let Some((mesh, height)) = settings.mesh.as_ref().and_then(|mesh| Some((mesh, mesh.floor()?))) else {
-            return Ok(Arc::clone(&settings.environment));
-        };
-        let mut kept = self.grounded.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let holds = |kept: &&Grounded| {
-            Arc::ptr_eq(&kept.from, &settings.environment)
-                && kept.lights == settings.lights
-                && Arc::ptr_eq(&kept.mesh, mesh)
-        };
-        if let Some(kept) = kept.as_ref().filter(holds) {
-            return Ok(Arc::clone(&kept.environment));
-        }
-        let albedo = mesh.plain().first().copied().unwrap_or_default();
-        let environment = Arc::new(with_floor(&settings.environment, &settings.lights, albedo, f64::from(-height))?);
-        *kept = Some(Grounded {
-            from: Arc::clone(&settings.environment),
-            lights: settings.lights.clone(),
-            mesh: Arc::clone(mesh),
-            environment: Arc::clone(&environment),
-        });
-        Ok(environment)
-    }
-}
-
-/// An environment whose lower half shows a matte floor at a depth below the origin, as it is seen from there: lit by the upper half and by lights, shaded by
-/// a sphere about the origin, and fading into the environment with the distance. Radiance and albedo are linear RGB.
-fn with_floor(
-    from: &Environment,
-    lights: &[Light],
-    albedo: [f32; 3],
-    depth: f64,
-) -> Result<Environment, EnvironmentError> {
-    let mut map: Image = from.map().clone();
-    let up = from.diffuse([0.0, 1.0, 0.0]);
-    let [near, far] = FADE.map(f64::from);
-    for y in map.height / 2..map.height {
-        let polar = std::f64::consts::PI * (f64::from(y) + 0.5) / f64::from(map.height);
-        let (sin, cos) = libm::sincos(polar);
-        let distance = depth * sin / -cos;
-        let shown = {
-            let t = ((distance - near) / (far - near)).clamp(0.0, 1.0);
-            1.0 - t * t * (3.0 - 2.0 * t)
-        };
-        // The sphere hides sin^2 of its radius times the cosine to its centre (Lambert).
-        let to_centre_sq = depth * depth + distance * distance;
-        let open = 1.0 - (BALL_SQ * depth / (to_centre_sq * to_centre_sq.sqrt())).min(1.0);
-        for x in 0..map.width {
-            let azimuth = 2.0 * std::f64::consts::PI * ((f64::from(x) + 0.5) / f64::from(map.width) - 0.5);
-            let (s, c) = libm::sincos(azimuth);
-            let at = [distance * s, -depth, -distance * c];
-            let direct = lights.iter().fold([0.0; 3], |sum, light| {
-                let irradiance = light.irradiance(at, [0.0, 1.0, 0.0]);
-                [0, 1, 2].map(|k| sum[k] + irradiance[k] / std::f64::consts::PI)
-            });
-            for (k, value) in map.texel_mut(x, y).iter_mut().enumerate() {
-                let floor = f64::from(albedo[k]) * (up[k] * open + direct[k]);
-                *value = (f64::from(*value) * (1.0 - shown) + floor * shown) as f32;
-            }
-        }
-    }
-    Environment::new(map)
 }

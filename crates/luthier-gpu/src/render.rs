@@ -10,6 +10,7 @@ use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, material_buffer};
 
 use crate::context::Pass;
 use crate::error::setting;
+use crate::floor::Grounded;
 use crate::mesh;
 use crate::surroundings::Surroundings;
 use crate::{Camera, GpuError, Light, Scene, Shape, Shown, Sky};
@@ -199,6 +200,17 @@ impl Scene {
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Image>, GpuError> {
         self.render_watched(&parts(materials), settings, &|_, _| !stop())
+    }
+
+    /// The surroundings of the shown part where no rays are sent to the floor: the floor is in them. They are kept for the next picture.
+    fn grounded(&self, settings: &RenderSettings) -> Result<Arc<Environment>, GpuError> {
+        let RenderSettings { environment, lights, mesh, .. } = settings;
+        let Some(mesh) = mesh else { return Ok(Arc::clone(environment)) };
+        let mut kept = self.grounded.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if !kept.as_ref().is_some_and(|kept| kept.is_of(environment, lights, mesh)) {
+            *kept = Grounded::new(environment, lights, mesh)?;
+        }
+        Ok(Arc::clone(kept.as_ref().map_or(environment, |kept| &kept.environment)))
     }
 
     fn render_passes(

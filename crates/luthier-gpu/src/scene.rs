@@ -7,12 +7,11 @@ use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
-use crate::mesh::Grounded;
+use crate::floor::Grounded;
 use luthier_export::{Map, Package};
 
-use crate::simulate::Pipelines;
+use crate::GpuError;
 use crate::surroundings::Surroundings;
-use crate::{GpuError, evaluate};
 
 /// A bake on a device, ready to evaluate, to look up and to render.
 #[derive(Debug)]
@@ -33,7 +32,8 @@ pub struct Scene {
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
     /// Of closed shapes and of meshes, each by blurred maps of the environment and by directions.
     pub(crate) render: [[OnceLock<wgpu::ComputePipeline>; 2]; 2],
-    pub(crate) simulations: Pipelines,
+    /// Of pairs and of simulated pictures, each with walks and with one facet.
+    pub(crate) simulations: [OnceLock<wgpu::ComputePipeline>; 4],
     pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
@@ -51,7 +51,7 @@ impl Scene {
                 immediate_size: 0,
             })
         })?;
-        let evaluate = compile(&context, &kernels, form, wgsl, evaluate::KERNEL)?;
+        let evaluate = compile(&context, &kernels, form, wgsl, include_str!("wgsl/evaluate.wgsl"))?;
         Ok(Self {
             context,
             manifest: package.manifest.clone(),
@@ -66,7 +66,7 @@ impl Scene {
             places: OnceLock::new(),
             lookups: Default::default(),
             render: Default::default(),
-            simulations: Pipelines::default(),
+            simulations: Default::default(),
             grounded: Mutex::default(),
         })
     }

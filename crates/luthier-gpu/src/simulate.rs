@@ -1,7 +1,5 @@
 //! Simulation of stacks by random walks of light: values for pairs of directions, and pictures that gather samples.
 
-use std::sync::OnceLock;
-
 use luthier_lut::Image;
 use luthier_manifest::{LAYER_WORDS, LayerRecord, MATERIAL_WORDS, MaterialEntry};
 
@@ -71,13 +69,6 @@ impl Sums {
         let variance = |c: usize| (self.squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0).max(1.0);
         Simulated { mean, std_err: [0, 1, 2].map(|c: usize| variance(c).sqrt()) }
     }
-}
-
-/// The pipelines of the simulation, compiled at their first use.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Pipelines {
-    /// Of pairs and of pictures, each with walks and with one facet.
-    cells: [OnceLock<wgpu::ComputePipeline>; 4],
 }
 
 impl Scene {
@@ -212,7 +203,7 @@ impl Scene {
             .replace("$material_words", &MATERIAL_WORDS.to_string())
             .replace("$layers", &LAYERS_MOST.to_string())
             .replace("$walks", if walks { "true" } else { "false" });
-        self.pipeline(&self.simulations.cells[first + usize::from(walks)], &text)
+        self.pipeline(&self.simulations[first + usize::from(walks)], &text)
     }
 
     fn check_simulated(&self, material: u32) -> Result<(), GpuError> {

@@ -23,6 +23,9 @@
 //! [`library`] puts any WGSL module of functions, textures and samplers into these languages, and [`library_spirv`] into SPIR-V: look-ups of
 //! tables that are no material's.
 //!
+//! Modules, each on those above it: `functions`, `identifiers`, `style`, `error`; `set`; `validate`; `compose` (WGSL of a set) and `languages` (any WGSL
+//! in another language), which do not know each other; `library` and `emit`.
+//!
 //! Simplifications: bindings of materials are in group 0; the full form knows one film per interface.
 //!
 //! Sums of `luthier_eval` over lights go through `luthier_bounded` where they are written. Numbers of group 0 from
@@ -31,15 +34,17 @@
 mod compose;
 mod emit;
 mod error;
+mod functions;
+mod identifiers;
 mod languages;
 mod library;
 mod set;
 mod style;
 mod validate;
 
-pub use emit::{complete, emit, emit_constant, interface};
+pub use emit::{complete, complete_spirv, emit, emit_constant, emit_spirv, interface};
 pub use error::ShaderError;
-pub use languages::spirv::{complete_spirv, emit_spirv, library_spirv, spirv_words};
+pub use languages::spirv::{library_spirv, spirv_words};
 pub use library::library;
 pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier, surface_identifier};

@@ -1,52 +1,127 @@
 //! Modules of WGSL: the blocks that a set keeps of one.
 
+use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 
-/// Starts a line that opens, turns or closes a block; see [`prune`].
+/// Starts a line with a condition; see [`prune`].
 const MARK: &str = "//?";
 
 /// The lines of a module whose conditions hold, without the marks.
 ///
-/// A line `//? a, b|c, !d` opens a block. Its lines are kept when the set has `a`, has `b` or `c`, and lacks `d`; those after `//? else`
-/// are kept when it does not. `//? end` closes the block. Blocks nest.
+/// A line `//? a, b|c, !d` says when what follows it is kept: the set has `a`, has `b` or `c`, and lacks `d`. That is a declaration, a member, a
+/// statement, or a block whose braces stand on lines of their own and go. `//? else` behind it says the same of what follows where the
+/// condition fails. Marks within are taken alike.
 ///
 /// # Panics
-/// On marks that do not pair, or that follow code on their line.
+/// On marks that follow code on their line, or that nothing follows.
 pub(crate) fn prune(module: &str, features: &Features) -> String {
-    let mut out = String::with_capacity(module.len());
-    // Of every open block: its opening line, whether its condition holds, whether `else` has turned it.
-    let mut open: Vec<(usize, bool, bool)> = Vec::new();
-    for (number, line) in (1..).zip(module.lines()) {
-        let Some((before, mark)) = line.split_once(MARK) else {
-            // What was left out may leave two blank lines behind.
-            let is_doubled = line.is_empty() && (out.is_empty() || out.ends_with("\n\n"));
-            if !is_doubled && open.iter().all(|&(_, holds, is_turned)| holds != is_turned) {
-                out.push_str(line);
-                out.push('\n');
-            }
-            continue;
-        };
-        assert!(before.trim().is_empty(), "line {number}: a mark stands on a line of its own: {line}");
-        match (mark.trim(), open.last_mut()) {
-            ("end", Some(_)) => drop(open.pop()),
-            ("else", Some((_, _, is_turned @ false))) => *is_turned = true,
-            ("end" | "else", _) => panic!("line {number}: `{}` has no block", line.trim()),
-            (condition, _) => open.push((number, holds(condition, features), false)),
-        }
+    let lines: Vec<&str> = module.lines().collect();
+    let mut module = Module { lines: &lines, at: 0, features, out: String::with_capacity(module.len()) };
+    while module.at < lines.len() {
+        module.step(true, 0);
     }
-    assert!(open.is_empty(), "line {}: a block without `{MARK} end`", open.last().map_or(0, |block| block.0));
+    let Module { mut out, .. } = module;
     out.truncate(out.trim_end().len());
     out.push('\n');
     out
 }
 
+/// A module that is gone through line by line.
+struct Module<'m> {
+    lines: &'m [&'m str],
+    /// The line that comes next.
+    at: usize,
+    features: &'m Features,
+    out: String,
+}
+
+impl<'m> Module<'m> {
+    fn next(&mut self) -> &'m str {
+        let line = self.lines.get(self.at).unwrap_or_else(|| panic!("line {}: nothing follows a mark", self.at));
+        self.at += 1;
+        line
+    }
+
+    /// The text of the mark that comes next.
+    fn mark(&self) -> Option<&'m str> {
+        let (before, mark) = self.lines.get(self.at)?.split_once(MARK)?;
+        assert!(before.trim().is_empty(), "line {}: a mark stands on a line of its own", self.at + 1);
+        Some(mark.trim())
+    }
+
+    /// A line, or a mark and what it governs.
+    fn step(&mut self, is_kept: bool, depth: usize) {
+        let Some(condition) = self.mark() else {
+            let line = self.next();
+            return self.push(line, is_kept, depth);
+        };
+        assert!(condition != "else", "line {}: `else` follows nothing", self.at + 1);
+        self.at += 1;
+        let holds = holds(condition, self.features);
+        self.governed(is_kept && holds, depth);
+        if self.mark() == Some("else") {
+            self.at += 1;
+            self.governed(is_kept && !holds, depth);
+        }
+    }
+
+    /// One declaration, member, statement or block, with the comments above it.
+    fn governed(&mut self, is_kept: bool, depth: usize) {
+        while self.mark().is_none() && self.lines.get(self.at).is_some_and(|line| line.trim().starts_with("//")) {
+            let line = self.next();
+            self.push(line, is_kept, depth);
+        }
+        if self.mark().is_some() {
+            return self.step(is_kept, depth);
+        }
+        if self.lines.get(self.at).is_some_and(|line| line.trim() == "{") {
+            let open = self.next();
+            let close = open.replace('{', "}");
+            while self.lines.get(self.at) != Some(&close.as_str()) {
+                self.step(is_kept, depth + 1);
+            }
+            self.at += 1;
+            return;
+        }
+        let mut nesting = 0;
+        loop {
+            if self.mark().is_some() {
+                self.step(is_kept, depth);
+                continue;
+            }
+            let line = self.next();
+            self.push(line, is_kept, depth);
+            let code = line.split("//").next().unwrap_or_default().trim();
+            nesting += code.matches(['{', '(']).count() as isize - code.matches(['}', ')']).count() as isize;
+            if nesting == 0 && (code.ends_with([';', ',', '}']) || code.starts_with('$')) {
+                return;
+            }
+        }
+    }
+
+    /// A line of this many blocks.
+    fn push(&mut self, line: &str, is_kept: bool, depth: usize) {
+        // What was left out may leave two blank lines behind.
+        let is_doubled = line.is_empty() && (self.out.is_empty() || self.out.ends_with("\n\n"));
+        if is_kept && !is_doubled {
+            self.out.push_str(line.get(4 * depth..).unwrap_or_default());
+            self.out.push('\n');
+        }
+    }
+}
+
 fn holds(condition: &str, features: &Features) -> bool {
     condition.split(',').all(|alternatives| {
         alternatives.split('|').any(|word| match word.trim().strip_prefix('!') {
-            Some(word) => !features.has(word),
-            None => features.has(word.trim()),
+            Some(word) => !features.has(named(word)),
+            None => features.has(named(word.trim())),
         })
     })
+}
+
+/// The feature of a word.
+fn named(word: &str) -> Feature {
+    Feature::from_name(word).unwrap_or_else(|| panic!("`{word}` is no feature"))
 }
 
 /// Every module, with its file.
@@ -65,17 +140,6 @@ pub(crate) fn modules() -> Vec<(std::path::PathBuf, String)> {
     modules
 }
 
-/// Every word that the conditions of a module name.
-#[cfg(test)]
-pub(crate) fn features_named(module: &str) -> impl Iterator<Item = &str> {
-    module
-        .lines()
-        .filter_map(|line| line.split_once(MARK))
-        .flat_map(|(_, condition)| condition.split([',', '|']))
-        .map(|word| word.trim().trim_start_matches('!'))
-        .filter(|word| !matches!(*word, "else" | "end"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,31 +151,34 @@ mod tests {
 
     #[test]
     fn conditions_are_ands_of_ors() {
-        let block = |condition: &str| format!("//? {condition}\n{condition}\n//? end\n");
-        let module = "all\n".to_owned() + &["a", "a, b", "!a, !b", "c|b"].map(block).concat();
-        assert_eq!(prune(&module, &none()), "all\n!a, !b\n");
-        assert_eq!(prune(&module, &none().with("b", true)), "all\nc|b\n");
-        assert_eq!(prune(&module, &none().with("a", true).with("b", true)), "all\na\na, b\nc|b\n");
+        let block = |condition: &str| format!("//? {condition}\n// {condition}\nx;\n");
+        let module = "all\n".to_owned() + &["bent", "bent, below", "!bent, !below", "film|below"].map(block).concat();
+        assert_eq!(prune(&module, &none()), "all\n// !bent, !below\nx;\n");
+        let below = none().with(Feature::Below, true);
+        assert_eq!(prune(&module, &below), "all\n// film|below\nx;\n");
+        let both = below.with(Feature::Bent, true);
+        assert_eq!(prune(&module, &both), "all\n// bent\nx;\n// bent, below\nx;\n// film|below\nx;\n");
     }
 
     #[test]
-    fn blocks_nest_and_turn() {
-        let module =
-            "//? a\na\n  //? b\n  both\n  //? else\n  only a\n  //? end\nagain\n//? else\nno a\n//? end\nall\n";
-        let a = none().with("a", true);
-        assert_eq!(prune(module, &a.with("b", true)), "a\n  both\nagain\nall\n");
-        assert_eq!(prune(module, &a), "a\n  only a\nagain\nall\n");
-        assert_eq!(prune(module, &none().with("b", true)), "no a\nall\n");
+    fn a_mark_governs_one_thing() {
+        let module = "//? bent\nfn f(\n    a: u32,\n) {\n    //? below\n    {\n        both;\n        again;\n    }\n    //? else\n    \
+                      if only {\n        bent;\n    }\n}\n//? else\n//? below\n$below\nall\n";
+        let bent = none().with(Feature::Bent, true);
+        let both = bent.with(Feature::Below, true);
+        assert_eq!(prune(module, &both), "fn f(\n    a: u32,\n) {\n    both;\n    again;\n}\nall\n");
+        assert_eq!(prune(module, &bent), "fn f(\n    a: u32,\n) {\n    if only {\n        bent;\n    }\n}\nall\n");
+        assert_eq!(prune(module, &none().with(Feature::Below, true)), "$below\nall\n");
+        assert_eq!(prune(module, &none()), "all\n");
     }
 
     #[test]
-    fn marks_that_do_not_pair_are_refused_with_their_line() {
+    fn marks_that_govern_nothing_are_refused_with_their_line() {
         for (module, expected) in [
-            ("x\n//? a\n//? b\nx\n//? end\n", "line 2: a block without `//? end`"),
-            ("x\n//? end\n", "line 2: `//? end` has no block"),
-            ("//? else\n//? end\n", "line 1: `//? else` has no block"),
-            ("//? a\n//? else\n//? else\n//? end\n", "line 3: `//? else` has no block"),
-            ("x //? a\n", "line 1: a mark stands on a line of its own: x //? a"),
+            ("x;\n//? bent\n", "line 2: nothing follows a mark"),
+            ("x;\n//? else\nx;\n", "line 2: `else` follows nothing"),
+            ("x; //? bent\n", "line 1: a mark stands on a line of its own"),
+            ("//? blent\nx;\n", "`blent` is no feature"),
         ] {
             let refusal = std::panic::catch_unwind(|| prune(module, &none())).unwrap_err();
             assert_eq!(refusal.downcast_ref::<String>().unwrap(), expected);

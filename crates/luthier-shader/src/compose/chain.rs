@@ -6,19 +6,20 @@ use luthier_manifest::{LayerKind, ShadingModel};
 
 use crate::MaterialSet;
 use crate::compose::face::parts_function;
+use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 use crate::compose::function;
-use crate::languages::text::rename;
+use crate::identifiers::rename;
 
 /// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
     let name = function(model);
     let layers: Vec<_> = set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect();
-    let has_patina = features.has("chain_patina");
+    let has_patina = features.has(Feature::ChainPatina);
     let (name, bare) =
         if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
     let without = if has_patina { "; where it is bare, without the first layer" } else { "" };
-    let is_lit = features.has("fluorescent");
+    let is_lit = features.has(Feature::Fluorescent);
     let (lit, given, what) = match is_lit {
         true => ("_lit", ", light: vec3<f32>", "Light to the eye, of light of a colour, by"),
         false => ("", "", "f cos_theta_i of"),
@@ -30,13 +31,13 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
     );
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     if layers.iter().all(|layers| layers.first().is_some_and(is_diffuse)) {
-        let here = if features.has("own_normals") { "_here" } else { "" };
+        let here = if features.has(Feature::OwnNormals) { "_here" } else { "" };
         let base = match is_lit {
             true => format!("luthier_reradiated(layer, wi{here}, wo{here}, light)"),
             false => format!("$diffuse(layer, wi{here}, wo{here})"),
         };
         out.push_str("    let layer = $layer(material, 0u);\n");
-        if features.has("own_normals") {
+        if features.has(Feature::OwnNormals) {
             out.push_str(
                 "    let wi_here = luthier_local(layer.normal, wi);\n    \
                  let wo_here = luthier_local(layer.normal, wo);\n    \
@@ -51,12 +52,12 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
     if least < depth || depth > 1 && has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    let below = match (features.has("flakes"), has_patina) {
+    let below = match (features.has(Feature::Flakes), has_patina) {
         (false, _) => "",
         (true, false) => ", place.flake_normal",
         (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
     };
-    let alpha = if features.has("clamped") { "0.0, " } else { "" };
+    let alpha = if features.has(Feature::Clamped) { "0.0, " } else { "" };
     let light = if is_lit { ", light" } else { "" };
     let _ = writeln!(
         out,
@@ -97,7 +98,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
 
 /// The function of a model for white light, where one of the set takes light of a colour and other functions than `luthier_eval` call it.
 fn white(model: ShadingModel, features: &Features) -> String {
-    if !(features.has("fluorescent") && features.has("face")) {
+    if !(features.has(Feature::Fluorescent) && features.has(Feature::Face)) {
         return String::new();
     }
     let name = function(model);
@@ -111,12 +112,12 @@ fn white(model: ShadingModel, features: &Features) -> String {
 
 /// The function of a model where a material of the set has patina: with and without the first layer, blended.
 fn patina(model: ShadingModel, features: &Features) -> String {
-    if !features.has("chain_patina") {
+    if !features.has(Feature::ChainPatina) {
         return String::new();
     }
     let name = function(model);
     let stack = name.replace("luthier_eval", "luthier_stack");
-    let (lit, given, light, factor) = match features.has("fluorescent") {
+    let (lit, given, light, factor) = match features.has(Feature::Fluorescent) {
         true => ("_lit", ", light: vec3<f32>", ", light", "light * "),
         false => ("", "", "", ""),
     };
@@ -165,14 +166,14 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
     let layers = layers(set, model);
     let count = parts_count(set, model, false);
     if count == 0 {
-        let diffuse = match features.has("fluorescent") {
+        let diffuse = match features.has(Feature::Fluorescent) {
             true => "luthier_reradiated(layer, light, wo, vec3<f32>(1.0))",
             false => "$diffuse(layer, light, wo)",
         };
         let base = format!("let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * {diffuse};");
         return format!("{out}    {base}\n    return prepared;\n}}\n");
     }
-    let has_patina = features.has("chain_patina");
+    let has_patina = features.has(Feature::ChainPatina);
     let depths = || layers.iter().map(|layers| layers.len());
     if depths().min() < depths().max() || has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");
@@ -221,13 +222,13 @@ fn walk(
 ) -> String {
     const LEVEL: &str = "vec3<f32>(0.0, 0.0, 1.0)";
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
-    let (has_flakes, is_clamped) = (features.has("flakes"), features.has("clamped"));
-    let is_folded = features.has("folded") && features.has("media");
+    let (has_flakes, is_clamped) = (features.has(Feature::Flakes), features.has(Feature::Clamped));
+    let is_folded = features.has(Feature::Folded) && features.has(Feature::Media);
     let (interface, alpha, axis) = match model {
         ShadingModel::Elek if is_clamped => {
             ("luthier_elek_interface", "vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)")
         }
-        ShadingModel::WeidlichWilkie if features.has("anisotropic") => {
+        ShadingModel::WeidlichWilkie if features.has(Feature::Anisotropic) => {
             ("luthier_add_interface", "layer.alpha_xy", "layer.rotation")
         }
         _ => ("luthier_add_interface", "vec2<f32>(layer.alpha)", "vec2<f32>(1.0, 0.0)"),
@@ -235,7 +236,7 @@ fn walk(
     let normal = if walk.is_bare { LEVEL } else { "place.flake_normal" };
     let below = if has_flakes { format!(", {normal}") } else { String::new() };
     let clamp = if is_clamped { "0.0, " } else { "" };
-    let lit = if features.has("fluorescent") { ", vec3<f32>(1.0)" } else { "" };
+    let lit = if features.has(Feature::Fluorescent) { ", vec3<f32>(1.0)" } else { "" };
     let start = |light: &str, across: &str| {
         format!(
             "LuthierPath({light}, wo, {across}, vec3<f32>({}){lit}, vec3<f32>(0.0), {clamp}true{below})",
@@ -261,7 +262,7 @@ fn walk(
     for i in first..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
         let index = if walk.is_bare && i == 1 { "count".to_owned() } else { format!("{i}u") };
-        let has_own = features.has("own_normals");
+        let has_own = features.has(Feature::OwnNormals);
         let media = match (i == first, has_flakes) {
             // Above it, layers count as level.
             (true, _) if has_own => "1.0, layer.normal, 1.0".to_owned(),
@@ -322,6 +323,6 @@ fn walk(
         lines.extend(step.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
         lines.push("}".to_owned());
     }
-    let indent = if features.has("chain_patina") { "        " } else { "    " };
+    let indent = if features.has(Feature::ChainPatina) { "        " } else { "    " };
     lines.iter().map(|line| format!("{indent}{line}\n")).collect()
 }

@@ -6,6 +6,7 @@ use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, Sha
 use luthier_model::Family;
 
 use crate::MaterialSet;
+use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 use crate::compose::{chain, function, statistics, text};
 
@@ -23,13 +24,13 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         return Vec::new();
     }
     let parts = count(set, features);
-    let least = if features.has("folded") && features.has("media") { ", least: f32" } else { "" };
+    let least = if features.has(Feature::Folded) && features.has(Feature::Media) { ", least: f32" } else { "" };
     let module = |wgsl: &str| {
         let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE).replace("$least", least);
         text(&wgsl.replace("$model_lobes", &number(ShadingModel::Lobes)), features)
     };
     let mut modules = vec![module(include_str!("../wgsl/face/prepared.wgsl"))];
-    if features.has("chain") {
+    if features.has(Feature::Chain) {
         modules.push(module(include_str!("../wgsl/face/path_part.wgsl")));
     }
     for model in set.models() {
@@ -44,18 +45,18 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
     }
     modules.extend([module(&prepare(set, features, parts)), module(&light(set, features))]);
     if set.functions.has(FunctionGroup::Sample) {
-        if features.has("visible") || features.has("coat") {
+        if features.has(Feature::Visible) || features.has(Feature::Coat) {
             modules.push(module(include_str!("../wgsl/face/visible.wgsl")));
         }
-        if features.has("lobes") {
+        if features.has(Feature::Lobes) {
             modules.push(module(include_str!("../wgsl/face/lobes_sample.wgsl")));
         }
-        modules.push(module(&unrolled(include_str!("../wgsl/face/sample.wgsl"), parts, features)));
+        modules.push(unrolled(&module(include_str!("../wgsl/face/sample.wgsl")), parts, features));
         if set.functions.has(FunctionGroup::Propose) {
-            modules.push(module(&unrolled(include_str!("../wgsl/face/propose.wgsl"), parts, features)));
+            modules.push(unrolled(&module(include_str!("../wgsl/face/propose.wgsl")), parts, features));
         }
     }
-    if features.has("environment") {
+    if features.has(Feature::Environment) {
         modules.push(module(include_str!("../wgsl/face/environment.wgsl")));
     }
     if set.functions.has(FunctionGroup::Albedo) {
@@ -76,12 +77,12 @@ fn count(set: &MaterialSet<'_>, features: &Features) -> usize {
             Family::Facets => usize::from(first.is_some_and(is_interface)),
             Family::Beams => match first {
                 Some(layer) if layer.kind == LayerKind::Diffuse => 0,
-                Some(_) if !features.has("granier_transparent") => 1,
+                Some(_) if !features.has(Feature::GranierTransparent) => 1,
                 // With a tilted inner boundary the beams of the channels part.
-                _ if features.has("granier_tilted") => 4,
+                _ if features.has(Feature::GranierTilted) => 4,
                 _ => 2,
             },
-            Family::Path => chain::parts_count(set, material.model, features.has("chain_patina")),
+            Family::Path => chain::parts_count(set, material.model, features.has(Feature::ChainPatina)),
             Family::Statistics => material.layers.iter().rposition(is_interface).map_or(0, |i| i + 1),
         }
     };
@@ -95,7 +96,7 @@ fn number(model: ShadingModel) -> String {
 /// `luthier_prepare`, and `luthier_prepare_at` where surfaces vary.
 fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     const SUMMARY: &str = "A material for light seen from wo: unit, in the local frame, away from the surface.";
-    let has_place = features.has("place");
+    let has_place = features.has(Feature::Place);
     let (name, parameters, eye) = match has_place {
         true => ("luthier_prepare_at", "place: LuthierPlace, material: u32", "luthier_local(place.normal, wo)"),
         false => ("luthier_prepare", "material: u32", "wo"),
@@ -114,7 +115,7 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     for i in 0..parts {
         let _ = writeln!(out, "    prepared.parts[{i}] = luthier_no_part();");
     }
-    if features.has("several") {
+    if features.has(Feature::Several) {
         out.push_str("    prepared.model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
     }
     let models: Vec<ShadingModel> = set.models().collect();
@@ -141,7 +142,7 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
          fn luthier_light(prepared: LuthierPrepared, wi: vec3<f32>) -> vec3<f32> {\n    \
          if wi.z <= 0.0 || !prepared.open {\n        return vec3<f32>(0.0);\n    }\n",
     );
-    let wi = if features.has("place") {
+    let wi = if features.has(Feature::Place) {
         out.push_str(
             "    let wi_here = luthier_local(prepared.place.normal, wi);\n    \
              if wi_here.z <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n",
@@ -150,11 +151,11 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     } else {
         "wi"
     };
-    let place = if features.has("place") { "prepared.place, " } else { "" };
-    let lit = if features.has("fluorescent") { light_of_a_colour(set, &out, place, wi) } else { String::new() };
+    let place = if features.has(Feature::Place) { "prepared.place, " } else { "" };
+    let lit = if features.has(Feature::Fluorescent) { light_of_a_colour(set, &out, place, wi) } else { String::new() };
     let eval = |model| format!("return {}({place}prepared.material, {wi}, prepared.wo);", function(model));
     let call = |model: ShadingModel| match model.facts().family {
-        Family::Lobes if features.has("lobes") => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
+        Family::Lobes if features.has(Feature::Lobes) => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
         Family::Statistics if !statistics::is_bare(set, model) => {
             let light = function(model).replace("luthier_eval", "luthier_light");
             format!("return {light}(prepared, {place}prepared.material, {wi}, prepared.wo);")
@@ -167,7 +168,8 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
         for &other in others {
             out.push_str(&case(&number(other), &call(other)));
         }
-        if models.contains(&ShadingModel::Lobes) && features.has("lobes") && features.has("lobes_diffuse") {
+        if models.contains(&ShadingModel::Lobes) && features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse)
+        {
             out.push_str(&case(BASE, &eval(ShadingModel::Lobes)));
         }
         let _ = writeln!(out, "    {}\n}}", call(*first));
@@ -206,7 +208,7 @@ fn albedo(features: &Features, parts: usize) -> String {
          fn luthier_albedo(prepared: LuthierPrepared) -> vec3<f32> {\n    if !prepared.open {\n        return vec3<f32>(0.0);\n    }\n",
     );
     let lobes = "return luthier_albedo_lobes(prepared.lobes);";
-    match (features.has("lobes"), features.has("several")) {
+    match (features.has(Feature::Lobes), features.has(Feature::Several)) {
         (true, false) => out.push_str(&format!("    {lobes}\n}}\n")),
         (has_lobes, _) => {
             if has_lobes {
@@ -221,7 +223,7 @@ fn albedo(features: &Features, parts: usize) -> String {
 /// The module of drawn directions with a statement for each part.
 fn unrolled(module: &str, parts: usize, features: &Features) -> String {
     let each = |line: &dyn Fn(usize) -> String| (0..parts).map(line).collect::<String>();
-    let spill = if features.has("visible") {
+    let spill = if features.has(Feature::Visible) {
         each(&|i| format!("    chance += luthier_spill(prepared.parts[{i}]);\n"))
     } else {
         String::new()
@@ -247,9 +249,9 @@ fn unrolled(module: &str, parts: usize, features: &Features) -> String {
     });
     let part = each(&|i| format!("        if part == {i}u {{\n            lobe = prepared.parts[{i}];\n        }}\n"));
     // Of `lobes` alone the draw of the whole is the only proposal.
-    let is_whole = features.has("lobes") && !features.has("several");
+    let is_whole = features.has(Feature::Lobes) && !features.has(Feature::Several);
     let proposals = if is_whole { 1 } else { parts + 1 };
-    let end = "    if choice >= below {\n        drawn.part = $parts;\n    }\n";
+    let end = format!("    if choice >= below {{\n        drawn.part = {parts}u;\n    }}\n");
     module
         .replace("    $each_spill\n", &spill)
         .replace("    $each_density\n", &density)

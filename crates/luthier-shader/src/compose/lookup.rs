@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind};
 
 use crate::compose::blocks::prune;
+use crate::compose::feature::Feature;
 use crate::compose::features::Features;
-use crate::{ShaderError, TableFace};
+use crate::{Form, MaterialSet, ShaderError, TableFace};
 
 macro_rules! module {
     ($($kind:ident $name:literal),+) => {
@@ -25,12 +26,25 @@ luthier_lut::for_table_kinds!(module);
 ///
 /// # Panics
 /// Never for the look-ups that this crate has.
-pub(crate) fn lookup_signature(kind: TableKind) -> (Vec<&'static str>, &'static str) {
+fn lookup_signature(kind: TableKind) -> (Vec<&'static str>, &'static str) {
     let opening = format!("fn luthier_lookup_{}(", kind.name());
     let declared =
         module(kind).lines().find_map(|line| line.strip_prefix(&opening)?.strip_suffix(" {")?.split_once(") -> "));
     let (parameters, value) = declared.unwrap_or_else(|| panic!("no look-up in the module of {}", kind.name()));
     (parameters.split(", ").filter_map(|parameter| Some(parameter.split_once(": ")?.1)).collect(), value)
+}
+
+/// Calls that use every binding of a set, so that naga reports the name it gives to each.
+pub(crate) fn calls(set: &MaterialSet<'_>, form: Form) -> String {
+    let mut out = "    _ = luthier_eval(0u, vec3<f32>(), vec3<f32>());\n".to_owned();
+    for table in set.tables_read(form) {
+        let arguments: Vec<String> = lookup_signature(table.kind).0.iter().map(|kind| format!("{kind}()")).collect();
+        let _ = writeln!(out, "    _ = luthier_lookup_{}({});", table.kind.name(), arguments.join(", "));
+    }
+    if set.shows_environment(form) {
+        out.push_str("    _ = luthier_environment(luthier_prepare(0u, vec3<f32>()), mat3x3<f32>(), 0.0);\n");
+    }
+    out
 }
 
 /// WGSL of a table: its texture, its sizes, its look-up.
@@ -65,8 +79,8 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     let has_angle = layout.x.quantity.starts_with("theta");
     let mut out = String::new();
     let is_split = Encoding::of(kind, table.format) == Encoding::SplitSixteenthRoot;
-    let features = features.with("theta_axis", has_angle).with("split_root", is_split);
-    let features = features.with("schlick_base", has_base);
+    let features = features.with(Feature::ThetaAxis, has_angle).with(Feature::SplitRoot, is_split);
+    let features = features.with(Feature::SchlickBase, has_base);
     for line in prune(module(kind), &features).lines() {
         if let Some(value) = place(line, "let x = $x(") {
             let unit = if is_whole(table) { 1.0 / f64::from(layout.size()[0]) } else { 1.0 };

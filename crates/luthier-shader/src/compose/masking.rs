@@ -6,17 +6,18 @@ use std::fmt::Write as _;
 use luthier_manifest::{LayerKind, Masking, ModelPart};
 
 use crate::MaterialSet;
+use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 
 /// The word for a masking that a set uses.
-pub(crate) fn word(masking: Masking) -> &'static str {
+pub(crate) fn word(masking: Masking) -> Feature {
     match masking {
-        Masking::Smith => "mask_smith",
-        Masking::SmithSeparable => "mask_smith_separable",
-        Masking::SchlickSmith => "mask_schlick_smith",
-        Masking::VCavity => "mask_v_cavity",
-        Masking::Kelemen => "mask_kelemen",
-        Masking::Implicit => "mask_implicit",
+        Masking::Smith => Feature::MaskSmith,
+        Masking::SmithSeparable => Feature::MaskSmithSeparable,
+        Masking::SchlickSmith => Feature::MaskSchlickSmith,
+        Masking::VCavity => Feature::MaskVCavity,
+        Masking::Kelemen => Feature::MaskKelemen,
+        Masking::Implicit => Feature::MaskImplicit,
     }
 }
 
@@ -43,7 +44,7 @@ fn expression(masking: Masking) -> &'static str {
 /// `luthier_masking`, and what it calls; nothing where all lobes of a set have the default.
 pub(crate) fn module(set: &MaterialSet<'_>, features: &Features) -> String {
     let used = used(set);
-    let Some(last) = used.last().filter(|_| features.has("masked")) else { return String::new() };
+    let Some(last) = used.last().filter(|_| features.has(Feature::Masked)) else { return String::new() };
     let mut out = include_str!("../wgsl/interface/schlick_masking.wgsl").to_owned();
     out.push_str(
         "\n/// Masking and shadowing of a layer, as its material has it: the part of the facets that both directions see.\n\

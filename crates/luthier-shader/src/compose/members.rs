@@ -1,50 +1,134 @@
 //! Assignments to members of structures that were compiled out: they are removed, so that only the member needs a condition.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use crate::languages::text::words;
+use crate::identifiers::words;
+
+/// Structures of a text and types of what its functions return.
+pub(crate) struct Kinds<'t> {
+    /// Members of structures, and their types.
+    pub(crate) structures: BTreeMap<&'t str, BTreeMap<&'t str, &'t str>>,
+    /// Structures that have a member.
+    having: BTreeMap<&'t str, Vec<&'t str>>,
+    returned: BTreeMap<&'t str, &'t str>,
+}
+
+impl<'t> Kinds<'t> {
+    pub(crate) fn of(wgsl: &'t str) -> Self {
+        let mut kinds = Self { structures: BTreeMap::new(), having: BTreeMap::new(), returned: BTreeMap::new() };
+        let mut open = None;
+        for line in wgsl.lines() {
+            if let Some(name) = line.strip_prefix("struct ") {
+                open = Some(kinds.structures.entry(name.trim_end_matches([' ', '{'])).or_default());
+            } else if line == "}" {
+                open = None;
+            } else if let Some((name, (_, kind))) = signature(line) {
+                kinds.returned.insert(name, kind);
+            } else if let (Some(members), Some((member, kind))) = (&mut open, line.trim().split_once(": ")) {
+                members.insert(member, kind.trim_end_matches(','));
+            }
+        }
+        for (name, members) in &kinds.structures {
+            members.keys().for_each(|member| kinds.having.entry(member).or_default().push(name));
+        }
+        kinds
+    }
+
+    /// Types of the parameters of a function.
+    pub(crate) fn parameters(&self, parameters: &'t str) -> BTreeMap<&'t str, &'t str> {
+        parameters.split(", ").filter_map(|parameter| parameter.split_once(": ")).collect()
+    }
+
+    /// Adds the variable that a line declares, where its type is known: `NAME: KIND;`, `NAME = VARIABLE;` or `NAME = FUNCTION(...`.
+    pub(crate) fn declare(&self, code: &'t str, variables: &mut BTreeMap<&'t str, &'t str>) {
+        let Some(declared) = code.strip_prefix("var ").or_else(|| code.strip_prefix("let ")) else { return };
+        let Some((name, value)) = declared.split_once(" = ") else {
+            variables.extend(declared.strip_suffix(';').and_then(|declared| declared.split_once(": ")));
+            return;
+        };
+        let kind = match value.split_once('(') {
+            Some((function, rest))
+                if rest.ends_with(");") && rest.matches(')').count() == 1 + rest.matches('(').count() =>
+            {
+                self.returned.get(function)
+            }
+            Some(_) => None,
+            None => variables.get(value.trim_end_matches(';')),
+        };
+        match kind.copied() {
+            Some(kind) => variables.insert(name, kind),
+            None => variables.remove(name),
+        };
+    }
+
+    /// Members of structures that a line reads: where the structure is not known, those of all that have the member.
+    pub(crate) fn read(&self, code: &'t str, variables: &BTreeMap<&'t str, &'t str>) -> Vec<(&'t str, &'t str)> {
+        let mut found = Vec::new();
+        let mut rest = code;
+        // The type of what stands before a dot; `None` where it is not known.
+        let mut kind: Option<&str> = None;
+        let mut is_first = true;
+        while let Some(next) = rest.chars().next() {
+            let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+            let (word, after) = rest.split_at(end);
+            match next {
+                _ if end == 0 => {
+                    is_first = next != '.';
+                    kind = if is_first { None } else { kind };
+                    rest = &rest[next.len_utf8()..];
+                }
+                _ if is_first => {
+                    kind = variables.get(word).copied();
+                    rest = after;
+                }
+                _ => {
+                    let known = kind.map(|kind| self.structures.get_key_value(kind));
+                    kind = match known {
+                        Some(Some((name, members))) => {
+                            found.extend(members.get_key_value(word).map(|(member, _)| (*name, *member)));
+                            members.get(word).copied()
+                        }
+                        Some(None) => Some(""),
+                        None => {
+                            found.extend(
+                                self.having
+                                    .get_key_value(word)
+                                    .into_iter()
+                                    .flat_map(|(member, names)| names.iter().map(|name| (*name, *member))),
+                            );
+                            None
+                        }
+                    };
+                    rest = after;
+                }
+            }
+        }
+        found
+    }
+}
 
 /// A text whose functions assign no member that a structure lacks, nor have a `let` that nothing reads for that.
 pub(crate) fn without_missing(wgsl: &str) -> String {
-    let mut structures: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    let mut returned = BTreeMap::new();
-    let mut open = None;
-    for line in wgsl.lines() {
-        if let Some(name) = line.strip_prefix("struct ") {
-            open = Some(structures.entry(name.trim_end_matches([' ', '{'])).or_default());
-        } else if line == "}" {
-            open = None;
-        } else if let Some((name, (_, kind))) = signature(line) {
-            returned.insert(name, kind);
-        } else if let (Some(members), Some((member, _))) = (&mut open, line.trim().split_once(": ")) {
-            members.insert(member);
-        }
-    }
+    let kinds = Kinds::of(wgsl);
     let mut out = String::with_capacity(wgsl.len());
-    let (mut function, mut is_whole) = (Vec::new(), true);
-    // Structures that parameters and variables of a function are of.
-    let mut kinds: BTreeMap<&str, &str> = BTreeMap::new();
+    let mut function = Vec::new();
+    let mut variables = BTreeMap::new();
     for line in wgsl.lines() {
         let code = line.trim();
         if let Some((_, (parameters, _))) = signature(line) {
-            kinds = parameters.split(", ").filter_map(|parameter| parameter.split_once(": ")).collect();
-        } else if let Some((name, kind)) = code.strip_prefix("var ").and_then(|code| variable(code, &kinds, &returned))
-        {
-            kinds.insert(name, kind);
+            variables = kinds.parameters(parameters);
         }
+        kinds.declare(code, &mut variables);
         let is_missing = assigned(code).is_some_and(|(name, member)| {
-            let members = kinds.get(name).and_then(|kind| structures.get(kind));
-            members.is_some_and(|members| !members.contains(member))
+            let members = variables.get(name).and_then(|kind| kinds.structures.get(kind));
+            members.is_some_and(|members| !members.contains_key(member))
         });
-        match is_missing {
-            true => is_whole = false,
-            false => function.push(line),
+        if !is_missing {
+            function.push(line);
         }
         if line == "}" {
-            let lines = function.iter().filter(|line| is_whole || !is_unread(line, &function));
-            out.extend(lines.flat_map(|line| [line, "\n"]));
-            function.clear();
-            is_whole = true;
+            without_unread_lets(&mut function);
+            out.extend(function.drain(..).flat_map(|line| [line, "\n"]));
         }
     }
     out.extend(function.iter().flat_map(|line| [line, "\n"]));
@@ -52,44 +136,40 @@ pub(crate) fn without_missing(wgsl: &str) -> String {
 }
 
 /// Name, parameters and kind of the value of a function, from its first line.
-fn signature(line: &str) -> Option<(&str, (&str, &str))> {
+pub(crate) fn signature(line: &str) -> Option<(&str, (&str, &str))> {
     let (name, rest) = line.strip_prefix("fn ")?.split_once('(')?;
     Some((name, rest.strip_suffix(" {")?.split_once(") -> ")?))
 }
 
-/// Name and structure of a variable: of `NAME: KIND;`, `NAME = VARIABLE;` or `NAME = FUNCTION(...`.
-fn variable<'t>(
-    code: &'t str,
-    kinds: &BTreeMap<&str, &'t str>,
-    returned: &BTreeMap<&str, &'t str>,
-) -> Option<(&'t str, &'t str)> {
-    if let Some((name, value)) = code.split_once(" = ") {
-        let kind = match value.split_once('(') {
-            Some((function, _)) => returned.get(function),
-            None => kinds.get(value.trim_end_matches(';')),
-        };
-        return Some((name, *kind?));
-    }
-    code.strip_suffix(';')?.split_once(": ")
-}
-
 /// Variable and member of a line `VARIABLE.MEMBER = ...`, or with `+=` or `*=`.
-fn assigned(code: &str) -> Option<(&str, &str)> {
+pub(crate) fn assigned(code: &str) -> Option<(&str, &str)> {
     let (target, _) = code.split_once("= ")?;
     let (name, member) = target.trim_end_matches([' ', '+', '*']).split_once('.')?;
     let is_name = |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     (is_name(name) && is_name(member)).then_some((name, member))
 }
 
-/// Whether a line is a `let` that no other line of code mentions.
-fn is_unread(line: &str, function: &[&str]) -> bool {
-    let declared = line.trim().strip_prefix("let ").and_then(|rest| rest.split_once(" = "));
-    let code = function.iter().filter(|line| !line.trim().starts_with("//"));
-    declared.is_some_and(|(name, _)| code.flat_map(|line| words(line)).filter(|word| *word == name).count() < 2)
+/// Removes every `let` that no other line of a function mentions.
+fn without_unread_lets<'t>(function: &mut Vec<&'t str>) {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for word in function.iter().filter(|line| !line.trim().starts_with("//")).flat_map(|line| words(line)) {
+        *counts.entry(word).or_default() += 1;
+    }
+    // From the last line up, so that what a removed line alone read is removed with it.
+    for i in (0..function.len()).rev() {
+        let line: &'t str = function[i];
+        let declared = line.trim().strip_prefix("let ").filter(|_| line.ends_with(';'));
+        if declared.and_then(|rest| rest.split_once(" = ")).is_some_and(|(name, _)| counts.get(name) < Some(&2)) {
+            words(line).for_each(|word| *counts.entry(word).or_default() -= 1);
+            function.remove(i);
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use luthier_lut::TableKind;
 
     use super::*;

@@ -3,11 +3,13 @@
 mod blocks;
 mod chain;
 mod face;
+mod feature;
 mod features;
 mod lookup;
 mod masking;
 mod members;
 mod pick;
+mod reached;
 mod slopes;
 mod statistics;
 mod words;
@@ -18,10 +20,11 @@ use luthier_lut::TableKind;
 use luthier_manifest::{MapSlot, MaterialTexture, SIDE, ShadingModel, material_buffer};
 
 use self::blocks::prune;
-use self::features::{Features, feature};
+use self::feature::Feature;
+use self::features::{Features, table_read};
+pub(crate) use self::lookup::calls;
 use self::lookup::lookup;
-pub(crate) use self::lookup::lookup_signature;
-use self::members::without_missing;
+use self::reached::reached;
 use self::words::numbered;
 use crate::{Form, MaterialSet, ShaderError, bindings};
 
@@ -42,53 +45,52 @@ pub(crate) enum Buffer {
 pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Result<String, ShaderError> {
     set.check(form)?;
     let features = Features::of(set, form);
-    let has = |name| features.has(name);
+    let has = |feature| features.has(feature);
     let mut parts = vec![constants(set)?, declarations(set, form, buffer)];
+    parts.extend([include_str!("../wgsl/pi.wgsl"), include_str!("../wgsl/interface/choose.wgsl")].map(str::to_owned));
     for table in set.tables_read(form) {
         parts.push(lookup(table, &features)?);
     }
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
-    let facets = has("chain") || has("smith") || has("coat");
+    let facets = has(Feature::Chain) || has(Feature::Smith) || has(Feature::Coat);
     let masking = masking::module(set, &features);
     let place = place(set, form);
+    // Functions that nothing calls are removed in the end. Conditions are for functions that programs around a shader call, and for names that several modules give.
     let modules = [
-        (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
+        (true, include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
-        (has("place"), place.as_str()),
-        (has("place") || has("powers"), include_str!("../wgsl/surface/local.wgsl")),
-        (has("flakes") || has("glitter") || has("picks"), include_str!("../wgsl/surface/hash.wgsl")),
-        (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
-        (has("patina"), include_str!("../wgsl/surface/patina.wgsl")),
-        (has("glitter") || has("picks"), include_str!("../wgsl/surface/glitter.wgsl")),
-        (has("noise"), include_str!("../wgsl/surface/perlin.wgsl")),
-        (has("picks"), include_str!("../wgsl/surface/pick.wgsl")),
-        (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
-        (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),
-        (has("diffuse") && !has("oren_nayar"), include_str!("../wgsl/base/lambert.wgsl")),
-        (has("fluorescent"), include_str!("../wgsl/base/reradiated.wgsl")),
-        (has("computed") && (has("bare") || has("film")), include_str!("../wgsl/interface/complex.wgsl")),
-        (has("computed") && has("bare"), include_str!("../wgsl/interface/fresnel.wgsl")),
-        (has("computed") && has("film"), include_str!("../wgsl/interface/film.wgsl")),
-        (has("schlick") && (has("computed") || has("granier")), include_str!("../wgsl/interface/schlick.wgsl")),
-        (has("closed") && has("beckmann") && facets, include_str!("../wgsl/interface/beckmann.wgsl")),
-        (has("closed") && has("ggx") && facets, include_str!("../wgsl/interface/ggx.wgsl")),
-        (
-            has("closed") && has("free_slopes") && facets || has("cavities"),
-            include_str!("../wgsl/interface/log_one_plus.wgsl"),
-        ),
-        (has("closed") && has("blinn") && facets || has("cavities"), include_str!("../wgsl/interface/blinn.wgsl")),
-        (has("closed") && has("abc") && facets, include_str!("../wgsl/interface/abc.wgsl")),
-        (has("closed") && has("sgd") && facets, include_str!("../wgsl/interface/sgd.wgsl")),
-        (has("computed"), include_str!("../wgsl/interface/full_terms.wgsl")),
-        (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
-        (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
-        (has("fitted") || has("several_reflectances"), include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
-        (has("own_f0") && (facets || has("full")), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
-        (facets, include_str!("../wgsl/interface/slopes.wgsl")),
-        (!masking.is_empty(), masking.as_str()),
-        (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),
-        (has("chain"), include_str!("../wgsl/models/path.wgsl")),
-        (has("statistics"), include_str!("../wgsl/models/statistics.wgsl")),
+        (has(Feature::Place), place.as_str()),
+        (true, include_str!("../wgsl/surface/local.wgsl")),
+        (true, include_str!("../wgsl/surface/hash.wgsl")),
+        (has(Feature::Flakes), include_str!("../wgsl/surface/flakes.wgsl")),
+        (has(Feature::Patina), include_str!("../wgsl/surface/patina.wgsl")),
+        (true, include_str!("../wgsl/surface/glitter.wgsl")),
+        (true, include_str!("../wgsl/surface/perlin.wgsl")),
+        (true, include_str!("../wgsl/surface/pick.wgsl")),
+        (true, include_str!("../wgsl/interface/power_lobe.wgsl")),
+        (has(Feature::OrenNayar), include_str!("../wgsl/base/oren_nayar.wgsl")),
+        (!has(Feature::OrenNayar), include_str!("../wgsl/base/lambert.wgsl")),
+        (true, include_str!("../wgsl/base/reradiated.wgsl")),
+        (true, include_str!("../wgsl/interface/complex.wgsl")),
+        (has(Feature::Computed), include_str!("../wgsl/interface/fresnel.wgsl")),
+        (has(Feature::Computed), include_str!("../wgsl/interface/film.wgsl")),
+        (true, include_str!("../wgsl/interface/schlick.wgsl")),
+        (true, include_str!("../wgsl/interface/beckmann.wgsl")),
+        (true, include_str!("../wgsl/interface/ggx.wgsl")),
+        (true, include_str!("../wgsl/interface/log_one_plus.wgsl")),
+        (true, include_str!("../wgsl/interface/blinn.wgsl")),
+        (true, include_str!("../wgsl/interface/abc.wgsl")),
+        (true, include_str!("../wgsl/interface/sgd.wgsl")),
+        (has(Feature::Computed), include_str!("../wgsl/interface/full_terms.wgsl")),
+        (has(Feature::Closed) && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
+        (!has(Feature::Full), include_str!("../wgsl/interface/baked_terms.wgsl")),
+        (true, include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
+        (has(Feature::OwnF0), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
+        (true, include_str!("../wgsl/interface/slopes.wgsl")),
+        (true, masking.as_str()),
+        (true, include_str!("../wgsl/interface/smith.wgsl")),
+        (has(Feature::Chain), include_str!("../wgsl/models/path.wgsl")),
+        (has(Feature::Statistics), include_str!("../wgsl/models/statistics.wgsl")),
     ];
     parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
     for model in set.models() {
@@ -98,21 +100,16 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     parts.extend(pick::pick(set));
     parts.push(eval(set, &features));
     parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
-    for (word, module) in [
-        ("luthier_choose(", include_str!("../wgsl/interface/choose.wgsl")),
-        ("LUTHIER_PI", include_str!("../wgsl/pi.wgsl")),
-    ] {
-        if parts.iter().any(|part| part.contains(word)) {
-            parts.insert(2, module.to_owned());
-        }
-    }
     parts.retain(|part| !part.trim().is_empty());
-    let wgsl = without_missing(&parts.join("\n"));
-    Ok(match buffer {
+    // Programs around a shader read these of a layer.
+    let kept: &[&str] = if has(Feature::Interface) { &["kind", "alpha"] } else { &["kind"] };
+    let wgsl = parts.join("\n");
+    let wgsl = match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
         Buffer::Texture => read_from_texture(&wgsl),
         Buffer::Storage | Buffer::Sized => wgsl,
-    })
+    };
+    Ok(reached(&wgsl, kept))
 }
 
 /// The module of places, with the number of layers that have values of their own.
@@ -130,7 +127,7 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
 /// base, which directions decide where one is rough. `$free_slopes` returns D of the distributions of the set. `$tiles` are the members of a layer that point into tables, `$assign_tiles` reads them. `$distribution_read`
 /// is pi alpha^2 D from the table, which is the distribution's term where no layer has it computed.
 pub(crate) fn text(module: &str, features: &Features) -> String {
-    let [parameter, argument, layer] = if features.has("place") {
+    let [parameter, argument, layer] = if features.has(Feature::Place) {
         ["place: LuthierPlace, ", "place, ", "luthier_layer_at(place, "]
     } else {
         ["", "", "luthier_layer("]
@@ -139,9 +136,9 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     let text = prune(&text, features).replace("    $free_slopes\n", &slopes::returned(features));
     let text =
         text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
-    let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };
+    let term = if features.has(Feature::Closed) { "luthier_distribution_read" } else { "luthier_distribution_term" };
     let text = reflectances(&numbered(&text).replace("$distribution_read", term), features);
-    if features.has("oren_nayar") {
+    if features.has(Feature::OrenNayar) {
         return text.replace("$diffuse(", "luthier_diffuse(");
     }
     let mut parts = text.split("$diffuse(layer");
@@ -151,18 +148,18 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
 
 /// The functions that give the reflectance of a layer: `luthier_fresnel_term` where a set has one of them, else it chooses among them.
 fn reflectances(text: &str, features: &Features) -> String {
-    let is_one = !features.has("several_reflectances");
+    let is_one = !features.has(Feature::SeveralReflectances);
     // Tables have the names of these functions.
-    let text = match features.has("computed") && !features.has("full") {
+    let text = match features.has(Feature::Computed) && !features.has(Feature::Full) {
         true => {
             text.replace("luthier_fresnel(", "luthier_fresnel_exact(").replace("luthier_film(", "luthier_film_exact(")
         }
         false => text.to_owned(),
     };
-    let chosen = if features.has("own_f0") { "luthier_fresnel_given" } else { "luthier_fresnel_term" };
+    let chosen = if features.has(Feature::OwnF0) { "luthier_fresnel_given" } else { "luthier_fresnel_term" };
     let text = text.replace("$fresnel_chosen", chosen);
     ["read", "computed", "fitted"].iter().fold(text, |text, how| {
-        let name = match (is_one, features.has("own_f0")) {
+        let name = match (is_one, features.has(Feature::OwnF0)) {
             (true, false) => "luthier_fresnel_term".to_owned(),
             (true, true) => "luthier_fresnel_given".to_owned(),
             (false, _) => format!("luthier_fresnel_{how}"),
@@ -173,7 +170,7 @@ fn reflectances(text: &str, features: &Features) -> String {
 
 /// The members of a layer that say where in the tables it is.
 fn tiles(features: &Features) -> String {
-    let is_read = |kind: &TableKind| features.has(feature(*kind)) && kind.facts().slot.is_some();
+    let is_read = |kind: &TableKind| features.has(table_read(*kind)) && kind.facts().slot.is_some();
     let names = TableKind::ALL.into_iter().filter(is_read).map(TableKind::name);
     names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
 }
@@ -192,7 +189,7 @@ fn assign_tiles() -> String {
 fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
     let module = |text| self::text(text, features);
     match model {
-        ShadingModel::Elek if features.has("clamped") => vec![
+        ShadingModel::Elek if features.has(Feature::Clamped) => vec![
             module(include_str!("../wgsl/models/elek.wgsl")),
             module(&chain::eval(set, model, "luthier_elek_interface", features)),
         ],
@@ -205,7 +202,7 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
         ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
         ShadingModel::Lobes => {
             let mut modules = vec![module(include_str!("../wgsl/models/lobes.wgsl"))];
-            if features.has("environment") {
+            if features.has(Feature::Environment) {
                 modules.push(module(include_str!("../wgsl/models/lobes_environment.wgsl")));
             }
             modules
@@ -290,7 +287,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
          /// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.\n";
     let guard = "    if min(wi.z, wo.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n";
     let mut body = String::from(guard);
-    let turned = features.has("place");
+    let turned = features.has(Feature::Place);
     if turned {
         body.push_str(
             "    let wi_here = luthier_local(place.normal, wi);\n    let wo_here = luthier_local(place.normal, wo);\n",
@@ -300,7 +297,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     let call = |model: ShadingModel| {
         let name = function(model);
         let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
-        match (features.has("fluorescent"), model.is_path()) {
+        match (features.has(Feature::Fluorescent), model.is_path()) {
             (false, _) => format!("{name}({arguments})"),
             (true, true) => format!("{name}_lit({arguments}, light)"),
             (true, false) => format!("light * {name}({arguments})"),
@@ -318,7 +315,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
         let _ = writeln!(body, "    return {};", call(*first));
     }
     let parameters = "material: u32, wi: vec3<f32>, wo: vec3<f32>";
-    if features.has("fluorescent") {
+    if features.has(Feature::Fluorescent) {
         return lit(&body, turned, parameters, SUMMARY);
     }
     if turned {

@@ -2,20 +2,21 @@
 
 use std::fmt::Write as _;
 
+use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 
 /// Distributions by their features: number in the buffer, and pi alpha^2 D of squares of the half vector.
-const FORMS: [(&str, u32, &str); 5] = [
-    ("beckmann", 0, "luthier_beckmann(falloff, z_sq, across_sq)"),
-    ("ggx", 1, "luthier_ggx(falloff, z_sq, across_sq)"),
-    ("blinn", 2, "luthier_blinn(falloff, z_sq, across_sq)"),
-    ("abc", 3, "luthier_abc(layer.shape, falloff, z_sq, across_sq)"),
-    ("sgd", 4, "luthier_sgd(layer.shape, falloff, z_sq, across_sq)"),
+const FORMS: [(Feature, u32, &str); 5] = [
+    (Feature::Beckmann, 0, "luthier_beckmann(falloff, z_sq, across_sq)"),
+    (Feature::Ggx, 1, "luthier_ggx(falloff, z_sq, across_sq)"),
+    (Feature::Blinn, 2, "luthier_blinn(falloff, z_sq, across_sq)"),
+    (Feature::Abc, 3, "luthier_abc(layer.shape, falloff, z_sq, across_sq)"),
+    (Feature::Sgd, 4, "luthier_sgd(layer.shape, falloff, z_sq, across_sq)"),
 ];
 
 /// The statements that return D of a layer: of its own distribution, where a set has several.
 pub(crate) fn returned(features: &Features) -> String {
-    let used: Vec<_> = FORMS.iter().filter(|(name, ..)| features.has(name)).collect();
+    let used: Vec<_> = FORMS.iter().filter(|(name, ..)| features.has(*name)).collect();
     let mut out = String::new();
     for (i, (_, number, value)) in used.iter().enumerate().rev() {
         // The highest numbers first, so that each has one comparison.

@@ -4,13 +4,14 @@ mod manual;
 
 use luthier_manifest::Interface;
 
-use self::manual::{STRUCTURES, is_public, manual};
-use crate::compose::{Buffer, compose};
-use crate::languages::{glsl, hlsl, msl};
+use self::manual::manual;
+use crate::compose::{Buffer, calls, compose};
+use crate::functions::{STRUCTURES, is_public};
+use crate::languages::{glsl, hlsl, msl, spirv};
 use crate::{Form, MaterialSet, ShaderError, Target, bindings, validate};
 
 /// The entry point of a complete shader, in WGSL.
-pub(crate) const FRAGMENT: &str = include_str!("../wgsl/fragment.wgsl");
+const FRAGMENT: &str = include_str!("../wgsl/fragment.wgsl");
 
 /// Kind of an emitted text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +73,23 @@ pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<Str
     })
 }
 
+/// A library in SPIR-V 1.3, little endian: capability Linkage, no entry point, and every function exported under its name for
+/// a linker (`spirv-link`). Drivers take it only once it is linked.
+///
+/// # Errors
+/// As [`emit`].
+pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
+    spirv::library_spirv(&body(set, form, Target::SpirV, "")?)
+}
+
+/// A complete fragment shader in SPIR-V 1.3 (Vulkan 1.1), little endian, with the entry point `main`.
+///
+/// # Errors
+/// As [`emit`].
+pub fn complete_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
+    spirv::shader(&body(set, form, Target::SpirV, FRAGMENT)?)
+}
+
 /// A text of a language below its manual; entry points of GLSL are the caller's.
 fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result<String, ShaderError> {
     let is_glsl = matches!(target, Target::Glsl450 | Target::GlslEs300);
@@ -86,7 +104,7 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
             wgsl.clone()
         }
         Target::Glsl450 | Target::GlslEs300 => {
-            glsl::from_wgsl(&wgsl, &bindings(set, form), 0, &glsl::calls(set, form), target)?
+            glsl::from_wgsl(&wgsl, &bindings(set, form), 0, &calls(set, form), target)?
         }
         Target::Hlsl => hlsl::from_wgsl(&wgsl, &bindings(set, form), 0)?,
         Target::Msl => msl::from_wgsl(&wgsl, &bindings(set, form))?,
@@ -96,7 +114,7 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
 }
 
 /// The WGSL that a target is made from, and what WGSL is to follow it.
-pub(crate) fn body(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
+fn body(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
     let buffer = match target {
         Target::GlslEs300 => Buffer::Texture,
         // Arrays of any length would want a table of lengths as one more argument.

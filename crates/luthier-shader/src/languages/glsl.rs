@@ -1,17 +1,16 @@
 //! GLSL of a composed module: naga's output, with our names, comments and no entry point.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use luthier_manifest::BindingEntry;
 use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
 use naga::proc::BoundsCheckPolicies;
 use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
 
-use crate::compose::lookup_signature;
-use crate::languages::text::{layout, rename};
+use crate::identifiers::rename;
+use crate::languages::text::layout;
 use crate::validate::module;
-use crate::{Form, MaterialSet, ShaderError, Target};
+use crate::{ShaderError, Target};
 
 /// naga writes GLSL for an entry point only; this one is cut off again.
 const ENTRY: &str = "luthier_entry";
@@ -50,19 +49,6 @@ pub(crate) fn from_wgsl(
         return Err(ShaderError::untranslatable(target, "a binding without a name"));
     }
     Ok(layout(&body, &module, wgsl))
-}
-
-/// Calls that use every binding of a set, so that naga reports the name it gives to each.
-pub(crate) fn calls(set: &MaterialSet<'_>, form: Form) -> String {
-    let mut out = "    _ = luthier_eval(0u, vec3<f32>(), vec3<f32>());\n".to_owned();
-    for table in set.tables_read(form) {
-        let arguments: Vec<String> = lookup_signature(table.kind).0.iter().map(|kind| format!("{kind}()")).collect();
-        let _ = writeln!(out, "    _ = luthier_lookup_{}({});", table.kind.name(), arguments.join(", "));
-    }
-    if set.shows_environment(form) {
-        out.push_str("    _ = luthier_environment(luthier_prepare(0u, vec3<f32>()), mat3x3<f32>(), 0.0);\n");
-    }
-    out
 }
 
 /// Map from naga's names of bindings and blocks to ours.

@@ -3,8 +3,9 @@
 use luthier_manifest::BindingEntry;
 use naga::back::hlsl::{Options, PipelineOptions, ShaderModel, Writer};
 
+use crate::identifiers::rename;
 use crate::languages::lint;
-use crate::languages::text::{helper, layout, rename};
+use crate::languages::text::{helper, layout};
 use crate::validate::module;
 use crate::{ShaderError, Target};
 

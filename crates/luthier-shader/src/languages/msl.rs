@@ -6,8 +6,9 @@ use luthier_manifest::BindingEntry;
 use naga::ResourceBinding;
 use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
 
+use crate::identifiers::rename;
 use crate::languages::lint;
-use crate::languages::text::{helper, layout, rename};
+use crate::languages::text::{helper, layout};
 use crate::validate::module;
 use crate::{ShaderError, Target};
 

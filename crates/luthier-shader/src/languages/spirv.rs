@@ -4,9 +4,8 @@ use std::collections::BTreeSet;
 
 use naga::back::spv::{Options, WriterFlags, write_vec};
 
-use crate::emit::{FRAGMENT, body};
 use crate::validate::module;
-use crate::{Form, MaterialSet, ShaderError, Target};
+use crate::{ShaderError, Target};
 
 /// Numbers of the SPIR-V specification, version 1.3, section 3.
 const OP_NAME: u32 = 5;
@@ -19,16 +18,7 @@ const LINKAGE_TYPE_EXPORT: u32 = 0;
 /// Words before the first instruction.
 const HEADER_WORDS: usize = 5;
 
-/// A library in SPIR-V 1.3, little endian: capability Linkage, no entry point, and every function exported under its name for
-/// a linker (`spirv-link`). Drivers take it only once it is linked.
-///
-/// # Errors
-/// As [`emit`](crate::emit).
-pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    library_spirv(&body(set, form, Target::SpirV, "")?)
-}
-
-/// A library in SPIR-V of any WGSL module, as [`emit_spirv`] writes it.
+/// A library in SPIR-V of any WGSL module, as [`emit_spirv`](crate::emit_spirv) writes it.
 ///
 /// # Errors
 /// When naga refuses the module.
@@ -36,12 +26,9 @@ pub fn library_spirv(wgsl: &str) -> Result<Vec<u8>, ShaderError> {
     Ok(bytes(&with_exports(&spirv_words(wgsl)?)))
 }
 
-/// A complete fragment shader in SPIR-V 1.3 (Vulkan 1.1), little endian, with the entry point `main`.
-///
-/// # Errors
-/// As [`emit`](crate::emit).
-pub fn complete_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    Ok(bytes(&spirv_words(&body(set, form, Target::SpirV, FRAGMENT)?)?))
+/// A shader in SPIR-V of a WGSL module with entry points.
+pub(crate) fn shader(wgsl: &str) -> Result<Vec<u8>, ShaderError> {
+    Ok(bytes(&spirv_words(wgsl)?))
 }
 
 /// SPIR-V 1.3 of any WGSL module, in words: for kernels around a snippet.

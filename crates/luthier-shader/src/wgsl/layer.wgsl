@@ -1,12 +1,6 @@
-//? below|granier, conductor|granier
 const LUTHIER_DIELECTRIC: u32 = 0u;
-//? end
-//? granier_bare
 const LUTHIER_CONDUCTOR: u32 = 1u;
-//? end
-//? mixed|granier_base|base_color|fluorescent, diffuse|granier_base
 const LUTHIER_DIFFUSE: u32 = 2u;
-//? end
 const LUTHIER_MATERIAL_WORDS: u32 = $words_material;
 const LUTHIER_LAYER_WORDS: u32 = $words_layer;
 
@@ -14,137 +8,75 @@ const LUTHIER_LAYER_WORDS: u32 = $words_layer;
 struct LuthierLayer {
     /// 0 dielectric, 1 conductor, 2 diffuse base.
     kind: u32,
-    //? interface
     /// Slope parameter of the micro-surface.
     alpha: f32,
-    //? chain|smith|coat
     /// How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
     falloff: f32,
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
-    //? end
-    //? closed|smith|coat|cavities, several_slopes
-    //? free_slopes
     /// Slope distribution: 0 Beckmann, 1 GGX, 2 Blinn, 3 ABC, 4 SGD.
     distribution: f32,
-    //? else
-    /// Slope distribution: 0 Beckmann, 1 GGX.
-    distribution: f32,
-    //? end
-    //? end
-    //? abc|sgd
     /// Parameters of its distribution: b and c of ABC, 1 / alpha and p of SGD.
     shape: vec2<f32>,
-    //? end
-    //? anisotropic
     /// Slope parameters along the tangent and the bitangent of the layer.
     alpha_xy: vec2<f32>,
     /// Cosine and sine of the angle from the surface's tangent to the layer's.
     rotation: vec2<f32>,
-    //? end
-    //? computed|granier
-    //? schlick
     /// Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     ior_n: vec3<f32>,
     /// Imaginary part of it; -1 of an interface of Schlick's.
     ior_k: vec3<f32>,
-    //? else
-    /// Real part of the index below, at three wavelengths.
-    ior_n: vec3<f32>,
-    /// Imaginary part of it.
-    ior_k: vec3<f32>,
-    //? end
-    //? film
     /// Real part of the index of the film; 0 without a film.
     film_ior_n: vec3<f32>,
     /// Imaginary part of it.
     film_ior_k: vec3<f32>,
     /// Thickness of the film in wavelengths of the medium above.
     film_thickness_waves: vec3<f32>,
-    //? end
-    //? end
-    //? several_maskings
     /// Masking: 0 Smith, 1 Smith for each direction, 2 Schlick's fit, 3 V-cavities, 4 Kelemen and Szirmay-Kalos, 5 implicit.
     masking: u32,
-    //? end
-    //? several_reflectances
     /// Reflectance: 0 a table, 1 Fresnel's equations, 2 Schlick's form, 3 with Lazanyi's correction.
     reflectance: u32,
-    //? end
-    //? internal
     /// Part of the light from below that facets reflect back: 1, or 0 where all of it comes out.
     internal_reflection: f32,
-    //? end
-    //? own_angles
     /// Whether light passes by its own angles with the normal, and not by that of the half vector.
     own_angles: bool,
-    //? end
-    //? fitted
     /// Reflectance at normal incidence, where it is a curve.
     f0: vec3<f32>,
-    //? lazanyi
     /// Weight of the curve's correction.
     edge_weight: vec3<f32>,
     /// Exponent of it.
     edge_exponent: vec3<f32>,
-    //? end
-    //? end
-    //? end
-    //? bent
     /// Index below over index above, for the refracted directions.
     eta: f32,
-    //? end
-    //? below|lobes_tilted
-    //? chain
     /// Index above over index below, for the refracted directions.
     inverse_eta: f32,
     /// Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     grazing_cos_sq: f32,
-    //? end
-    //? absorption
     /// Optical depth of the slab below the interface over ln 2, RGB: light that goes straight through is halved so many times.
     optical_depth_log2: vec3<f32>,
-    //? end
-    //? end
-    //? diffuse|granier_base
     /// BRDF of a Lambertian base, albedo over pi, RGB.
     lambert: vec3<f32>,
-    //? oren_nayar
     /// Oren-Nayar slope deviation in radians; 0 is Lambert.
     sigma: f32,
-    //? end
-    //? fluorescent
     /// Whether it is a base that sends light of one channel out in others.
     fluoresces: bool,
     /// Rows of its matrix from light to light, over pi.
     reradiated_red: vec3<f32>,
     reradiated_green: vec3<f32>,
     reradiated_blue: vec3<f32>,
-    //? end
-    //? end
     $tiles
-    //? total_reflection, fresnel|film_table
     /// Squared cotangent of the critical angle; 0 where nothing is totally reflected.
     critical_cot_sq: f32,
-    //? end
-    //? phase|thickness|film_table
     /// Nominal thickness of the film, nm; 0 without a film.
     film_thickness_nm: f32,
     /// Greatest thickness of the film, nm; 0 without a film.
     film_thickness_max_nm: f32,
-    //? end
-    //? chain_patina
     /// Factor on its reflectance, RGB: tarnish under patina.
     tarnish: vec3<f32>,
-    //? end
-    //? own_f0
     /// Factor on what its interface does not reflect, RGB.
     passing: vec3<f32>,
-    //? end
-    //? own_normals
     /// Normal of its interface at a place, unit, in the frame of the place.
     normal: vec3<f32>,
-    //? end
 }
 
 /// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
@@ -174,21 +106,22 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let numbers = luthier_materials[first + $word_numbers];
     var layer: LuthierLayer;
     //? packed
-    let kind = luthier_whole(numbers.x);
-    layer.kind = kind & 3u;
-    layer.reflectance = (kind >> 2u) & 3u;
-    //? internal
-    layer.masking = (kind >> 4u) & 7u;
-    layer.internal_reflection = select(1.0, 0.0, kind >= 128u);
-    //? own_angles
-    layer.own_angles = kind >= 256u;
-    //? end
-    //? else
-    layer.masking = kind >> 4u;
-    //? end
+    {
+        let kind = luthier_whole(numbers.x);
+        layer.kind = kind & 3u;
+        layer.reflectance = (kind >> 2u) & 3u;
+        //? internal
+        {
+            layer.masking = (kind >> 4u) & 7u;
+            layer.internal_reflection = select(1.0, 0.0, kind >= 128u);
+            //? own_angles
+            layer.own_angles = kind >= 256u;
+        }
+        //? else
+        layer.masking = kind >> 4u;
+    }
     //? else
     layer.kind = luthier_whole(numbers.x);
-    //? end
     layer.alpha = numbers.y;
     layer.falloff = head.x;
     layer.peak = head.y;
@@ -216,12 +149,13 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.edge_weight = luthier_materials[first + $word_film_ior_k].xyz;
     layer.edge_exponent = luthier_materials[first + $word_film_thickness_waves].xyz;
     //? abc|sgd
-    let is_shaped = base.w > 2.5;
-    layer.shape = luthier_materials[first + $word_tangent].xy;
-    layer.alpha_xy = select(luthier_materials[first + $word_tangent].xy, vec2<f32>(numbers.y), is_shaped);
+    {
+        let is_shaped = base.w > 2.5;
+        layer.shape = luthier_materials[first + $word_tangent].xy;
+        layer.alpha_xy = select(luthier_materials[first + $word_tangent].xy, vec2<f32>(numbers.y), is_shaped);
+    }
     //? else
     layer.alpha_xy = luthier_materials[first + $word_tangent].xy;
-    //? end
     layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);
     layer.passing = vec3<f32>(1.0);
@@ -229,7 +163,6 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     return layer;
 }
 
-//? place|clamped, interface
 /// A layer of another slope parameter.
 fn luthier_with_alpha(layer: LuthierLayer, alpha: f32) -> LuthierLayer {
     var next = layer;
@@ -239,4 +172,3 @@ fn luthier_with_alpha(layer: LuthierLayer, alpha: f32) -> LuthierLayer {
     next.peak = layer.peak * (sharper * sharper);
     return next;
 }
-//? end

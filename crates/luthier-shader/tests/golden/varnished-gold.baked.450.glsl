@@ -27,8 +27,6 @@ struct LuthierLayer {
     uint kind;
     // Slope parameter of the micro-surface.
     float alpha;
-    // How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
-    float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
     // Index above over index below, for the refracted directions.
@@ -103,14 +101,13 @@ uint luthier_layer_count(uint material) {
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
-    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     uint first = luthier_whole(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_materials[first];
     vec4 tiles = luthier_materials[first + 1u];
     vec4 numbers = luthier_materials[first + 10u];
     layer.kind = luthier_whole(numbers.x);
     layer.alpha = numbers.y;
-    layer.falloff = head.x;
     layer.peak = head.y;
     layer.inverse_eta = head.z;
     layer.grazing_cos_sq = head.w;
@@ -120,12 +117,12 @@ LuthierLayer luthier_layer(uint material, uint index) {
 }
 
 // Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
-vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
-    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
+vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_i) {
+    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_i);
 }
 
-// pi alpha^2 D of a layer, from the table and squares of the half vector.
-float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
+// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from the table and squares of the half vector.
+float luthier_distribution_term(LuthierLayer layer, float sharper, float z_sq, float across_sq) {
     float alpha = layer.alpha;
     float inverse_length_sq = 1.0 / (z_sq + across_sq);
     float cos_theta_h = sqrt(z_sq * inverse_length_sq);
@@ -136,33 +133,33 @@ float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq)
 float luthier_quarter_density(LuthierLayer layer, vec3 bisector) {
     float z_sq = bisector.z * bisector.z;
     float across_sq = dot(bisector.xy, bisector.xy);
-    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
+    return luthier_distribution_term(layer, 1.0, z_sq, across_sq) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 // layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
-LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
-    LuthierPath next = path;
+LuthierPath luthier_add_interface(LuthierPath above, LuthierLayer layer) {
+    LuthierPath next = above;
     next.open = false;
-    vec2 cosines = vec2(path.wi_local.z, path.wo_local.z);
-    vec3 bisector = vec3(path.across, cosines.x + cosines.y);
+    vec2 cosines = vec2(above.wi_local.z, above.wo_local.z);
+    vec3 bisector = vec3(above.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * inversesqrt(length_sq);
     float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
     float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.total = path.total + ((path.throughput * fresnel) * geometry);
+    next.total = above.total + ((above.throughput * fresnel) * geometry);
     vec2 bent = cosines * layer.inverse_eta;
     vec2 cosines_sq = (bent * bent) + vec2(layer.grazing_cos_sq);
     vec2 secants = inversesqrt(cosines_sq);
     vec2 refracted = cosines_sq * secants;
-    next.wi_local = vec3(path.wi_local.xy * layer.inverse_eta, refracted.x);
-    next.wo_local = vec3(path.wo_local.xy * layer.inverse_eta, refracted.y);
-    next.across = path.across * layer.inverse_eta;
+    next.wi_local = vec3(above.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3(above.wo_local.xy * layer.inverse_eta, refracted.y);
+    next.across = above.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     vec3 returned = vec3(1.0) - (masking * fresnel);
-    next.throughput = (path.throughput * (vec3(1.0) - fresnel)) * returned;
+    next.throughput = (above.throughput * (vec3(1.0) - fresnel)) * returned;
     return next;
 }
 

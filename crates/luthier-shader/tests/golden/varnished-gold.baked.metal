@@ -39,8 +39,6 @@ struct LuthierLayer {
     uint kind;
     // Slope parameter of the micro-surface.
     float alpha;
-    // How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
-    float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
     // Index above over index below, for the refracted directions.
@@ -131,7 +129,6 @@ LuthierLayer luthier_layer(uint material, uint index, device LuthierMaterials co
     metal::float4 numbers = luthier_materials.inner[first + 10u];
     layer.kind = luthier_whole(numbers.x);
     layer.alpha = numbers.y;
-    layer.falloff = head.x;
     layer.peak = head.y;
     layer.inverse_eta = head.z;
     layer.grazing_cos_sq = head.w;
@@ -143,16 +140,17 @@ LuthierLayer luthier_layer(uint material, uint index, device LuthierMaterials co
 // Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
 metal::float3 luthier_fresnel_term(
     LuthierLayer layer,
-    float cos_theta_d,
+    float cos_theta_i,
     metal::texture2d<float> luthier_fresnel,
     metal::sampler luthier_sampler
 ) {
-    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d, luthier_fresnel, luthier_sampler);
+    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_i, luthier_fresnel, luthier_sampler);
 }
 
-// pi alpha^2 D of a layer, from the table and squares of the half vector.
+// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from the table and squares of the half vector.
 float luthier_distribution_term(
     LuthierLayer layer,
+    float sharper,
     float z_sq,
     float across_sq,
     metal::texture2d<float> luthier_distribution,
@@ -173,39 +171,39 @@ float luthier_quarter_density(
 ) {
     float z_sq = bisector.z * bisector.z;
     float across_sq = metal::dot(bisector.xy, bisector.xy);
-    return luthier_distribution_term(layer, z_sq, across_sq, luthier_distribution, luthier_sampler) * layer.peak;
+    return luthier_distribution_term(layer, 1.0, z_sq, across_sq, luthier_distribution, luthier_sampler) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 // layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
 LuthierPath luthier_add_interface(
-    LuthierPath path,
+    LuthierPath above,
     LuthierLayer layer,
     metal::texture2d<float> luthier_fresnel,
     metal::texture2d<float> luthier_distribution,
     metal::sampler luthier_sampler
 ) {
-    LuthierPath next = path;
+    LuthierPath next = above;
     next.open = false;
-    metal::float2 cosines = metal::float2(path.wi_local.z, path.wo_local.z);
-    metal::float3 bisector = metal::float3(path.across, cosines.x + cosines.y);
+    metal::float2 cosines = metal::float2(above.wi_local.z, above.wo_local.z);
+    metal::float3 bisector = metal::float3(above.across, cosines.x + cosines.y);
     float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * metal::rsqrt(length_sq);
     float cos_theta_d = metal::min((0.25 * length_sq) * secant_d, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d, luthier_fresnel, luthier_sampler);
     float masking = metal::min((bisector.z * metal::min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
     float geometry = (luthier_quarter_density(layer, bisector, luthier_distribution, luthier_sampler) * masking) / (cosines.x * cosines.y);
-    next.total = path.total + ((path.throughput * fresnel) * geometry);
+    next.total = above.total + ((above.throughput * fresnel) * geometry);
     metal::float2 bent = cosines * layer.inverse_eta;
     metal::float2 cosines_sq = (bent * bent) + metal::float2(layer.grazing_cos_sq);
     metal::float2 secants = metal::rsqrt(cosines_sq);
     metal::float2 refracted = cosines_sq * secants;
-    next.wi_local = metal::float3(path.wi_local.xy * layer.inverse_eta, refracted.x);
-    next.wo_local = metal::float3(path.wo_local.xy * layer.inverse_eta, refracted.y);
-    next.across = path.across * layer.inverse_eta;
+    next.wi_local = metal::float3(above.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = metal::float3(above.wo_local.xy * layer.inverse_eta, refracted.y);
+    next.across = above.across * layer.inverse_eta;
     next.open = metal::min(cosines_sq.x, cosines_sq.y) > 0.0;
     metal::float3 returned = metal::float3(1.0) - (masking * fresnel);
-    next.throughput = (path.throughput * (metal::float3(1.0) - fresnel)) * returned;
+    next.throughput = (above.throughput * (metal::float3(1.0) - fresnel)) * returned;
     return next;
 }
 

@@ -61,8 +61,6 @@ struct LuthierLayer {
     kind: u32,
     /// Slope parameter of the micro-surface.
     alpha: f32,
-    /// How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
-    falloff: f32,
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
     /// Index above over index below, for the refracted directions.
@@ -99,7 +97,6 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     var layer: LuthierLayer;
     layer.kind = luthier_whole(numbers.x);
     layer.alpha = numbers.y;
-    layer.falloff = head.x;
     layer.peak = head.y;
     layer.inverse_eta = head.z;
     layer.grazing_cos_sq = head.w;
@@ -109,12 +106,13 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
 }
 
 /// Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
-fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_i: f32) -> vec3<f32> {
+    let cos_theta_d = cos_theta_i;
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
 
-/// pi alpha^2 D of a layer, from the table and squares of the half vector.
-fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> f32 {
+/// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from the table and squares of the half vector.
+fn luthier_distribution_term(layer: LuthierLayer, sharper: f32, z_sq: f32, across_sq: f32) -> f32 {
     let alpha = layer.alpha;
     let inverse_length_sq = 1.0 / (z_sq + across_sq);
     let cos_theta_h = sqrt(z_sq * inverse_length_sq);
@@ -125,7 +123,7 @@ fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> 
 fn luthier_quarter_density(layer: LuthierLayer, bisector: vec3<f32>) -> f32 {
     let z_sq = bisector.z * bisector.z;
     let across_sq = dot(bisector.xy, bisector.xy);
-    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
+    return luthier_distribution_term(layer, 1.0, z_sq, across_sq) * layer.peak;
 }
 
 /// State of the light on its way down and back up: directions, and sums over the layers so far.
@@ -146,7 +144,8 @@ struct LuthierPath {
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
-fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    let path = above;
     var next = path;
     next.open = false;
 

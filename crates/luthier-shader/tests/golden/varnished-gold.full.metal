@@ -37,12 +37,12 @@ struct LuthierLayer {
     float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
-    // Slope distribution: 0 Beckmann, 1 GGX.
+    // Slope distribution: 0 Beckmann, 1 GGX, 2 Blinn, 3 ABC, 4 SGD.
     float distribution;
     char _pad5[12];
-    // Real part of the index below, at three wavelengths.
+    // Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     metal::float3 ior_n;
-    // Imaginary part of it.
+    // Imaginary part of it; -1 of an interface of Schlick's.
     metal::packed_float3 ior_k;
     // Index above over index below, for the refracted directions.
     float inverse_eta;
@@ -164,8 +164,8 @@ metal::float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, from squares of the half vector.
-float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
+// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from squares of the half vector.
+float luthier_distribution_term(LuthierLayer layer, float sharper, float z_sq, float across_sq) {
     float falloff = layer.falloff;
     if (layer.distribution > 0.5) {
         return luthier_ggx(falloff, z_sq, across_sq);
@@ -177,33 +177,33 @@ float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq)
 float luthier_quarter_density(LuthierLayer layer, metal::float3 bisector) {
     float z_sq = bisector.z * bisector.z;
     float across_sq = metal::dot(bisector.xy, bisector.xy);
-    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
+    return luthier_distribution_term(layer, 1.0, z_sq, across_sq) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 // layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
-LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
-    LuthierPath next = path;
+LuthierPath luthier_add_interface(LuthierPath above, LuthierLayer layer) {
+    LuthierPath next = above;
     next.open = false;
-    metal::float2 cosines = metal::float2(path.wi_local.z, path.wo_local.z);
-    metal::float3 bisector = metal::float3(path.across, cosines.x + cosines.y);
+    metal::float2 cosines = metal::float2(above.wi_local.z, above.wo_local.z);
+    metal::float3 bisector = metal::float3(above.across, cosines.x + cosines.y);
     float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * metal::rsqrt(length_sq);
     float cos_theta_d = metal::min((0.25 * length_sq) * secant_d, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = metal::min((bisector.z * metal::min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
     float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.total = path.total + ((path.throughput * fresnel) * geometry);
+    next.total = above.total + ((above.throughput * fresnel) * geometry);
     metal::float2 bent = cosines * layer.inverse_eta;
     metal::float2 cosines_sq = (bent * bent) + metal::float2(layer.grazing_cos_sq);
     metal::float2 secants = metal::rsqrt(cosines_sq);
     metal::float2 refracted = cosines_sq * secants;
-    next.wi_local = metal::float3(path.wi_local.xy * layer.inverse_eta, refracted.x);
-    next.wo_local = metal::float3(path.wo_local.xy * layer.inverse_eta, refracted.y);
-    next.across = path.across * layer.inverse_eta;
+    next.wi_local = metal::float3(above.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = metal::float3(above.wo_local.xy * layer.inverse_eta, refracted.y);
+    next.across = above.across * layer.inverse_eta;
     next.open = metal::min(cosines_sq.x, cosines_sq.y) > 0.0;
     metal::float3 returned = metal::float3(1.0) - (masking * fresnel);
-    next.throughput = (path.throughput * (metal::float3(1.0) - fresnel)) * returned;
+    next.throughput = (above.throughput * (metal::float3(1.0) - fresnel)) * returned;
     return next;
 }
 

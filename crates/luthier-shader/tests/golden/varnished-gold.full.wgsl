@@ -42,11 +42,11 @@ struct LuthierLayer {
     falloff: f32,
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
-    /// Slope distribution: 0 Beckmann, 1 GGX.
+    /// Slope distribution: 0 Beckmann, 1 GGX, 2 Blinn, 3 ABC, 4 SGD.
     distribution: f32,
-    /// Real part of the index below, at three wavelengths.
+    /// Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     ior_n: vec3<f32>,
-    /// Imaginary part of it.
+    /// Imaginary part of it; -1 of an interface of Schlick's.
     ior_k: vec3<f32>,
     /// Index above over index below, for the refracted directions.
     inverse_eta: f32,
@@ -142,8 +142,8 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-/// pi alpha^2 D of a layer, from squares of the half vector.
-fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> f32 {
+/// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from squares of the half vector.
+fn luthier_distribution_term(layer: LuthierLayer, sharper: f32, z_sq: f32, across_sq: f32) -> f32 {
     let falloff = layer.falloff;
     if layer.distribution > 0.5 {
         return luthier_ggx(falloff, z_sq, across_sq);
@@ -155,7 +155,7 @@ fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> 
 fn luthier_quarter_density(layer: LuthierLayer, bisector: vec3<f32>) -> f32 {
     let z_sq = bisector.z * bisector.z;
     let across_sq = dot(bisector.xy, bisector.xy);
-    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
+    return luthier_distribution_term(layer, 1.0, z_sq, across_sq) * layer.peak;
 }
 
 /// State of the light on its way down and back up: directions, and sums over the layers so far.
@@ -176,7 +176,8 @@ struct LuthierPath {
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
-fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    let path = above;
     var next = path;
     next.open = false;
 

@@ -9,7 +9,6 @@ use naga::Module;
 
 use self::comments::Comments;
 use self::tidy::tidy;
-pub(crate) use self::tidy::{rename, words};
 
 /// Our name for a helper function of naga's, which does in another language what WGSL promises.
 pub(crate) fn helper(word: &str) -> Option<String> {

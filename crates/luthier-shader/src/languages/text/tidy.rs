@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{Block, Function, Statement};
 
+use crate::identifiers::{rename, words};
+
 /// A function with the names that WGSL gave to its values, as far as they clash with nothing; without temporaries that
 /// are used once, on the next line; without brackets around whole expressions and arguments.
 ///
@@ -30,32 +32,6 @@ pub(super) fn tidy(text: &str, function: &Function, globals: &BTreeSet<&str>) ->
     let renamed = rename(text, |word| names.get(word).map(String::as_str));
     let lines = declared_late(without_temporaries(renamed.lines().map(str::to_owned).collect()));
     lines.iter().map(|line| unbracketed(line) + "\n").collect()
-}
-
-/// The text with some of its words replaced; members (after a dot) are left alone.
-pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>) -> String {
-    let mut out = String::with_capacity(text.len());
-    for word in words(text) {
-        let is_member = out.ends_with('.');
-        match name(word).filter(|_| !is_member) {
-            Some(name) => out.push_str(name.as_ref()),
-            None => out.push_str(word),
-        }
-    }
-    out
-}
-
-/// A text cut into words (identifiers and numbers) and what lies between them; nothing is dropped.
-pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let mut rest = text;
-    std::iter::from_fn(move || {
-        let first = rest.chars().next()?;
-        let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
-        let (word, tail) = rest.split_at(end);
-        rest = tail;
-        Some(word)
-    })
 }
 
 /// The identifiers of a function that are not members.

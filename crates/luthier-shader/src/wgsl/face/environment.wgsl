@@ -9,6 +9,5 @@ fn luthier_environment(prepared: LuthierPrepared, frame: mat3x3<f32>, turn: f32)
     if prepared.model != $model_lobes {
         return prepared.wide * luthier_environment_diffuse(frame[2]);
     }
-    //? end
     return luthier_environment_lobes(prepared.lobes, frame, turn);
 }

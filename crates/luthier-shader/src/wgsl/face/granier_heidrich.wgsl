@@ -1,4 +1,3 @@
-//? granier_transparent
 /// The beam through a film, with energies of the channels.
 fn luthier_beam_part(energy: vec3<f32>, exponent: f32, eta: f32, normal: vec3<f32>) -> LuthierPart {
     var part = luthier_no_part();
@@ -7,120 +6,111 @@ fn luthier_beam_part(energy: vec3<f32>, exponent: f32, eta: f32, normal: vec3<f3
     part.eta = eta;
     //? folded
     part.edge = sqrt(max((eta - 1.0) * (eta + 1.0), 0.0)) / eta;
-    //? end
     part.normal = normal;
     return part;
 }
-//? end
 
 /// The parts of the model `granier-heidrich`: the mirrored beam, the transmitted one with the interference of both, and the diffuse term.
 fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {
     var prepared = given;
     let layer = $layer(material, 0u);
+    //? granier_film
+    let has_film = layer.film_ior_n.x > 0.0;
+    //? else
+    let has_film = false;
     //? granier_base
     var diffuse = vec3<f32>(1.0);
-    //? end
     //? granier_own
     //? interface
     let own = luthier_own(material, layer.alpha);
     //? else
     let own = luthier_own(material, 1.0);
-    //? end
-    //? end
     //? interface
-    var mirror = luthier_no_part();
-    mirror.exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
-    //? end
+    {
+        var mirror = luthier_no_part();
+        mirror.exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
+    }
     //? granier_transparent
-    //? granier_film
-    let has_film = layer.film_ior_n.x > 0.0;
     if layer.kind == LUTHIER_DIELECTRIC || has_film {
-        //? granier_schlick
+        //? granier_film
         let of_index = select(layer.ior_n, layer.film_ior_n, has_film);
         //? else
-        let eta = select(layer.ior_n, layer.film_ior_n, has_film);
-        //? end
-    //? else
-    if layer.kind == LUTHIER_DIELECTRIC {
-        //? granier_schlick
         let of_index = layer.ior_n;
-        //? else
-        let eta = layer.ior_n;
-        //? end
-    //? end
         //? granier_schlick
-        let is_schlick = layer.ior_k.x < 0.0;
-        let eta = select(of_index, vec3<f32>(layer.eta), is_schlick);
-        let root = (eta - 1.0) / (eta + 1.0);
-        let f0 = select(root * root, layer.ior_n, is_schlick);
-        mirror.energy = luthier_schlick(f0, wo.z);
+        {
+            let is_schlick = layer.ior_k.x < 0.0;
+            let eta = select(of_index, vec3<f32>(layer.eta), is_schlick);
+            let root = (eta - 1.0) / (eta + 1.0);
+            let f0 = select(root * root, layer.ior_n, is_schlick);
+            mirror.energy = luthier_schlick(f0, wo.z);
+        }
         //? else
-        let root = (eta - 1.0) / (eta + 1.0);
-        mirror.energy = luthier_schlick(root * root, wo.z);
-        //? end
+        {
+            let eta = of_index;
+            let root = (eta - 1.0) / (eta + 1.0);
+            mirror.energy = luthier_schlick(root * root, wo.z);
+        }
         let leaving = 1.0 - mirror.energy;
         // The beams interfere as they do along the mirrored direction.
         let inside = sqrt(max(wo.z * wo.z + (eta - 1.0) * (eta + 1.0), vec3<f32>(0.0))) / eta;
         //? granier_own
-        let energy = own.weights.x * (luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy);
-        let exponent = own.inner_exponent;
-        //? granier_tilted
-        //? place
-        let normal = luthier_leaning(own.inner_normal, place.inner_normal);
+        {
+            let energy = own.weights.x * (luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy);
+            let exponent = own.inner_exponent;
+            //? granier_tilted
+            {
+                //? place
+                let normal = luthier_leaning(own.inner_normal, place.inner_normal);
+                //? else
+                let normal = own.inner_normal;
+                prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), exponent, eta.x, normal);
+                prepared.parts[2] = luthier_beam_part(energy * vec3<f32>(0.0, 1.0, 0.0), exponent, eta.y, normal);
+                prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), exponent, eta.z, normal);
+            }
+            //? else
+            prepared.parts[1] = luthier_beam_part(energy, exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
+        }
         //? else
-        let normal = own.inner_normal;
-        //? end
-        prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), exponent, eta.x, normal);
-        prepared.parts[2] = luthier_beam_part(energy * vec3<f32>(0.0, 1.0, 0.0), exponent, eta.y, normal);
-        prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), exponent, eta.z, normal);
-        //? else
-        prepared.parts[1] = luthier_beam_part(energy, exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
-        //? end
-        //? else
-        let energy = luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy;
-        //? place
-        let normal = place.inner_normal;
-        prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), mirror.exponent, eta.x, normal);
-        prepared.parts[2] = luthier_beam_part(energy * vec3<f32>(0.0, 1.0, 0.0), mirror.exponent, eta.y, normal);
-        prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), mirror.exponent, eta.z, normal);
-        //? else
-        prepared.parts[1] = luthier_beam_part(energy, mirror.exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
-        //? end
-        //? end
+        {
+            let energy = luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy;
+            //? place
+            {
+                let normal = place.inner_normal;
+                prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), mirror.exponent, eta.x, normal);
+                prepared.parts[2] = luthier_beam_part(energy * vec3<f32>(0.0, 1.0, 0.0), mirror.exponent, eta.y, normal);
+                prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), mirror.exponent, eta.z, normal);
+            }
+            //? else
+            prepared.parts[1] = luthier_beam_part(energy, mirror.exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
+        }
         //? granier_base
-        //? granier_schlick
-        let diffuse_reflectance = (20.0 * f0 + 1.0) / 21.0;
-        //? else
-        let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
-        //? end
-        diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
-        //? end
+        {
+            //? granier_schlick
+            let diffuse_reflectance = (20.0 * f0 + 1.0) / 21.0;
+            //? else
+            let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+            diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
+        }
     }
-    //? end
     //? granier_bare
-    //? granier_film
     if layer.kind == LUTHIER_CONDUCTOR && !has_film {
-    //? else
-    if layer.kind == LUTHIER_CONDUCTOR {
-    //? end
         mirror.energy = luthier_schlick(luthier_fresnel_term(layer, 1.0), wo.z);
     }
-    //? end
     //? interface
-    //? granier_own
-    mirror.energy *= own.weights.x;
-    //? end
-    prepared.parts[0] = mirror;
-    //? end
-    //? granier_base
-    let last = luthier_layer(material, luthier_layer_count(material) - 1u);
-    if last.kind == LUTHIER_DIFFUSE {
+    {
         //? granier_own
-        prepared.wide = (LUTHIER_PI * own.weights.y) * diffuse * last.lambert;
-        //? else
-        prepared.wide = LUTHIER_PI * diffuse * last.lambert;
-        //? end
+        mirror.energy *= own.weights.x;
+        prepared.parts[0] = mirror;
     }
-    //? end
+    //? granier_base
+    {
+        let last = luthier_layer(material, luthier_layer_count(material) - 1u);
+        if last.kind == LUTHIER_DIFFUSE {
+            //? granier_own
+            prepared.wide = (LUTHIER_PI * own.weights.y) * diffuse * last.lambert;
+            //? else
+            prepared.wide = LUTHIER_PI * diffuse * last.lambert;
+        }
+    }
     return prepared;
 }

@@ -2,21 +2,22 @@
 fn luthier_parts_lobes(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {
     var prepared = given;
     //? lobes_diffuse
-    let layer = luthier_layer(material, 0u);
-    //? lobes
-    if layer.kind == LUTHIER_DIFFUSE {
-        let light = luthier_mean_light(wo);
-        prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);
-        prepared.model = $model_base;
-        return prepared;
+    {
+        let layer = luthier_layer(material, 0u);
+        //? lobes
+        if layer.kind == LUTHIER_DIFFUSE {
+            let light = luthier_mean_light(wo);
+            prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);
+            prepared.model = $model_base;
+            return prepared;
+        }
+        //? else
+        {
+            let light = luthier_mean_light(wo);
+            prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);
+        }
     }
-    //? else
-    let light = luthier_mean_light(wo);
-    prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);
-    //? end
-    //? end
     //? lobes
     prepared.lobes = luthier_prepare_lobes($place_argument material, wo);
-    //? end
     return prepared;
 }

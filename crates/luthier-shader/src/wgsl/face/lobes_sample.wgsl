@@ -5,21 +5,22 @@ fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
     var rest = dot(luthier_albedo_lobes(prepared), third) - wide;
     //? lobes_patina
     rest -= luthier_bare_energy(prepared);
-    //? end
     // A material that reflects nothing has a remainder without light.
     let least = vec4<f32>(0.0, 0.0, 0.0, 1e-6);
     //? one_lobe|two_lobes
-    rest -= dot(luthier_lobe_below(prepared, 0u).energy, third);
-    let first = dot(prepared.first_strength, third);
-    //? two_lobes
-    rest -= dot(luthier_lobe_below(prepared, 1u).energy, third);
-    return max(vec4<f32>(rest, first, dot(prepared.second_strength, third), wide), least);
-    //? else
-    return max(vec4<f32>(rest, first, 0.0, wide), least);
-    //? end
+    {
+        rest -= dot(luthier_lobe_below(prepared, 0u).energy, third);
+        let first = dot(prepared.first_strength, third);
+        //? two_lobes
+        {
+            rest -= dot(luthier_lobe_below(prepared, 1u).energy, third);
+            return max(vec4<f32>(rest, first, dot(prepared.second_strength, third), wide), least);
+        }
+        //? else
+        return max(vec4<f32>(rest, first, 0.0, wide), least);
+    }
     //? else
     return max(vec4<f32>(rest, 0.0, 0.0, wide), least);
-    //? end
 }
 
 /// Density of directions mirrored at the visible normals of the first interface, D / 4 over cos_theta_o (1 + Lambda).
@@ -28,7 +29,6 @@ fn luthier_facet_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     return luthier_quarter_density(prepared.coat, sum) / (prepared.masking * prepared.wo.z);
 }
 
-//? beckmann
 /// Share of Gaussian slopes of unit alpha below x, within 1e-7 (Abramowitz and Stegun 1964, 7.1.26); the Gaussian is exp(-x^2).
 fn luthier_slope_share(x: f32, gaussian: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.3275911 * abs(x));
@@ -101,29 +101,30 @@ fn luthier_draw_gaussian(alpha: vec2<f32>, axis: vec2<f32>, wo: vec3<f32>, u: ve
     return vec3<f32>(axis.x * wi.x - axis.y * wi.y, axis.y * wi.x + axis.x * wi.y, wi.z);
 }
 
-//? end
 /// A direction mirrored at a visible normal of the first interface.
 fn luthier_draw_facet(prepared: LuthierPreparedLobes, u: vec2<f32>) -> vec3<f32> {
     //? anisotropic
-    let alpha = prepared.coat.alpha_xy;
-    let axis = prepared.coat.rotation;
-    //? else
-    let alpha = vec2<f32>(prepared.coat.alpha);
-    let axis = vec2<f32>(1.0, 0.0);
-    //? end
-    //? beckmann
-    //? ggx
-    if prepared.coat.distribution > 0.5 {
-        return luthier_draw_visible(alpha, axis, prepared.wo, u);
+    {
+        let alpha = prepared.coat.alpha_xy;
+        let axis = prepared.coat.rotation;
     }
-    //? end
-    return luthier_draw_gaussian(alpha, axis, prepared.wo, u);
+    //? else
+    {
+        let alpha = vec2<f32>(prepared.coat.alpha);
+        let axis = vec2<f32>(1.0, 0.0);
+    }
+    //? beckmann
+    {
+        //? ggx
+        if prepared.coat.distribution > 0.5 {
+            return luthier_draw_visible(alpha, axis, prepared.wo, u);
+        }
+        return luthier_draw_gaussian(alpha, axis, prepared.wo, u);
+    }
     //? else
     return luthier_draw_visible(alpha, axis, prepared.wo, u);
-    //? end
 }
 
-//? one_lobe|two_lobes
 /// Density in solid angle of light that a lobe sends to the eye.
 fn luthier_lobe_density(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, wi: vec3<f32>) -> f32 {
     let place = luthier_place_below(prepared, wi);
@@ -142,7 +143,6 @@ fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, 
     let slope = straight + prepared.tilt;
     //? else
     let slope = straight;
-    //? end
     let wh = normalize(vec3<f32>(slope, 1.0));
     // Directions inside times the index, in the frame of the lobes.
     let eye = vec3<f32>(luthier_in_frame(prepared.azimuth, prepared.wo.xy), prepared.inside_cos);
@@ -154,35 +154,34 @@ fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, 
     return vec3<f32>(across, select(-1.0, sqrt(max(cos_sq, 0.0)), leaves));
 }
 
-//? end
 /// Density in solid angle with which `luthier_draw_lobes` draws a direction above the horizon.
 fn luthier_density_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     let chances = luthier_chances_lobes(prepared);
     var density = chances.x * luthier_facet_density(prepared, wi) + chances.w * (wi.z / LUTHIER_PI);
     //? one_lobe|two_lobes
     density += chances.y * luthier_lobe_density(prepared, prepared.first_shape, wi);
-    //? end
     //? two_lobes
     density += chances.z * luthier_lobe_density(prepared, prepared.second_shape, wi);
-    //? end
     //? lobes_patina
-    let bare = luthier_bare_energy(prepared);
-    density += bare * luthier_facet_density(luthier_bare_lobes(prepared), wi);
-    return density / (dot(chances, vec4<f32>(1.0)) + bare);
+    {
+        let bare = luthier_bare_energy(prepared);
+        density += bare * luthier_facet_density(luthier_bare_lobes(prepared), wi);
+        return density / (dot(chances, vec4<f32>(1.0)) + bare);
+    }
     //? else
     return density / dot(chances, vec4<f32>(1.0));
-    //? end
 }
 
 /// Direction and part of a draw, without its density and weight: 0 the first facet, that of a bare layer too, 1 and 2 the lobes, 3 the wide remainder.
 fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSample {
     let chances = luthier_chances_lobes(prepared);
     //? lobes_patina
-    let total = dot(chances, vec4<f32>(1.0));
-    let choice = u.x * (total + luthier_bare_energy(prepared));
+    {
+        let total = dot(chances, vec4<f32>(1.0));
+        let choice = u.x * (total + luthier_bare_energy(prepared));
+    }
     //? else
     let choice = u.x * dot(chances, vec4<f32>(1.0));
-    //? end
     let phi = 2.0 * LUTHIER_PI * u.z;
     var drawn = LuthierSample(vec3<f32>(sqrt(u.y) * vec2<f32>(cos(phi), sin(phi)), sqrt(1.0 - u.y)), 0.0, vec3<f32>(0.0), 3u);
     if choice < chances.x {
@@ -194,19 +193,18 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
         drawn.wi = luthier_draw_facet(luthier_bare_lobes(prepared), u.yz);
         drawn.part = 0u;
     }
-    //? end
     //? one_lobe|two_lobes
-    let first = chances.x + chances.y;
-    if choice >= chances.x && choice < first {
-        drawn.wi = luthier_sample_lobe(prepared, prepared.first_shape, u.yz);
-        drawn.part = 1u;
+    {
+        let first = chances.x + chances.y;
+        if choice >= chances.x && choice < first {
+            drawn.wi = luthier_sample_lobe(prepared, prepared.first_shape, u.yz);
+            drawn.part = 1u;
+        }
     }
-    //? end
     //? two_lobes
     if choice >= first && choice < first + chances.z {
         drawn.wi = luthier_sample_lobe(prepared, prepared.second_shape, u.yz);
         drawn.part = 2u;
     }
-    //? end
     return drawn;
 }

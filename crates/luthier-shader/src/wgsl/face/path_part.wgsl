@@ -9,22 +9,18 @@ fn luthier_path_part(
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
     //? else
     let fresnel = luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
-    //? end
     //? fluorescent
     part.energy = path.throughput * path.lit * fresnel * (index * index);
     //? else
     part.energy = path.throughput * fresnel * (index * index);
-    //? end
     part.alpha = alpha;
     part.axis = axis;
     //? cavities
     part.cavity_power = luthier_cavity_power(layer);
-    //? end
     part.eta = eta;
     //? folded, media
     // Snell: sines times the index are the least index at most.
     part.edge = sqrt(max((eta - least) * (eta + least), 0.0)) / eta;
-    //? end
     part.normal = normal;
     part.inner_eta = inner_eta;
     return part;

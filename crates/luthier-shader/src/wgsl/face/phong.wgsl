@@ -9,7 +9,6 @@ fn luthier_parts_phong(given: LuthierPrepared, $place_parameter material: u32, w
     part.exponent = max((diffuse.w + 0.5) / (place.alpha_factor * place.alpha_factor) - 0.5, 0.0);
     //? else
     part.exponent = diffuse.w;
-    //? end
     prepared.parts[0] = part;
     prepared.wide = diffuse.rgb;
     return prepared;

@@ -1,35 +1,22 @@
-//? visible|powers
 /// Light that one lobe of a material reflects to the eye, as an estimate: directions are drawn from such parts.
 struct LuthierPart {
     /// Energy, RGB.
     energy: vec3<f32>,
-    //? visible
     /// Slope parameters along an axis and across it, for visible normals of GGX.
     alpha: vec2<f32>,
     /// Cosine and sine of the angle from the tangent to that axis.
     axis: vec2<f32>,
-    //? end
-    //? cavities
     /// Exponent plus 2 of Blinn's facets in V-cavities; 0 for visible normals of GGX.
     cavity_power: f32,
-    //? end
-    //? powers
     /// Exponent of the cosine to the mirrored direction; below 0 for visible normals.
     exponent: f32,
-    //? end
-    //? media
     /// Index of the medium that it is in over that outside.
     eta: f32,
-    //? folded
     /// Cosine, there, of the edge of the cone of directions that leave.
     edge: f32,
-    //? end
-    //? end
-    //? tilted
     /// Normal of what lies in that medium, in the frame above it, and the index of the medium there over that of this one.
     normal: vec3<f32>,
     inner_eta: f32,
-    //? end
 }
 
 /// A part without energy.
@@ -45,42 +32,31 @@ fn luthier_no_part() -> LuthierPart {
     part.inner_eta = 1.0;
     return part;
 }
-//? end
 
-//? cavities
 /// Exponent plus 2, 2 / alpha^2, of a layer whose distribution is Blinn's; 0 of another layer.
 fn luthier_cavity_power(layer: LuthierLayer) -> f32 {
     //? several_slopes
     return select(0.0, 2.0 * layer.falloff, abs(layer.distribution - 2.0) < 0.5);
     //? else
     return 2.0 * layer.falloff;
-    //? end
 }
-//? end
 
 /// A material as seen from a direction: what can be kept for all lights.
 struct LuthierPrepared {
     /// The material.
     material: u32,
-    //? several
     /// The number of its model.
     model: u32,
-    //? end
     /// Whether the eye is above the horizon.
     open: bool,
-    //? place
     /// The place of the surface.
     place: LuthierPlace,
-    //? end
     /// The eye in the frame of the place.
     wo: vec3<f32>,
     /// Light that diffuse bases reflect to the eye, as an estimate, RGB.
     wide: vec3<f32>,
-    //? visible|powers
     /// The lobes, from the top; those that the material lacks have no energy.
     parts: array<LuthierPart, $parts>,
-    //? end
-    //? statistics_base
     /// Number of the layer that is a diffuse base below others; 0 for none.
     base: u32,
     /// Share that comes up from it to the eye, RGB.
@@ -89,11 +65,8 @@ struct LuthierPrepared {
     base_cos: f32,
     /// Index there over that outside.
     base_eta: f32,
-    //? end
-    //? lobes
     /// A material of the model `lobes` as seen from the eye.
     lobes: LuthierPreparedLobes,
-    //? end
 }
 
 /// A direction that stands for light from everywhere: at the mean cosine, 2/3, across the plane of the eye.

@@ -10,13 +10,12 @@ fn luthier_proposed_density(prepared: LuthierPrepared, wi: vec3<f32>) -> f32 {
     }
     //? else
     return luthier_density_lobes(prepared.lobes, wi);
-    //? end
-    //? end
     //? several|!lobes
-    var density = wi.z / LUTHIER_PI;
-    $each_proposed
-    return density;
-    //? end
+    {
+        var density = wi.z / LUTHIER_PI;
+        $each_proposed
+        return density;
+    }
 }
 
 /// A direction of light that one part of a prepared material proposes, from three numbers that are uniform in 0..1 (Weidlich and Wilkie 2009,
@@ -28,47 +27,47 @@ fn luthier_propose(prepared: LuthierPrepared, part: u32, u: vec3<f32>) -> Luthie
     var proposed = LuthierSample(vec3<f32>(0.0, 0.0, -1.0), 0.0, vec3<f32>(0.0), part);
     var density = 0.0;
     //? lobes
-    //? several
-    let is_whole = prepared.model == $model_lobes;
-    if is_whole && part == 0u {
-    //? else
-    if part == 0u {
-    //? end
-        proposed = luthier_draw_lobes(prepared.lobes, u);
-        density = luthier_density_lobes(prepared.lobes, proposed.wi);
-    }
-    //? several
-    if is_whole && part > 0u {
-        return proposed;
-    }
-    //? end
-    //? end
-    //? several|!lobes
-    //? lobes
-    if !is_whole && part == $parts {
-    //? else
-    if part == $parts {
-    //? end
-        let phi = 2.0 * LUTHIER_PI * u.z;
-        proposed.wi = vec3<f32>(sqrt(u.y) * vec2<f32>(cos(phi), sin(phi)), sqrt(1.0 - u.y));
-        density = proposed.wi.z / LUTHIER_PI;
-    }
-    //? visible|powers
-    if part < $parts {
-        var lobe = luthier_no_part();
-        $each_part
-        if luthier_chance(lobe) > 0.0 {
-            proposed.wi = luthier_draw_part(lobe, prepared.wo, u.yz);
-            density = luthier_part_density(lobe, prepared.wo, proposed.wi);
+    {
+        //? several
+        let is_whole = prepared.model == $model_lobes;
+        //? else
+        let is_whole = true;
+        if is_whole && part == 0u {
+            proposed = luthier_draw_lobes(prepared.lobes, u);
+            density = luthier_density_lobes(prepared.lobes, proposed.wi);
+        }
+        //? several
+        if is_whole && part > 0u {
+            return proposed;
         }
     }
-    //? end
-    //? end
+    //? several|!lobes
+    {
+        //? lobes
+        let is_wide = !is_whole && part == $parts;
+        //? else
+        let is_wide = part == $parts;
+        if is_wide {
+            let phi = 2.0 * LUTHIER_PI * u.z;
+            proposed.wi = vec3<f32>(sqrt(u.y) * vec2<f32>(cos(phi), sin(phi)), sqrt(1.0 - u.y));
+            density = proposed.wi.z / LUTHIER_PI;
+        }
+        //? visible|powers
+        if part < $parts {
+            var lobe = luthier_no_part();
+            $each_part
+            if luthier_chance(lobe) > 0.0 {
+                proposed.wi = luthier_draw_part(lobe, prepared.wo, u.yz);
+                density = luthier_part_density(lobe, prepared.wo, proposed.wi);
+            }
+        }
+    }
     let here = proposed.wi;
     //? place
-    let normal = prepared.place.normal;
-    proposed.wi = luthier_local(vec3<f32>(-normal.xy, normal.z), here);
-    //? end
+    {
+        let normal = prepared.place.normal;
+        proposed.wi = luthier_local(vec3<f32>(-normal.xy, normal.z), here);
+    }
     if min(here.z, proposed.wi.z) > 0.0 && density > 0.0 && prepared.open {
         proposed.pdf = density;
         proposed.weight = luthier_light(prepared, proposed.wi) / luthier_proposed_density(prepared, here);

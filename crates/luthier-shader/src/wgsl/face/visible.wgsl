@@ -24,7 +24,6 @@ fn luthier_draw_visible(alpha: vec2<f32>, axis: vec2<f32>, wo: vec3<f32>, u: vec
     return vec3<f32>(axis.x * wi.x - axis.y * wi.y, axis.y * wi.x + axis.x * wi.y, wi.z);
 }
 
-//? cavities
 /// Density of directions mirrored at the visible facets of V-cavities of Blinn's distribution, seen from wo: G1 D / (4 cos_theta_o).
 fn luthier_cavity_density(power: f32, wo: vec3<f32>, wi: vec3<f32>) -> f32 {
     let bisector = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
@@ -49,4 +48,3 @@ fn luthier_draw_cavity(power: f32, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
     let wh = select(facet, vec3<f32>(-facet.xy, facet.z), is_other);
     return 2.0 * dot(wh, wo) * wh - wo;
 }
-//? end

@@ -7,18 +7,15 @@ fn $fresnel_computed(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     }
     //? else
     return luthier_schlick(layer.ior_n, cos_theta_d);
-    //? end
-    //? end
     //? bare|film
     //? bare
-    //? film
-    if layer.film_ior_n.x > 0.0 {
-        return luthier_film(layer, cos_theta_d);
+    {
+        //? film
+        if layer.film_ior_n.x > 0.0 {
+            return luthier_film(layer, cos_theta_d);
+        }
+        return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
     }
-    //? end
-    return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
     //? else
     return luthier_film(layer, cos_theta_d);
-    //? end
-    //? end
 }

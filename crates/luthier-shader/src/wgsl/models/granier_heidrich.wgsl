@@ -1,4 +1,3 @@
-//? granier_transparent
 /// The transmitted beam of a film for one channel (Granier and Heidrich 2003, eq. 10).
 struct LuthierBeam {
     /// T, scaled so that its lobe carries its coefficient.
@@ -6,25 +5,10 @@ struct LuthierBeam {
     /// Sum of the cosines in the film; 0 when nothing is transmitted.
     cosines: f32,
 }
-//? end
 
-//? interface, !schlick
-/// Schlick 1994.
-fn luthier_schlick(normal: vec3<f32>, cos_theta: f32) -> vec3<f32> {
-    let q = 1.0 - cos_theta;
-    return normal + (1.0 - normal) * (q * q * q * q * q);
-}
-//? end
-
-//? granier_transparent
-//? granier_schlick
 /// The beam through a film whose index over that outside is `eta`, and whose outer boundary reflects `normal` of light at the normal;
 /// `inner_normal` is that of its inner boundary.
 fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, normal: f32, exponent: f32, inner_normal: vec3<f32>) -> LuthierBeam {
-//? else
-/// The beam through a film whose index over that outside is `eta`; `inner_normal` is that of its inner boundary.
-fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_normal: vec3<f32>) -> LuthierBeam {
-//? end
     let cosines_sq = (vec2<f32>(wi.z * wi.z, wo.z * wo.z) + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
         return LuthierBeam(0.0, 0.0);
@@ -42,19 +26,10 @@ fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_nor
         2.0 * across * tilt - (wi.xy + wo.xy) / eta,
         2.0 * (dot(ti.xy, tilt) * inner_normal.z - ti.z * dot(tilt, tilt)) + rise,
     );
-    //? granier_schlick
     let leaving = 1.0 - luthier_schlick(vec3<f32>(normal), min(to.z, 1.0)).x;
-    //? else
-    let root = (eta - 1.0) / (eta + 1.0);
-    let leaving = 1.0 - luthier_schlick(vec3<f32>(root * root), min(to.z, 1.0)).x;
-    //? end
     // The same of the way in, multiplied out: at grazing angles it is small.
     let c = wi.z;
-    //? granier_schlick
     let entering = (1.0 - normal) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
-    //? else
-    let entering = (1.0 - root * root) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
-    //? end
     // Directions crowd in the film by cos_theta_i / (eta^2 cos_theta_t).
     let compression = wi.z / (eta * eta * ti.z);
     let lobe = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
@@ -64,28 +39,30 @@ fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_nor
 /// Two powers and their interference for the sums of the cosines in the film (eq. 3-5); a slab is too thick for it.
 fn luthier_superpose(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: vec3<f32>) -> vec3<f32> {
     //? granier_film
-    if layer.film_ior_n.x <= 0.0 {
-        return r + t;
+    {
+        if layer.film_ior_n.x <= 0.0 {
+            return r + t;
+        }
+        //? phase
+        {
+            let s = cosines * (0.5 * layer.film_thickness_nm / layer.film_thickness_max_nm);
+            let red = luthier_lookup_phase(layer.phase_tile, s.x).x;
+            let green = luthier_lookup_phase(layer.phase_tile, s.y).y;
+            let blue = luthier_lookup_phase(layer.phase_tile, s.z).z;
+            let interference = vec3<f32>(red, green, blue);
+        }
+        //? else
+        {
+            // Whole cycles are taken off first: sines of large angles are imprecise on GPUs.
+            let cycles = layer.film_ior_n * layer.film_thickness_waves * cosines;
+            let interference = 2.0 * cos(2.0 * LUTHIER_PI * (cycles - round(cycles)));
+        }
+        return max(r + t + interference * sqrt(r * t), vec3<f32>(0.0));
     }
-    //? phase
-    let s = cosines * (0.5 * layer.film_thickness_nm / layer.film_thickness_max_nm);
-    let red = luthier_lookup_phase(layer.phase_tile, s.x).x;
-    let green = luthier_lookup_phase(layer.phase_tile, s.y).y;
-    let blue = luthier_lookup_phase(layer.phase_tile, s.z).z;
-    let interference = vec3<f32>(red, green, blue);
-    //? else
-    // Whole cycles are taken off first: sines of large angles are imprecise on GPUs.
-    let cycles = layer.film_ior_n * layer.film_thickness_waves * cosines;
-    let interference = 2.0 * cos(2.0 * LUTHIER_PI * (cycles - round(cycles)));
-    //? end
-    return max(r + t + interference * sqrt(r * t), vec3<f32>(0.0));
     //? else
     return r + t;
-    //? end
 }
-//? end
 
-//? granier_own
 /// Numbers of a material that are none of its layers.
 struct LuthierOwn {
     /// Exponent of the inner boundary.
@@ -110,123 +87,100 @@ fn luthier_own(material: u32, alpha: f32) -> LuthierOwn {
     );
 }
 
-//? granier_transparent, place
 /// The normal of a boundary of two slopes, which add up.
 fn luthier_leaning(own: vec3<f32>, here: vec3<f32>) -> vec3<f32> {
     return normalize(vec3<f32>(own.xy * here.z + here.xy * own.z, own.z * here.z));
 }
-//? end
-//? end
 
 /// f cos_theta_i of two beams, their interference and a diffuse term (Granier and Heidrich 2003, eq. 5-18).
 fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let layer = $layer(material, 0u);
+    //? granier_film
+    let has_film = layer.film_ior_n.x > 0.0;
+    //? else
+    let has_film = false;
     var specular = vec3<f32>(0.0);
     //? granier_base
     var diffuse = vec3<f32>(1.0);
-    //? end
     //? granier_own
     //? interface
     let own = luthier_own(material, layer.alpha);
     //? else
     let own = luthier_own(material, 1.0);
-    //? end
-    //? end
     //? interface
-    let exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
-    let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
-    let mirror = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
-    //? end
+    {
+        let exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
+        let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
+        let mirror = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
+    }
     //? granier_transparent
-    //? granier_film
-    let has_film = layer.film_ior_n.x > 0.0;
     if layer.kind == LUTHIER_DIELECTRIC || has_film {
-        //? granier_schlick
+        //? granier_film
         let of_index = select(layer.ior_n, layer.film_ior_n, has_film);
         //? else
-        let eta = select(layer.ior_n, layer.film_ior_n, has_film);
-        //? end
-    //? else
-    if layer.kind == LUTHIER_DIELECTRIC {
-        //? granier_schlick
         let of_index = layer.ior_n;
-        //? else
-        let eta = layer.ior_n;
-        //? end
-    //? end
         //? granier_schlick
-        // Schlick's interface has its F0 in place of the index.
-        let is_schlick = layer.ior_k.x < 0.0;
-        let eta = select(of_index, vec3<f32>(layer.eta), is_schlick);
-        let root = (eta - 1.0) / (eta + 1.0);
-        let normal = select(root * root, layer.ior_n, is_schlick);
+        {
+            // Schlick's interface has its F0 in place of the index.
+            let is_schlick = layer.ior_k.x < 0.0;
+            let eta = select(of_index, vec3<f32>(layer.eta), is_schlick);
+            let root = (eta - 1.0) / (eta + 1.0);
+            let normal = select(root * root, layer.ior_n, is_schlick);
+        }
         //? else
-        let root = (eta - 1.0) / (eta + 1.0);
-        //? end
+        {
+            let eta = of_index;
+            let root = (eta - 1.0) / (eta + 1.0);
+            let normal = root * root;
+        }
         //? granier_own
-        let exponent = own.inner_exponent;
-        //? place
-        let inner_normal = luthier_leaning(own.inner_normal, place.inner_normal);
-        //? else
-        let inner_normal = own.inner_normal;
-        //? end
+        {
+            let exponent = own.inner_exponent;
+            //? place
+            let inner_normal = luthier_leaning(own.inner_normal, place.inner_normal);
+            //? else
+            let inner_normal = own.inner_normal;
+        }
         //? else
         //? place
         let inner_normal = place.inner_normal;
         //? else
         let inner_normal = vec3<f32>(0.0, 0.0, 1.0);
-        //? end
-        //? end
-        //? granier_schlick
         let red = luthier_beam(wi, wo, eta.x, normal.x, exponent, inner_normal);
         let green = luthier_beam(wi, wo, eta.y, normal.y, exponent, inner_normal);
         let blue = luthier_beam(wi, wo, eta.z, normal.z, exponent, inner_normal);
         let r = luthier_schlick(normal, wi.z) * mirror;
-        //? else
-        let red = luthier_beam(wi, wo, eta.x, exponent, inner_normal);
-        let green = luthier_beam(wi, wo, eta.y, exponent, inner_normal);
-        let blue = luthier_beam(wi, wo, eta.z, exponent, inner_normal);
-        let r = luthier_schlick(root * root, wi.z) * mirror;
-        //? end
         let t = vec3<f32>(red.transmitted, green.transmitted, blue.transmitted);
         specular = luthier_superpose(layer, r, t, vec3<f32>(red.cosines, green.cosines, blue.cosines));
         //? granier_base
-        // The mean of Schlick's reflectance (eq. 14).
-        //? granier_schlick
-        let diffuse_reflectance = (20.0 * normal + 1.0) / 21.0;
-        //? else
-        let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
-        //? end
-        diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
-        //? end
+        {
+            // The mean of Schlick's reflectance (eq. 14).
+            //? granier_schlick
+            let diffuse_reflectance = (20.0 * normal + 1.0) / 21.0;
+            //? else
+            let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+            diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
+        }
     }
-    //? end
     //? granier_bare
-    //? granier_film
     if layer.kind == LUTHIER_CONDUCTOR && !has_film {
-    //? else
-    if layer.kind == LUTHIER_CONDUCTOR {
-    //? end
         specular = luthier_schlick(luthier_fresnel_term(layer, 1.0), wi.z) * mirror;
     }
-    //? end
     //? granier_base
-    //? base_color
-    let last = luthier_layer_at(place, material, luthier_layer_count(material) - 1u);
-    //? else
-    let last = luthier_layer(material, luthier_layer_count(material) - 1u);
-    //? end
-    if last.kind == LUTHIER_DIFFUSE {
-        //? granier_own
-        return own.weights.x * specular + own.weights.y * wi.z * (diffuse * last.lambert);
+    {
+        //? base_color
+        let last = luthier_layer_at(place, material, luthier_layer_count(material) - 1u);
         //? else
-        specular += diffuse * last.lambert * wi.z;
-        //? end
+        let last = luthier_layer(material, luthier_layer_count(material) - 1u);
+        if last.kind == LUTHIER_DIFFUSE {
+            //? granier_own
+            return own.weights.x * specular + own.weights.y * wi.z * (diffuse * last.lambert);
+            //? else
+            specular += diffuse * last.lambert * wi.z;
+        }
     }
-    //? end
     //? granier_own
     return own.weights.x * specular;
     //? else
     return specular;
-    //? end
 }

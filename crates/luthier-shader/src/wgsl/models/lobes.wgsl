@@ -1,4 +1,3 @@
-//? lobes
 /// Lobes from below that rows have.
 //? two_lobes
 const LUTHIER_LOBES: u32 = 2u;
@@ -7,17 +6,12 @@ const LUTHIER_LOBES: u32 = 2u;
 const LUTHIER_LOBES: u32 = 1u;
 //? else
 const LUTHIER_LOBES: u32 = 0u;
-//? end
-//? end
 /// The part of rows that is the albedo.
 const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
-//? lobes_base
 /// The parts of rows that are what layers send back to a diffuse base, and the light of that base.
 const LUTHIER_LOBES_INTERNAL: f32 = -2.0;
 const LUTHIER_LOBES_BASE: f32 = -1.0;
-//? end
 
-//? one_lobe|two_lobes
 /// A lobe over slopes: elliptic, in the plane of the eye and across it, or in axes.
 struct LuthierLobeShape {
     /// The sharpness times the slope of its middle.
@@ -25,20 +19,16 @@ struct LuthierLobeShape {
     middle: vec2<f32>,
     //? else
     middle: f32,
-    //? end
     /// Its sharpness, 1 over its widths.
     sharpness: vec2<f32>,
-    //? lobes_axes
     /// The number of the symmetric matrix of the sharpness between the axes.
     shear: f32,
-    //? end
     /// Its decay z, from 1 for GGX to Gaussians.
     decay: f32,
     /// Half its greatest density.
     peak: f32,
 }
 
-//? end
 /// A material of the model as seen from a direction: what can be kept for all lights.
 struct LuthierPreparedLobes {
     /// The first interface.
@@ -49,55 +39,33 @@ struct LuthierPreparedLobes {
     row: vec2<f32>,
     /// 1 + Lambda of the eye.
     masking: f32,
-    //? lobes_axes
     /// Cosine and sine of the azimuth of the frame of the lobes: the plane of the eye, or axes.
-    //? else
-    /// Cosine and sine of the azimuth of the eye.
-    //? end
     azimuth: vec2<f32>,
     /// Cosine of the refracted eye times the index.
     inside_cos: f32,
     /// The index squared less 1, the coefficients of the remainder's shape, and 1 over its integral.
     medium: vec4<f32>,
-    //? lobes_tilted
-    //? one_lobe|two_lobes
     /// Slope by which flakes turn the lobes, in their frame.
     tilt: vec2<f32>,
-    //? end
-    //? end
-    //? critical_view
     /// Numbers of the cosine inside, see `luthier_inside_cosine`.
     inside: vec4<f32>,
-    //? end
     /// Energy of the remainder, RGB.
     wide: vec3<f32>,
-    //? lobes_base
-    //? base_color
     /// The part of it by which a base of another colour is brighter, RGB.
     painted: vec3<f32>,
-    //? end
-    //? end
-    //? lobes_patina
     /// Share of the surface that the first interface covers.
     cover: f32,
     /// The layer that is bare elsewhere, and 1 + Lambda of the eye there.
     bare: LuthierLayer,
     bare_masking: f32,
-    //? lobes_bare_base
     /// Energy of the remainder that a bare diffuse base has, RGB.
     base: vec3<f32>,
-    //? end
-    //? end
-    //? one_lobe|two_lobes
     /// Energy of the first lobe over its share above the horizon, RGB.
     first_strength: vec3<f32>,
     first_shape: LuthierLobeShape,
-    //? end
-    //? two_lobes
     /// Energy of the second lobe over its share above the horizon, RGB.
     second_strength: vec3<f32>,
     second_shape: LuthierLobeShape,
-    //? end
 }
 
 //? beckmann
@@ -105,40 +73,43 @@ struct LuthierPreparedLobes {
 const LUTHIER_SLOPE_SCALE: f32 = 0.84143657;
 //? else
 const LUTHIER_SLOPE_SCALE: f32 = 1.0;
-//? end
 
 /// Smith's Lambda of a direction by its cosine and by `luthier_coat_across_sq` (Walter et al. 2007, eq. 34 for GGX). That of Beckmann is an exponential
 /// over a polynomial; 1 + 2 Lambda is within 2e-6 of itself at all slopes.
 fn luthier_slope_lambda(coat: LuthierLayer, across_sq: f32, cos_theta: f32) -> f32 {
     //? beckmann
-    //? ggx
-    if coat.distribution > 0.5 {
-        let inverse_cos = 1.0 / (LUTHIER_SLOPE_SCALE * cos_theta);
+    {
+        //? ggx
+        if coat.distribution > 0.5 {
+            let inverse_cos = 1.0 / (LUTHIER_SLOPE_SCALE * cos_theta);
+            return 0.5 * sqrt(1.0 + across_sq * inverse_cos * inverse_cos) - 0.5;
+        }
+        let inverse = cos_theta * inverseSqrt(across_sq);
+        let poly = 2.982824 + inverse * (4.4479934 + inverse * (2.4605687 + inverse * 0.49868596));
+        return exp2(-inverse * inverse) / (inverse * poly);
+    }
+    //? else
+    {
+        let inverse_cos = 1.0 / cos_theta;
         return 0.5 * sqrt(1.0 + across_sq * inverse_cos * inverse_cos) - 0.5;
     }
-    //? end
-    let inverse = cos_theta * inverseSqrt(across_sq);
-    let poly = 2.982824 + inverse * (4.4479934 + inverse * (2.4605687 + inverse * 0.49868596));
-    return exp2(-inverse * inverse) / (inverse * poly);
-    //? else
-    let inverse_cos = 1.0 / cos_theta;
-    return 0.5 * sqrt(1.0 + across_sq * inverse_cos * inverse_cos) - 0.5;
-    //? end
 }
 
 /// The square of the slope parameter of a coat along a direction times the sine of its angle times `LUTHIER_SLOPE_SCALE`; so far from 0 that nothing in
 /// `luthier_slope_lambda` is infinite.
 fn luthier_coat_across_sq(coat: LuthierLayer, w: vec3<f32>) -> f32 {
     //? anisotropic
-    let across = luthier_stretched(coat, coat.alpha_xy * LUTHIER_SLOPE_SCALE, w);
-    return 1e-18 + across.x * across.x + across.y * across.y;
+    {
+        let across = luthier_stretched(coat, coat.alpha_xy * LUTHIER_SLOPE_SCALE, w);
+        return 1e-18 + across.x * across.x + across.y * across.y;
+    }
     //? else
-    let alpha = coat.alpha * LUTHIER_SLOPE_SCALE;
-    return (1e-12 + w.x * w.x + w.y * w.y) * (alpha * alpha);
-    //? end
+    {
+        let alpha = coat.alpha * LUTHIER_SLOPE_SCALE;
+        return (1e-12 + w.x * w.x + w.y * w.y) * (alpha * alpha);
+    }
 }
 
-//? critical_view
 /// The cosine of a refracted direction where a medium reflects flat light totally: its kink at the critical angle is rounded off, and it goes
 /// from 0 at the horizon to 1 at the normal. The numbers: squared cosine of the angle, four times the squared width of the kink, factor
 /// and offset.
@@ -147,50 +118,48 @@ fn luthier_inside_cosine(inside: vec4<f32>, cos_theta: f32) -> f32 {
     let root = sqrt(max(beyond + sqrt(beyond * beyond + inside.y), 0.0));
     return root * inside.z + inside.w;
 }
-//? end
 
 /// Squared cosine of a refracted direction times the squared index; not 0.
 fn luthier_inside_cos_sq(medium: vec4<f32>, cos_theta: f32) -> f32 {
     return max(cos_theta * cos_theta + medium.x, 1e-12);
 }
 
-//? one_lobe|two_lobes
-//? place
 /// A lobe whose slopes are so many times as steep, and then have twice a variance more.
 fn luthier_spread(given: LuthierLobeShape, factor: f32, twice_variance: f32) -> LuthierLobeShape {
     var shape = given;
     shape.sharpness = given.sharpness / factor;
     //? lobes_axes
     shape.shear = given.shear / factor;
-    //? end
     //? surface
-    // Squared widths are 1 / (z x^2).
-    let excess = twice_variance * shape.decay;
-    //? lobes_axes
-    // As a matrix, about its mean: the share of either end of the ellipse that is left.
-    let mean = 0.5 * (shape.sharpness.x + shape.sharpness.y);
-    let about = vec2<f32>(0.5 * (shape.sharpness.x - shape.sharpness.y), shape.shear);
-    let radius = sqrt(dot(about, about));
-    let ends = mean + vec2<f32>(radius, -radius);
-    let left = inverseSqrt(1.0 + excess * ends * ends);
-    let level = 0.5 * (left.x + left.y);
-    let steep = 0.5 * (left.x - left.y) / max(radius, 1e-9 * mean);
-    let m = shape.middle;
-    shape.middle = level * m + steep * vec2<f32>(about.x * m.x + about.y * m.y, about.y * m.x - about.x * m.y);
-    let next = (level + steep * mean) * about;
-    shape.sharpness = level * mean + steep * radius * radius + vec2<f32>(next.x, -next.x);
-    shape.shear = next.y;
-    //? else
-    let left = inverseSqrt(1.0 + excess * shape.sharpness * shape.sharpness);
-    shape.middle *= left.x;
-    shape.sharpness *= left;
-    //? end
-    //? end
+    {
+        // Squared widths are 1 / (z x^2).
+        let excess = twice_variance * shape.decay;
+        //? lobes_axes
+        {
+            // As a matrix, about its mean: the share of either end of the ellipse that is left.
+            let mean = 0.5 * (shape.sharpness.x + shape.sharpness.y);
+            let about = vec2<f32>(0.5 * (shape.sharpness.x - shape.sharpness.y), shape.shear);
+            let radius = sqrt(dot(about, about));
+            let ends = mean + vec2<f32>(radius, -radius);
+            let left = inverseSqrt(1.0 + excess * ends * ends);
+            let level = 0.5 * (left.x + left.y);
+            let steep = 0.5 * (left.x - left.y) / max(radius, 1e-9 * mean);
+            let m = shape.middle;
+            shape.middle = level * m + steep * vec2<f32>(about.x * m.x + about.y * m.y, about.y * m.x - about.x * m.y);
+            let next = (level + steep * mean) * about;
+            shape.sharpness = level * mean + steep * radius * radius + vec2<f32>(next.x, -next.x);
+            shape.shear = next.y;
+        }
+        //? else
+        {
+            let left = inverseSqrt(1.0 + excess * shape.sharpness * shape.sharpness);
+            shape.middle *= left.x;
+            shape.sharpness *= left;
+        }
+    }
     return shape;
 }
 
-//? end
-//? lobes_axes
 /// Determinant of the sharpness.
 fn luthier_lobe_determinant(shape: LuthierLobeShape) -> f32 {
     let product = shape.sharpness.x * shape.sharpness.y;
@@ -198,30 +167,33 @@ fn luthier_lobe_determinant(shape: LuthierLobeShape) -> f32 {
     return max(product - shape.shear * shape.shear, 1e-4 * product);
 }
 
-//? end
 /// The slope at which the sharpness times the slope from the middle is so much.
 fn luthier_lobe_slope(shape: LuthierLobeShape, apart: vec2<f32>) -> vec2<f32> {
     //? lobes_axes
-    let scaled = shape.middle + apart;
-    return (shape.sharpness.yx * scaled - shape.shear * scaled.yx) / luthier_lobe_determinant(shape);
+    {
+        let scaled = shape.middle + apart;
+        return (shape.sharpness.yx * scaled - shape.shear * scaled.yx) / luthier_lobe_determinant(shape);
+    }
     //? else
     return vec2<f32>(shape.middle + apart.x, apart.y) / shape.sharpness;
-    //? end
 }
 
 /// A lobe of a row: its shift, its sharpness and decay, and the shear of its sharpness, as seen by an eye with coordinates along the surface in its frame.
-//? lobes_axes
-fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, shear: f32, eye: vec2<f32>, is_turned: bool) -> LuthierLobeShape {
+fn luthier_lobe_in_axes(shift: f32, numbers: vec3<f32>, shear: f32, eye: vec2<f32>, is_turned: bool) -> LuthierLobeShape {
     var shape: LuthierLobeShape;
     // In axes the middle is the adjugate of the sharpness times the eye.
     let turned = numbers.yx * eye - shear * eye.yx;
     shape.middle = shift * select(vec2<f32>(numbers.x * eye.x, 0.0), turned, is_turned);
     shape.shear = shear;
-//? else
+    shape.sharpness = numbers.xy;
+    shape.decay = numbers.z;
+    return shape;
+}
+
+/// A lobe of a row: its shift, its sharpness and decay, as seen by an eye at an angle of this sine.
 fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, sin_theta: f32) -> LuthierLobeShape {
     var shape: LuthierLobeShape;
     shape.middle = shift * sin_theta * numbers.x;
-//? end
     shape.sharpness = numbers.xy;
     shape.decay = numbers.z;
     return shape;
@@ -234,12 +206,9 @@ fn luthier_with_peak(given: LuthierLobeShape) -> LuthierLobeShape {
     shape.peak = luthier_lobe_determinant(given) * given.decay * (0.5 / LUTHIER_PI);
     //? else
     shape.peak = given.sharpness.x * given.sharpness.y * given.decay * (0.5 / LUTHIER_PI);
-    //? end
     return shape;
 }
 
-//? end
-//? lobes_axes
 /// Tiles of rows from the first to the azimuth of an eye in axes, of which a quarter of a circle has so many; and the sign of the shear there.
 /// With v, the tangent of the angle from the diagonal, tiles are nearly at equal angles.
 fn luthier_lobes_azimuth(eye: vec2<f32>, quarter: f32) -> vec2<f32> {
@@ -253,7 +222,6 @@ fn luthier_lobes_azimuth(eye: vec2<f32>, quarter: f32) -> vec2<f32> {
     return vec2<f32>(select(0.0, tiles, size > 0.0), select(1.0, -1.0, is_crossed && is_mirrored));
 }
 
-//? end
 
 /// A direction along the surface, in a frame of this azimuth.
 fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
@@ -264,30 +232,33 @@ fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     let header = luthier_header(material);
     //? place
-    // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
-    let over = luthier_materials[header + $word_phong_diffuse];
-    //? lobes_film
-    // Or at equal distances of the factor on the film, from the greatest to the least.
-    let sheet = luthier_materials[header + $word_glitter_tilt];
-    let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
-    let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < 0.0));
-    //? else
-    let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
-    //? end
-    //? lobes_patina
-    // Of the last two tiles one is that of patina grown whole, and the other that of bare layers.
-    let bare_tile = luthier_materials[header + $word_patina_tarnish].w;
-    let is_grown = bare_tile > 0.0 && place.patina >= 0.0;
-    let cover = select(1.0, saturate(place.patina), is_grown);
-    let nominal_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
-    let first_tile = nominal_tile + select(0.0, bare_tile - cover, is_grown);
-    //? else
-    let first_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
-    //? end
-    let spread = max(place.alpha_factor, over.z);
+    {
+        // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
+        let over = luthier_materials[header + $word_phong_diffuse];
+        //? lobes_film
+        {
+            // Or at equal distances of the factor on the film, from the greatest to the least.
+            let sheet = luthier_materials[header + $word_glitter_tilt];
+            let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
+            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < 0.0));
+        }
+        //? else
+        let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
+        //? lobes_patina
+        {
+            // Of the last two tiles one is that of patina grown whole, and the other that of bare layers.
+            let bare_tile = luthier_materials[header + $word_patina_tarnish].w;
+            let is_grown = bare_tile > 0.0 && place.patina >= 0.0;
+            let cover = select(1.0, saturate(place.patina), is_grown);
+            let nominal_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
+            let first_tile = nominal_tile + select(0.0, bare_tile - cover, is_grown);
+        }
+        //? else
+        let first_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
+        let spread = max(place.alpha_factor, over.z);
+    }
     //? else
     let first_tile = luthier_materials[header].w;
-    //? end
     // Along the normal the azimuth is 0.
     let across = vec2<f32>(wo.x + 1e-15, wo.y);
     let sin_theta_sq = dot(across, across);
@@ -299,124 +270,131 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? anisotropic
     prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wo), wo.z);
     //? else
-    let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
-    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, sin_theta_sq * (alpha * alpha) + 1e-18, wo.z);
-    //? end
+    {
+        let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
+        prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, sin_theta_sq * (alpha * alpha) + 1e-18, wo.z);
+    }
     //? lobes_patina
-    prepared.cover = cover;
-    var bare_place = place;
-    bare_place.patina = -1.0;
-    //? base_color
-    bare_place.base_color = vec3<f32>(-1.0);
-    //? end
-    prepared.bare = luthier_layer_at(bare_place, material, select(0u, luthier_layer_count(material), is_grown));
-    prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_across_sq(prepared.bare, wo), wo.z);
-    //? end
+    {
+        prepared.cover = cover;
+        var bare_place = place;
+        bare_place.patina = -1.0;
+        //? base_color
+        bare_place.base_color = vec3<f32>(-1.0);
+        prepared.bare = luthier_layer_at(bare_place, material, select(0u, luthier_layer_count(material), is_grown));
+        prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_across_sq(prepared.bare, wo), wo.z);
+    }
     //? lobes_axes
-    let axes = luthier_materials[header + $word_glitter_tilt];
-    let is_turned = axes.w > 0.0;
-    prepared.azimuth = select(across * inverse_sin, axes.yz, is_turned);
-    let eye = luthier_in_frame(prepared.azimuth, wo.xy);
-    let around = select(vec2<f32>(0.0), luthier_lobes_azimuth(eye, axes.w), is_turned);
-    let tile = first_tile + around.x;
+    {
+        let axes = luthier_materials[header + $word_glitter_tilt];
+        let is_turned = axes.w > 0.0;
+        prepared.azimuth = select(across * inverse_sin, axes.yz, is_turned);
+        let eye = luthier_in_frame(prepared.azimuth, wo.xy);
+        let around = select(vec2<f32>(0.0), luthier_lobes_azimuth(eye, axes.w), is_turned);
+        let tile = first_tile + around.x;
+    }
     //? else
-    prepared.azimuth = across * inverse_sin;
-    let tile = first_tile;
-    //? end
+    {
+        prepared.azimuth = across * inverse_sin;
+        let tile = first_tile;
+    }
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? lobes_tilted
     //? one_lobe|two_lobes
-    // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
-    let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
-    let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
-    prepared.tilt = luthier_in_frame(prepared.azimuth, turned);
-    //? end
-    //? end
+    {
+        // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
+        let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
+        let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
+        prepared.tilt = luthier_in_frame(prepared.azimuth, turned);
+    }
     //? critical_view
-    prepared.inside = luthier_materials[header + $word_phong_specular];
-    // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
-    let plain = wo.z * (1.25 / (wo.z + 0.25));
-    let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
+    {
+        prepared.inside = luthier_materials[header + $word_phong_specular];
+        // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
+        let plain = wo.z * (1.25 / (wo.z + 0.25));
+        let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
+    }
     //? else
     let cos_theta = wo.z;
-    //? end
     prepared.row = vec2<f32>(tile, cos_theta);
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
     //? lobes_base
-    // Rows have a diffuse base apart. Under patina this word is patina's.
-    let painted_word = luthier_materials[header + $word_patina];
-    let of_internal = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_INTERNAL);
-    let of_base = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_BASE);
-    if painted_word.w < 0.0 {
-        // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
-        let falloff = vec2<f32>(of_base.a, of_internal.a);
-        let integral = 1.0 - dot(falloff, luthier_materials[header + $word_patina_diffuse_albedo].xy);
-        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
+    {
+        // Rows have a diffuse base apart. Under patina this word is patina's.
+        let painted_word = luthier_materials[header + $word_patina];
+        let of_internal = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_INTERNAL);
+        let of_base = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_BASE);
+        if painted_word.w < 0.0 {
+            // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
+            let falloff = vec2<f32>(of_base.a, of_internal.a);
+            let integral = 1.0 - dot(falloff, luthier_materials[header + $word_patina_diffuse_albedo].xy);
+            prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
+        }
+        //? base_color
+        {
+            // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
+            let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
+            let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
+            let is_painted = place.base_color.x >= 0.0 && painted_word.w < 0.5;
+            let painted = select(vec3<f32>(0.0), max(of_base.rgb * (other / own - 1.0), -wide.rgb), is_painted);
+            prepared.painted = painted;
+            prepared.wide = wide.rgb + painted;
+        }
+        //? else
+        prepared.wide = wide.rgb;
     }
-    //? base_color
-    // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
-    let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
-    let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
-    let is_painted = place.base_color.x >= 0.0 && painted_word.w < 0.5;
-    let painted = select(vec3<f32>(0.0), max(of_base.rgb * (other / own - 1.0), -wide.rgb), is_painted);
-    prepared.painted = painted;
-    prepared.wide = wide.rgb + painted;
     //? else
     prepared.wide = wide.rgb;
-    //? end
-    //? else
-    prepared.wide = wide.rgb;
-    //? end
     //? lobes_bare_base
-    let is_base = is_grown && prepared.bare.kind == LUTHIER_DIFFUSE;
-    let base = (1.0 - cover) * luthier_lookup_lobes(nominal_tile + bare_tile, cos_theta, 0.0).rgb;
-    prepared.base = select(vec3<f32>(0.0), base, is_base);
-    //? end
+    {
+        let is_base = is_grown && prepared.bare.kind == LUTHIER_DIFFUSE;
+        let base = (1.0 - cover) * luthier_lookup_lobes(nominal_tile + bare_tile, cos_theta, 0.0).rgb;
+        prepared.base = select(vec3<f32>(0.0), base, is_base);
+    }
     //? one_lobe|two_lobes
-    //? surface
-    // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
-    let leaning = wo.z / prepared.inside_cos;
-    let unresolved = 2.0 * max(place.slope_variance, 0.0) * leaning * leaning;
-    //? else
-    //? place
-    let unresolved = 0.0;
-    //? end
-    //? end
-    let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
-    prepared.first_strength = first.rgb;
-    let first_numbers = luthier_lookup_lobes(tile, cos_theta, 2.0).rgb;
-    //? lobes_axes
-    let first_shape = luthier_lobe_shape(first.a, first_numbers, around.y * wide.a, eye, is_turned);
-    //? else
-    let first_shape = luthier_lobe_shape(first.a, first_numbers, sin_theta);
-    //? end
-    //? place
-    prepared.first_shape = luthier_with_peak(luthier_spread(first_shape, spread, unresolved));
-    //? else
-    prepared.first_shape = luthier_with_peak(first_shape);
-    //? end
-    //? end
+    {
+        //? surface
+        {
+            // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
+            let leaning = wo.z / prepared.inside_cos;
+            let unresolved = 2.0 * max(place.slope_variance, 0.0) * leaning * leaning;
+        }
+        //? else
+        //? place
+        let unresolved = 0.0;
+        let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
+        prepared.first_strength = first.rgb;
+        let first_numbers = luthier_lookup_lobes(tile, cos_theta, 2.0).rgb;
+        //? lobes_axes
+        let first_shape = luthier_lobe_in_axes(first.a, first_numbers, around.y * wide.a, eye, is_turned);
+        //? else
+        let first_shape = luthier_lobe_shape(first.a, first_numbers, sin_theta);
+        //? place
+        prepared.first_shape = luthier_with_peak(luthier_spread(first_shape, spread, unresolved));
+        //? else
+        prepared.first_shape = luthier_with_peak(first_shape);
+    }
     //? two_lobes
-    let second = luthier_lookup_lobes(tile, cos_theta, 3.0);
-    prepared.second_strength = second.rgb;
-    let second_numbers = luthier_lookup_lobes(tile, cos_theta, 4.0).rgb;
-    //? lobes_axes
-    let second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
-    let second_shape = luthier_lobe_shape(second.a, second_numbers, second_shear, eye, is_turned);
-    //? else
-    let second_shape = luthier_lobe_shape(second.a, second_numbers, sin_theta);
-    //? end
-    //? place
-    prepared.second_shape = luthier_with_peak(luthier_spread(second_shape, spread, unresolved));
-    //? else
-    prepared.second_shape = luthier_with_peak(second_shape);
-    //? end
-    //? end
+    {
+        let second = luthier_lookup_lobes(tile, cos_theta, 3.0);
+        prepared.second_strength = second.rgb;
+        let second_numbers = luthier_lookup_lobes(tile, cos_theta, 4.0).rgb;
+        //? lobes_axes
+        {
+            let second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
+            let second_shape = luthier_lobe_in_axes(second.a, second_numbers, second_shear, eye, is_turned);
+        }
+        //? else
+        let second_shape = luthier_lobe_shape(second.a, second_numbers, sin_theta);
+        //? place
+        prepared.second_shape = luthier_with_peak(luthier_spread(second_shape, spread, unresolved));
+        //? else
+        prepared.second_shape = luthier_with_peak(second_shape);
+    }
     return prepared;
 }
 
-//? one_lobe|two_lobes
 /// Half the density of slopes of a lobe: its peak times (1 + q)^-(1 + z) with its decay z, q being the squared distance from the middle times the
 /// sharpness; Student's, from GGX at 1 to Gaussians.
 fn luthier_half_slope_density(shape: LuthierLobeShape, slope: vec2<f32>) -> f32 {
@@ -424,13 +402,10 @@ fn luthier_half_slope_density(shape: LuthierLobeShape, slope: vec2<f32>) -> f32 
     let apart = shape.sharpness * slope + shape.shear * slope.yx - shape.middle;
     //? else
     let apart = vec2<f32>(slope.x * shape.sharpness.x - shape.middle, slope.y * shape.sharpness.y);
-    //? end
     let falloff = (1.0 + shape.decay) * log2(1.0 + dot(apart, apart));
     return exp2(-falloff) * shape.peak;
 }
-//? end
 
-//? one_lobe|two_lobes
 /// The half vector with light from wi between refracted directions: its slopes in the frame of the lobes, against the tilt, and the factor from half
 /// densities of slopes to densities of solid angle outside.
 fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
@@ -446,11 +421,8 @@ fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     return vec3<f32>(across * inverse_z - prepared.tilt, factor);
     //? else
     return vec3<f32>(across * inverse_z, factor);
-    //? end
 }
-//? end
 
-//? lobes_patina
 /// f cos_theta_i of the layer that is bare where no patina has grown, without lobes; `sum` is that of the directions.
 fn luthier_light_bare(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3<f32>, cos_theta_d: f32) -> vec3<f32> {
     let layer = prepared.bare;
@@ -458,7 +430,6 @@ fn luthier_light_bare(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3<f
     if layer.kind == LUTHIER_DIFFUSE {
         return wi.z * $diffuse(layer, wi, prepared.wo);
     }
-    //? end
     let masking = prepared.bare_masking + luthier_slope_lambda(layer, luthier_coat_across_sq(layer, wi), wi.z);
     let facets = luthier_quarter_density(layer, sum) / (masking * prepared.wo.z);
     return luthier_fresnel_term(layer, cos_theta_d) * facets;
@@ -478,14 +449,12 @@ fn luthier_bare_energy(prepared: LuthierPreparedLobes) -> f32 {
     return select(0.0, max(energy, 0.0), prepared.cover < 1.0);
 }
 
-//? end
 /// Shape of the remainder: its radiance towards a cosine, over that along the normal.
 fn luthier_wide_shape(prepared: LuthierPreparedLobes, cos_theta: f32) -> f32 {
     //? critical_view
     let away = 1.0 - luthier_inside_cosine(prepared.inside, cos_theta);
     //? else
     let away = 1.0 - cos_theta;
-    //? end
     let away_sq = away * away;
     return max(1.0 - prepared.medium.y * (away_sq * away_sq * away) - prepared.medium.z * away_sq, 0.0);
 }
@@ -501,20 +470,18 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
     //? lobes_patina
     value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
-    //? end
     let wide = luthier_wide_shape(prepared, wi.z) * wi.z * prepared.medium.w;
     //? lobes_bare_base
     value += (prepared.wide - prepared.base) * wide;
     //? else
     value += prepared.wide * wide;
-    //? end
     //? one_lobe|two_lobes
-    let place = luthier_place_below(prepared, wi);
-    value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);
-    //? end
+    {
+        let place = luthier_place_below(prepared, wi);
+        value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);
+    }
     //? two_lobes
     value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, place.xy) * place.z);
-    //? end
     return value;
 }
 
@@ -526,13 +493,10 @@ fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
     return albedo + prepared.painted;
     //? else
     return albedo;
-    //? end
     //? else
     return albedo;
-    //? end
 }
 
-//? one_lobe|two_lobes
 /// A lobe of a prepared material by number, below `LUTHIER_LOBES`.
 struct LuthierBelow {
     /// Energy, RGB.
@@ -547,25 +511,26 @@ fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow
         let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 4.0).a;
         return LuthierBelow(prepared.second_strength * share, prepared.second_shape);
     }
-    //? end
     let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
     return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
 }
 
-//? end
-//? end
 /// f cos_theta_i of the first interface, one bounce, and of the simulated light from below it.
 fn luthier_eval_lobes($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     //? lobes
-    //? lobes_diffuse
-    let layer = $layer(material, 0u);
-    if layer.kind == LUTHIER_DIFFUSE {
+    {
+        //? lobes_diffuse
+        {
+            let layer = $layer(material, 0u);
+            if layer.kind == LUTHIER_DIFFUSE {
+                return wi.z * $diffuse(layer, wi, wo);
+            }
+        }
+        return luthier_light_lobes(luthier_prepare_lobes($place_argument material, wo), wi);
+    }
+    //? else
+    {
+        let layer = $layer(material, 0u);
         return wi.z * $diffuse(layer, wi, wo);
     }
-    //? end
-    return luthier_light_lobes(luthier_prepare_lobes($place_argument material, wo), wi);
-    //? else
-    let layer = $layer(material, 0u);
-    return wi.z * $diffuse(layer, wi, wo);
-    //? end
 }

@@ -29,18 +29,21 @@ struct LuthierShownLobe {
     /// Middle.
     middle: vec2<f32>,
     //? lobes_axes
-    /// Cosine and sine of the azimuth of the eye.
-    azimuth: vec2<f32>,
-    /// Squared widths as a symmetric matrix: in the plane of the eye, across it, and between them.
-    width_sq: vec3<f32>,
-    /// The triangular root of the matrix within which directions lie: what their blurs leave.
-    spread: vec3<f32>,
+    {
+        /// Cosine and sine of the azimuth of the eye.
+        azimuth: vec2<f32>,
+        /// Squared widths as a symmetric matrix: in the plane of the eye, across it, and between them.
+        width_sq: vec3<f32>,
+        /// The triangular root of the matrix within which directions lie: what their blurs leave.
+        spread: vec3<f32>,
+    }
     //? else
-    /// Widths.
-    width: vec2<f32>,
-    /// Those within which directions lie: what their blurs leave.
-    spread: vec2<f32>,
-    //? end
+    {
+        /// Widths.
+        width: vec2<f32>,
+        /// Those within which directions lie: what their blurs leave.
+        spread: vec2<f32>,
+    }
     /// 1 over the decay: near 0 Beckmann's distribution, 1 that of GGX.
     tail: f32,
     /// Whether facets of the first interface weigh the directions.
@@ -71,16 +74,19 @@ fn luthier_shown_blur(lobe: LuthierShownLobe, stretch: vec2<f32>) -> f32 {
     let share = LUTHIER_TAP_BLUR - 0.08 * tail;
     let narrowest = 0.70711 - 0.4 * tail;
     //? lobes_axes
-    let angle_sq = lobe.width_sq * vec3<f32>(stretch * stretch, stretch.x * stretch.y);
-    let mean = 0.5 * (angle_sq.x + angle_sq.y);
-    let half_difference = 0.5 * (angle_sq.x - angle_sq.y);
-    let narrow_sq = max(mean - sqrt(half_difference * half_difference + angle_sq.z * angle_sq.z), 1e-6 * mean);
-    let area_sq = max(angle_sq.x * angle_sq.y - angle_sq.z * angle_sq.z, 0.0);
-    return min(share * sqrt(sqrt(area_sq)), narrowest * sqrt(narrow_sq));
+    {
+        let angle_sq = lobe.width_sq * vec3<f32>(stretch * stretch, stretch.x * stretch.y);
+        let mean = 0.5 * (angle_sq.x + angle_sq.y);
+        let half_difference = 0.5 * (angle_sq.x - angle_sq.y);
+        let narrow_sq = max(mean - sqrt(half_difference * half_difference + angle_sq.z * angle_sq.z), 1e-6 * mean);
+        let area_sq = max(angle_sq.x * angle_sq.y - angle_sq.z * angle_sq.z, 0.0);
+        return min(share * sqrt(sqrt(area_sq)), narrowest * sqrt(narrow_sq));
+    }
     //? else
-    let angles = lobe.width * stretch;
-    return min(share * sqrt(angles.x * angles.y), narrowest * min(angles.x, angles.y));
-    //? end
+    {
+        let angles = lobe.width * stretch;
+        return min(share * sqrt(angles.x * angles.y), narrowest * min(angles.x, angles.y));
+    }
 }
 
 /// The stretch of angles about the middle of a lobe.
@@ -137,9 +143,7 @@ fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<
     lobe.spread = width * sqrt(max(1.0 - 2.0 * (blur * blur) / (angles * angles), vec2<f32>(0.0)));
     return lobe;
 }
-//? end
 
-//? one_lobe|two_lobes
 /// A lobe of rows.
 fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, turn: vec2<f32>) -> LuthierShownLobe {
     let straight = luthier_lobe_slope(shape, vec2<f32>(0.0));
@@ -147,20 +151,19 @@ fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, 
     let middle = straight + prepared.tilt;
     //? else
     let middle = straight;
-    //? end
     //? lobes_axes
-    // The square of the inverse of the sharpness, over the decay.
-    let determinant = luthier_lobe_determinant(shape);
-    let mixed = shape.sharpness.yx * shape.sharpness.yx + shape.shear * shape.shear;
-    let squares = vec3<f32>(mixed, -shape.shear * (shape.sharpness.x + shape.sharpness.y));
-    let width = squares / (determinant * determinant * shape.decay);
+    {
+        // The square of the inverse of the sharpness, over the decay.
+        let determinant = luthier_lobe_determinant(shape);
+        let mixed = shape.sharpness.yx * shape.sharpness.yx + shape.shear * shape.shear;
+        let squares = vec3<f32>(mixed, -shape.shear * (shape.sharpness.x + shape.sharpness.y));
+        let width = squares / (determinant * determinant * shape.decay);
+    }
     //? else
     let width = inverseSqrt(shape.decay) / shape.sharpness;
-    //? end
     return luthier_shown_lobe(prepared, prepared.medium.x, middle, width, 1.0 / shape.decay, turn);
 }
 
-//? end
 /// Light so far and that of one more direction of a lobe: beyond it lies this share of the lobe, and it lies towards a unit vector from the
 /// middle. What would not leave the surface weighs nothing.
 fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, beyond: f32, towards: vec2<f32>) -> LuthierShown {
@@ -171,7 +174,6 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let slope = lobe.middle + radius * (lobe.spread.xy * around + vec2<f32>(0.0, lobe.spread.z * around.x));
     //? else
     let slope = lobe.middle + radius * lobe.spread * around;
-    //? end
     let wh = vec3<f32>(slope, 1.0) * inverseSqrt(1.0 + dot(slope, slope));
     let cos_theta_d = dot(wh, lobe.eye);
     let up = 2.0 * cos_theta_d * wh - lobe.eye;
@@ -187,15 +189,15 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let azimuth = lobe.azimuth;
     //? else
     let azimuth = prepared.azimuth;
-    //? end
     let wi = vec3<f32>(azimuth.x * across.x - azimuth.y * across.y, azimuth.y * across.x + azimuth.x * across.y, cos_theta_i);
     if lobe.is_coat {
         //? anisotropic
         let across_sq = luthier_coat_across_sq(prepared.coat, wi);
         //? else
-        let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
-        let across_sq = max(sin_sq, 1e-12) * (alpha * alpha);
-        //? end
+        {
+            let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
+            let across_sq = max(sin_sq, 1e-12) * (alpha * alpha);
+        }
         let masking = prepared.masking + luthier_slope_lambda(prepared.coat, across_sq, cos_theta_i);
         let fresnel = luthier_fresnel_term(prepared.coat, clamp(cos_theta_d, 0.0, 1.0));
         weight *= max(fresnel, vec3<f32>(1e-6)) * (max(cos_theta_d, 1e-3) / (wh.z * masking * prepared.wo.z));
@@ -250,22 +252,20 @@ fn luthier_shown_coat(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: 
     let tail = 0.001 + 0.998 * prepared.coat.distribution;
     //? else
     let tail = 0.001;
-    //? end
     //? else
     let tail = 0.999;
-    //? end
     //? lobes_axes
     //? anisotropic
-    let alpha_sq = prepared.coat.alpha_xy * prepared.coat.alpha_xy;
-    let axis = luthier_in_frame(prepared.azimuth, prepared.coat.rotation);
-    let square = axis * axis;
-    let width = vec3<f32>(dot(square, alpha_sq), dot(square.yx, alpha_sq), axis.x * axis.y * (alpha_sq.x - alpha_sq.y));
+    {
+        let alpha_sq = prepared.coat.alpha_xy * prepared.coat.alpha_xy;
+        let axis = luthier_in_frame(prepared.azimuth, prepared.coat.rotation);
+        let square = axis * axis;
+        let width = vec3<f32>(dot(square, alpha_sq), dot(square.yx, alpha_sq), axis.x * axis.y * (alpha_sq.x - alpha_sq.y));
+    }
     //? else
     let width = vec3<f32>(vec2<f32>(prepared.coat.alpha * prepared.coat.alpha), 0.0);
-    //? end
     //? else
     let width = vec2<f32>(prepared.coat.alpha);
-    //? end
     var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), width, tail, turn);
     coat.is_coat = true;
     return luthier_shown_mean(coat, prepared, frame);
@@ -311,27 +311,31 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     let turned = vec2<f32>(cos(angle), sin(angle));
     var rest = luthier_albedo_lobes(prepared) - prepared.wide;
     //? lobes_bare_base
-    var total = prepared.base * luthier_environment_diffuse(frame[2]);
-    total += (prepared.wide - prepared.base) * luthier_shown_wide(prepared, frame, turned);
+    {
+        var total = prepared.base * luthier_environment_diffuse(frame[2]);
+        total += (prepared.wide - prepared.base) * luthier_shown_wide(prepared, frame, turned);
+    }
     //? else
     var total = prepared.wide * luthier_shown_wide(prepared, frame, turned);
-    //? end
     //? one_lobe|two_lobes
-    let first = luthier_lobe_below(prepared, 0u);
-    rest -= first.energy;
-    total += first.energy * luthier_shown_mean(luthier_shown_below(prepared, first.shape, turned), prepared, frame);
-    //? end
+    {
+        let first = luthier_lobe_below(prepared, 0u);
+        rest -= first.energy;
+        total += first.energy * luthier_shown_mean(luthier_shown_below(prepared, first.shape, turned), prepared, frame);
+    }
     //? two_lobes
-    let second = luthier_lobe_below(prepared, 1u);
-    rest -= second.energy;
-    total += second.energy * luthier_shown_mean(luthier_shown_below(prepared, second.shape, turned), prepared, frame);
-    //? end
+    {
+        let second = luthier_lobe_below(prepared, 1u);
+        rest -= second.energy;
+        total += second.energy * luthier_shown_mean(luthier_shown_below(prepared, second.shape, turned), prepared, frame);
+    }
     //? lobes_patina
-    // The bare layer has the colour of its reflectance in the mirrored direction.
-    let tint = luthier_fresnel_term(prepared.bare, min(prepared.wo.z, 1.0));
-    let bare = tint * (luthier_bare_energy(prepared) / max(dot(tint, vec3<f32>(1.0 / 3.0)), 1e-6));
-    rest -= bare;
-    total += bare * luthier_shown_coat(luthier_bare_lobes(prepared), frame, turned);
-    //? end
+    {
+        // The bare layer has the colour of its reflectance in the mirrored direction.
+        let tint = luthier_fresnel_term(prepared.bare, min(prepared.wo.z, 1.0));
+        let bare = tint * (luthier_bare_energy(prepared) / max(dot(tint, vec3<f32>(1.0 / 3.0)), 1e-6));
+        rest -= bare;
+        total += bare * luthier_shown_coat(luthier_bare_lobes(prepared), frame, turned);
+    }
     return total + max(rest, vec3<f32>(0.0)) * luthier_shown_coat(prepared, frame, turned);
 }

@@ -3,14 +3,14 @@
 fn luthier_eval_microfacet($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let layer = $layer(material, 0u);
     //? smith
-    //? microfacet_diffuse
-    if layer.kind == LUTHIER_DIFFUSE {
-        return wi.z * $diffuse(layer, wi, wo);
+    {
+        //? microfacet_diffuse
+        if layer.kind == LUTHIER_DIFFUSE {
+            return wi.z * $diffuse(layer, wi, wo);
+        }
+        let lobe = luthier_smith_lobe(layer, wi, wo);
+        return luthier_fresnel_term(layer, lobe.cos_theta_d) * lobe.value;
     }
-    //? end
-    let lobe = luthier_smith_lobe(layer, wi, wo);
-    return luthier_fresnel_term(layer, lobe.cos_theta_d) * lobe.value;
     //? else
     return wi.z * $diffuse(layer, wi, wo);
-    //? end
 }

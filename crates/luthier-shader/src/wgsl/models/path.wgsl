@@ -11,22 +11,18 @@ struct LuthierPath {
     //? fluorescent
     /// Light that comes down to the next layer; `throughput` is the share of what goes up there that comes out.
     lit: vec3<f32>,
-    //? end
     /// f of the layers so far.
     total: vec3<f32>,
     //? clamped
     /// Greatest slope parameter so far: a layer is never smoother than those above it.
     alpha_above: f32,
-    //? end
     /// Whether any light reaches the next layer.
     open: bool,
     //? flakes
     /// Normal below the next interface, in its frame: that of the flakes.
     normal_below: vec3<f32>,
-    //? end
 }
 
-//? own_normals
 /// A path in the frame of an interface's own normal, closed where the interface turns away from either direction. The light that falls on it
 /// goes by its cosine there.
 fn luthier_onto(path: LuthierPath, normal: vec3<f32>) -> LuthierPath {
@@ -40,49 +36,45 @@ fn luthier_onto(path: LuthierPath, normal: vec3<f32>) -> LuthierPath {
     next.lit = path.lit * facing;
     //? else
     next.throughput = path.throughput * facing;
-    //? end
     return next;
 }
-//? end
 
-//? chain_diffuse
 /// Adds what a diffuse base reflects. It ends the stack.
-//? own_normals
 fn luthier_add_diffuse(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
-    var path = luthier_onto(above, layer.normal);
-    if !path.open {
-        return path;
+    //? own_normals
+    {
+        var path = luthier_onto(above, layer.normal);
+        if !path.open {
+            return path;
+        }
     }
-//? else
-fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
-//? end
+    //? else
+    let path = above;
     //? fluorescent
     let sent = luthier_reradiated(layer, path.wi_local, path.wo_local, path.lit);
     //? else
     let brdf = $diffuse(layer, path.wi_local, path.wo_local);
-    //? end
     var next = path;
     //? fluorescent
     next.total = path.total + path.throughput * sent;
     //? else
     next.total = path.total + path.throughput * brdf;
-    //? end
     next.open = false;
     return next;
 }
-//? end
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
-//? own_normals
 fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
-    var path = luthier_onto(above, layer.normal);
-    if !path.open {
-        return path;
+    //? own_normals
+    {
+        var path = luthier_onto(above, layer.normal);
+        if !path.open {
+            return path;
+        }
     }
-//? else
-fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
-//? end
+    //? else
+    let path = above;
     var next = path;
     next.open = false;
 
@@ -97,14 +89,11 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     var fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
     //? else
     var fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    //? end
     //? else
     //? chain_patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
     //? else
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    //? end
-    //? end
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
     let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
@@ -112,87 +101,91 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.total = path.total + path.throughput * path.lit * fresnel * geometry;
     //? else
     next.total = path.total + path.throughput * fresnel * geometry;
-    //? end
 
     //? below
-    //? conductor
-    if layer.kind != LUTHIER_DIELECTRIC {
-        return next;
-    }
-    //? end
-    // Refracted at the normal; the squared cosine does not cancel for an index near 1.
-    let bent = cosines * layer.inverse_eta;
-    let cosines_sq = bent * bent + layer.grazing_cos_sq;
-    let secants = inverseSqrt(cosines_sq);
-    let refracted = cosines_sq * secants;
-    next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
-    next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
-    next.across = path.across * layer.inverse_eta;
-    //? flakes
-    // Flakes tilt all that lies below, the paths through the slab included.
-    next.wi_local = luthier_local(path.normal_below, next.wi_local);
-    next.wo_local = luthier_local(path.normal_below, next.wo_local);
-    next.across = luthier_local(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
-    next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
-    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi_local.z, next.wo_local.z) > 0.0;
-    //? else
-    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
-    //? end
-    //? own_normals
-    // Back to the frame of the place: slabs are as thick along its normal as without bumps.
-    next = luthier_onto(next, vec3<f32>(-layer.normal.xy, layer.normal.z));
-    //? fluorescent
-    path.lit = next.lit;
-    //? else
-    path.throughput = next.throughput;
-    //? end
-    //? end
-    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
-    //? internal
-    //? own_angles
-    var returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
-    if layer.own_angles {
-        //? chain_patina
-        fresnel = layer.tarnish * luthier_fresnel_term(layer, min(cosines.x, 1.0));
-        returned = 1.0 - layer.tarnish * luthier_fresnel_term(layer, min(cosines.y, 1.0));
+    {
+        //? conductor
+        if layer.kind != LUTHIER_DIELECTRIC {
+            return next;
+        }
+        // Refracted at the normal; the squared cosine does not cancel for an index near 1.
+        let bent = cosines * layer.inverse_eta;
+        let cosines_sq = bent * bent + layer.grazing_cos_sq;
+        let secants = inverseSqrt(cosines_sq);
+        let refracted = cosines_sq * secants;
+        next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
+        next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
+        next.across = path.across * layer.inverse_eta;
+        //? flakes
+        {
+            // Flakes tilt all that lies below, the paths through the slab included.
+            next.wi_local = luthier_local(path.normal_below, next.wi_local);
+            next.wo_local = luthier_local(path.normal_below, next.wo_local);
+            next.across = luthier_local(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
+            next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
+            next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi_local.z, next.wo_local.z) > 0.0;
+        }
         //? else
-        fresnel = luthier_fresnel_term(layer, min(cosines.x, 1.0));
-        returned = 1.0 - luthier_fresnel_term(layer, min(cosines.y, 1.0));
-        //? end
+        next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
+        //? own_normals
+        {
+            // Back to the frame of the place: slabs are as thick along its normal as without bumps.
+            next = luthier_onto(next, vec3<f32>(-layer.normal.xy, layer.normal.z));
+            //? fluorescent
+            path.lit = next.lit;
+            //? else
+            path.throughput = next.throughput;
+        }
+        // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
+        //? internal
+        //? own_angles
+        {
+            var returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
+            if layer.own_angles {
+                //? chain_patina
+                {
+                    fresnel = layer.tarnish * luthier_fresnel_term(layer, min(cosines.x, 1.0));
+                    returned = 1.0 - layer.tarnish * luthier_fresnel_term(layer, min(cosines.y, 1.0));
+                }
+                //? else
+                {
+                    fresnel = luthier_fresnel_term(layer, min(cosines.x, 1.0));
+                    returned = 1.0 - luthier_fresnel_term(layer, min(cosines.y, 1.0));
+                }
+            }
+        }
+        //? else
+        let returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
+        //? else
+        let returned = 1.0 - masking * fresnel;
+        //? fluorescent
+        // On the way down light has the channels in which it came, on the way up those in which it leaves.
+        //? absorption
+        {
+            //? flakes|own_normals
+            let ways = 1.0 / vec2<f32>(next.wi_local.z, next.wo_local.z);
+            //? else
+            let ways = secants;
+            let down = exp2(-layer.optical_depth_log2 * ways.x);
+            next.lit = path.lit * (down - down * fresnel);
+            next.throughput = path.throughput * exp2(-layer.optical_depth_log2 * ways.y) * returned;
+        }
+        //? else
+        {
+            next.lit = path.lit * (1.0 - fresnel);
+            next.throughput = path.throughput * returned;
+        }
+        //? else
+        //? absorption
+        {
+            //? flakes|own_normals
+            let absorbed = exp2(-layer.optical_depth_log2 * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
+            //? else
+            let absorbed = exp2(-layer.optical_depth_log2 * (secants.x + secants.y));
+            next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned;
+        }
+        //? else
+        next.throughput = path.throughput * (1.0 - fresnel) * returned;
     }
-    //? else
-    let returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
-    //? end
-    //? else
-    let returned = 1.0 - masking * fresnel;
-    //? end
-    //? fluorescent
-    // On the way down light has the channels in which it came, on the way up those in which it leaves.
-    //? absorption
-    //? flakes|own_normals
-    let ways = 1.0 / vec2<f32>(next.wi_local.z, next.wo_local.z);
-    //? else
-    let ways = secants;
-    //? end
-    let down = exp2(-layer.optical_depth_log2 * ways.x);
-    next.lit = path.lit * (down - down * fresnel);
-    next.throughput = path.throughput * exp2(-layer.optical_depth_log2 * ways.y) * returned;
-    //? else
-    next.lit = path.lit * (1.0 - fresnel);
-    next.throughput = path.throughput * returned;
-    //? end
-    //? else
-    //? absorption
-    //? flakes|own_normals
-    let absorbed = exp2(-layer.optical_depth_log2 * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
-    //? else
-    let absorbed = exp2(-layer.optical_depth_log2 * (secants.x + secants.y));
-    //? end
-    next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned;
-    //? else
-    next.throughput = path.throughput * (1.0 - fresnel) * returned;
-    //? end
-    //? end
-    //? end
     return next;
 }

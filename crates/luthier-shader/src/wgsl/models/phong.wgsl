@@ -9,7 +9,6 @@ fn luthier_eval_phong($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f3
     let exponent = max((diffuse.w + 0.5) / (place.alpha_factor * place.alpha_factor) - 0.5, 0.0);
     //? else
     let exponent = diffuse.w;
-    //? end
     // 1 minus the cosine to the mirror direction is half a squared distance: no cancellation in narrow lobes.
     let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
     let lobe = luthier_power_lobe(0.5 * dot(apart, apart), exponent);

@@ -23,9 +23,7 @@ fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
     return saturate(1.0 - layer.passing * (1.0 - given));
     //? else
     return saturate(given);
-    //? end
 }
-//? end
 
 /// f cos_theta_i of a perfectly reflecting GGX surface, its slope parameters along an axis and across it: D G / (4 cos_theta_o), G
 /// height-correlated (Heitz 2014, eq. 99), multiplied out so that no vanishing cosine is left alone below a fraction.
@@ -45,7 +43,6 @@ fn luthier_ggx_lobe(alpha: vec2<f32>, axis: vec2<f32>, wi: vec3<f32>, wo: vec3<f
     return ratio * ratio / (2.0 * LUTHIER_PI * alpha.x * alpha.y * (eye_length + wo.z / wi.z * light_length));
 }
 
-//? statistics_base
 /// BRDF of a diffuse base below layers (T(wi) T(wo) f / (n^2 (1 - rho R)), R their reflectance of diffuse light from below) for
 /// what comes down along both directions, these directions above the base, and the index there over that outside.
 fn luthier_base(material: u32, layer: LuthierLayer, transmitted: vec3<f32>, wi: vec3<f32>, wo: vec3<f32>, eta: f32) -> vec3<f32> {
@@ -54,4 +51,3 @@ fn luthier_base(material: u32, layer: LuthierLayer, transmitted: vec3<f32>, wi: 
     let brdf = $diffuse(layer, wi, wo);
     return transmitted * brdf * ((1.0 - veil.w) / (eta * eta)) / lost;
 }
-//? end

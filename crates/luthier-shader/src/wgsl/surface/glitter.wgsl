@@ -16,8 +16,8 @@ fn luthier_voronoi(seed: u32, p: vec2<f32>) -> u32 {
     }
     return nearest;
 }
-//? glitter
 
+//? glitter
 /// Normal of the particle at a texture coordinate, unit: a share of the cells is tilted (Weidlich and Wilkie 2009, section
 /// 5.2.1). +z elsewhere and for a material without glitter.
 fn luthier_glitter_normal(material: u32, uv: vec2<f32>) -> vec3<f32> {
@@ -31,4 +31,3 @@ fn luthier_glitter_normal(material: u32, uv: vec2<f32>) -> vec3<f32> {
     let phi = 2.0 * LUTHIER_PI * luthier_unit(cell, 5u);
     return vec3<f32>(sqrt(lack * (2.0 - lack)) * vec2<f32>(cos(phi), sin(phi)), 1.0 - lack);
 }
-//? end

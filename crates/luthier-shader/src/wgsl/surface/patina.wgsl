@@ -8,7 +8,6 @@ fn luthier_patina_amount(material: u32, map_value: f32) -> f32 {
     return select(-1.0, amount, shape.w > 0.5);
 }
 
-//? chain_patina
 /// Scattering in the patina of a place: a diffuse term below the first interface, f cos_theta_i.
 fn luthier_patina_diffuse(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     if place.patina <= 0.0 {
@@ -19,4 +18,3 @@ fn luthier_patina_diffuse(place: LuthierPlace, material: u32, wi: vec3<f32>, wo:
     let diffuse_albedo = luthier_materials[luthier_header(material) + $word_patina_diffuse_albedo].xyz;
     return place.patina * passed * diffuse_albedo * (wi.z / LUTHIER_PI);
 }
-//? end

@@ -1,56 +1,51 @@
 //? layered
-/// Values of textures of one layer at a place.
-struct LuthierLayerPlace {
-    //? own_normals
-    /// Normal of its interface alone, unit, in the frame of the place's normal.
-    normal: vec3<f32>,
-    //? end
-    //? own_alphas
-    /// Factors on its slope parameters along the tangent and along the bitangent.
-    alpha_factors: vec2<f32>,
-    //? end
+{
+    /// Values of textures of one layer at a place.
+    struct LuthierLayerPlace {
+        //? own_normals
+        /// Normal of its interface alone, unit, in the frame of the place's normal.
+        normal: vec3<f32>,
+        //? own_alphas
+        /// Factors on its slope parameters along the tangent and along the bitangent.
+        alpha_factors: vec2<f32>,
+        //? tangents
+        /// Direction that its tangent is turned to, unit: (1, 0) is no turn. See `luthier_tangent`.
+        tangent: vec2<f32>,
+        //? own_slabs
+        /// Factor on the thickness of the slab below it.
+        slab_factor: f32,
+        //? own_f0
+        /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
+        passing: vec3<f32>,
+    }
+
+    /// A layer without textures.
+    fn luthier_layer_place() -> LuthierLayerPlace {
+        var own: LuthierLayerPlace;
+        own.normal = vec3<f32>(0.0, 0.0, 1.0);
+        own.alpha_factors = vec2<f32>(1.0);
+        own.tangent = vec2<f32>(1.0, 0.0);
+        own.slab_factor = 1.0;
+        own.passing = vec3<f32>(1.0);
+        return own;
+    }
+
     //? tangents
-    /// Direction that its tangent is turned to, unit: (1, 0) is no turn. See `luthier_tangent`.
-    tangent: vec2<f32>,
-    //? end
-    //? own_slabs
-    /// Factor on the thickness of the slab below it.
-    slab_factor: f32,
-    //? end
-    //? own_f0
-    /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
-    passing: vec3<f32>,
-    //? end
-}
+    /// `LuthierLayerPlace::tangent` of a texel of a tangent map, 0 to 1: 2 texel - 1 is the cosine and the sine of twice the angle, because a
+    /// tangent is a line without an end. A texel without a direction turns nothing.
+    fn luthier_tangent(texel: vec2<f32>) -> vec2<f32> {
+        let doubled = 2.0 * texel - 1.0;
+        let length_sq = dot(doubled, doubled);
+        let cos_sin = doubled * inverseSqrt(max(length_sq, 1e-12));
+        // Half the angle: the larger of cosine and sine first.
+        let larger = sqrt(0.5 + 0.5 * abs(cos_sin.x));
+        let smaller = 0.5 * cos_sin.y / larger;
+        let beyond = vec2<f32>(abs(smaller), select(-larger, larger, cos_sin.y >= 0.0));
+        let turned = select(vec2<f32>(larger, smaller), beyond, cos_sin.x < 0.0);
+        return select(vec2<f32>(1.0, 0.0), turned, length_sq >= 0.0004);
+    }
 
-/// A layer without textures.
-fn luthier_layer_place() -> LuthierLayerPlace {
-    var own: LuthierLayerPlace;
-    own.normal = vec3<f32>(0.0, 0.0, 1.0);
-    own.alpha_factors = vec2<f32>(1.0);
-    own.tangent = vec2<f32>(1.0, 0.0);
-    own.slab_factor = 1.0;
-    own.passing = vec3<f32>(1.0);
-    return own;
 }
-
-//? tangents
-/// `LuthierLayerPlace::tangent` of a texel of a tangent map, 0 to 1: 2 texel - 1 is the cosine and the sine of twice the angle, because a
-/// tangent is a line without an end. A texel without a direction turns nothing.
-fn luthier_tangent(texel: vec2<f32>) -> vec2<f32> {
-    let doubled = 2.0 * texel - 1.0;
-    let length_sq = dot(doubled, doubled);
-    let cos_sin = doubled * inverseSqrt(max(length_sq, 1e-12));
-    // Half the angle: the larger of cosine and sine first.
-    let larger = sqrt(0.5 + 0.5 * abs(cos_sin.x));
-    let smaller = 0.5 * cos_sin.y / larger;
-    let beyond = vec2<f32>(abs(smaller), select(-larger, larger, cos_sin.y >= 0.0));
-    let turned = select(vec2<f32>(larger, smaller), beyond, cos_sin.x < 0.0);
-    return select(vec2<f32>(1.0, 0.0), turned, length_sq >= 0.0004);
-}
-//? end
-
-//? end
 /// Values of textures at one place of a surface. Factors multiply the numbers of the material.
 struct LuthierPlace {
     /// Normal, unit, in the frame of the directions.
@@ -64,27 +59,21 @@ struct LuthierPlace {
     //? surface
     /// Variance, along either axis, of the slopes of the normals that a pixel sees: of a normal map whose texels it averages.
     slope_variance: f32,
-    //? end
     //? base_color
     /// Albedo of diffuse bases, RGB; below 0 that of each material.
     base_color: vec3<f32>,
-    //? end
     //? granier
     /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
     inner_normal: vec3<f32>,
-    //? end
     //? flakes
     /// Normal of what lies below the first interface, flakes for instance, unit, in the frame of `normal`.
     flake_normal: vec3<f32>,
-    //? end
     //? patina
     /// Amount of patina, 0 to 1; below 0 all layers are there, without its diffuse term and tarnish.
     patina: f32,
-    //? end
     //? layered
     /// Values of textures of single layers, from the top down.
     layers: array<LuthierLayerPlace, $layers>,
-    //? end
 }
 
 /// A place without textures.
@@ -98,9 +87,7 @@ fn luthier_place() -> LuthierPlace {
     place.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
     place.patina = -1.0;
     place.base_color = vec3<f32>(-1.0);
-    //? layered
     $each_layer
-    //? end
     return place;
 }
 
@@ -108,61 +95,59 @@ fn luthier_place() -> LuthierPlace {
 fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
     var layer = luthier_layer(material, index);
     //? layered
-    var layers = place.layers;
-    var own = luthier_layer_place();
-    if index < $layers {
-        own = layers[index];
+    {
+        var layers = place.layers;
+        var own = luthier_layer_place();
+        if index < $layers {
+            own = layers[index];
+        }
     }
-    //? end
     //? own_normals
     layer.normal = own.normal;
-    //? end
     //? own_slabs
     layer.optical_depth_log2 *= own.slab_factor;
-    //? end
     //? own_f0
     layer.passing = own.passing;
-    //? end
     //? own_alphas
-    let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));
-    //? interface
-    layer = luthier_with_alpha(layer, layer.alpha * sqrt(own_alphas.x * own_alphas.y));
-    //? end
-    layer.alpha_xy *= own_alphas;
-    //? end
+    {
+        let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));
+        //? interface
+        layer = luthier_with_alpha(layer, layer.alpha * sqrt(own_alphas.x * own_alphas.y));
+        layer.alpha_xy *= own_alphas;
+    }
     //? tangents
-    let turn = own.tangent;
-    layer.rotation = vec2<f32>(
-        layer.rotation.x * turn.x - layer.rotation.y * turn.y, layer.rotation.y * turn.x + layer.rotation.x * turn.y,
-    );
-    //? end
+    {
+        let turn = own.tangent;
+        layer.rotation = vec2<f32>(
+            layer.rotation.x * turn.x - layer.rotation.y * turn.y, layer.rotation.y * turn.x + layer.rotation.x * turn.y,
+        );
+    }
     //? surface
-    // Slope parameters are twice the variance of Beckmann's slopes, squared.
-    let unresolved = 2.0 * max(place.slope_variance, 0.0);
-    let scale = place.alpha_factor * place.alpha_factor;
-    //? interface
-    layer = luthier_with_alpha(layer, clamp(sqrt(layer.alpha * layer.alpha * scale + unresolved), 0.001, 1.0));
-    //? end
-    layer.alpha_xy = clamp(sqrt(layer.alpha_xy * layer.alpha_xy * scale + unresolved), vec2<f32>(0.001), vec2<f32>(1.0));
+    {
+        // Slope parameters are twice the variance of Beckmann's slopes, squared.
+        let unresolved = 2.0 * max(place.slope_variance, 0.0);
+        let scale = place.alpha_factor * place.alpha_factor;
+        //? interface
+        layer = luthier_with_alpha(layer, clamp(sqrt(layer.alpha * layer.alpha * scale + unresolved), 0.001, 1.0));
+        layer.alpha_xy = clamp(sqrt(layer.alpha_xy * layer.alpha_xy * scale + unresolved), vec2<f32>(0.001), vec2<f32>(1.0));
+    }
     //? else
-    //? interface
-    layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
-    //? end
-    layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
-    //? end
+    {
+        //? interface
+        layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
+        layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
+    }
     //? absorption|film
     if index == 0u {
         layer.optical_depth_log2 *= place.slab_factor;
         layer.film_thickness_waves *= place.film_factor;
         layer.film_thickness_nm *= place.film_factor;
     }
-    //? end
     //? base_color, diffuse|granier_base
     if place.base_color.x >= 0.0 && layer.kind == LUTHIER_DIFFUSE {
         layer.lambert = place.base_color / LUTHIER_PI;
         layer.fluoresces = false;
     }
-    //? end
     //? chain_patina
     if place.patina >= 0.0 && index > 0u {
         let count = luthier_layer_count(material);
@@ -174,7 +159,6 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         let tarnish = luthier_materials[luthier_header(material) + $word_patina_tarnish].xyz;
         layer.tarnish = mix(vec3<f32>(1.0), tarnish, place.patina);
     }
-    //? end
     return layer;
 }
 
@@ -198,7 +182,6 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
     next.layers = layers;
     return next;
 }
-//? end
 
 //? thickness
 /// A place with the film of a material as thick as its table says there. Repeats in uv.
@@ -213,4 +196,3 @@ fn luthier_film_place(place: LuthierPlace, material: u32, uv: vec2<f32>) -> Luth
     next.inner_normal = normalize(vec3<f32>(record.yz, 1.0));
     return next;
 }
-//? end

@@ -1,0 +1,217 @@
+//! Features: the words that conditions in the modules may name.
+
+luthier_lut::named! {
+    /// A feature that the materials of a set use. One material is enough.
+    pub enum Feature("feature") {
+        /// A layer that its model reads is a dielectric or a conductor.
+        Interface = "interface",
+        /// A model meets a diffuse base.
+        Diffuse = "diffuse",
+        /// A dielectric lies above another layer that the model reads.
+        Below = "below",
+        /// Such a dielectric absorbs.
+        Absorption = "absorption",
+        /// A conductor needs code of its own.
+        Conductor = "conductor",
+        /// An interface has no film.
+        Bare = "bare",
+        /// An interface has a film.
+        Film = "film",
+        /// An interface has an F0 in place of an index.
+        Schlick = "schlick",
+        /// Light is totally reflected at an interface.
+        TotalReflection = "total_reflection",
+        /// The shader refracts directions.
+        Bent = "bent",
+        /// A layer has two slope parameters, and its model shows them.
+        Anisotropic = "anisotropic",
+        /// A layer has the slopes of Beckmann.
+        Beckmann = "beckmann",
+        /// A layer has the slopes of GGX.
+        Ggx = "ggx",
+        /// A layer has the slopes of Blinn.
+        Blinn = "blinn",
+        /// A layer has the slopes of ABC.
+        Abc = "abc",
+        /// A layer has the slopes of SGD.
+        Sgd = "sgd",
+        /// The set has more than one distribution of slopes.
+        SeveralSlopes = "several_slopes",
+        /// The set has `blinn`, `abc` or `sgd`.
+        FreeSlopes = "free_slopes",
+        /// A base has slopes.
+        OrenNayar = "oren_nayar",
+        /// A base moves light to other channels, and its model shows it.
+        Fluorescent = "fluorescent",
+        /// At some depth one material has an interface and another a base.
+        Mixed = "mixed",
+        /// The form is `full`.
+        Full = "full",
+        /// D is computed for some layer.
+        Closed = "closed",
+        /// A layer takes its reflectance from rows.
+        Tabled = "tabled",
+        /// A layer takes its reflectance from Fresnel's equations.
+        Exact = "exact",
+        /// A layer takes its reflectance from a curve.
+        Fitted = "fitted",
+        /// Such a curve has a correction.
+        Lazanyi = "lazanyi",
+        /// Some reflectance is read.
+        Rows = "rows",
+        /// Some reflectance is computed.
+        Computed = "computed",
+        /// Reflectances come from more than one source.
+        SeveralReflectances = "several_reflectances",
+        /// A material chooses a masking.
+        Masked = "masked",
+        /// The set has several maskings.
+        SeveralMaskings = "several_maskings",
+        /// A material has the masking of Smith.
+        MaskSmith = "mask_smith",
+        /// A material has the masking of Smith for each direction.
+        MaskSmithSeparable = "mask_smith_separable",
+        /// A material has the masking of Schlick.
+        MaskSchlickSmith = "mask_schlick_smith",
+        /// A material has the masking of V-cavities.
+        MaskVCavity = "mask_v_cavity",
+        /// A material has the masking of Kelemen and Szirmay-Kalos.
+        MaskKelemen = "mask_kelemen",
+        /// A material has the implicit masking.
+        MaskImplicit = "mask_implicit",
+        /// Records have choices of parts.
+        Packed = "packed",
+        /// A material chooses the term of internal reflection.
+        Internal = "internal",
+        /// A material chooses transmission at the angles of the directions.
+        OwnAngles = "own_angles",
+        /// A table has a format that no sampler filters.
+        Bilinear = "bilinear",
+        /// The axis of a look-up is an angle.
+        ThetaAxis = "theta_axis",
+        /// A look-up reads D as a root.
+        SplitRoot = "split_root",
+        /// A look-up reads a difference to Schlick's form.
+        SchlickBase = "schlick_base",
+        /// The shader reads rows of reflectance.
+        Fresnel = "fresnel",
+        /// The shader reads D.
+        Distribution = "distribution",
+        /// The shader reads albedos of interfaces.
+        Fgd = "fgd",
+        /// The shader reads phases of films.
+        Phase = "phase",
+        /// The shader reads thicknesses of films.
+        Thickness = "thickness",
+        /// The shader reads shares that escape.
+        Escape = "escape",
+        /// The shader reads rows of lobes.
+        Lobes = "lobes",
+        /// The shader reads reflectances of films that vary.
+        FilmTable = "film_table",
+        /// A path of `elek` or `weidlich-wilkie` meets an interface.
+        Chain = "chain",
+        /// Such a path meets a base.
+        ChainDiffuse = "chain_diffuse",
+        /// Such a path meets patina.
+        ChainPatina = "chain_patina",
+        /// Elek's clamp of slope parameters can act.
+        Clamped = "clamped",
+        /// A material of `belcour` or `yamaguchi` has an interface.
+        Statistics = "statistics",
+        /// Such a material has a base.
+        StatisticsBase = "statistics_base",
+        /// A material of `microfacet` has an interface.
+        Smith = "smith",
+        /// A material of `microfacet` is a base alone.
+        MicrofacetDiffuse = "microfacet_diffuse",
+        /// A material has the model `phong`.
+        Phong = "phong",
+        /// A material has the model `granier-heidrich`.
+        Granier = "granier",
+        /// Such a material has a film.
+        GranierFilm = "granier_film",
+        /// Such a material is transparent.
+        GranierTransparent = "granier_transparent",
+        /// Such a material is a bare metal.
+        GranierBare = "granier_bare",
+        /// Such a material has an F0.
+        GranierSchlick = "granier_schlick",
+        /// Such a material has a base.
+        GranierBase = "granier_base",
+        /// Such a material has numbers of its file.
+        GranierOwn = "granier_own",
+        /// The inner boundary of such a material leans.
+        GranierTilted = "granier_tilted",
+        /// A material of `lobes` has an interface.
+        Coat = "coat",
+        /// A material of `lobes` is a base alone.
+        LobesDiffuse = "lobes_diffuse",
+        /// No material of the set has more than one lobe.
+        OneLobe = "one_lobe",
+        /// No material of the set has more than two lobes.
+        TwoLobes = "two_lobes",
+        /// Rows of lobes are over azimuths.
+        LobesAxes = "lobes_axes",
+        /// Rows of lobes are over the thickness of a film.
+        LobesFilm = "lobes_film",
+        /// Rows of lobes are over patina.
+        LobesPatina = "lobes_patina",
+        /// The base below such patina is bare in places.
+        LobesBareBase = "lobes_bare_base",
+        /// Lobes have the light of a base as a part.
+        LobesBase = "lobes_base",
+        /// Flakes tilt lobes.
+        LobesTilted = "lobes_tilted",
+        /// Lobes have a critical angle of the view.
+        CriticalView = "critical_view",
+        /// A material varies over its surface, or the set has surfaces.
+        Place = "place",
+        /// The set has surfaces.
+        Picks = "picks",
+        /// A surface has particles.
+        Particles = "particles",
+        /// A surface has switches by noise.
+        Noise = "noise",
+        /// Single layers have maps.
+        Layered = "layered",
+        /// A map of a layer has normals.
+        OwnNormals = "own_normals",
+        /// A map of a layer has slope parameters.
+        OwnAlphas = "own_alphas",
+        /// A map of a layer has thicknesses.
+        OwnSlabs = "own_slabs",
+        /// Maps of a layer have base colours and metal.
+        OwnF0 = "own_f0",
+        /// A map of a layer has tangents.
+        Tangents = "tangents",
+        /// The base has a map.
+        BaseColor = "base_color",
+        /// A material has flakes, and its model shows them.
+        Flakes = "flakes",
+        /// A material has patina, and its model shows it.
+        Patina = "patina",
+        /// A material has glitter.
+        Glitter = "glitter",
+        /// The shader was asked for `surface`.
+        Surface = "surface",
+        /// The shader has functions beside `luthier_eval`.
+        Face = "face",
+        /// Parts are drawn by visible normals.
+        Visible = "visible",
+        /// Parts are drawn by visible normals of V-cavities.
+        Cavities = "cavities",
+        /// Parts are drawn by powers of a cosine.
+        Powers = "powers",
+        /// Parts lie below boundaries.
+        Media = "media",
+        /// Parts lie below tilted boundaries.
+        Tilted = "tilted",
+        /// Draws that do not leave are folded back.
+        Folded = "folded",
+        /// The set has more than one model.
+        Several = "several",
+        /// The shader was asked for `environment`.
+        Environment = "environment",
+    }
+}

@@ -1,0 +1,27 @@
+//! Identifiers of a text: cut out, renamed.
+
+/// The text with some of its words replaced; members (after a dot) are left alone.
+pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>) -> String {
+    let mut out = String::with_capacity(text.len());
+    for word in words(text) {
+        let is_member = out.ends_with('.');
+        match name(word).filter(|_| !is_member) {
+            Some(name) => out.push_str(name.as_ref()),
+            None => out.push_str(word),
+        }
+    }
+    out
+}
+
+/// A text cut into words (identifiers and numbers) and what lies between them; nothing is dropped.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
+        let (word, tail) = rest.split_at(end);
+        rest = tail;
+        Some(word)
+    })
+}
