@@ -222,7 +222,7 @@ impl<T: ShaderTerms> Shaded<T> {
             let plain = self.eval(wi, wo);
             return [0, 1, 2].map(|c| plain[c] * light[c]);
         }
-        self.layers.twin.eval_lit(&self.layers.terms, &self.place.under, light, wi_here, wo_here)
+        self.layers.twin.eval_lit(&self.layers.terms(), &self.place.under, light, wi_here, wo_here)
     }
 
     /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the

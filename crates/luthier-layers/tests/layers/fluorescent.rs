@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::luthier_model::ShadingModel;
+use luthier_layers::luthier_model::{Reflectance, ShadingModel};
+use luthier_layers::twins::parts::Parts;
 use luthier_layers::twins::real_time::{Twin, Under};
 use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_layers::twins::terms::Exact;
@@ -66,6 +67,23 @@ fn a_matrix_without_other_channels_is_an_albedo() {
                 assert!(near(glowing.eval_lit([0.3, 2.0, 0.0], wi, wo), [0.3 * lit[0], 2.0 * lit[1], 0.0]));
             }
         }
+    }
+}
+
+/// White light is the light of `eval`, with the reflectance that a material chooses.
+#[test]
+fn a_chosen_reflectance_is_that_under_light_of_a_colour() {
+    let stack = stack(vec![coat([0.0; 3]), base([0.5; 3])]);
+    let place = Place { reradiation: Some(ROWS), ..Place::NONE };
+    let parts = Parts { reflectance: Reflectance::Approximate, ..Parts::PLAIN };
+    for model in MODELS {
+        let chosen = Shaded::with(model, &stack, NM, Color::ThreeWavelengths(NM), &place, parts).unwrap();
+        let exact = Shaded::new(model, &stack, NM, Color::ThreeWavelengths(NM), &place).unwrap();
+        for (wi, wo) in directions() {
+            assert!(near(chosen.eval_lit([1.0; 3], wi, wo), chosen.eval(wi, wo)), "{model} {wi} {wo}");
+        }
+        let (wi, wo) = directions()[1];
+        assert!(!near(chosen.eval(wi, wo), exact.eval(wi, wo)), "{model}: the choice has an effect");
     }
 }
 
