@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Counts the inner walls of the code, as JSON: python3 scripts/walls.py [FOLDER].
+"""Counts the inner walls of the code, as JSON: python3 scripts/walls.py [FOLDER [LUTHIER]].
 
-FOLDER is a checkout; that of the script by default. Counts of two checkouts compare two states of the code.
+FOLDER is a checkout; that of the script by default. Counts of two checkouts compare two states of the code. LUTHIER is a built
+command, whose bakes `strace` looks at.
 
 models     files that name single reflectance models, and lines that do so, outside the crate with the facts and the project's own pages
 marks      share of the lines of WGSL that are conditions (//?)
@@ -9,12 +10,15 @@ circles    knots of modules that use each other, by crate, from `crate::` paths;
 probes     places where luthier-gpu looks for a word in the text of a shader
 closures   named closures (`let name = |..|`) per 1,000 lines of code
 lines      code lines of crates/*/src, WGSL included; tests, comments and blank lines excluded
+reads      how often a bake opens a material file; with LUTHIER alone
 """
 
 import json
 import pathlib
 import re
+import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
 MODEL = re.compile(
@@ -108,6 +112,17 @@ def knots(edges):
     return sorted(found)
 
 
+def reads(luthier):
+    """How often a bake opens its material file."""
+    text = 'schema = 1\nname = "chalk"\n[[layer]]\ntype = "diffuse"\nalbedo = 0.8\n'
+    with tempfile.TemporaryDirectory() as folder:
+        material, log = pathlib.Path(folder, "chalk.toml"), pathlib.Path(folder, "log")
+        material.write_text(text)
+        bake = [luthier, "bake", material, "--out", pathlib.Path(folder, "out"), "--no-cache", "--quiet"]
+        subprocess.run(["strace", "-f", "-e", "trace=open,openat", "-o", log, *bake], check=True)
+        return sum('chalk.toml"' in line for line in log.read_text().splitlines())
+
+
 def main():
     crates = sorted(p for p in (ROOT / "crates").iterdir() if (p / "src").is_dir())
     files = models = closures = lines = rust = wgsl = marks = probes = 0
@@ -132,6 +147,7 @@ def main():
         if found:
             circles[crate.name] = found
     print(json.dumps({
+        **({"reads": reads(sys.argv[2])} if len(sys.argv) > 2 else {}),
         "models": {"files": files, "lines": models},
         "marks": {"share": round(marks / max(wgsl, 1), 3), "marks": marks, "wgsl": wgsl},
         "circles": {"modules": sum(len(k) for all in circles.values() for k in all), "knots": circles},
