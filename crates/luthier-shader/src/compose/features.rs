@@ -94,7 +94,7 @@ impl Features {
             names.insert(Feature::Bent);
         }
         for table in set.tables_read(form) {
-            names.insert(table_read(table.kind));
+            names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
                 // The last part is the albedo, and each lobe has two between it and part 0.
                 names.extend(match parts.max as u32 {
@@ -203,17 +203,8 @@ fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<Feature>) -> Vec<Feature> {
 }
 
 /// The word for a table that is read; `film` is whether any layer has one.
-pub(crate) fn table_read(table: TableKind) -> Feature {
-    match table {
-        TableKind::Fresnel => Feature::Fresnel,
-        TableKind::Distribution => Feature::Distribution,
-        TableKind::Fgd => Feature::Fgd,
-        TableKind::Phase => Feature::Phase,
-        TableKind::Film => Feature::FilmTable,
-        TableKind::Thickness => Feature::Thickness,
-        TableKind::Escape => Feature::Escape,
-        TableKind::Lobes => Feature::Lobes,
-    }
+fn table_read(table: TableKind) -> Option<Feature> {
+    if table == TableKind::Film { Some(Feature::FilmTable) } else { Feature::from_name(table.name()) }
 }
 
 /// The word for a distribution of slopes.

@@ -21,7 +21,7 @@ use luthier_manifest::{MapSlot, MaterialTexture, SIDE, ShadingModel, material_bu
 
 use self::blocks::prune;
 use self::feature::Feature;
-use self::features::{Features, table_read};
+use self::features::Features;
 pub(crate) use self::lookup::calls;
 use self::lookup::lookup;
 use self::reached::reached;
@@ -132,7 +132,7 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     } else {
         ["", "", "luthier_layer("]
     };
-    let text = module.replace("    $tiles\n", &tiles(features)).replace("    $assign_tiles\n", &assign_tiles());
+    let text = module.replace("    $tiles\n", &tiles()).replace("    $assign_tiles\n", &assign_tiles());
     let text = prune(&text, features).replace("    $free_slopes\n", &slopes::returned(features));
     let text =
         text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
@@ -169,9 +169,8 @@ fn reflectances(text: &str, features: &Features) -> String {
 }
 
 /// The members of a layer that say where in the tables it is.
-fn tiles(features: &Features) -> String {
-    let is_read = |kind: &TableKind| features.has(table_read(*kind)) && kind.facts().slot.is_some();
-    let names = TableKind::ALL.into_iter().filter(is_read).map(TableKind::name);
+fn tiles() -> String {
+    let names = TableKind::ALL.into_iter().filter(|kind| kind.facts().slot.is_some()).map(TableKind::name);
     names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
 }
 
