@@ -39,7 +39,7 @@ pub struct Shader {
     pub target: Target,
     /// UTF-8 text, or the words of SPIR-V, little-endian.
     pub bytes: Vec<u8>,
-    /// What a program around it calls, fills and binds.
+    /// Functions, structures and bindings for a program around it.
     pub interface: Interface,
 }
 

@@ -10,7 +10,7 @@
 //!
 //! Each uses those above it, none below.
 //!
-//! - `color`, `distribution`, `error`, `file`, `functions`, `limits`, `place`, `search`, `surface`, `target`, `tiles`: names and numbers.
+//! - `color`, `distribution`, `error`, `file`, `limits`, `place`, `search`, `shader`, `surface`, `target`, `tiles`: names and numbers.
 //! - `record`, `constants`: layers and whole surfaces to a shader; `reads` says which tables a layer reads.
 //! - `map`, `material`: maps, and materials with all of these; `buffer` writes them down for shaders.
 //! - `choice`, `manifest`, `lock`: how a scene chose, the whole bake, and its decisions that stay.
@@ -22,8 +22,6 @@ mod constants;
 mod distribution;
 mod error;
 mod file;
-mod functions;
-mod interface;
 mod limits;
 mod lock;
 mod manifest;
@@ -33,6 +31,7 @@ mod place;
 mod reads;
 mod record;
 mod search;
+mod shader;
 mod surface;
 mod target;
 mod tiles;
@@ -46,8 +45,6 @@ pub use constants::{
 };
 pub use error::ManifestError;
 pub use file::FileEntry;
-pub use functions::{FunctionGroup, Functions};
-pub use interface::{FunctionEntry, Interface, StructureEntry};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_model::{
@@ -62,6 +59,7 @@ pub use place::{LayerValues, PlaceValues};
 pub use reads::reads;
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
+pub use shader::{FunctionEntry, FunctionGroup, Functions, Interface, StructureEntry};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 pub use target::Target;
 pub use tiles::Tiles;

@@ -7,11 +7,10 @@ use serde::{Deserialize, Serialize};
 use crate::choice::SceneChoice;
 use crate::error::ManifestError;
 use crate::file::FileEntry;
-use crate::functions::Functions;
-use crate::interface::Interface;
 use crate::limits::MaterialTexture;
 use crate::material::MaterialEntry;
 use crate::search::Search;
+use crate::shader::{Functions, Interface};
 use crate::surface::SurfaceEntry;
 use crate::target::Target;
 
@@ -82,7 +81,7 @@ pub struct ShaderEntry {
     pub form: Form,
     /// The file.
     pub file: FileEntry,
-    /// What a program around it calls, fills and binds; absent from earlier bakes.
+    /// Functions, structures and bindings for a program around it; absent from earlier bakes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<Interface>,
 }

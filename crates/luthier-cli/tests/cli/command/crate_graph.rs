@@ -47,17 +47,22 @@ fn dependencies() -> Edges {
     metadata["packages"].as_array().unwrap().iter().map(|p| (name(p), normal(p))).collect()
 }
 
+/// The name of a crate that the table has without its beginning; the front door has nothing else.
+fn full(short: &str) -> String {
+    if short == "luthier" { short.to_owned() } else { format!("luthier-{short}") }
+}
+
 /// The third column of the table under "Crates"; `None` is `all`.
 fn allowed() -> BTreeMap<String, Option<BTreeSet<String>>> {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let section = text.split("\n## ").find(|s| s.starts_with("Crates\n")).unwrap();
     let mut rows = BTreeMap::new();
-    for line in section.lines().filter(|line| line.starts_with("| luthier-")) {
+    for line in section.lines().filter(|line| line.starts_with("| luthier")) {
         let [name, _, uses] = line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>().try_into().unwrap();
         let uses = match uses {
             "all" => None,
             "–" => Some(BTreeSet::new()),
-            list => Some(list.split(", ").map(|short| format!("luthier-{short}")).collect()),
+            list => Some(list.split(", ").map(full).collect()),
         };
         assert!(rows.insert(name.to_owned(), uses).is_none(), "{name} twice");
     }
@@ -65,7 +70,7 @@ fn allowed() -> BTreeMap<String, Option<BTreeSet<String>>> {
 }
 
 fn internal(dependencies: &Edges) -> Edges {
-    let ours = |uses: &BTreeSet<String>| uses.iter().filter(|d| d.starts_with("luthier-")).cloned().collect();
+    let ours = |uses: &BTreeSet<String>| uses.iter().filter(|d| d.starts_with("luthier")).cloned().collect();
     dependencies.iter().map(|(name, uses)| (name.clone(), ours(uses))).collect()
 }
 

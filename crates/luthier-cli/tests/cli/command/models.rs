@@ -11,7 +11,7 @@ const NAMING: [(&str, &str); 22] = [
     ("cli/src/verb/bench.rs", "times everything over Phong's model"),
     ("cli/src/verb/eval/sweep.rs", "makes models with the parts of a file"),
     ("cli/src/verb/gallery/page.rs", "shows a second model beside that of the file"),
-    ("export/src/energy.rs", "names the model that returns what the simulation does"),
+    ("crates/luthier/src/refusals/energy.rs", "names the model that returns what the simulation does"),
     ("layers/src/lobes/mod.rs", "is the model"),
     ("layers/src/models/belcour/mod.rs", "is the model"),
     ("layers/src/models/elek.rs", "is the model"),
