@@ -154,8 +154,7 @@ pub(super) fn exposure(material: &str) -> f32 {
     }
 }
 
-fn classes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn classes(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
@@ -181,8 +180,8 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     }
     let label =
         |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.symbol());
-    made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked).collect(), 4);
-    Ok(made)
+    made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked), 4);
+    Ok(())
 }
 
 /// The thicknesses of figure 3.4, in a unit that the course does not name; um here.
@@ -212,8 +211,7 @@ albedo = 0.9
     )
 }
 
-fn varnish(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn varnish(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
     for (i, thickness) in THICKNESSES.into_iter().enumerate() {
         materials.push(by_course(&format!("varnish-{i}"), &varnished(thickness))?);
@@ -230,7 +228,7 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
         }
     }
     let labels = THICKNESSES.iter().map(f64::to_string);
-    made.sheet("course-varnish", labels.zip(pictures).collect(), 6);
+    made.sheet("course-varnish", labels.zip(pictures), 6);
     made.plot(
         "course-varnish-colour",
         Plot {
@@ -240,5 +238,5 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
             curves: curves.to_vec(),
         },
     );
-    Ok(made)
+    Ok(())
 }

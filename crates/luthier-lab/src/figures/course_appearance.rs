@@ -109,8 +109,7 @@ fn lacquer(absorption: [f64; 3]) -> String {
 const LACQUERS: [(&str, [f64; 3]); 3] =
     [("purple", [0.25, 1.1, 0.2]), ("orange", [0.02, 0.45, 1.6]), ("green", [1.1, 0.15, 0.8])];
 
-fn metals(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn metals(studio: &Studio, made: &mut Made) -> Outcome {
     let mut all = Vec::new();
     for (name, ior) in [("gold", "au"), ("silver", "ag"), ("copper", "cu")] {
         all.push((name.to_owned(), by_course(name, &metal(ior))?));
@@ -138,8 +137,8 @@ fn metals(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{name}: contrast of the surroundings"), variation(room));
         made.measure(format!("{name}: chroma"), chroma(picture));
     }
-    made.sheet("course-4-1", all.into_iter().map(|(name, _)| name).zip(pictures).collect(), 3);
-    Ok(made)
+    made.sheet("course-4-1", all.into_iter().map(|(name, _)| name).zip(pictures), 3);
+    Ok(())
 }
 
 macro_rules! sample {
@@ -178,8 +177,7 @@ const CHRISTMAS: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg 
                          absorption_per_um = [0.02, 1.3, 0.9]\n\
                          [[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 0.2\ndistribution = \"beckmann\"\n";
 
-fn samples(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn samples(studio: &Studio, made: &mut Made) -> Outcome {
     let mut all = Vec::new();
     for (name, label, text) in SAMPLES {
         all.push((label.to_owned(), shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie)));
@@ -187,7 +185,7 @@ fn samples(studio: &Studio) -> Outcome<Made> {
     for (name, layers) in [("garnet", GARNET), ("christmas", CHRISTMAS)] {
         all.push((name.to_owned(), by_course(name, layers)?));
     }
-    measured(studio, &mut made, &all)?;
+    measured(studio, made, &all)?;
     let mut pictures: Labelled = Vec::new();
     for (label, material) in &all {
         let shown = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, |_, settings| {
@@ -203,7 +201,7 @@ fn samples(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("course-5-7", pictures, 4);
-    Ok(made)
+    Ok(())
 }
 
 /// A place at 0.9 of the radius of a ball.

@@ -39,8 +39,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
 /// Shares of the cells that are tilted.
 const FILLED: [(&str, f64); 3] = [("level", 0.0), ("all tilted", 1.0), ("one in ten", 0.1)];
 
-fn cells(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn cells(studio: &Studio, made: &mut Made) -> Outcome {
     let mut pictures: Labelled = Vec::new();
     let dark = even_sky(0.0)?;
     for (label, filled) in FILLED {
@@ -67,5 +66,5 @@ fn cells(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("course-5-1-cells", pictures, 3);
-    Ok(made)
+    Ok(())
 }

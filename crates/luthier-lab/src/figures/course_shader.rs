@@ -202,8 +202,7 @@ const CLEAR: &str = "0";
 /// Thickness of the red lacquer of figure 3.3.
 const RED_UM: f64 = 0.6;
 
-fn absorption(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
     let tinted = by_course("tinted", &(coat(RED_UM, RED) + &diffuse("0.8")))?;
     let render = |material: Material| studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {});
     let with = render(tinted)?.swap_remove(0);
@@ -245,7 +244,7 @@ fn absorption(studio: &Studio) -> Outcome<Made> {
         pictures.push((format!("d {name}"), apart));
     }
     made.shown("course-3-3", pictures, 5);
-    Ok(made)
+    Ok(())
 }
 
 /// Radius of the ball over half the side of a picture.
@@ -256,8 +255,7 @@ fn rgb(image: &Image, x: u32, y: u32) -> [f64; 3] {
     [0, 1, 2].map(|c: usize| f64::from(texel[c]))
 }
 
-fn bases(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn bases(studio: &Studio, made: &mut Made) -> Outcome {
     let sigmas = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
     let mut materials = Vec::new();
     for (i, sigma) in sigmas.into_iter().enumerate() {
@@ -281,12 +279,11 @@ fn bases(studio: &Studio) -> Outcome<Made> {
             made.measure(what, ratio / cos_theta_i);
         }
     }
-    made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures).collect(), 6);
-    Ok(made)
+    made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures), 6);
+    Ok(())
 }
 
-fn silver(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn silver(studio: &Studio, made: &mut Made) -> Outcome {
     let thicknesses = [0.0, 0.2, 0.5, 1.0, 2.0, 5.0];
     let mut materials = Vec::new();
     for (i, thickness) in thicknesses.into_iter().enumerate() {
@@ -299,12 +296,11 @@ fn silver(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{thickness} um: saturation"), saturation(middle(picture, 0.5)));
         made.measure(format!("{thickness} um: hue"), hue(picture, 0.5));
     }
-    made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures).collect(), 6);
-    Ok(made)
+    made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures), 6);
+    Ok(())
 }
 
-fn inside(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn inside(studio: &Studio, made: &mut Made) -> Outcome {
     let (indices, slope_deg) = ([1.3, 2.5], 8.0);
     let mut materials = Vec::new();
     for index in indices {
@@ -334,7 +330,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
         shown.push(("t".to_owned(), image));
     }
     made.shown("course-3-7", shown, 3);
-    Ok(made)
+    Ok(())
 }
 
 /// The term t of eq. 3.3 on a ball under one light, white where it is 1, and its least value.
@@ -364,8 +360,7 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
     (image, least)
 }
 
-fn parts(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn parts(studio: &Studio, made: &mut Made) -> Outcome {
     let base = diffuse("[0.7, 0.55, 0.3]");
     // The course's `blinnD`.
     let coat = |thickness_um, absorption| coat(thickness_um, absorption).replace("beckmann", "blinn");
@@ -396,14 +391,13 @@ fn parts(studio: &Studio) -> Outcome<Made> {
         let left = (absorbs[c] - coat[c]) / (clear[c] - coat[c]);
         made.measure(format!("straight on, share of the base that is left: {channel}"), left);
     }
-    made.sheet("course-3-8", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
-    Ok(made)
+    made.sheet("course-3-8", all.iter().map(|(name, _)| *name).zip(pictures), 5);
+    Ok(())
 }
 
 const METAL: &str = "[[layer]]\ntype = \"conductor\"\nior = \"al\"\nslope_deg = 6\ndistribution = \"beckmann\"\n";
 
-fn varnishes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn varnishes(studio: &Studio, made: &mut Made) -> Outcome {
     let white = diffuse("[0.75, 0.72, 0.65]");
     let matt = coat(0.3, CLEAR).replace("slope_deg = 1.5", "slope_deg = 7");
     let map = |coat: String, key: &str, file: &str| coat + &format!("[layer.maps]\n{key} = \"{file}\"\n");
@@ -435,6 +429,6 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{label}: grain"), grain(lit));
         made.measure(format!("{label}: width of the highlight"), spot(lit).share.sqrt());
     }
-    made.sheet("course-3-9", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
-    Ok(made)
+    made.sheet("course-3-9", all.iter().map(|(name, _)| *name).zip(pictures), 5);
+    Ok(())
 }

@@ -144,8 +144,7 @@ fn coated(name: &str, alphas: [f64; 2]) -> Outcome<Material> {
     material(name, &text)
 }
 
-fn clamp(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn clamp(studio: &Studio, made: &mut Made) -> Outcome {
     let series = [0.01, 0.1, 0.2, 0.4];
     let (clamped, bare) = (ShadingModel::Elek, ShadingModel::WeidlichWilkie);
     let mut materials = Vec::new();
@@ -168,7 +167,7 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         made.measure("torus, not clamped: width of the metal's highlight", metal_width(without));
         made.apart("tori m1 0.4, m2 0.05, with against without the clamp", with, without)?;
     }
-    made.sheet("elek-2", labels.into_iter().zip(pictures).collect(), 6);
+    made.sheet("elek-2", labels.into_iter().zip(pictures), 6);
 
     let reference = studio.simulated(&odd)?;
     let mut balls = vec![("simulation".to_owned(), reference.image.clone())];
@@ -194,7 +193,7 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("elek-2-simulation", balls, 4);
-    Ok(made)
+    Ok(())
 }
 
 /// Red over blue of the key light, and so of what a coat reflects.
@@ -224,8 +223,7 @@ fn sharp() -> Outcome<Vec<Material>> {
     SHARP.into_iter().enumerate().map(one).collect()
 }
 
-fn mapping(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn mapping(studio: &Studio, made: &mut Made) -> Outcome {
     let metals = sharp()?;
     let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3])).map_err(luthier_gpu::GpuError::from)?);
     let render = |form: Form, angle: Option<DistributionMapping>| {
@@ -286,7 +284,7 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
             curves,
         },
     );
-    Ok(made)
+    Ok(())
 }
 
 /// Largest difference of the green channel, over its peak.
@@ -359,8 +357,7 @@ fn mipped(full: &Image, alpha: f64) -> Image {
     image
 }
 
-fn tables(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn tables(studio: &Studio, made: &mut Made) -> Outcome {
     let ours = shaded(&coated("coated", [0.08, 0.3])?, "coated", ShadingModel::Elek);
     let mut his = ours.clone();
     elek_tables(&mut his.bake, DistributionMapping::Power);
@@ -375,5 +372,5 @@ fn tables(studio: &Studio) -> Outcome<Made> {
     let pictures =
         vec![shown("full", full), shown("its tables", his), his_difference, shown("our tables", ours), our_difference];
     made.shown("elek-5", pictures, 5);
-    Ok(made)
+    Ok(())
 }

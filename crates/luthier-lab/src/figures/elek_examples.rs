@@ -110,8 +110,7 @@ const COMPARED: [(&str, &str); 5] = [
     ("car paint", file!("car-paint")),
 ];
 
-fn simulated(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn simulated(studio: &Studio, made: &mut Made) -> Outcome {
     let (mut top, mut bottom): (Labelled, Labelled) = (Vec::new(), Vec::new());
     for (label, text) in COMPARED {
         let material = material(label, text)?;
@@ -126,14 +125,13 @@ fn simulated(studio: &Studio) -> Outcome<Made> {
     }
     top.append(&mut bottom);
     made.shown("elek-3", top, COMPARED.len() as u32);
-    Ok(made)
+    Ok(())
 }
 
 /// Transitions of figure 9.
 const TRANSITIONS: [f64; 2] = [0.9, 0.2];
 
-fn edges(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn edges(studio: &Studio, made: &mut Made) -> Outcome {
     let copper = crusted()?;
     let mut materials = Vec::new();
     for (i, transition) in TRANSITIONS.into_iter().enumerate() {
@@ -168,7 +166,7 @@ fn edges(studio: &Studio) -> Outcome<Made> {
         pictures.push((format!("{transition}"), TONE.image(picture)));
     }
     made.shown("elek-9", pictures, 3);
-    Ok(made)
+    Ok(())
 }
 
 /// The first channel of a map, as grey, in another size.
@@ -204,8 +202,7 @@ fn lacquer(absorption: &str) -> String {
     )
 }
 
-fn examples(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn examples(studio: &Studio, made: &mut Made) -> Outcome {
     let map = "[layer.maps]\nthickness = \"thickness.png\"\n";
     let mut paint =
         shaded(&material("chromium-car-paint.toml", file!("chromium-car-paint"))?, "strong-flakes", ShadingModel::Elek);
@@ -254,5 +251,5 @@ fn examples(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("elek-10", pictures, all.len() as u32);
-    Ok(made)
+    Ok(())
 }

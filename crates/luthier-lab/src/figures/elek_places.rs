@@ -103,8 +103,7 @@ const DISTANCES: [f32; 4] = [4.0, 8.0, 16.0, 32.0];
 /// Rays along each side of a pixel of the mean over flakes.
 const MANY_RAYS: u32 = 8;
 
-fn flakes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
     let variant = |name: &str, fade_start: f64, scale: f64| -> Outcome<Material> {
         let mut paint = shaded(&paint, name, ShadingModel::Elek);
@@ -156,7 +155,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     }
     let [with, without] = rows;
     made.sheet("elek-7", [with, without].concat(), DISTANCES.len() as u32);
-    Ok(made)
+    Ok(())
 }
 
 /// Every pixel repeated.
@@ -183,8 +182,7 @@ pub(super) fn crusted() -> Outcome<Material> {
     )
 }
 
-fn patina(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn patina(studio: &Studio, made: &mut Made) -> Outcome {
     let copper = crusted()?;
     let mut materials = Vec::new();
     for (i, extent) in EXTENTS.into_iter().enumerate() {
@@ -211,8 +209,8 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("extent {extent}: highlight over the median"), highlight(picture));
     }
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
-    made.sheet("elek-8", labels.zip(pictures).collect(), 3);
-    Ok(made)
+    made.sheet("elek-8", labels.zip(pictures), 3);
+    Ok(())
 }
 
 /// Each material of a bake on a level square that fills the picture.

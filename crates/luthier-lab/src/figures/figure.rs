@@ -20,7 +20,7 @@ pub(crate) struct Figure {
     /// Side of each single picture in pixels, where the command line has none.
     pub(crate) size: u32,
     pub(crate) claim: Claim,
-    pub(crate) make: fn(&Studio) -> Outcome<Made>,
+    pub(crate) make: fn(&Studio, &mut Made) -> Outcome,
 }
 
 /// Results of a figure.
@@ -62,8 +62,14 @@ pub(crate) const TONE: ToneMapping = ToneMapping::Shoulder;
 
 impl Made {
     /// Adds a sheet of linear pictures.
-    pub(crate) fn sheet(&mut self, file: &str, pictures: Labelled, columns: u32) {
-        self.shown(file, pictures.into_iter().map(|(label, image)| (label, TONE.image(image))).collect(), columns);
+    pub(crate) fn sheet<L: Into<String>>(
+        &mut self,
+        file: &str,
+        pictures: impl IntoIterator<Item = (L, Image)>,
+        columns: u32,
+    ) {
+        let shown = pictures.into_iter().map(|(label, image)| (label.into(), TONE.image(image)));
+        self.shown(file, shown.collect(), columns);
     }
 
     /// Adds a sheet of pictures that are as a display shows them.

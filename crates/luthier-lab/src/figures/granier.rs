@@ -173,8 +173,7 @@ const MESH_RANGES_NM: [[f64; 2]; 4] = [[60.0, 110.0], [140.0, 220.0], [220.0, 36
 /// Width of a repeat of the thickness map of figure 7: bumps that are seen, and do not hide the ball.
 const MESH_UM: f64 = 60.0;
 
-fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn on_a_mesh(studio: &Studio, made: &mut Made) -> Outcome {
     let name = |i: usize| ["mesh-a", "mesh-b", "mesh-c", "mesh-d"][i];
     let coating = |(i, thickness_nm): (usize, [f64; 2])| Coating {
         name: name(i),
@@ -213,7 +212,7 @@ fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
     look(&mut settings);
     settings.size = studio.size * 4;
     made.picture("granier-7-large", studio.gpu()?.scene(&package, Form::Baked)?.render(&[1], &settings)?);
-    Ok(made)
+    Ok(())
 }
 
 /// The wavelengths of the paper.
@@ -277,8 +276,7 @@ fn materials(coatings: &[Coating]) -> Outcome<Vec<Material>> {
     coatings.iter().map(Coating::material).collect()
 }
 
-fn diffuse(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn diffuse(studio: &Studio, made: &mut Made) -> Outcome {
     let coating = |name, thickness_nm, diffuse| {
         let (ior, exponents, extent_um, frequency) = (COMBINED_IOR, [130.0; 2], FLAT_UM, 6);
         Coating { name, ior, thickness_nm, exponents, diffuse, tilt_deg: 0.0, extent_um, frequency }
@@ -326,11 +324,10 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
             curves,
         },
     );
-    Ok(made)
+    Ok(())
 }
 
-fn deviation(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn deviation(studio: &Studio, made: &mut Made) -> Outcome {
     let coating = |name, ior, inner, tilt_deg| Coating {
         name,
         ior,
@@ -375,12 +372,11 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{label}: width of the second highlight"), spot(&beam).share.sqrt());
         made.measure(format!("{label}: colours of the highlights"), saturation_of_light(picture));
     }
-    made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
-    Ok(made)
+    made.sheet("granier-4", labels.into_iter().zip(pictures), 4);
+    Ok(())
 }
 
-fn correlated(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn correlated(studio: &Studio, made: &mut Made) -> Outcome {
     let coating = |name, extent_um, thickness_nm| Coating {
         name,
         ior: [1.4, 1.45, 1.6],
@@ -404,8 +400,8 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{label}: share of the hues"), hues(picture));
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
-    made.sheet("granier-5", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
-    Ok(made)
+    made.sheet("granier-5", labels.into_iter().zip(pictures), 4);
+    Ok(())
 }
 
 /// Thickness at which the beams of a film of index 1.6 are in phase at 80 degrees and 525 nm: 525 / (2 1.6 0.788).
@@ -414,8 +410,7 @@ const IN_PHASE_NM: f64 = 208.0;
 /// Index of the film of figure 6, and for want of others of figure 3.
 const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
 
-fn combined(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn combined(studio: &Studio, made: &mut Made) -> Outcome {
     let ranges = [("a", [50.0, 70.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
     let coatings = ranges.map(|(name, thickness_nm)| Coating {
         name,
@@ -529,7 +524,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
             curves: over_angle,
         },
     );
-    Ok(made)
+    Ok(())
 }
 
 /// A film in air, `waves` wavelengths of vacuum thick.

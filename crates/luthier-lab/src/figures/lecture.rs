@@ -58,8 +58,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
 /// The lecture's F0 of copper.
 const COPPER: [f64; 3] = [0.955, 0.638, 0.538];
 
-fn balls(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn balls(studio: &Studio, made: &mut Made) -> Outcome {
     let last = f64::from(GRID_SIDE - 1);
     let mut materials = Vec::new();
     for row in 0..GRID_SIDE {
@@ -102,5 +101,5 @@ fn balls(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("metallic 1, roughness {roughness}: width of the highlight"), spot(&ball).share.sqrt());
     }
     made.sheet("lecture-25", vec![("metal down, rough right".to_owned(), picture)], 1);
-    Ok(made)
+    Ok(())
 }

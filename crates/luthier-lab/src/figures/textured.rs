@@ -175,8 +175,7 @@ fn lacquer(absorption: &str) -> String {
     )
 }
 
-fn flakes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let heights =
         "[effects.flakes]\nheight_map = { image = \"heights.png\", height = 0.03 }\ntiling = 2\nfade_start = 1000\n";
     let coat = lacquer("[0.02, 0.2, 0.6]");
@@ -185,7 +184,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let ball = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
     let plain = layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?;
     let plain = pictures(studio, vec![plain], Form::Full, Shape::Sphere)?.swap_remove(0);
-    measure(&mut made, "flakes against none", &ball, &plain)?;
+    measure(made, "flakes against none", &ball, &plain)?;
     made.measure("flakes: sparkles", sparkles(&ball));
     made.measure("none: sparkles", sparkles(&plain));
     let shaded = studio.rendered(&package, Form::Full, Shape::Sphere, |_, settings| settings.lights.clear())?;
@@ -205,11 +204,11 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
     shown.push(("heights".to_owned(), scaled(&heights, studio.size)));
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::FlakeNormal) {
-        slopes(&mut made, &heights, &map.picture.image());
+        slopes(made, &heights, &map.picture.image());
         shown.push(("normals".to_owned(), scaled(&map.picture.image(), studio.size)));
     }
     made.shown("elek-6", shown, 3);
-    Ok(made)
+    Ok(())
 }
 
 /// Compares a map of normals with the slopes of the heights that it is of. Heights rise towards the light: a normal leans to
@@ -239,8 +238,7 @@ fn slopes(made: &mut Made, heights: &Image, normals: &Image) {
     made.measure("mean of the normals' tilt over its root mean square", mean / square.max(1e-12).sqrt());
 }
 
-fn painted(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn painted(studio: &Studio, made: &mut Made) -> Outcome {
     let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.9\nmaps = { albedo = \"paint.png\" }\n";
     let all = [("bare", String::new()), ("clear", lacquer("0")), ("tinted", lacquer("[0.02, 0.12, 0.3]"))];
     let mut materials = Vec::new();
@@ -279,12 +277,11 @@ fn painted(studio: &Studio) -> Outcome<Made> {
     for ((label, _), picture) in all.iter().zip(&shown) {
         made.measure(format!("{label}: blue over red"), over_red(picture, 2));
     }
-    made.sheet("elek-line-22", all.iter().map(|(label, _)| (*label).to_owned()).zip(shown).collect(), 3);
-    Ok(made)
+    made.sheet("elek-line-22", all.iter().map(|(label, _)| *label).zip(shown), 3);
+    Ok(())
 }
 
-fn metal(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn metal(studio: &Studio, made: &mut Made) -> Outcome {
     let surface = |metallic: u32, maps: &str| {
         format!(
             "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.95, 0.6, 0.4]\nmetallic = {metallic}\nroughness = 0.5\n{maps}"
@@ -300,8 +297,8 @@ fn metal(studio: &Studio) -> Outcome<Made> {
         let material = layered(&format!("metal-{label}"), layers, ShadingModel::Elek)?;
         shown.extend(pictures(studio, vec![material], Form::Full, Shape::Sphere)?);
     }
-    measure(&mut made, "the map against paint", &shown[1], &shown[0])?;
-    measure(&mut made, "the map against metal", &shown[1], &shown[2])?;
+    measure(made, "the map against paint", &shown[1], &shown[0])?;
+    measure(made, "the map against metal", &shown[1], &shown[2])?;
     let map = png::decode(include_bytes!("../../maps/thickness.png")).map_err(Failure::input)?;
     for (label, is_there) in [("dark", (0.0..0.2)), ("bright", (0.8..1.01))] {
         for (to, other) in [("paint", &shown[0]), ("metal", &shown[2])] {
@@ -315,12 +312,11 @@ fn metal(studio: &Studio) -> Outcome<Made> {
             made.measure(format!("{label} places of the map: difference to {to}"), sum / f64::max(count, 1.0));
         }
     }
-    made.sheet("lecture-metal", all.iter().map(|(label, _)| (*label).to_owned()).zip(shown).collect(), 3);
-    Ok(made)
+    made.sheet("lecture-metal", all.iter().map(|(label, _)| *label).zip(shown), 3);
+    Ok(())
 }
 
-fn crossed(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn crossed(studio: &Studio, made: &mut Made) -> Outcome {
     let all = [
         ("isotropic", ["", ""], [0.12, 0.12], [0.23, 0.23]),
         ("base", ["", "circles.png"], [0.12, 0.12], [0.45, 0.12]),
@@ -361,15 +357,14 @@ fn crossed(studio: &Studio) -> Outcome<Made> {
             made.measure(format!("{label}, {part}: length along the circle over that along the ray"), length);
         }
     }
-    made.sheet("yamaguchi-2", all.iter().map(|(label, ..)| (*label).to_owned()).zip(shown).collect(), 4);
-    Ok(made)
+    made.sheet("yamaguchi-2", all.iter().map(|(label, ..)| *label).zip(shown), 4);
+    Ok(())
 }
 
 /// Direction of a light whose highlight lies beside the middle of a ball, at a slant.
 const BESIDE: [f32; 3] = [0.5, 0.5, 0.7];
 
-fn bumps(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn bumps(studio: &Studio, made: &mut Made) -> Outcome {
     let layers = |coat: &str, base: &str| {
         let bumpy = "maps = { bumps = \"bumps.png\" }\n";
         let of = |which: &str| if which == "bumps" { bumpy } else { "" };
@@ -387,7 +382,7 @@ fn bumps(studio: &Studio) -> Outcome<Made> {
         })?);
     }
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
-        measure(&mut made, &format!("{label} against flat"), picture, &shown[0])?;
+        measure(made, &format!("{label} against flat"), picture, &shown[0])?;
     }
     // Under a varnish that lets nothing through, its own reflection is left.
     let (mut alone, dark) = (Vec::new(), even_sky(0.0)?);
@@ -398,8 +393,8 @@ fn bumps(studio: &Studio) -> Outcome<Made> {
         alone.extend(studio.pictures(&[material], Form::Full, Shape::Torus, light)?);
     }
     for (label, picture) in ["below", "above"].into_iter().zip(&alone[1..]) {
-        measure(&mut made, &format!("opaque varnish, {label} against flat"), picture, &alone[0])?;
+        measure(made, &format!("opaque varnish, {label} against flat"), picture, &alone[0])?;
     }
-    made.sheet("course-3-9-own", all.iter().map(|(label, ..)| (*label).to_owned()).zip(shown).collect(), 4);
-    Ok(made)
+    made.sheet("course-3-9-own", all.iter().map(|(label, ..)| *label).zip(shown), 4);
+    Ok(())
 }

@@ -71,8 +71,7 @@ fn brushed(brushing: &Brushing) -> Outcome<Material> {
     material(brushing.name, &text)
 }
 
-fn simulation(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn simulation(studio: &Studio, made: &mut Made) -> Outcome {
     let mut pictures: Vec<(String, Image)> = Vec::new();
     for brushing in &BRUSHINGS {
         let material = brushed(brushing)?;
@@ -93,5 +92,5 @@ fn simulation(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.shown("yamaguchi-4", pictures, 5);
-    Ok(made)
+    Ok(())
 }
