@@ -9,7 +9,7 @@ use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL};
-use super::numbers::light::{KEY, even_sky, one_light, surroundings_alone};
+use super::numbers::light::{KEY, even_sky, one_light};
 use super::numbers::spot::spot;
 use super::numbers::tint::saturation;
 use super::numbers::{blown_out, middle, variation};
@@ -160,14 +160,12 @@ fn classes(studio: &Studio, made: &mut Made) -> Outcome {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
     let package = Bake::lit().package(&materials, &MemoryStore::default())?;
-    let look = |n: usize, settings: &mut RenderSettings| {
-        settings.exposure = exposure(CLASSES[n].0);
-    };
+    let look = |n: usize, settings: &mut RenderSettings| settings.exposure = exposure(CLASSES[n].0);
     let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
     let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
     let dark = even_sky(0.0)?;
     let lit = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, KEY))?;
-    let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
+    let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| settings.lights.clear())?;
     for (material, (lit, room)) in materials.iter().zip(lit.iter().zip(&room)) {
         let name = format!("{} {}", material.class.symbol(), material.name);
         made.measure(format!("{name}: width of the highlight"), spot(lit).share.sqrt());
@@ -178,9 +176,9 @@ fn classes(studio: &Studio, made: &mut Made) -> Outcome {
         let name = format!("{} {}", material.class.symbol(), material.name);
         made.measure(format!("{name}: share blown out"), blown_out(baked));
     }
-    let label =
-        |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.symbol());
-    made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked), 4);
+    let classes = materials.iter().zip(CLASSES);
+    let labels = classes.map(|(material, (_, label, _))| format!("{} {label}", material.class.symbol()));
+    made.sheet("course-classes", labels.zip(baked), 4);
     Ok(())
 }
 

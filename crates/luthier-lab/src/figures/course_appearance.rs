@@ -11,7 +11,7 @@ use luthier_terminal::Outcome;
 use super::claim::{Check, Claim};
 use super::course::{by_course, exposure};
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL};
-use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light, surroundings_alone};
+use super::numbers::light::{FROM_EYE, KEY, even_sky};
 use super::numbers::places::color_at;
 use super::numbers::spot::spot;
 use super::numbers::tint::{chroma, saturation};
@@ -124,10 +124,8 @@ fn metals(studio: &Studio, made: &mut Made) -> Outcome {
     }
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
-    let dark = even_sky(0.0)?;
-    let lit =
-        studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
-    let room = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
+    let lit = studio.lit(&materials, Form::Full, Shape::Sphere, FROM_EYE)?;
+    let room = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.lights.clear())?;
     for ((_, material), ((picture, lit), room)) in all.iter().zip(pictures.iter().zip(&lit).zip(&room)) {
         let name = &material.name;
         let channels = color_at(lit, [0.0; 2]);
@@ -212,10 +210,7 @@ const GRAZING: [f32; 3] = [0.95, 0.0, -0.3];
 
 /// Numbers of the samples under single lights.
 fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Outcome {
-    let dark = even_sky(0.0)?;
-    let under = |materials: &[Material], direction: [f32; 3]| {
-        studio.pictures(materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, direction))
-    };
+    let under = |materials: &[Material], from| studio.lit(materials, Form::Full, Shape::Sphere, from);
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
     for (material, lit) in materials.iter().zip(under(&materials, KEY)?) {
         made.measure(format!("{}: width of the highlight", material.name), spot(&lit).share.sqrt());

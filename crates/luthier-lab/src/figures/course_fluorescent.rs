@@ -8,6 +8,7 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Made};
+use super::numbers::across;
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -62,7 +63,7 @@ fn cardboard(studio: &Studio, made: &mut Made) -> Outcome {
         let mut image = Image::zeros(size, size, 3);
         let (mut leaving, mut aside, mut forward) = ([0.0; 2], [0.0; 2], [0.0_f64; 2]);
         for (texel, i) in image.data.chunks_mut(3).zip(0..) {
-            let [x, y] = [i % size, i / size].map(|i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0);
+            let [x, y] = [i % size, i / size].map(|i| across(i, size));
             let z_sq = 1.0 - x * x - y * y;
             if z_sq <= 0.0 {
                 continue;

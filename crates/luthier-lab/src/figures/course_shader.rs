@@ -6,7 +6,6 @@ use glam::DVec3;
 use luthier_gpu::{Environment, Light, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, InternalReflection};
-use luthier_material::Material;
 use luthier_optics::fresnel::transmitted;
 use luthier_optics::masking::v_cavity;
 use luthier_report::lightness_chroma_hue;
@@ -14,12 +13,13 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::course::by_course;
+use super::elek::light;
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
-use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light};
+use super::numbers::light::{FROM_EYE, KEY};
 use super::numbers::places::{ball_normal, color_at};
 use super::numbers::spot::spot;
 use super::numbers::tint::{hue, lightness_apart, saturation, tint_deviation};
-use super::numbers::{brightness, grain, highlight, middle, over_red};
+use super::numbers::{across, brightness, grain, highlight, middle, over_red, rgb};
 use super::studio::{Studio, mapped};
 
 pub(crate) const FIGURES: [Figure; 6] = [
@@ -204,11 +204,11 @@ const RED_UM: f64 = 0.6;
 
 fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
     let tinted = by_course("tinted", &(coat(RED_UM, RED) + &diffuse("0.8")))?;
-    let render = |material: Material| studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {});
-    let with = render(tinted)?.swap_remove(0);
+    let with = studio.picture(tinted, Form::Full, Shape::Sphere)?;
     // The colour of the base seen straight on: twice through the lacquer at the normal.
     let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * RED_UM * a));
-    let without = render(by_course("clear", &(coat(RED_UM, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
+    let clear = by_course("clear", &(coat(RED_UM, CLEAR) + &diffuse(&format!("{base:?}"))))?;
+    let without = studio.picture(clear, Form::Full, Shape::Sphere)?;
     let mut pictures: Labelled =
         vec![("absorbs".to_owned(), TONE.image(with.clone())), ("clear".to_owned(), TONE.image(without.clone()))];
     for (c, (name, scale)) in [("hue", 8.0), ("chroma", 12.0), ("lightness", 8.0)].into_iter().enumerate() {
@@ -218,7 +218,7 @@ fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
         let mut zones = [[0.0, 0.0]; 2];
         for y in 0..with.height {
             for x in 0..with.width {
-                let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image, x, y)));
+                let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image.texel(x, y))));
                 // In the order of the course: hue, chroma, lightness.
                 let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
                 if c == 0 {
@@ -228,13 +228,12 @@ fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
                 }
                 if seen {
                     (sum, count) = (sum + d.abs(), count + 1.0);
-                    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(with.width) - 1.0) / BALL;
-                    let zone = &mut zones[usize::from(libm::hypot(at(x), at(y)) > 2.0 / 3.0)];
+                    let [right, down] = [x, y].map(|i| across(i, with.width) / BALL);
+                    let zone = &mut zones[usize::from(libm::hypot(right, down) > 2.0 / 3.0)];
                     *zone = [zone[0] + d.abs(), zone[1] + 1.0];
                 }
                 let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
-                let at = 3 * (y * with.width + x) as usize;
-                apart.data[at..at + 3].fill(shade * shade);
+                apart.texel_mut(x, y).fill(shade * shade);
             }
         }
         made.measure(format!("mean difference of {name}, where both have a colour"), sum / f64::max(count, 1.0));
@@ -249,11 +248,6 @@ fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
 
 /// Radius of the ball over half the side of a picture.
 const BALL: f64 = 0.8;
-
-fn rgb(image: &Image, x: u32, y: u32) -> [f64; 3] {
-    let texel = image.texel(x, y);
-    [0, 1, 2].map(|c: usize| f64::from(texel[c]))
-}
 
 fn bases(studio: &Studio, made: &mut Made) -> Outcome {
     let sigmas = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -270,11 +264,10 @@ fn bases(studio: &Studio, made: &mut Made) -> Outcome {
     for (sigma, picture) in sigmas.into_iter().zip(&pictures) {
         let middle = picture.width / 2;
         let edge = middle + (f64::from(middle) * BALL) as u32 * 9 / 10;
-        let ratio = rgb(picture, edge, middle)[1] / rgb(picture, middle, middle)[1].max(1e-9);
+        let ratio = rgb(picture.texel(edge, middle))[1] / rgb(picture.texel(middle, middle))[1].max(1e-9);
         made.measure(format!("sigma {sigma}: radiance near the rim over that of the middle"), ratio);
         if sigma == 0.0 {
-            let place = 2.0 * (f64::from(edge) + 0.5) / f64::from(picture.width) - 1.0;
-            let cos_theta_i = ball_normal([place, 0.0]).map_or(f64::NAN, |[_, _, z]| z);
+            let cos_theta_i = ball_normal([across(edge, picture.width), 0.0]).map_or(f64::NAN, |[_, _, z]| z);
             let what = format!("sigma {sigma}: radiance near the rim over that of the middle, over Lambert's cosine");
             made.measure(what, ratio / cos_theta_i);
         }
@@ -318,9 +311,8 @@ fn inside(studio: &Studio, made: &mut Made) -> Outcome {
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.4)?;
     let mut shown: Labelled = Vec::new();
     for (index, pair) in indices.into_iter().zip(pictures.chunks_exact(2)) {
-        let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();
         if let [with, without] = pair {
-            made.measure(format!("index {index}: light with the term over that without"), mean(with) / mean(without));
+            made.measure(format!("index {index}: light with the term over that without"), light(with) / light(without));
             made.measure(format!("index {index}: mean difference of lightness"), lightness_apart(with, without));
             shown.push((format!("{index} with"), TONE.image(with.clone())));
             shown.push((format!("{index} without"), TONE.image(without.clone())));
@@ -343,8 +335,7 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
     let (mut image, mut least) = (Image::zeros(size, size, 3), 1.0);
     for y in 0..size {
         for x in 0..size {
-            let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) / BALL;
-            let (nx, ny) = (at(x), -at(y));
+            let (nx, ny) = (across(x, size) / BALL, -(across(y, size) / BALL));
             let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
             let (cos_i, cos_o) = (normal.dot(light), normal.z);
             if cos_i <= 0.0 || cos_o <= 0.0 {
@@ -353,8 +344,7 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
             let g = v_cavity(cos_i, cos_o, normal.dot(wh), cos_theta_d);
             let t = (1.0 - g) + passed * g;
             least = f64::min(least, t);
-            let first = 3 * (y * size + x) as usize;
-            image.data[first..first + 3].fill(t as f32);
+            image.texel_mut(x, y).fill(t as f32);
         }
     }
     (image, least)
@@ -383,9 +373,7 @@ fn parts(studio: &Studio, made: &mut Made) -> Outcome {
     }
     // Under a light from the eye, in the middle of the ball: less what the coat mirrors, the base through an absorbing coat over
     // that through a clear one.
-    let dark = even_sky(0.0)?;
-    let lit =
-        studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
+    let lit = studio.lit(&materials, Form::Full, Shape::Sphere, FROM_EYE)?;
     let [coat, _, clear, absorbs, _] = [0, 1, 2, 3, 4].map(|i: usize| color_at(&lit[i], [0.0; 2]));
     for (c, channel) in ["R", "G", "B"].into_iter().enumerate() {
         let left = (absorbs[c] - coat[c]) / (clear[c] - coat[c]);
@@ -420,8 +408,7 @@ fn varnishes(studio: &Studio, made: &mut Made) -> Outcome {
         made.apart(&format!("{} against {}", all[i].0, all[j].0), &pictures[i], &pictures[j])?;
     }
     made.apart("d below against without bumps", &pictures[3], &level)?;
-    let dark = even_sky(0.0)?;
-    let lit = studio.pictures(&materials, Form::Full, Shape::Torus, |_, settings| one_light(settings, &dark, KEY))?;
+    let lit = studio.lit(&materials, Form::Full, Shape::Torus, KEY)?;
     let labels = all.iter().map(|(name, _)| *name).chain(["without bumps"]);
     for ((label, picture), lit) in labels.zip(pictures.iter().chain([&level])).zip(&lit) {
         made.measure(format!("{label}: saturation"), saturation(middle(picture, 0.8)));

@@ -96,12 +96,18 @@ impl Made {
         Ok(())
     }
 
-    /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a
-    /// display shows, with its label.
-    pub(crate) fn compare(&mut self, what: &str, a: &Image, b: &Image) -> Outcome<(String, Image)> {
+    /// Notes the errors of a linear picture against another: RMSE, and FLIP.
+    pub(crate) fn errors(&mut self, what: &str, a: &Image, b: &Image) -> Outcome {
         let compared = compared(a, b)?;
         self.measure(format!("{what}: RMSE of linear radiance"), compared.rms_err);
         self.measure(format!("{what}: mean FLIP"), compared.flip_mean);
+        Ok(())
+    }
+
+    /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a
+    /// display shows, with its label.
+    pub(crate) fn compare(&mut self, what: &str, a: &Image, b: &Image) -> Outcome<(String, Image)> {
+        self.errors(what, a, b)?;
         let (shown, gain) = brightened_difference(a, b, |v| TONE.value(v));
         let largest = shown.data.iter().copied().fold(0.0, f32::max) / gain as f32;
         self.measure(format!("{what}: largest difference of what a display shows"), f64::from(largest));
@@ -112,4 +118,14 @@ impl Made {
 /// Two linear pictures as a display shows them.
 pub(crate) fn compared(a: &Image, b: &Image) -> Outcome<PictureComparison> {
     compare_pictures(a, b, |v| TONE.value(v)).map_err(Failure::input)
+}
+
+/// Some channels of an image as a square picture, enlarged without filtering.
+pub(crate) fn enlarged(image: &Image, size: u32, channels: [usize; 3]) -> Image {
+    let mut large = Image::zeros(size, size, 3);
+    for (x, y) in (0..size).flat_map(|y| (0..size).map(move |x| (x, y))) {
+        let texel = image.texel(x * image.width / size, y * image.height / size);
+        large.texel_mut(x, y).copy_from_slice(&channels.map(|channel| texel[channel]));
+    }
+    large
 }

@@ -11,7 +11,8 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Labelled, Made, SMALL};
-use super::numbers::light::{FROM_EYE, even_sky, one_light};
+use super::numbers::across;
+use super::numbers::light::FROM_EYE;
 use super::numbers::spot::{Spot, spot, spot_in, spot_of};
 use super::studio::{Studio, material, shaded};
 
@@ -103,10 +104,7 @@ fn balls(studio: &Studio, made: &mut Made) -> Outcome {
             "thickness_um = 1\nabsorption_per_um = 100\n",
         )?);
     }
-    let dark = even_sky(0.0)?;
-    let lit = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, settings| {
-        one_light(settings, &dark, FROM_EYE);
-    })?;
+    let lit = studio.lit(&materials, Form::Baked, Shape::Sphere, FROM_EYE)?;
     let labels = BALLS.iter().map(|(label, ..)| *label).chain(["coat alone, one way", "coat alone, crossed"]);
     for (label, picture) in labels.zip(&lit) {
         made.measure(format!("{label}: length of the whole highlight over its height"), spot(picture).elongation());
@@ -123,9 +121,8 @@ const FINE: u32 = 768;
 
 /// A picture of a function over the unit disk of the base plane, as a share of its greatest value, with the part above half of it.
 fn over_plane(size: u32, f: impl Fn(f64, f64) -> f64) -> (Image, Spot) {
-    let at = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0;
     let values: Vec<f64> = (0..size * size)
-        .map(|i| (at(i % size), -at(i / size)))
+        .map(|i| (across(i % size, size), -across(i / size, size)))
         .map(|(x, y)| if x * x + y * y < 0.999 { f(x, y) } else { 0.0 })
         .collect();
     let most = values.iter().fold(0.0, |a: f64, b| a.max(*b));
