@@ -4,7 +4,7 @@ use luthier::read_materials;
 use luthier_report::{ModelSettings, ModelSubject, judge_models};
 use luthier_terminal::{Bar, Failure, Outcome, print, valid};
 
-use crate::cli::{JUDGE_SAMPLES, JudgeOptions};
+use crate::cli::{JUDGE_SAMPLES, JudgeOptions, call};
 
 /// Judges every model on materials.
 pub(crate) fn run(options: &JudgeOptions) -> Outcome {
@@ -28,10 +28,9 @@ pub(crate) fn run(options: &JudgeOptions) -> Outcome {
 
 /// The command line that makes the page.
 fn command(options: &JudgeOptions) -> String {
-    let mut words = vec!["luthier-lab judge".to_owned()];
-    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    let mut command = call("judge", &options.sources.paths);
     if options.samples != JUDGE_SAMPLES {
-        words.push(format!("--samples {}", options.samples));
+        command += &format!(" --samples {}", options.samples);
     }
-    words.join(" ")
+    command
 }

@@ -13,7 +13,7 @@ use luthier_report::{FLOOR, Pair, ParitySet};
 use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
 
-use crate::cli::PapersOptions;
+use crate::cli::{PapersOptions, call};
 
 /// Two layers each: a coat over a metal and over a diffuse base. Where the materials at hand have neither, the first with two layers
 /// stands in.
@@ -272,8 +272,7 @@ fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
 
 /// The command line that makes the page.
 fn command(options: &PapersOptions) -> String {
-    let mut words = vec!["luthier-lab papers".to_owned()];
-    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    let mut words = vec![call("papers", &options.sources.paths)];
     words.extend(options.family.iter().map(|family| format!("--family {family}")));
     words.extend(options.destination.output.iter().map(|path| format!("-o {}", path.display())));
     words.join(" ")

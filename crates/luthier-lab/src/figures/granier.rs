@@ -506,7 +506,7 @@ fn spread(image: &Image) -> f64 {
     image.texels().map(one).sum::<f64>() / image.texel_count() as f64
 }
 
-/// The light of a picture that another has not; all of it where asked for.
+/// The light of a picture that another has not.
 fn less(picture: &Image, other: &Image) -> Image {
     let mut rest = picture.clone();
     rest.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = (*a - b).max(0.0));

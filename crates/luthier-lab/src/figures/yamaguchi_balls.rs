@@ -76,8 +76,9 @@ const BALLS: [(&str, [f64; 3], [f64; 3]); 5] = [
     ("e crossed", [0.25, 0.06, 90.0], [0.45, 0.12, 0.0]),
 ];
 
-/// A coat and a base of some slopes, with what else the file says of the coat.
-fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
+/// A coat of index 1.49 on gold (figure 1 (e)), of some slopes, with what else the file says of the coat. Wavelengths are labels, see
+/// `materials/papers/yamaguchi-brushed.toml`.
+pub(super) fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
     let surface = |[x, y, turn]: [f64; 3]| format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}");
     let text = format!(
         "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{}\n{more}[[layer]]\ntype = \"conductor\"\n{}\n\
