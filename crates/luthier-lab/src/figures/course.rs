@@ -191,6 +191,11 @@ pub(super) fn by_course(name: &str, layers: &str) -> Outcome<Material> {
 }
 
 /// White under a yellow varnish. The absorption is ours.
+/// Materials by the course's model, with numbers in their names.
+pub(super) fn numbered(stem: &str, all: impl IntoIterator<Item = String>) -> Outcome<Vec<Material>> {
+    all.into_iter().enumerate().map(|(i, layers)| by_course(&format!("{stem}-{i}"), &layers)).collect()
+}
+
 fn varnished(thickness: f64) -> String {
     format!(
         "[[layer]]
@@ -210,10 +215,7 @@ albedo = 0.9
 }
 
 fn varnish(studio: &Studio, made: &mut Made) -> Outcome {
-    let mut materials = Vec::new();
-    for (i, thickness) in THICKNESSES.into_iter().enumerate() {
-        materials.push(by_course(&format!("varnish-{i}"), &varnished(thickness))?);
-    }
+    let materials = numbered("varnish", THICKNESSES.map(varnished))?;
     let pictures = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, _| {})?;
     let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];
     let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });

@@ -6,20 +6,21 @@ use glam::DVec3;
 use luthier_gpu::{Environment, Light, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, InternalReflection};
+use luthier_material::Material;
 use luthier_optics::fresnel::transmitted;
 use luthier_optics::masking::v_cavity;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
-use super::course::by_course;
+use super::course::{by_course, numbered};
 use super::elek::light;
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
 use super::numbers::light::{FROM_EYE, KEY};
 use super::numbers::places::{ball_normal, color_at};
 use super::numbers::spot::spot;
 use super::numbers::tint::{hue, lightness_apart, saturation, tint_deviation};
-use super::numbers::{across, brightness, grain, highlight, middle, over_red, rgb};
+use super::numbers::{across, brightness, grain, highlight, middle, over_red, pixels, rgb};
 use super::studio::{Studio, mapped};
 
 pub(crate) const FIGURES: [Figure; 6] = [
@@ -216,25 +217,23 @@ fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
         let (mut sum, mut count) = (0.0, 0.0);
         // Sums and counts within two thirds of the radius, and outside.
         let mut zones = [[0.0, 0.0]; 2];
-        for y in 0..with.height {
-            for x in 0..with.width {
-                let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image.texel(x, y))));
-                // In the order of the course: hue, chroma, lightness.
-                let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
-                if c == 0 {
-                    d -= 360.0 * (d / 360.0).round();
-                    // CIE's difference of hue, in the unit of chroma and lightness.
-                    d = if seen { 2.0 * (a[1] * b[1]).sqrt() * libm::sin(0.5 * d.to_radians()) } else { 0.0 };
-                }
-                if seen {
-                    (sum, count) = (sum + d.abs(), count + 1.0);
-                    let [right, down] = [x, y].map(|i| across(i, with.width) / BALL);
-                    let zone = &mut zones[usize::from(libm::hypot(right, down) > 2.0 / 3.0)];
-                    *zone = [zone[0] + d.abs(), zone[1] + 1.0];
-                }
-                let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
-                apart.texel_mut(x, y).fill(shade * shade);
+        for (x, y) in pixels(&with) {
+            let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image.texel(x, y))));
+            // In the order of the course: hue, chroma, lightness.
+            let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
+            if c == 0 {
+                d -= 360.0 * (d / 360.0).round();
+                // CIE's difference of hue, in the unit of chroma and lightness.
+                d = if seen { 2.0 * (a[1] * b[1]).sqrt() * libm::sin(0.5 * d.to_radians()) } else { 0.0 };
             }
+            if seen {
+                (sum, count) = (sum + d.abs(), count + 1.0);
+                let [right, down] = [x, y].map(|i| across(i, with.width) / BALL);
+                let zone = &mut zones[usize::from(libm::hypot(right, down) > 2.0 / 3.0)];
+                *zone = [zone[0] + d.abs(), zone[1] + 1.0];
+            }
+            let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
+            apart.texel_mut(x, y).fill(shade * shade);
         }
         made.measure(format!("mean difference of {name}, where both have a colour"), sum / f64::max(count, 1.0));
         for ([sum, count], zone) in zones.into_iter().zip(["in the middle", "at the rim"]) {
@@ -251,11 +250,8 @@ const BALL: f64 = 0.8;
 
 fn bases(studio: &Studio, made: &mut Made) -> Outcome {
     let sigmas = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-    let mut materials = Vec::new();
-    for (i, sigma) in sigmas.into_iter().enumerate() {
-        let layers = format!("{}sigma = {sigma}\n", diffuse("[0.5, 0.35, 0.25]"));
-        materials.push(by_course(&format!("sigma-{i}"), &layers)?);
-    }
+    let layers = sigmas.map(|sigma| format!("{}sigma = {sigma}\n", diffuse("[0.5, 0.35, 0.25]")));
+    let materials = numbered("sigma", layers)?;
     let dark = Arc::new(Environment::new(Image::zeros(16, 8, 3)).map_err(Failure::device)?);
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| {
         settings.environment = dark.clone();
@@ -278,11 +274,8 @@ fn bases(studio: &Studio, made: &mut Made) -> Outcome {
 
 fn silver(studio: &Studio, made: &mut Made) -> Outcome {
     let thicknesses = [0.0, 0.2, 0.5, 1.0, 2.0, 5.0];
-    let mut materials = Vec::new();
-    for (i, thickness) in thicknesses.into_iter().enumerate() {
-        let metal = "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 3\ndistribution = \"beckmann\"\n";
-        materials.push(by_course(&format!("silver-{i}"), &(coat(thickness, "[0.6, 0.35, 0.05]") + metal))?);
-    }
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 3\ndistribution = \"beckmann\"\n";
+    let materials = numbered("silver", thicknesses.map(|thickness| coat(thickness, "[0.6, 0.35, 0.05]") + metal))?;
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for (thickness, picture) in thicknesses.iter().zip(&pictures) {
         made.measure(format!("{thickness} um: mean luminance"), brightness(picture));
@@ -333,19 +326,17 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
     let cos_theta_d = eye.dot(wh);
     let passed = transmitted(1.0, &[], index, cos_theta_d);
     let (mut image, mut least) = (Image::zeros(size, size, 3), 1.0);
-    for y in 0..size {
-        for x in 0..size {
-            let (nx, ny) = (across(x, size) / BALL, -(across(y, size) / BALL));
-            let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
-            let (cos_i, cos_o) = (normal.dot(light), normal.z);
-            if cos_i <= 0.0 || cos_o <= 0.0 {
-                continue;
-            }
-            let g = v_cavity(cos_i, cos_o, normal.dot(wh), cos_theta_d);
-            let t = (1.0 - g) + passed * g;
-            least = f64::min(least, t);
-            image.texel_mut(x, y).fill(t as f32);
+    for (x, y) in pixels(&image) {
+        let (nx, ny) = (across(x, size) / BALL, -(across(y, size) / BALL));
+        let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
+        let (cos_i, cos_o) = (normal.dot(light), normal.z);
+        if cos_i <= 0.0 || cos_o <= 0.0 {
+            continue;
         }
+        let g = v_cavity(cos_i, cos_o, normal.dot(wh), cos_theta_d);
+        let t = (1.0 - g) + passed * g;
+        least = f64::min(least, t);
+        image.texel_mut(x, y).fill(t as f32);
     }
     (image, least)
 }
@@ -361,10 +352,7 @@ fn parts(studio: &Studio, made: &mut Made) -> Outcome {
         ("absorbs", coat(0.5, RED) + &base),
         ("and rough", coat(0.5, RED).replace("slope_deg = 1.5", "slope_deg = 8") + &base),
     ];
-    let mut materials = Vec::new();
-    for (i, (_, layers)) in all.iter().enumerate() {
-        materials.push(by_course(&format!("part-{i}"), layers)?);
-    }
+    let materials = numbered("part", all.iter().map(|(_, layers)| layers.clone()))?;
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((label, _), picture) in all.iter().zip(&pictures) {
         made.measure(format!("{label}: mean luminance"), brightness(picture));
@@ -397,10 +385,8 @@ fn varnishes(studio: &Studio, made: &mut Made) -> Outcome {
         ("d below", matt.clone() + METAL + bumps),
         ("e above", map(matt.clone(), "normal", "bumps.png") + METAL),
     ];
-    let mut materials = Vec::new();
-    for (i, (_, layers)) in all.iter().enumerate() {
-        materials.push(mapped(by_course(&format!("varnish-{i}"), layers)?));
-    }
+    let numbered = numbered("varnish", all.iter().map(|(_, layers)| layers.clone()))?;
+    let mut materials: Vec<Material> = numbered.into_iter().map(mapped).collect();
     materials.push(by_course("no-bumps", &(matt + METAL))?);
     let mut pictures = studio.pictures(&materials, Form::Full, Shape::Torus, |_, _| {})?;
     let level = pictures.pop().unwrap_or_else(|| Image::zeros(1, 1, 3));

@@ -13,7 +13,7 @@ use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL, compared};
 use super::numbers::light::even_sky;
 use super::numbers::spot::{softened, spot, spot_of};
-use super::numbers::{across, brightest};
+use super::numbers::{across, brightest, pixels};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -341,13 +341,11 @@ fn mipped(full: &Image, alpha: f64) -> Image {
     let peaks = [0, 1, 2].map(|c: usize| full.texels().map(|texel| texel[c]).fold(0.0, f32::max));
     let mut image = full.clone();
     let texels = f64::from(SIDE / BLOCK);
-    for y in 0..image.height {
-        for x in 0..image.width {
-            let u = libm::pow(half_angle(x, y, image.width, alpha) / FRAC_PI_2, 0.125);
-            let read = bilinear(&table, [u * texels, alpha * texels], WeightBits::Fixed(8))[0];
-            let ratio = (read / beckmann(0.0, alpha)) as f32;
-            image.texel_mut(x, y).copy_from_slice(&peaks.map(|peak| peak * ratio));
-        }
+    for (x, y) in pixels(full) {
+        let u = libm::pow(half_angle(x, y, image.width, alpha) / FRAC_PI_2, 0.125);
+        let read = bilinear(&table, [u * texels, alpha * texels], WeightBits::Fixed(8))[0];
+        let ratio = (read / beckmann(0.0, alpha)) as f32;
+        image.texel_mut(x, y).copy_from_slice(&peaks.map(|peak| peak * ratio));
     }
     image
 }

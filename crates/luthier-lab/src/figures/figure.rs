@@ -6,6 +6,7 @@ use luthier_report::{PictureComparison, Plot, brightened_difference, compare_pic
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::Claim;
+use super::numbers::pixels;
 use super::studio::Studio;
 
 /// A figure of a paper, and how to make it anew.
@@ -123,7 +124,7 @@ pub(crate) fn compared(a: &Image, b: &Image) -> Outcome<PictureComparison> {
 /// Some channels of an image as a square picture, enlarged without filtering.
 pub(crate) fn enlarged(image: &Image, size: u32, channels: [usize; 3]) -> Image {
     let mut large = Image::zeros(size, size, 3);
-    for (x, y) in (0..size).flat_map(|y| (0..size).map(move |x| (x, y))) {
+    for (x, y) in pixels(&large) {
         let texel = image.texel(x * image.width / size, y * image.height / size);
         large.texel_mut(x, y).copy_from_slice(&channels.map(|channel| texel[channel]));
     }

@@ -11,10 +11,10 @@ use super::claim::{Check, Claim};
 use super::elek_examples::lacquer;
 use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, enlarged};
 use super::numbers::light::KEY;
-use super::numbers::over_red;
 use super::numbers::places::{color_at, correlation, middle_values, nearest, places_of_ball, sparkles};
 use super::numbers::spot::{spot, spot_of};
 use super::numbers::tint::colors_apart;
+use super::numbers::{over_red, pixels};
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -183,14 +183,12 @@ fn slopes(made: &mut Made, heights: &Image, normals: &Image) {
     let (width, height) = (heights.width, heights.height);
     let at = |x: u32, y: u32| f64::from(heights.texel(x % width, y % height)[0]);
     let mut lists: [[Vec<f64>; 2]; 2] = Default::default();
-    for y in 0..height {
-        for x in 0..width {
-            let texel = normals.texel(x * normals.width / width, y * normals.height / height);
-            let fall = [at(x + width - 1, y) - at(x + 1, y), at(x, y + 1) - at(x, y + height - 1)];
-            for (axis, list) in lists.iter_mut().enumerate() {
-                list[0].push(2.0 * f64::from(texel[axis]) - 1.0);
-                list[1].push(fall[axis]);
-            }
+    for (x, y) in pixels(heights) {
+        let texel = normals.texel(x * normals.width / width, y * normals.height / height);
+        let fall = [at(x + width - 1, y) - at(x + 1, y), at(x, y + 1) - at(x, y + height - 1)];
+        for (axis, list) in lists.iter_mut().enumerate() {
+            list[0].push(2.0 * f64::from(texel[axis]) - 1.0);
+            list[1].push(fall[axis]);
         }
     }
     let (mut mean, mut square) = (0.0, 0.0);

@@ -117,6 +117,12 @@ pub(crate) fn across(i: u32, side: u32) -> f64 {
     2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0
 }
 
+/// The pixels of a picture, row by row.
+pub(crate) fn pixels(image: &Image) -> impl Iterator<Item = (u32, u32)> + use<> {
+    let [width, height] = image.size();
+    (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}
+
 /// The linear colour of a texel.
 pub(crate) fn rgb(texel: &[f32]) -> [f64; 3] {
     [0, 1, 2].map(|c: usize| f64::from(texel[c]))

@@ -3,7 +3,7 @@
 use luthier_lut::Image;
 use luthier_optics::color::luminance;
 
-use super::{across, rgb};
+use super::{across, pixels, rgb};
 
 /// Part of a picture that is at least half as bright as its brightest pixel. Places are from -1 to 1, +x right and +y up.
 #[derive(Clone, Copy)]
@@ -48,17 +48,15 @@ pub(crate) fn spot(image: &Image) -> Spot {
 /// A picture of which each pixel is the mean of itself and its neighbours, so that noise does not make its brightest one.
 pub(crate) fn softened(image: &Image) -> Image {
     let mut soft = image.clone();
-    for y in 0..image.height {
-        for x in 0..image.width {
-            let (mut sum, mut count) = (vec![0.0; image.channels as usize], 0.0);
-            for j in (y.max(1) - 1)..=(y + 1).min(image.height - 1) {
-                for i in (x.max(1) - 1)..=(x + 1).min(image.width - 1) {
-                    sum.iter_mut().zip(image.texel(i, j)).for_each(|(sum, value)| *sum += value);
-                    count += 1.0;
-                }
+    for (x, y) in pixels(image) {
+        let (mut sum, mut count) = (vec![0.0; image.channels as usize], 0.0);
+        for j in (y.max(1) - 1)..=(y + 1).min(image.height - 1) {
+            for i in (x.max(1) - 1)..=(x + 1).min(image.width - 1) {
+                sum.iter_mut().zip(image.texel(i, j)).for_each(|(sum, value)| *sum += value);
+                count += 1.0;
             }
-            soft.texel_mut(x, y).iter_mut().zip(sum).for_each(|(soft, sum)| *soft = sum / count);
         }
+        soft.texel_mut(x, y).iter_mut().zip(sum).for_each(|(soft, sum)| *soft = sum / count);
     }
     soft
 }
