@@ -12,7 +12,7 @@ use luthier_report::{ModelSubject, PHI_DEG, Reference, Shown, ViewError};
 use luthier_terminal::{Bar, Failure, Outcome, deliver, valid};
 
 use crate::cli::{AnisotropicOptions, call};
-use crate::lobes::{JUDGE_SEED, anisotropic, judge_settings, of};
+use crate::lobes::{JUDGE_SEED, anisotropic, judge_settings, of, table};
 
 /// Angles of the judge against the normal, degrees.
 const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
@@ -30,6 +30,23 @@ struct Judged {
     seconds: f64,
     /// For each of [`PHIS_DEG`]: errors of the lobes, and of the model beside them.
     errors: Vec<[Vec<ViewError>; 2]>,
+}
+
+impl Judged {
+    /// Its name, its axes and the number of its lobes, as cells of a table.
+    fn words(&self) -> String {
+        let axes = self.lobes.frame.axes.map_or("none", |axes| if axes.is_mirrored { "common" } else { "crossed" });
+        format!("{} | {axes} | {}", self.name, self.lobes.rows[0].lobes.len())
+    }
+
+    /// The worst errors by angle of the eye, of lobes and beside them.
+    fn worst(&self, error: Error) -> Vec<[f64; 2]> {
+        let of = |view: usize, fit: usize| {
+            let views = self.errors.iter().flat_map(|errors| errors[fit].iter().skip(3 * view).take(3));
+            views.map(error).fold(0.0, f64::max)
+        };
+        (0..THETAS_DEG.len()).map(|view| [of(view, 0), of(view, 1)]).collect()
+    }
 }
 
 /// Fits and judges, as a page.
@@ -81,35 +98,10 @@ fn page(judged: &[Judged], options: &AnisotropicOptions) -> Result<String, std::
         options.precision.noise
     )?;
     out.push_str(INTRODUCTION);
+    let columns = THETAS_DEG.map(|theta_deg| format!("{theta_deg:.0} deg"));
     for (title, error) in TABLES {
-        write!(out, "\n## {title}\n\n| stack | axes | lobes |")?;
-        for theta in THETAS_DEG {
-            write!(out, " {theta:.0} deg |")?;
-        }
-        writeln!(out, "\n|---|---|--:|{}", "--:|".repeat(THETAS_DEG.len()))?;
-        let of = |stack: &Judged, view: usize, fit: usize| {
-            let views = stack.errors.iter().flat_map(|errors| errors[fit].iter().skip(3 * view).take(3));
-            views.map(error).fold(0.0, f64::max)
-        };
-        for stack in judged {
-            let axes =
-                stack.lobes.frame.axes.map_or("none", |axes| if axes.is_mirrored { "common" } else { "crossed" });
-            write!(out, "| {} | {axes} | {} |", stack.name, stack.lobes.rows[0].lobes.len())?;
-            for view in 0..THETAS_DEG.len() {
-                write!(out, " {:.3} ({:.3}) |", of(stack, view, 0), of(stack, view, 1))?;
-            }
-            writeln!(out)?;
-        }
-        write!(out, "| **median** | | |")?;
-        for view in 0..THETAS_DEG.len() {
-            let [own, beside] = [0, 1].map(|fit: usize| {
-                let mut errors: Vec<f64> = judged.iter().map(|stack| of(stack, view, fit)).collect();
-                errors.sort_by(f64::total_cmp);
-                errors.get(errors.len() / 2).copied().unwrap_or(0.0)
-            });
-            write!(out, " {own:.3} ({beside:.3}) |")?;
-        }
-        writeln!(out)?;
+        let rows: Vec<_> = judged.iter().map(|stack| (stack.words(), stack.worst(error))).collect();
+        table(&mut out, [title, "axes"], &columns, &rows)?;
     }
     let views = || judged.iter().flat_map(|stack| stack.errors.iter().flatten().flatten());
     let noise = views().map(|view| view.lobe_floor).fold(0.0, f64::max);
