@@ -71,9 +71,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
 
 /// The models to compare: all, unless named.
 fn models(options: &ParityOptions) -> Vec<ShadingModel> {
-    let named: Vec<ShadingModel> =
-        options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect();
-    if named.is_empty() { ShadingModel::ALL.to_vec() } else { named }
+    if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { options.model.clone() }
 }
 
 /// A material shaded by a model, and its polished variants; names are unique over all models.

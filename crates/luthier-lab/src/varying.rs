@@ -45,12 +45,9 @@ pub(crate) fn run(options: &VaryingOptions) -> Outcome {
         })
         .collect();
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
-    let judge = |(subject, varying): &(ModelSubject, Varying)| {
-        let judged = judge(subject, *varying, options);
-        bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, subjects.len() as u64);
-        judged
-    };
-    let judged: Vec<Judged> = subjects.par_iter().map(judge).collect();
+    let judged = subjects.par_iter().map(|(subject, varying)| judge(subject, *varying, options));
+    let judged = judged.inspect(|_| bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, subjects.len() as u64));
+    let judged: Vec<Judged> = judged.collect();
     drop(bar);
     let page = page(&judged, options).map_err(Failure::input)?;
     deliver(&page, options.destination.output.as_deref())

@@ -16,7 +16,7 @@ use super::course::by_course;
 use super::figure::{Figure, LARGE as SIZE, Made, compared};
 use super::numbers::places::{edges, sparkles, sparkles_that_stay};
 use super::numbers::tint::tint_deviation;
-use super::numbers::{brightest, glitter as glittering, middle};
+use super::numbers::{brightest, glitter as glittering, middle, share};
 use super::studio::Studio;
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -233,19 +233,14 @@ fn maps(studio: &Studio, made: &mut Made) -> Outcome {
     let bare = [surface("transparent", &transparent, None), surface("level", &grey, None)];
     let bare = pictures(studio, &materials, &bare, |_| square(studio))?;
     let filled = differ(&all[1], &bare[0]);
-    let share = |of: &[bool], places: bool| {
-        let (mut hits, mut count) = (0.0, 0.0);
-        for (hit, _) in of.iter().zip(&filled).filter(|(_, filled)| **filled == places) {
-            (hits, count) = (hits + f64::from(u8::from(*hit)), count + 1.0);
-        }
-        hits / f64::max(count, 1.0)
+    let among = |of: &[bool], places: bool| {
+        share(of.iter().zip(&filled).filter(|(_, filled)| **filled == places).map(|(hit, _)| *hit))
     };
-    let count = filled.iter().filter(|filled| **filled).count() as f64;
-    made.measure("2: share that is not transparent", count / filled.len().max(1) as f64);
+    made.measure("2: share that is not transparent", share(filled.iter().copied()));
     for (what, of) in [("3", differ(&all[2], &all[0])), ("4", differ(&all[3], &bare[1]))] {
         let is = if what == "3" { "differ from 1" } else { "are tilted" };
-        made.measure(format!("{what}: share of the transparent places that {is}"), share(&of, false));
-        made.measure(format!("{what}: share of the other places that {is}"), share(&of, true));
+        made.measure(format!("{what}: share of the transparent places that {is}"), among(&of, false));
+        made.measure(format!("{what}: share of the other places that {is}"), among(&of, true));
     }
     made.measure("3: brightest place", brightest(&all[2]));
     made.measure("5: brightest place", brightest(&all[4]));

@@ -218,7 +218,7 @@ const FLAT_UM: f64 = 2e4;
 const HILLY_UM: f64 = 12.0;
 
 /// The transmitted lobe is no lobe of a mirror, so its sampling needs more directions; and the model is brighter than white.
-fn look(settings: &mut RenderSettings) {
+fn look(_: usize, settings: &mut RenderSettings) {
     settings.environment_samples = 64;
     settings.exposure = 0.8;
 }
@@ -288,10 +288,7 @@ fn diffuse(studio: &Studio, made: &mut Made) -> Outcome {
         .iter()
         .zip(names)
         .flat_map(|((_, range), [lit, unlit])| [coating(lit, *range, 0.6), coating(unlit, *range, 0.0)]);
-    let pictures =
-        studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, |_, settings| {
-            look(settings)
-        })?;
+    let pictures = studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
     for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
         // The specular part is the same in both: what is left is the diffuse one.
@@ -337,8 +334,8 @@ fn deviation(studio: &Studio, made: &mut Made) -> Outcome {
         coating("no-dispersion", [1.45; 3], 170.0, TILT_DEG),
         coating("rough", rising, 20.0, TILT_DEG),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| {
-        look(settings);
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |n, settings| {
+        look(n, settings);
         settings.environment_samples = 512;
     })?;
     let labels = ["parallel", "14 degrees", "one index", "90 and 20"];
@@ -381,7 +378,7 @@ fn correlated(studio: &Studio, made: &mut Made) -> Outcome {
         coating("flat-oil", FLAT_UM, [200.0, 900.0]),
         coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, look)?;
     let labels = ["flat 100-400", "bump 100-400", "flat 200-900", "bump 200-900"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: colour between neighbours"), tint_grain(picture));
@@ -402,7 +399,7 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
     let ranges = [("a", [50.0, 70.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
     let tilted = Coating { diffuse: 0.5, tilt_deg: TILT_DEG, ..COATING };
     let coatings = ranges.map(|(name, thickness_nm)| Coating { name, thickness_nm, ..tilted });
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
     for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));

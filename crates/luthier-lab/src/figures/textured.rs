@@ -14,7 +14,7 @@ use super::numbers::light::KEY;
 use super::numbers::places::{color_at, correlation, middle_values, nearest, places_of_ball, sparkles};
 use super::numbers::spot::{spot, spot_of};
 use super::numbers::tint::colors_apart;
-use super::numbers::{over_red, pixels};
+use super::numbers::{average, over_red, pixels};
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -264,14 +264,10 @@ fn metal(studio: &Studio, made: &mut Made) -> Outcome {
     let map = png::decode(include_bytes!("../../maps/thickness.png")).map_err(Failure::input)?;
     for (label, is_there) in [("dark", (0.0..0.2)), ("bright", (0.8..1.01))] {
         for (to, other) in [("paint", &shown[0]), ("metal", &shown[2])] {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for (place, [u, v]) in places_of_ball(&shown[1]) {
-                if is_there.contains(&f64::from(nearest(&map, [u, v])[0])) {
-                    sum += colors_apart(color_at(&shown[1], place), color_at(other, place));
-                    count += 1.0;
-                }
-            }
-            made.measure(format!("{label} places of the map: difference to {to}"), sum / f64::max(count, 1.0));
+            let places =
+                places_of_ball(&shown[1]).filter(|(_, uv)| is_there.contains(&f64::from(nearest(&map, *uv)[0])));
+            let apart = places.map(|(place, _)| colors_apart(color_at(&shown[1], place), color_at(other, place)));
+            made.measure(format!("{label} places of the map: difference to {to}"), average(apart));
         }
     }
     made.sheet("lecture-metal", all.iter().map(|(label, _)| *label).zip(shown), 3);

@@ -77,7 +77,7 @@ fn settings(size: u32) -> Outcome<RenderSettings> {
     })
 }
 
-/// A material, as the models of its sample shade it.
+/// A material, baked by itself: materials of one bake share sizes of tables.
 fn ball(text: String) -> Outcome<(Package, Shown)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
     let mut sources: Vec<Source> = vec![Source::of_text(&path, text)];
@@ -86,7 +86,7 @@ fn ball(text: String) -> Outcome<(Package, Shown)> {
     Ok((package, Shown::Material(0)))
 }
 
-/// A surface of several materials, whose file is written among others.
+/// A surface of several materials, whose file is written into a folder first.
 fn surface(text: &str, work: &Path) -> Outcome<(Package, Shown)> {
     let path = work.join("surface.toml");
     std::fs::write(&path, text).map_err(files(&path, "write"))?;

@@ -134,12 +134,8 @@ fn judge_all(
     options: &LobesOptions,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Judged> {
-    let outcome = |subject: &ModelSubject| {
-        let judged = judge(subject, options);
-        progress();
-        judged
-    };
-    let mut judged: Vec<(Judged, Reference)> = subjects.par_iter().map(outcome).collect();
+    let mut judged: Vec<(Judged, Reference)> =
+        subjects.par_iter().map(|subject| judge(subject, options)).inspect(|_| progress()).collect();
     let stacks: Vec<&Judged> = judged.iter().map(|(stack, _)| stack).collect();
     let mut chosen: Vec<usize> = (0..QUANTITIES).flat_map(|quantity| choice.of(&stacks, quantity)).collect();
     chosen.sort_unstable();

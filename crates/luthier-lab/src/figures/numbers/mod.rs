@@ -101,7 +101,7 @@ pub(crate) fn share(values: impl Iterator<Item = bool>) -> f64 {
 }
 
 /// The mean, or 0 of nothing.
-fn average(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn average(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / f64::max(count, 1.0)
 }

@@ -16,9 +16,7 @@ pub(crate) fn sparkles(image: &Image) -> f64 {
 /// Share of the sparkles of a picture that another has in the same pixels.
 pub(crate) fn sparkles_that_stay(image: &Image, other: &Image) -> f64 {
     let (here, there) = (points(image), points(other));
-    let all = here.iter().filter(|is_point| **is_point).count();
-    let both = here.iter().zip(&there).filter(|(a, b)| **a && **b).count();
-    both as f64 / all.max(1) as f64
+    share(here.into_iter().zip(there).filter(|(is_here, _)| *is_here).map(|(_, is_there)| is_there))
 }
 
 /// Of each pixel of the middle half whether it sparkles: the median is that of nine by nine places around it.
