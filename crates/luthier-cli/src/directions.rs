@@ -10,10 +10,6 @@ use crate::input;
 
 /// Pairs (wi, wo) of a CSV file, or of standard input for `-`.
 pub(crate) fn read(path: &Path) -> Outcome<Vec<[Angles; 2]>> {
-    let (text, label) = if path == Path::new("-") {
-        (input::standard()?, "standard input".to_owned())
-    } else {
-        (input::named_text(path)?, path.display().to_string())
-    };
+    let (text, label) = input::labelled(path)?;
     pairs(&text).map_err(|what| Failure::Input(anyhow::anyhow!("{label}{what}")))
 }

@@ -11,8 +11,16 @@ pub(crate) fn named_text(path: &Path) -> Outcome<String> {
     input::text(path).map_err(files(path, "read"))
 }
 
+/// The text of a file, or of standard input for `-`, and what to call it.
+pub(crate) fn labelled(path: &Path) -> Outcome<(String, String)> {
+    if path == Path::new("-") {
+        return Ok((standard()?, "standard input".to_owned()));
+    }
+    Ok((named_text(path)?, path.display().to_string()))
+}
+
 /// Standard input, to its end.
-pub(crate) fn standard() -> Outcome<String> {
+fn standard() -> Outcome<String> {
     let mut text = String::new();
     let read = io::stdin().take(TEXT_MAX + 1).read_to_string(&mut text).and_then(|length| {
         if length as u64 > TEXT_MAX {

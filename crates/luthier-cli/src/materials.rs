@@ -1,8 +1,10 @@
 //! Materials and surfaces that a command works on.
 
 use luthier::refusals::{misses, of_function, of_parts};
-use luthier::{Files, Source, Sources, SurfaceSource, refuse};
-use luthier_manifest::{Form, FunctionGroup, Manifest, Reflectance, ShadingModel, SurfaceEntry};
+use luthier::{Files, Source, Sources, SurfaceSource, refuse, source_hash};
+use luthier_manifest::{
+    Form, FunctionGroup, Manifest, MaterialEntry, ModelPart, Reflectance, ShadingModel, SurfaceEntry,
+};
 use luthier_material::{Diagnostic, Material};
 use luthier_optics::stack::{Base, Layer};
 use luthier_terminal::{Broken, Failure, Outcome, complain, print_diagnostics, valid};
@@ -102,4 +104,13 @@ pub(crate) fn is_shaded_by(material: &Material, model: ShadingModel, asked: &[Sh
         complain(&format!("warning: {} is left out of {}: {}", material.name, model.name(), lack.message));
     }
     lack.is_none()
+}
+
+/// Gives a material the model and the parts of its entry in a manifest; whether the entry was made from it.
+pub(crate) fn is_baked_as(material: &mut Material, entry: &MaterialEntry) -> Outcome<bool> {
+    let (masking, reflectance) = entry.parts();
+    material.bake.model = Some(entry.model);
+    material.bake.masking = entry.model.takes(ModelPart::Masking).then_some(masking);
+    material.bake.reflectance = Some(reflectance);
+    Ok(source_hash(material)? == entry.source_hash)
 }

@@ -25,13 +25,13 @@ pub(crate) struct ModelInputs {
     uv: Option<Uv>,
     /// Distance of the eye, in scene units; 0 for flakes of the file (flakes)
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
-    distance: Option<f64>,
+    pub(crate) distance: Option<f64>,
     /// How far the patina has developed, in place of what the file says: below 0 not at all, above 1 everywhere (patina)
     #[arg(long, value_name = "X", value_parser = number, allow_hyphen_values = true)]
-    extent: Option<f64>,
+    pub(crate) extent: Option<f64>,
     /// Value of the patina's map at the place in place of the map's, 0 to 1; dark places come first (patina)
     #[arg(long, value_name = "X", value_parser = share, allow_hyphen_values = true)]
-    map: Option<f64>,
+    pub(crate) map: Option<f64>,
     /// Leave out what the file says under `effects` and its maps of single layers, as `luthier_eval` of the shaders does without a place
     #[arg(long)]
     no_effects: bool,
@@ -83,33 +83,9 @@ struct Textures {
     base_color: Option<BaseColor>,
 }
 
-impl Textures {
-    fn sample(&self) -> TextureSample {
-        TextureSample {
-            normal: self.normal.map_or(TextureSample::NONE.normal, Angles::direction),
-            alpha_factor: self.alpha_factor.unwrap_or(1.0),
-            slab_factor: self.slab_factor.unwrap_or(1.0),
-            film_factor: self.film_factor.unwrap_or(1.0),
-            slope_variance: self.slope_variance.unwrap_or(0.0),
-        }
-    }
-}
-
 impl ModelInputs {
     pub(crate) fn uv(&self) -> Option<DVec2> {
         self.uv.map(|Uv(uv)| uv)
-    }
-
-    pub(crate) fn distance(&self) -> Option<f64> {
-        self.distance
-    }
-
-    pub(crate) fn extent(&self) -> Option<f64> {
-        self.extent
-    }
-
-    pub(crate) fn map(&self) -> Option<f64> {
-        self.map
     }
 
     pub(crate) fn inner_normal(&self) -> Option<DVec3> {
@@ -127,7 +103,14 @@ impl ModelInputs {
 
     /// The values of the textures at the place.
     pub(crate) fn sample(&self) -> TextureSample {
-        self.textures.sample()
+        let Textures { normal, alpha_factor, slab_factor, film_factor, slope_variance, .. } = self.textures;
+        TextureSample {
+            normal: normal.map_or(TextureSample::NONE.normal, Angles::direction),
+            alpha_factor: alpha_factor.unwrap_or(1.0),
+            slab_factor: slab_factor.unwrap_or(1.0),
+            film_factor: film_factor.unwrap_or(1.0),
+            slope_variance: slope_variance.unwrap_or(0.0),
+        }
     }
 
     /// The effects of a file that a model shows, and the names of those that it does not.

@@ -2,26 +2,19 @@
 
 /// A wavelength of visible light, nm.
 pub(crate) fn wavelength(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
-        _ => Err("expected a wavelength from 360 to 830 nm".to_owned()),
-    }
+    let nm = number(text).ok().filter(|nm| (360.0..=830.0).contains(nm));
+    nm.ok_or_else(|| "expected a wavelength from 360 to 830 nm".to_owned())
 }
 
 /// An angle from the normal, degrees.
 pub(crate) fn angle(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if (0.0..=90.0).contains(&value) => Ok(value),
-        _ => Err("expected an angle from 0 to 90 degrees".to_owned()),
-    }
+    let angle = number(text.trim()).ok().filter(|angle| (0.0..=90.0).contains(angle));
+    angle.ok_or_else(|| "expected an angle from 0 to 90 degrees".to_owned())
 }
 
 /// A positive number.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a positive number, such as 1e-3".to_owned()),
-    }
+    number(text).ok().filter(|x| *x > 0.0).ok_or_else(|| "expected a positive number, such as 1e-3".to_owned())
 }
 
 /// A finite number.

@@ -21,7 +21,7 @@ use luthier_view::{Differences, Form, Host, MaterialFile, Screenshot};
 use crate::cli::Shading;
 use crate::simulated;
 use crate::store::store;
-use crate::watched::{State, named, state};
+use crate::watched::{State, named, seen, state};
 
 /// Each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<State>>;
@@ -151,11 +151,7 @@ fn stamps(paths: &[PathBuf], files: &[MaterialFile]) -> Stamps {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         watched.extend(entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "csv")));
     }
-    let stamped = |path: PathBuf| {
-        let state = state(&path);
-        (path, state)
-    };
-    watched.into_iter().map(stamped).collect()
+    watched.into_iter().map(seen).collect()
 }
 
 fn folder(path: &Path) -> PathBuf {

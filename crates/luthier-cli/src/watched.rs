@@ -14,6 +14,12 @@ pub(crate) fn state(path: &Path) -> Option<State> {
     Some((metadata.modified().ok()?, metadata.len()))
 }
 
+/// A file with its state.
+pub(crate) fn seen(path: PathBuf) -> (PathBuf, Option<State>) {
+    let state = state(&path);
+    (path, state)
+}
+
 /// The files that a material names, beside its own.
 pub(crate) fn named(material: &Material) -> impl Iterator<Item = PathBuf> {
     let folder = Path::new(&material.source).parent().unwrap_or(Path::new(""));

@@ -73,19 +73,9 @@ These are not among the candidates:
 
 /// A material with rows and albedos of every interface, whatever its shader reads, of which its file decides nothing.
 fn open(mut material: Material) -> Material {
-    let BakeSettings { model, masking, reflectance, internal_reflection, lower_reflectance, beams, .. } = material.bake;
-    let BakeSettings { color, wavelengths_nm, .. } = material.bake;
     let tables = vec![TableKind::Fresnel, TableKind::Fgd];
-    let parts = BakeSettings {
-        model,
-        masking,
-        reflectance,
-        internal_reflection,
-        lower_reflectance,
-        beams,
-        ..BakeSettings::default()
-    };
-    material.bake = BakeSettings { color, wavelengths_nm, tables, ..parts };
+    let BakeSettings { fresnel, distribution, fgd, phase, thickness, .. } = BakeSettings::default();
+    material.bake = BakeSettings { tables, fresnel, distribution, fgd, phase, thickness, ..material.bake };
     material
 }
 

@@ -475,3 +475,9 @@ pub(crate) struct ForeignOptions {
     #[arg(long, value_name = "FILE")]
     pub(crate) page: Option<PathBuf>,
 }
+
+/// The call of a verb for some files, as pages state it, without options.
+pub(crate) fn call(verb: &str, paths: &[PathBuf]) -> String {
+    let paths = paths.iter().map(|path| format!(" {}", path.display()));
+    std::iter::once(format!("luthier-lab {verb}")).chain(paths).collect()
+}

@@ -4,18 +4,13 @@ use luthier::read_materials;
 use luthier_report::{ModelSettings, ModelSubject, judge_models};
 use luthier_terminal::{Bar, Failure, Outcome, print, valid};
 
-use crate::cli::{JUDGE_SAMPLES, JudgeOptions};
+use crate::cli::{JUDGE_SAMPLES, JudgeOptions, call};
+use crate::lobes::of;
 
 /// Judges every model on materials.
 pub(crate) fn run(options: &JudgeOptions) -> Outcome {
-    let subjects: Vec<ModelSubject> = valid(read_materials(&options.sources.paths)?, false)?
-        .into_iter()
-        .map(|material| ModelSubject {
-            wavelengths_nm: material.bake.wavelengths_nm(),
-            name: material.name,
-            stack: material.stack,
-        })
-        .collect();
+    let materials = valid(read_materials(&options.sources.paths)?, false)?;
+    let subjects: Vec<ModelSubject> = materials.iter().map(|material| of(material, false)).collect();
     let bar = Bar::new("judging models");
     let settings = ModelSettings { samples: options.samples, seed: 0 };
     let report = judge_models(&subjects, settings, &|done, total| bar.set(done as u64, total as u64));
@@ -28,10 +23,9 @@ pub(crate) fn run(options: &JudgeOptions) -> Outcome {
 
 /// The command line that makes the page.
 fn command(options: &JudgeOptions) -> String {
-    let mut words = vec!["luthier-lab judge".to_owned()];
-    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    let mut command = call("judge", &options.sources.paths);
     if options.samples != JUDGE_SAMPLES {
-        words.push(format!("--samples {}", options.samples));
+        command += &format!(" --samples {}", options.samples);
     }
-    words.join(" ")
+    command
 }

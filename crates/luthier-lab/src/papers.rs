@@ -13,7 +13,7 @@ use luthier_report::{FLOOR, Pair, ParitySet};
 use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
 
-use crate::cli::PapersOptions;
+use crate::cli::{PapersOptions, call};
 
 /// Two layers each: a coat over a metal and over a diffuse base. Where the materials at hand have neither, the first with two layers
 /// stands in.
@@ -257,9 +257,9 @@ fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
                 let numbers = if variant.constant { ", constants" } else { "" };
                 let _ = write!(out, "| {}{numbers} |", variant.name);
                 for family in counts {
-                    let cost = |i| cost(measure, family, here, i);
-                    let of = |role| cost(i) as f64 / cost(partner(case, i, role)) as f64;
-                    let _ = write!(out, " {} ({:.2}, {:.2}) |", cost(i), of(Role::Full), of(Role::Phong));
+                    let [full, phong] =
+                        [Role::Full, Role::Phong].map(|role| ratio(measure, family, here, [i, partner(case, i, role)]));
+                    let _ = write!(out, " {} ({full:.2}, {phong:.2}) |", cost(measure, family, here, i));
                 }
                 let error = variant.error.map_or_else(|| "–".to_owned(), |error| format!("{error:.1e}"));
                 let _ = writeln!(out, " {error} |");
@@ -272,8 +272,7 @@ fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
 
 /// The command line that makes the page.
 fn command(options: &PapersOptions) -> String {
-    let mut words = vec!["luthier-lab papers".to_owned()];
-    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    let mut words = vec![call("papers", &options.sources.paths)];
     words.extend(options.family.iter().map(|family| format!("--family {family}")));
     words.extend(options.destination.output.iter().map(|path| format!("-o {}", path.display())));
     words.join(" ")
@@ -291,6 +290,12 @@ fn cost(measure: &Measure, (_, bare, framed, kernels): &FamilyCounts, first: usi
     if measure.net { all - (measure.count)(harness) } else { all }
 }
 
+/// The cost of a variant over that of another.
+fn ratio(measure: &Measure, family: &FamilyCounts, first: usize, pair: [usize; 2]) -> f64 {
+    let [own, other] = pair.map(|i| cost(measure, family, first, i) as f64);
+    own / other
+}
+
 /// The goal against what was found.
 fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCounts]) {
     let (of_full, of_phong, error) = GOAL;
@@ -304,19 +309,13 @@ fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCou
             continue;
         }
         let numbers = if variant.constant { ", constants" } else { "" };
-        let ratios = |role: Role, measure: &Measure| {
-            let of = |family| {
-                cost(measure, family, first, i) as f64 / cost(measure, family, first, partner(case, i, role)) as f64
-            };
-            counts.iter().map(of).fold(0.0, f64::max)
+        let most = |measure: &Measure, other: usize| {
+            counts.iter().map(|family| ratio(measure, family, first, [i, other])).fold(0.0, f64::max)
         };
+        let [own_full, own_phong] = [Role::Full, Role::Phong].map(|role| partner(case, i, role));
         let says = |holds: bool| if holds { "reached" } else { "missed" };
-        let (full, phong) = (ratios(Role::Full, &MEASURES[0]), ratios(Role::Phong, &MEASURES[0]));
-        let framed = ratios(Role::Phong, &MEASURES[2]);
-        let default = counts
-            .iter()
-            .map(|family| cost(&MEASURES[0], family, first, i) as f64 / cost(&MEASURES[0], family, first, 0) as f64)
-            .fold(0.0, f64::max);
+        let [full, phong, default] = [own_full, own_phong, 0].map(|other| most(&MEASURES[0], other));
+        let framed = most(&MEASURES[2], own_phong);
         let exact = match variant.error {
             Some(found) => format!("error {found:.1e}: {}", says(found <= error)),
             None => "error not measured".to_owned(),

@@ -1,18 +1,14 @@
 //! `parity`: every shader of every material against its f64 twin.
 
-use std::ops::Range;
-
 use luthier::{Bake, MemoryStore, of_materials, read_materials};
 use luthier_export::{GENERATOR, Package};
-use luthier_gpu::Gpu;
-use luthier_lut::{Image, TableKind};
-use luthier_manifest::{Manifest, ShadingModel};
+use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Layer, Stack};
-use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, SurfaceMap, Verdict, parity};
+use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
 use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, surface_maps, valid};
 
-use crate::cli::{PARITY_PAIRS, ParityOptions};
+use crate::cli::{PARITY_PAIRS, ParityOptions, call};
 
 /// Least slope parameter of the polished variants: that of layer records.
 const ALPHA_MIN: f64 = luthier_layers::layers::ALPHA_MIN;
@@ -36,21 +32,16 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     for (index, _) in models.iter().enumerate() {
         let range = index * per_model..(index + 1) * per_model;
         let stacks = all[range.clone()].iter().map(|m| m.reflecting_stack().into_owned()).collect();
-        let compiled = Compiled::new(&gpu, &package, range, stacks)?;
-        adapter = luthier_report::Device::name(&compiled.shaders);
+        let package = of_materials(&package, range)?;
+        let shaders = Shaders::new(&gpu, &package)?;
+        adapter = luthier_report::Device::name(&shaders);
         let cases: Vec<ParityCase> = (0..).zip(&materials).map(|(n, material)| case(n, material)).collect();
         let mut progress = || {
             done += 1;
             bar.set(done as u64, total as u64);
         };
-        let subject = Subject {
-            manifest: &compiled.manifest,
-            textures: compiled.textures.clone(),
-            stacks: compiled.stacks.clone(),
-            maps: compiled.maps.clone(),
-        };
-        let found =
-            parity(&subject, &compiled.shaders, &cases, options.pairs, &mut progress).map_err(Failure::input)?;
+        let subject = subject(&package, stacks)?;
+        let found = parity(&subject, &shaders, &cases, options.pairs, &mut progress).map_err(Failure::input)?;
         rows.extend(found);
     }
     drop(bar);
@@ -80,9 +71,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
 
 /// The models to compare: all, unless named.
 fn models(options: &ParityOptions) -> Vec<ShadingModel> {
-    let named: Vec<ShadingModel> =
-        options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect();
-    if named.is_empty() { ShadingModel::ALL.to_vec() } else { named }
+    if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { options.model.clone() }
 }
 
 /// A material shaded by a model, and its polished variants; names are unique over all models.
@@ -125,28 +114,14 @@ fn case(n: u32, material: &Material) -> ParityCase {
     }
 }
 
-/// The shaders of some materials of a bake, on the device.
-pub(crate) struct Compiled {
-    pub(crate) manifest: Manifest,
-    pub(crate) textures: Vec<(TableKind, Image)>,
-    pub(crate) stacks: Vec<Stack>,
-    pub(crate) maps: Vec<SurfaceMap>,
-    pub(crate) shaders: Shaders,
-}
-
-impl Compiled {
-    pub(crate) fn new(gpu: &Gpu, package: &Package, numbers: Range<usize>, stacks: Vec<Stack>) -> Outcome<Self> {
-        let package = of_materials(package, numbers)?;
-        let shaders = Shaders::new(gpu, &package)?;
-        let maps = surface_maps(&package);
-        Ok(Self { textures: package.textures()?, manifest: package.manifest, stacks, maps, shaders })
-    }
+/// What the judge compares of a package: its tables as they ship, and the surfaces that its materials describe.
+pub(crate) fn subject(package: &Package, stacks: Vec<Stack>) -> Outcome<Subject<'_>> {
+    Ok(Subject { manifest: &package.manifest, textures: package.textures()?, stacks, maps: surface_maps(package) })
 }
 
 /// The command line that makes the page.
 fn command(options: &ParityOptions) -> String {
-    let mut words = vec!["luthier-lab parity".to_owned()];
-    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    let mut words = vec![call("parity", &options.sources.paths)];
     for model in &options.model {
         words.push(format!("--model {}", model.name()));
     }

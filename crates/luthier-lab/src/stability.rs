@@ -1,18 +1,17 @@
 //! `stability`: every method where methods fail.
 
-use luthier::{Bake, MemoryStore};
+use luthier::{Bake, MemoryStore, of_materials};
 use luthier_bake::Options;
 use luthier_export::GENERATOR;
 use luthier_gpu::Gpu;
 use luthier_lut::{RowBase, TexelFormat};
 use luthier_manifest::{Budget, ColorMode, ShadingModel};
 use luthier_material::{BakeSettings, LayerExtras, Material, SurfaceClass};
-use luthier_report::Subject;
 use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
-use luthier_terminal::{Bar, Failure, Outcome, complain, deliver, open};
+use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open};
 
 use crate::cli::StabilityOptions;
-use crate::parity::Compiled;
+use crate::parity::subject;
 
 /// Runs every method on every stress case.
 pub(crate) fn run(options: &StabilityOptions) -> Outcome {
@@ -96,19 +95,15 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
         let package = bake.package(&materials, &MemoryStore::default())?;
         for first in (0..materials.len()).step_by(cases.len()) {
             let stacks = cases.iter().map(|case| case.stack.clone()).collect();
-            let compiled = Compiled::new(gpu, &package, first..first + cases.len(), stacks)?;
-            adapter = luthier_report::Device::name(&compiled.shaders);
-            let subject = Subject {
-                manifest: &compiled.manifest,
-                textures: compiled.textures.clone(),
-                stacks: compiled.stacks.clone(),
-                maps: Vec::new(),
-            };
+            let package = of_materials(&package, first..first + cases.len())?;
+            let shaders = Shaders::new(gpu, &package)?;
+            adapter = luthier_report::Device::name(&shaders);
+            let subject = subject(&package, stacks)?;
             let mut progress = || {
                 done += 1;
                 bar.set(done, total as u64);
             };
-            let found = shader_cells(&subject, Some(&compiled.shaders), cases, *name, &mut progress);
+            let found = shader_cells(&subject, Some(&shaders), cases, *name, &mut progress);
             cells.extend(found.map_err(Failure::input)?);
         }
     }

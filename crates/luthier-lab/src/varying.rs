@@ -12,7 +12,7 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver};
 use rayon::prelude::*;
 
 use crate::cli::VaryingOptions;
-use crate::lobes::{JUDGE_SEED, judge_settings, random};
+use crate::lobes::{JUDGE_SEED, judge_settings, random, table};
 
 /// Angles of the judge against the normal, degrees.
 const THETAS_DEG: [f64; 4] = [7.0, 45.0, 70.0, 80.0];
@@ -45,12 +45,9 @@ pub(crate) fn run(options: &VaryingOptions) -> Outcome {
         })
         .collect();
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
-    let judge = |(subject, varying): &(ModelSubject, Varying)| {
-        let judged = judge(subject, *varying, options);
-        bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, subjects.len() as u64);
-        judged
-    };
-    let judged: Vec<Judged> = subjects.par_iter().map(judge).collect();
+    let judged = subjects.par_iter().map(|(subject, varying)| judge(subject, *varying, options));
+    let judged = judged.inspect(|_| bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, subjects.len() as u64));
+    let judged: Vec<Judged> = judged.collect();
     drop(bar);
     let page = page(&judged, options).map_err(Failure::input)?;
     deliver(&page, options.destination.output.as_deref())
@@ -86,29 +83,14 @@ fn page(judged: &[Judged], options: &VaryingOptions) -> Result<String, std::fmt:
             PLACES.iter().map(|of_eight| format!("{:.3}", varying.factor(place(varying, *of_eight)))).collect();
         writeln!(out, "\nFactors on {}: {}.", words(varying), factors.join(", "))?;
     }
+    let columns = PLACES.map(|place| format!("node {place:.1}"));
     for (title, error) in TABLES {
-        write!(out, "\n## {title}\n\n| stack | varies | lobes |")?;
-        for place in PLACES {
-            write!(out, " node {place:.1} |")?;
-        }
-        writeln!(out, "\n|---|---|--:|{}", "--:|".repeat(PLACES.len()))?;
-        for stack in judged {
-            write!(out, "| {} | {} | {} |", stack.name, words(stack.varying), stack.lobes)?;
-            for [between, alone] in &stack.errors {
-                write!(out, " {:.3} ({:.3}) |", error(between), error(alone))?;
-            }
-            writeln!(out)?;
-        }
-        write!(out, "| **median** | | |")?;
-        for factor in 0..PLACES.len() {
-            let [between, alone] = [0, 1].map(|fit: usize| {
-                let mut errors: Vec<f64> = judged.iter().map(|stack| error(&stack.errors[factor][fit])).collect();
-                errors.sort_by(f64::total_cmp);
-                errors.get(errors.len() / 2).copied().unwrap_or(0.0)
-            });
-            write!(out, " {between:.3} ({alone:.3}) |")?;
-        }
-        writeln!(out)?;
+        let row = |stack: &Judged| {
+            let errors = stack.errors.iter().map(|[between, alone]| [error(between), error(alone)]);
+            (format!("{} | {} | {}", stack.name, words(stack.varying), stack.lobes), errors.collect())
+        };
+        let rows: Vec<(String, Vec<[f64; 2]>)> = judged.iter().map(row).collect();
+        table(&mut out, [title, "varies"], &columns, &rows)?;
     }
     let noise = judged.iter().flat_map(|stack| stack.errors.iter().flatten().flatten()).map(|view| view.lobe_floor);
     writeln!(out, "\nThe judge's own random numbers make a lobe error of at most {:.3}.", noise.fold(0.0, f64::max))?;

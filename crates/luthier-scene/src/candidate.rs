@@ -70,7 +70,7 @@ impl Candidate {
         for model in ShadingModel::ALL.into_iter().filter(|&model| shows(model)) {
             let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);
             for (left_out, simple) in variants(material) {
-                let Some((cost, is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };
+                let Some((cost, cost_is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };
                 if !left_out.is_empty() && cost >= whole {
                     continue;
                 }
@@ -78,7 +78,6 @@ impl Candidate {
                     let mut material = simple.clone();
                     material.bake.model = Some(model);
                     material.bake.color = Some(color);
-                    let cost_is_of_similar = is_of_similar;
                     let (left_out, values, sharp_values) = (left_out.clone(), OnceLock::new(), OnceLock::new());
                     found.push(Self {
                         model,

@@ -44,12 +44,9 @@ impl Judge {
         let probes = probes(&stack, lights, view);
         let color = color_of(material.bake.color.unwrap_or_default(), material);
         let mut reference = Reference::new(&stack, color, probes.clone());
-        let noisy = |reference: &Reference| -> Vec<usize> {
-            let values = reference.values();
-            (0..values.len()).filter(|&i| values[i].noise() > NOISE_AT_FIRST).collect()
-        };
         loop {
-            let open = noisy(&reference);
+            let values = reference.values();
+            let open: Vec<usize> = (0..values.len()).filter(|&i| values[i].noise() > NOISE_AT_FIRST).collect();
             if open.is_empty() || reference.samples() > SAMPLES_AT_FIRST || !reference.refine(&open) {
                 break;
             }
@@ -94,7 +91,7 @@ impl Judge {
         });
         let tried: Vec<SceneCandidate> = tried.into_iter().map(|(candidate, _)| candidate).collect();
         let reason = reason(&tried, chosen, next_cheaper, budget);
-        let choice = MaterialChoice {
+        Some(MaterialChoice {
             name: self.name.clone(),
             budget: *budget,
             chosen,
@@ -104,8 +101,7 @@ impl Judge {
             probes: self.probes.len() as u32,
             samples: self.reference.samples(),
             table_error: None,
-        };
-        Some(choice)
+        })
     }
 
     /// Errors of what stands in for the exact terms of a candidate (tables), at the directions of the scene.
@@ -173,20 +169,7 @@ pub fn label(candidate: &SceneCandidate) -> String {
 }
 
 fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, budget: &SceneBudget) -> String {
-    let [own, cheaper] = [Some(chosen), next_cheaper].map(|i| i.map(|i| &tried[i]));
-    let Some(own) = own else { return String::new() };
-    let errs = |candidate: &SceneCandidate| {
-        let mut parts = Vec::new();
-        let error = &candidate.error;
-        let known =
-            [("relative", budget.max_rel, Some(error.max_rel)), ("absolute", budget.max_abs, Some(error.max_abs))];
-        for (name, limit, error) in known.into_iter().chain([("delta E", budget.delta_e, error.delta_e)]) {
-            if let (Some(limit), Some(error)) = (limit, error) {
-                parts.push(format!("{name} {error:.2e} of {limit:.2e}"));
-            }
-        }
-        parts.join(", ")
-    };
+    let own = &tried[chosen];
     let verdict = match own.verdict {
         Verdict::Holds => "the cheapest that holds",
         Verdict::Undecided => {
@@ -195,10 +178,27 @@ fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, 
         Verdict::Fails => "none holds; this comes nearest",
     };
     let place = own.error.at.filter(|_| own.verdict != Verdict::Holds).map_or_else(String::new, |at| format!("; {at}"));
-    let mut text = format!("{} for {:.0} cycles: {verdict} (error {}{place})", label(own), own.cost, errs(own));
-    if let Some(cheaper) = cheaper {
+    let mut text =
+        format!("{} for {:.0} cycles: {verdict} (error {}{place})", label(own), own.cost, errors(own, budget));
+    if let Some(cheaper) = next_cheaper.map(|i| &tried[i]) {
         let outcome = if cheaper.verdict == Verdict::Undecided { "could not be told apart from" } else { "would have" };
-        text.push_str(&format!("; {} for {:.0} cycles {outcome} {}", label(cheaper), cheaper.cost, errs(cheaper)));
+        text.push_str(&format!(
+            "; {} for {:.0} cycles {outcome} {}",
+            label(cheaper),
+            cheaper.cost,
+            errors(cheaper, budget)
+        ));
     }
     text
+}
+
+/// The errors of a candidate that have a limit, each beside it.
+fn errors(SceneCandidate { error, .. }: &SceneCandidate, budget: &SceneBudget) -> String {
+    let known = [
+        ("relative", budget.max_rel, Some(error.max_rel)),
+        ("absolute", budget.max_abs, Some(error.max_abs)),
+        ("delta E", budget.delta_e, error.delta_e),
+    ];
+    let parts = known.map(|(name, limit, error)| Some(format!("{name} {:.2e} of {:.2e}", error?, limit?)));
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }

@@ -72,14 +72,12 @@ impl Reference {
     /// The reference of a stack at some probes, with a first few samples.
     pub(crate) fn new(stack: &Stack, color: Color, probes: Vec<Probe>) -> Self {
         let spectrum = spectrum(stack, color);
-        let empty = Tallies { tallies: vec![Tally::default(); spectrum.len()], batches: 0 };
-        let probes = probes
-            .into_par_iter()
-            .map(|probe| {
-                let tallies = Tallies { tallies: empty.tallies.clone(), ..empty };
-                (probe, more(&spectrum, &probe, tallies))
-            })
-            .collect();
+        let first = |probe: Probe| {
+            let mut tallies = Tallies { tallies: vec![Tally::default(); spectrum.len()], batches: 0 };
+            more(&spectrum, &probe, &mut tallies);
+            (probe, tallies)
+        };
+        let probes = probes.into_par_iter().map(first).collect();
         Self { spectrum, probes }
     }
 
@@ -106,12 +104,8 @@ impl Reference {
             return false;
         }
         let spectrum = &self.spectrum;
-        self.probes.par_iter_mut().enumerate().filter(|(i, _)| numbers.contains(i)).for_each(
-            |(_, (probe, tallies))| {
-                let own = std::mem::replace(tallies, Tallies { tallies: Vec::new(), batches: 0 });
-                *tallies = more(spectrum, probe, own);
-            },
-        );
+        let open = self.probes.par_iter_mut().enumerate().filter(|(i, _)| numbers.contains(i));
+        open.for_each(|(_, (probe, tallies))| more(spectrum, probe, tallies));
         true
     }
 
@@ -127,7 +121,7 @@ fn samples(batches: u64) -> u64 {
     if batches == 0 { 0 } else { FIRST << (batches - 1) }
 }
 
-fn more(spectrum: &[(Monochrome, Rgb)], probe: &Probe, mut tallies: Tallies) -> Tallies {
+fn more(spectrum: &[(Monochrome, Rgb)], probe: &Probe, tallies: &mut Tallies) {
     let count = samples(tallies.batches + 1) - samples(tallies.batches);
     let reference = LayeredMc { mode: InterfaceMode::SmithWalk, samples: count, seed: tallies.batches };
     for ((stack, _), tally) in spectrum.iter().zip(&mut tallies.tallies) {
@@ -138,7 +132,6 @@ fn more(spectrum: &[(Monochrome, Rgb)], probe: &Probe, mut tallies: Tallies) -> 
         *tally = tally.with(estimate, count);
     }
     tallies.batches += 1;
-    tallies
 }
 
 /// The wavelengths that a stack needs, one for all channels that do not differ there.

@@ -14,10 +14,7 @@ use crate::input;
 /// Fits a lobe.
 pub(crate) fn run(options: &FitOptions) -> Outcome {
     let is_standard = options.lobe == Path::new("-");
-    let (text, label) = match is_standard {
-        true => (input::standard()?, "standard input".to_owned()),
-        false => (input::named_text(&options.lobe)?, options.lobe.display().to_string()),
-    };
+    let (text, label) = input::labelled(&options.lobe)?;
     let wrong = |what: String| Failure::Input(anyhow::anyhow!("{label}{what}"));
     let lobe = samples(&text).map_err(|error| wrong(error.to_string()))?;
     let form = Form {

@@ -20,11 +20,16 @@ pub(crate) fn run(options: &IorOptions) -> Outcome {
         let text = if options.json { format!("{:#}", Value::from_iter(datasets().iter().map(head))) } else { list() };
         return print(&text);
     };
-    let set = dataset(name).ok_or_else(|| {
+    let set = named(name)?;
+    print(&if options.json { format!("{:#}", whole(set)) } else { show(set) })
+}
+
+/// The data set of a name.
+pub(super) fn named(name: &str) -> Outcome<&'static Dataset> {
+    dataset(name).ok_or_else(|| {
         let known: Vec<&str> = datasets().iter().map(|d| d.id).collect();
         Failure::unknown("data set", name, &known)
-    })?;
-    print(&if options.json { format!("{:#}", whole(set)) } else { show(set) })
+    })
 }
 
 /// Normal-incidence reflectance in air, linear Rec.709 under D65.

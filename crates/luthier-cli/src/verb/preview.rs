@@ -1,7 +1,6 @@
 //! `preview`: a picture of one material, or of the grid.
 
 use luthier::{Bake, lit};
-use luthier_export::Package;
 use luthier_gpu::{RenderSettings, Shape, Shown};
 use luthier_lut::Image;
 use luthier_manifest::Form;
@@ -20,20 +19,12 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         return simulate(options, samples, format);
     }
     let shape = options.shape.unwrap_or(ShapeName::Model);
-    let (package, parts): (Package, Vec<Shown>) = match (&options.material, shape) {
-        (None, ShapeName::Grid) => {
-            let package = Bake::lit().package(&lit(&grid::materials()?), store()?)?;
-            let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
-            (package, parts)
-        }
-        (Some(_), ShapeName::Grid) => {
-            return Err(grid_alone());
-        }
-        (None, _) => return Err(nothing()),
-        (Some(material), _) => {
+    let (package, parts) = match named(options, shape)? {
+        Some(material) => {
             let (package, shown) = memory_bake::shown(material, &options.shading, &options.out)?;
             (package, vec![shown])
         }
+        None => (Bake::lit().package(&lit(&grid::materials()?), store()?)?, all_of_grid()),
     };
     let look = &options.look;
     let mut settings = settings(look, shape, options.mesh.as_deref(), options.size)?;
@@ -64,17 +55,12 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
 /// The picture by random walks of light through the stack of each material.
 fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
     let shape = options.shape.unwrap_or(ShapeName::Sphere);
-    let (package, parts): (Package, Vec<Shown>) = match (&options.material, shape) {
-        (None, ShapeName::Grid) => {
-            let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
-            (simulated::package(grid::materials()?)?, parts)
-        }
-        (Some(_), ShapeName::Grid) => return Err(grid_alone()),
-        (None, _) => return Err(nothing()),
-        (Some(material), _) => {
+    let (package, parts) = match named(options, shape)? {
+        Some(material) => {
             let (package, number) = simulated::find(material, &options.out)?;
             (package, vec![Shown::Material(number)])
         }
+        None => (simulated::package(grid::materials()?)?, all_of_grid()),
     };
     let look = &options.look;
     let settings = settings(look, shape, None, options.size)?;
@@ -84,10 +70,17 @@ fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
     write(picture.image)
 }
 
-fn grid_alone() -> Failure {
-    Failure::Input(anyhow::anyhow!("the grid makes its own materials; name none"))
+/// The material that is named, which the grid alone does without.
+fn named(options: &PreviewOptions, shape: ShapeName) -> Outcome<Option<&String>> {
+    let text = match (&options.material, shape) {
+        (None, ShapeName::Grid) => return Ok(None),
+        (Some(_), ShapeName::Grid) => "the grid makes its own materials; name none",
+        (Some(material), _) => return Ok(Some(material)),
+        (None, _) => "name a material, or take --shape grid",
+    };
+    Err(Failure::Input(anyhow::anyhow!(text)))
 }
 
-fn nothing() -> Failure {
-    Failure::Input(anyhow::anyhow!("name a material, or take --shape grid"))
+fn all_of_grid() -> Vec<Shown> {
+    (0..Shape::Grid.materials() as u32).map(Shown::Material).collect()
 }

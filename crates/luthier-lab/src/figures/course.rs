@@ -9,7 +9,7 @@ use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL};
-use super::numbers::light::{KEY, even_sky, one_light, surroundings_alone};
+use super::numbers::light::{KEY, even_sky, one_light};
 use super::numbers::spot::spot;
 use super::numbers::tint::saturation;
 use super::numbers::{blown_out, middle, variation};
@@ -154,21 +154,18 @@ pub(super) fn exposure(material: &str) -> f32 {
     }
 }
 
-fn classes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn classes(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
     let package = Bake::lit().package(&materials, &MemoryStore::default())?;
-    let look = |n: usize, settings: &mut RenderSettings| {
-        settings.exposure = exposure(CLASSES[n].0);
-    };
+    let look = |n: usize, settings: &mut RenderSettings| settings.exposure = exposure(CLASSES[n].0);
     let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
     let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
     let dark = even_sky(0.0)?;
     let lit = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, KEY))?;
-    let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
+    let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| settings.lights.clear())?;
     for (material, (lit, room)) in materials.iter().zip(lit.iter().zip(&room)) {
         let name = format!("{} {}", material.class.symbol(), material.name);
         made.measure(format!("{name}: width of the highlight"), spot(lit).share.sqrt());
@@ -179,10 +176,10 @@ fn classes(studio: &Studio) -> Outcome<Made> {
         let name = format!("{} {}", material.class.symbol(), material.name);
         made.measure(format!("{name}: share blown out"), blown_out(baked));
     }
-    let label =
-        |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.symbol());
-    made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked).collect(), 4);
-    Ok(made)
+    let classes = materials.iter().zip(CLASSES);
+    let labels = classes.map(|(material, (_, label, _))| format!("{} {label}", material.class.symbol()));
+    made.sheet("course-classes", labels.zip(baked), 4);
+    Ok(())
 }
 
 /// The thicknesses of figure 3.4, in a unit that the course does not name; um here.
@@ -194,6 +191,11 @@ pub(super) fn by_course(name: &str, layers: &str) -> Outcome<Material> {
 }
 
 /// White under a yellow varnish. The absorption is ours.
+/// Materials by the course's model, with numbers in their names.
+pub(super) fn numbered(stem: &str, all: impl IntoIterator<Item = String>) -> Outcome<Vec<Material>> {
+    all.into_iter().enumerate().map(|(i, layers)| by_course(&format!("{stem}-{i}"), &layers)).collect()
+}
+
 fn varnished(thickness: f64) -> String {
     format!(
         "[[layer]]
@@ -212,12 +214,8 @@ albedo = 0.9
     )
 }
 
-fn varnish(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
-    let mut materials = Vec::new();
-    for (i, thickness) in THICKNESSES.into_iter().enumerate() {
-        materials.push(by_course(&format!("varnish-{i}"), &varnished(thickness))?);
-    }
+fn varnish(studio: &Studio, made: &mut Made) -> Outcome {
+    let materials = numbered("varnish", THICKNESSES.map(varnished))?;
     let pictures = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, _| {})?;
     let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];
     let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
@@ -230,7 +228,7 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
         }
     }
     let labels = THICKNESSES.iter().map(f64::to_string);
-    made.sheet("course-varnish", labels.zip(pictures).collect(), 6);
+    made.sheet("course-varnish", labels.zip(pictures), 6);
     made.plot(
         "course-varnish-colour",
         Plot {
@@ -240,5 +238,5 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
             curves: curves.to_vec(),
         },
     );
-    Ok(made)
+    Ok(())
 }

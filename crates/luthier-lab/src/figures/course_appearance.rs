@@ -11,7 +11,7 @@ use luthier_terminal::Outcome;
 use super::claim::{Check, Claim};
 use super::course::{by_course, exposure};
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL};
-use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light, surroundings_alone};
+use super::numbers::light::{FROM_EYE, KEY, even_sky};
 use super::numbers::places::color_at;
 use super::numbers::spot::spot;
 use super::numbers::tint::{chroma, saturation};
@@ -109,8 +109,7 @@ fn lacquer(absorption: [f64; 3]) -> String {
 const LACQUERS: [(&str, [f64; 3]); 3] =
     [("purple", [0.25, 1.1, 0.2]), ("orange", [0.02, 0.45, 1.6]), ("green", [1.1, 0.15, 0.8])];
 
-fn metals(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn metals(studio: &Studio, made: &mut Made) -> Outcome {
     let mut all = Vec::new();
     for (name, ior) in [("gold", "au"), ("silver", "ag"), ("copper", "cu")] {
         all.push((name.to_owned(), by_course(name, &metal(ior))?));
@@ -125,10 +124,8 @@ fn metals(studio: &Studio) -> Outcome<Made> {
     }
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
-    let dark = even_sky(0.0)?;
-    let lit =
-        studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
-    let room = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
+    let lit = studio.lit(&materials, Form::Full, Shape::Sphere, FROM_EYE)?;
+    let room = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.lights.clear())?;
     for ((_, material), ((picture, lit), room)) in all.iter().zip(pictures.iter().zip(&lit).zip(&room)) {
         let name = &material.name;
         let channels = color_at(lit, [0.0; 2]);
@@ -138,8 +135,8 @@ fn metals(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{name}: contrast of the surroundings"), variation(room));
         made.measure(format!("{name}: chroma"), chroma(picture));
     }
-    made.sheet("course-4-1", all.into_iter().map(|(name, _)| name).zip(pictures).collect(), 3);
-    Ok(made)
+    made.sheet("course-4-1", all.into_iter().map(|(name, _)| name).zip(pictures), 3);
+    Ok(())
 }
 
 macro_rules! sample {
@@ -178,8 +175,7 @@ const CHRISTMAS: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg 
                          absorption_per_um = [0.02, 1.3, 0.9]\n\
                          [[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 0.2\ndistribution = \"beckmann\"\n";
 
-fn samples(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn samples(studio: &Studio, made: &mut Made) -> Outcome {
     let mut all = Vec::new();
     for (name, label, text) in SAMPLES {
         all.push((label.to_owned(), shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie)));
@@ -187,7 +183,7 @@ fn samples(studio: &Studio) -> Outcome<Made> {
     for (name, layers) in [("garnet", GARNET), ("christmas", CHRISTMAS)] {
         all.push((name.to_owned(), by_course(name, layers)?));
     }
-    measured(studio, &mut made, &all)?;
+    measured(studio, made, &all)?;
     let mut pictures: Labelled = Vec::new();
     for (label, material) in &all {
         let shown = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, |_, settings| {
@@ -203,7 +199,7 @@ fn samples(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("course-5-7", pictures, 4);
-    Ok(made)
+    Ok(())
 }
 
 /// A place at 0.9 of the radius of a ball.
@@ -214,10 +210,7 @@ const GRAZING: [f32; 3] = [0.95, 0.0, -0.3];
 
 /// Numbers of the samples under single lights.
 fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Outcome {
-    let dark = even_sky(0.0)?;
-    let under = |materials: &[Material], direction: [f32; 3]| {
-        studio.pictures(materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, direction))
-    };
+    let under = |materials: &[Material], from| studio.lit(materials, Form::Full, Shape::Sphere, from);
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
     for (material, lit) in materials.iter().zip(under(&materials, KEY)?) {
         made.measure(format!("{}: width of the highlight", material.name), spot(&lit).share.sqrt());

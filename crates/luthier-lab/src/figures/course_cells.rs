@@ -7,7 +7,7 @@ use luthier_terminal::Outcome;
 use super::claim::{Check, Claim};
 use super::course::by_course;
 use super::figure::{Figure, LARGE, Labelled, Made};
-use super::numbers::light::{KEY, even_sky, one_light};
+use super::numbers::light::KEY;
 use super::numbers::middle_differs;
 use super::numbers::places::sparkles;
 use super::numbers::spot::spot;
@@ -39,10 +39,8 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
 /// Shares of the cells that are tilted.
 const FILLED: [(&str, f64); 3] = [("level", 0.0), ("all tilted", 1.0), ("one in ten", 0.1)];
 
-fn cells(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn cells(studio: &Studio, made: &mut Made) -> Outcome {
     let mut pictures: Labelled = Vec::new();
-    let dark = even_sky(0.0)?;
     for (label, filled) in FILLED {
         let layers = format!(
             "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nslope_deg = 3\ndistribution = \"beckmann\"\n\
@@ -50,9 +48,7 @@ fn cells(studio: &Studio) -> Outcome<Made> {
         );
         let material = by_course(&label.replace(' ', "-"), &layers)?;
         // Directions would be drawn about the level surface, which misses what tilted cells mirror.
-        for lit in studio.pictures(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, |_, settings| {
-            one_light(settings, &dark, KEY)
-        })? {
+        for lit in studio.lit(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, KEY)? {
             made.measure(format!("{label}: scatter of the highlight"), spot(&lit).scatter());
         }
         let picture =
@@ -67,5 +63,5 @@ fn cells(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("course-5-1-cells", pictures, 3);
-    Ok(made)
+    Ok(())
 }

@@ -8,6 +8,7 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Made};
+use super::numbers::across;
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -47,8 +48,7 @@ const EXPOSURE: f64 = 4.0;
 /// Green and orange of the two wavelengths, linear Rec.709.
 const COLORS: [[f64; 3]; 2] = [[0.0, 1.0, 0.15], [1.0, 0.32, 0.0]];
 
-fn cardboard(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn cardboard(studio: &Studio, made: &mut Made) -> Outcome {
     let text = "schema = 1\nname = \"cardboard\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 17\ndistribution = \"beckmann\"\n\
                 [[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
     let stack = material("cardboard", text)?.stack;
@@ -63,7 +63,7 @@ fn cardboard(studio: &Studio) -> Outcome<Made> {
         let mut image = Image::zeros(size, size, 3);
         let (mut leaving, mut aside, mut forward) = ([0.0; 2], [0.0; 2], [0.0_f64; 2]);
         for (texel, i) in image.data.chunks_mut(3).zip(0..) {
-            let [x, y] = [i % size, i / size].map(|i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0);
+            let [x, y] = [i % size, i / size].map(|i| across(i, size));
             let z_sq = 1.0 - x * x - y * y;
             if z_sq <= 0.0 {
                 continue;
@@ -93,5 +93,5 @@ fn cardboard(studio: &Studio) -> Outcome<Made> {
         pictures.push((format!("{angle} degrees"), image));
     }
     made.sheet("course-5-6", pictures, 3);
-    Ok(made)
+    Ok(())
 }

@@ -13,13 +13,14 @@ use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
-use super::course::by_course;
+use super::course::{by_course, numbered};
+use super::elek::light;
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
-use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light};
+use super::numbers::light::{FROM_EYE, KEY};
 use super::numbers::places::{ball_normal, color_at};
 use super::numbers::spot::spot;
 use super::numbers::tint::{hue, lightness_apart, saturation, tint_deviation};
-use super::numbers::{brightness, grain, highlight, middle, over_red};
+use super::numbers::{across, brightness, grain, highlight, middle, over_red, pixels, rgb};
 use super::studio::{Studio, mapped};
 
 pub(crate) const FIGURES: [Figure; 6] = [
@@ -202,14 +203,13 @@ const CLEAR: &str = "0";
 /// Thickness of the red lacquer of figure 3.3.
 const RED_UM: f64 = 0.6;
 
-fn absorption(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn absorption(studio: &Studio, made: &mut Made) -> Outcome {
     let tinted = by_course("tinted", &(coat(RED_UM, RED) + &diffuse("0.8")))?;
-    let render = |material: Material| studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {});
-    let with = render(tinted)?.swap_remove(0);
+    let with = studio.picture(tinted, Form::Full, Shape::Sphere)?;
     // The colour of the base seen straight on: twice through the lacquer at the normal.
     let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * RED_UM * a));
-    let without = render(by_course("clear", &(coat(RED_UM, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
+    let clear = by_course("clear", &(coat(RED_UM, CLEAR) + &diffuse(&format!("{base:?}"))))?;
+    let without = studio.picture(clear, Form::Full, Shape::Sphere)?;
     let mut pictures: Labelled =
         vec![("absorbs".to_owned(), TONE.image(with.clone())), ("clear".to_owned(), TONE.image(without.clone()))];
     for (c, (name, scale)) in [("hue", 8.0), ("chroma", 12.0), ("lightness", 8.0)].into_iter().enumerate() {
@@ -217,26 +217,23 @@ fn absorption(studio: &Studio) -> Outcome<Made> {
         let (mut sum, mut count) = (0.0, 0.0);
         // Sums and counts within two thirds of the radius, and outside.
         let mut zones = [[0.0, 0.0]; 2];
-        for y in 0..with.height {
-            for x in 0..with.width {
-                let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image, x, y)));
-                // In the order of the course: hue, chroma, lightness.
-                let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
-                if c == 0 {
-                    d -= 360.0 * (d / 360.0).round();
-                    // CIE's difference of hue, in the unit of chroma and lightness.
-                    d = if seen { 2.0 * (a[1] * b[1]).sqrt() * libm::sin(0.5 * d.to_radians()) } else { 0.0 };
-                }
-                if seen {
-                    (sum, count) = (sum + d.abs(), count + 1.0);
-                    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(with.width) - 1.0) / BALL;
-                    let zone = &mut zones[usize::from(libm::hypot(at(x), at(y)) > 2.0 / 3.0)];
-                    *zone = [zone[0] + d.abs(), zone[1] + 1.0];
-                }
-                let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
-                let at = 3 * (y * with.width + x) as usize;
-                apart.data[at..at + 3].fill(shade * shade);
+        for (x, y) in pixels(&with) {
+            let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image.texel(x, y))));
+            // In the order of the course: hue, chroma, lightness.
+            let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
+            if c == 0 {
+                d -= 360.0 * (d / 360.0).round();
+                // CIE's difference of hue, in the unit of chroma and lightness.
+                d = if seen { 2.0 * (a[1] * b[1]).sqrt() * libm::sin(0.5 * d.to_radians()) } else { 0.0 };
             }
+            if seen {
+                (sum, count) = (sum + d.abs(), count + 1.0);
+                let [right, down] = [x, y].map(|i| across(i, with.width) / BALL);
+                let zone = &mut zones[usize::from(libm::hypot(right, down) > 2.0 / 3.0)];
+                *zone = [zone[0] + d.abs(), zone[1] + 1.0];
+            }
+            let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
+            apart.texel_mut(x, y).fill(shade * shade);
         }
         made.measure(format!("mean difference of {name}, where both have a colour"), sum / f64::max(count, 1.0));
         for ([sum, count], zone) in zones.into_iter().zip(["in the middle", "at the rim"]) {
@@ -245,25 +242,16 @@ fn absorption(studio: &Studio) -> Outcome<Made> {
         pictures.push((format!("d {name}"), apart));
     }
     made.shown("course-3-3", pictures, 5);
-    Ok(made)
+    Ok(())
 }
 
 /// Radius of the ball over half the side of a picture.
 const BALL: f64 = 0.8;
 
-fn rgb(image: &Image, x: u32, y: u32) -> [f64; 3] {
-    let texel = image.texel(x, y);
-    [0, 1, 2].map(|c: usize| f64::from(texel[c]))
-}
-
-fn bases(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn bases(studio: &Studio, made: &mut Made) -> Outcome {
     let sigmas = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-    let mut materials = Vec::new();
-    for (i, sigma) in sigmas.into_iter().enumerate() {
-        let layers = format!("{}sigma = {sigma}\n", diffuse("[0.5, 0.35, 0.25]"));
-        materials.push(by_course(&format!("sigma-{i}"), &layers)?);
-    }
+    let layers = sigmas.map(|sigma| format!("{}sigma = {sigma}\n", diffuse("[0.5, 0.35, 0.25]")));
+    let materials = numbered("sigma", layers)?;
     let dark = Arc::new(Environment::new(Image::zeros(16, 8, 3)).map_err(Failure::device)?);
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| {
         settings.environment = dark.clone();
@@ -272,39 +260,33 @@ fn bases(studio: &Studio) -> Outcome<Made> {
     for (sigma, picture) in sigmas.into_iter().zip(&pictures) {
         let middle = picture.width / 2;
         let edge = middle + (f64::from(middle) * BALL) as u32 * 9 / 10;
-        let ratio = rgb(picture, edge, middle)[1] / rgb(picture, middle, middle)[1].max(1e-9);
+        let ratio = rgb(picture.texel(edge, middle))[1] / rgb(picture.texel(middle, middle))[1].max(1e-9);
         made.measure(format!("sigma {sigma}: radiance near the rim over that of the middle"), ratio);
         if sigma == 0.0 {
-            let place = 2.0 * (f64::from(edge) + 0.5) / f64::from(picture.width) - 1.0;
-            let cos_theta_i = ball_normal([place, 0.0]).map_or(f64::NAN, |[_, _, z]| z);
+            let cos_theta_i = ball_normal([across(edge, picture.width), 0.0]).map_or(f64::NAN, |[_, _, z]| z);
             let what = format!("sigma {sigma}: radiance near the rim over that of the middle, over Lambert's cosine");
             made.measure(what, ratio / cos_theta_i);
         }
     }
-    made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures).collect(), 6);
-    Ok(made)
+    made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures), 6);
+    Ok(())
 }
 
-fn silver(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn silver(studio: &Studio, made: &mut Made) -> Outcome {
     let thicknesses = [0.0, 0.2, 0.5, 1.0, 2.0, 5.0];
-    let mut materials = Vec::new();
-    for (i, thickness) in thicknesses.into_iter().enumerate() {
-        let metal = "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 3\ndistribution = \"beckmann\"\n";
-        materials.push(by_course(&format!("silver-{i}"), &(coat(thickness, "[0.6, 0.35, 0.05]") + metal))?);
-    }
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 3\ndistribution = \"beckmann\"\n";
+    let materials = numbered("silver", thicknesses.map(|thickness| coat(thickness, "[0.6, 0.35, 0.05]") + metal))?;
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for (thickness, picture) in thicknesses.iter().zip(&pictures) {
         made.measure(format!("{thickness} um: mean luminance"), brightness(picture));
         made.measure(format!("{thickness} um: saturation"), saturation(middle(picture, 0.5)));
         made.measure(format!("{thickness} um: hue"), hue(picture, 0.5));
     }
-    made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures).collect(), 6);
-    Ok(made)
+    made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures), 6);
+    Ok(())
 }
 
-fn inside(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn inside(studio: &Studio, made: &mut Made) -> Outcome {
     let (indices, slope_deg) = ([1.3, 2.5], 8.0);
     let mut materials = Vec::new();
     for index in indices {
@@ -322,9 +304,8 @@ fn inside(studio: &Studio) -> Outcome<Made> {
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.4)?;
     let mut shown: Labelled = Vec::new();
     for (index, pair) in indices.into_iter().zip(pictures.chunks_exact(2)) {
-        let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();
         if let [with, without] = pair {
-            made.measure(format!("index {index}: light with the term over that without"), mean(with) / mean(without));
+            made.measure(format!("index {index}: light with the term over that without"), light(with) / light(without));
             made.measure(format!("index {index}: mean difference of lightness"), lightness_apart(with, without));
             shown.push((format!("{index} with"), TONE.image(with.clone())));
             shown.push((format!("{index} without"), TONE.image(without.clone())));
@@ -334,7 +315,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
         shown.push(("t".to_owned(), image));
     }
     made.shown("course-3-7", shown, 3);
-    Ok(made)
+    Ok(())
 }
 
 /// The term t of eq. 3.3 on a ball under one light, white where it is 1, and its least value.
@@ -345,27 +326,22 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
     let cos_theta_d = eye.dot(wh);
     let passed = transmitted(1.0, &[], index, cos_theta_d);
     let (mut image, mut least) = (Image::zeros(size, size, 3), 1.0);
-    for y in 0..size {
-        for x in 0..size {
-            let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) / BALL;
-            let (nx, ny) = (at(x), -at(y));
-            let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
-            let (cos_i, cos_o) = (normal.dot(light), normal.z);
-            if cos_i <= 0.0 || cos_o <= 0.0 {
-                continue;
-            }
-            let g = v_cavity(cos_i, cos_o, normal.dot(wh), cos_theta_d);
-            let t = (1.0 - g) + passed * g;
-            least = f64::min(least, t);
-            let first = 3 * (y * size + x) as usize;
-            image.data[first..first + 3].fill(t as f32);
+    for (x, y) in pixels(&image) {
+        let (nx, ny) = (across(x, size) / BALL, -(across(y, size) / BALL));
+        let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
+        let (cos_i, cos_o) = (normal.dot(light), normal.z);
+        if cos_i <= 0.0 || cos_o <= 0.0 {
+            continue;
         }
+        let g = v_cavity(cos_i, cos_o, normal.dot(wh), cos_theta_d);
+        let t = (1.0 - g) + passed * g;
+        least = f64::min(least, t);
+        image.texel_mut(x, y).fill(t as f32);
     }
     (image, least)
 }
 
-fn parts(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn parts(studio: &Studio, made: &mut Made) -> Outcome {
     let base = diffuse("[0.7, 0.55, 0.3]");
     // The course's `blinnD`.
     let coat = |thickness_um, absorption| coat(thickness_um, absorption).replace("beckmann", "blinn");
@@ -376,10 +352,7 @@ fn parts(studio: &Studio) -> Outcome<Made> {
         ("absorbs", coat(0.5, RED) + &base),
         ("and rough", coat(0.5, RED).replace("slope_deg = 1.5", "slope_deg = 8") + &base),
     ];
-    let mut materials = Vec::new();
-    for (i, (_, layers)) in all.iter().enumerate() {
-        materials.push(by_course(&format!("part-{i}"), layers)?);
-    }
+    let materials = numbered("part", all.iter().map(|(_, layers)| layers.clone()))?;
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((label, _), picture) in all.iter().zip(&pictures) {
         made.measure(format!("{label}: mean luminance"), brightness(picture));
@@ -388,22 +361,19 @@ fn parts(studio: &Studio) -> Outcome<Made> {
     }
     // Under a light from the eye, in the middle of the ball: less what the coat mirrors, the base through an absorbing coat over
     // that through a clear one.
-    let dark = even_sky(0.0)?;
-    let lit =
-        studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
+    let lit = studio.lit(&materials, Form::Full, Shape::Sphere, FROM_EYE)?;
     let [coat, _, clear, absorbs, _] = [0, 1, 2, 3, 4].map(|i: usize| color_at(&lit[i], [0.0; 2]));
     for (c, channel) in ["R", "G", "B"].into_iter().enumerate() {
         let left = (absorbs[c] - coat[c]) / (clear[c] - coat[c]);
         made.measure(format!("straight on, share of the base that is left: {channel}"), left);
     }
-    made.sheet("course-3-8", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
-    Ok(made)
+    made.sheet("course-3-8", all.iter().map(|(name, _)| *name).zip(pictures), 5);
+    Ok(())
 }
 
 const METAL: &str = "[[layer]]\ntype = \"conductor\"\nior = \"al\"\nslope_deg = 6\ndistribution = \"beckmann\"\n";
 
-fn varnishes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn varnishes(studio: &Studio, made: &mut Made) -> Outcome {
     let white = diffuse("[0.75, 0.72, 0.65]");
     let matt = coat(0.3, CLEAR).replace("slope_deg = 1.5", "slope_deg = 7");
     let map = |coat: String, key: &str, file: &str| coat + &format!("[layer.maps]\n{key} = \"{file}\"\n");
@@ -415,10 +385,8 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
         ("d below", matt.clone() + METAL + bumps),
         ("e above", map(matt.clone(), "normal", "bumps.png") + METAL),
     ];
-    let mut materials = Vec::new();
-    for (i, (_, layers)) in all.iter().enumerate() {
-        materials.push(mapped(by_course(&format!("varnish-{i}"), layers)?));
-    }
+    let numbered = numbered("varnish", all.iter().map(|(_, layers)| layers.clone()))?;
+    let mut materials: Vec<Material> = numbered.into_iter().map(mapped).collect();
     materials.push(by_course("no-bumps", &(matt + METAL))?);
     let mut pictures = studio.pictures(&materials, Form::Full, Shape::Torus, |_, _| {})?;
     let level = pictures.pop().unwrap_or_else(|| Image::zeros(1, 1, 3));
@@ -426,8 +394,7 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
         made.apart(&format!("{} against {}", all[i].0, all[j].0), &pictures[i], &pictures[j])?;
     }
     made.apart("d below against without bumps", &pictures[3], &level)?;
-    let dark = even_sky(0.0)?;
-    let lit = studio.pictures(&materials, Form::Full, Shape::Torus, |_, settings| one_light(settings, &dark, KEY))?;
+    let lit = studio.lit(&materials, Form::Full, Shape::Torus, KEY)?;
     let labels = all.iter().map(|(name, _)| *name).chain(["without bumps"]);
     for ((label, picture), lit) in labels.zip(pictures.iter().chain([&level])).zip(&lit) {
         made.measure(format!("{label}: saturation"), saturation(middle(picture, 0.8)));
@@ -435,6 +402,6 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{label}: grain"), grain(lit));
         made.measure(format!("{label}: width of the highlight"), spot(lit).share.sqrt());
     }
-    made.sheet("course-3-9", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
-    Ok(made)
+    made.sheet("course-3-9", all.iter().map(|(name, _)| *name).zip(pictures), 5);
+    Ok(())
 }

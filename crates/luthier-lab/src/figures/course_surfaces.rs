@@ -16,7 +16,7 @@ use super::course::by_course;
 use super::figure::{Figure, LARGE as SIZE, Made, compared};
 use super::numbers::places::{edges, sparkles, sparkles_that_stay};
 use super::numbers::tint::tint_deviation;
-use super::numbers::{brightest, glitter as glittering, middle};
+use super::numbers::{brightest, glitter as glittering, middle, share};
 use super::studio::Studio;
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -129,8 +129,7 @@ fn pictures(
     (0..surfaces.len()).map(|n| Ok(scene.render_shown(&[Shown::Surface(n as u32)], &settings(n)?)?)).collect()
 }
 
-fn stones(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn stones(studio: &Studio, made: &mut Made) -> Outcome {
     let mut all = Vec::new();
     for name in STONES {
         let (materials, surface) = stone(name)?;
@@ -158,7 +157,7 @@ fn stones(studio: &Studio) -> Outcome<Made> {
         all.extend(picture.into_iter().map(|picture| (name.to_owned(), picture)));
     }
     made.sheet("course-5-1", all, 2);
-    Ok(made)
+    Ok(())
 }
 
 /// A square of the plane, from above, that fills the picture. Its environment is blurred beforehand, so that flakes have no grain.
@@ -198,8 +197,7 @@ const SMALL: f64 = 16.0;
 const LARGE: f64 = 7.0;
 const FILLED: f64 = 0.3;
 
-fn maps(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn maps(studio: &Studio, made: &mut Made) -> Outcome {
     let (mut materials, entry) = stone("lepidolite")?;
     let mut plain = |name: &str, albedo: f64| -> Outcome<[u32; 1]> {
         let layers = format!(
@@ -235,19 +233,14 @@ fn maps(studio: &Studio) -> Outcome<Made> {
     let bare = [surface("transparent", &transparent, None), surface("level", &grey, None)];
     let bare = pictures(studio, &materials, &bare, |_| square(studio))?;
     let filled = differ(&all[1], &bare[0]);
-    let share = |of: &[bool], places: bool| {
-        let (mut hits, mut count) = (0.0, 0.0);
-        for (hit, _) in of.iter().zip(&filled).filter(|(_, filled)| **filled == places) {
-            (hits, count) = (hits + f64::from(u8::from(*hit)), count + 1.0);
-        }
-        hits / f64::max(count, 1.0)
+    let among = |of: &[bool], places: bool| {
+        share(of.iter().zip(&filled).filter(|(_, filled)| **filled == places).map(|(hit, _)| *hit))
     };
-    let count = filled.iter().filter(|filled| **filled).count() as f64;
-    made.measure("2: share that is not transparent", count / filled.len().max(1) as f64);
+    made.measure("2: share that is not transparent", share(filled.iter().copied()));
     for (what, of) in [("3", differ(&all[2], &all[0])), ("4", differ(&all[3], &bare[1]))] {
         let is = if what == "3" { "differ from 1" } else { "are tilted" };
-        made.measure(format!("{what}: share of the transparent places that {is}"), share(&of, false));
-        made.measure(format!("{what}: share of the other places that {is}"), share(&of, true));
+        made.measure(format!("{what}: share of the transparent places that {is}"), among(&of, false));
+        made.measure(format!("{what}: share of the other places that {is}"), among(&of, true));
     }
     made.measure("3: brightest place", brightest(&all[2]));
     made.measure("5: brightest place", brightest(&all[4]));
@@ -255,8 +248,8 @@ fn maps(studio: &Studio) -> Outcome<Made> {
     made.measure(format!("share of the square that glitters, {FILLED} of the cells"), shares(&surfaces[4])[1]);
     made.measure("3 against 1: mean FLIP", compared(&all[2], &all[0])?.flip_mean);
     made.measure("5 against 3: mean FLIP", compared(&all[4], &all[2])?.flip_mean);
-    made.sheet("course-5-2", labels.map(str::to_owned).into_iter().zip(all).collect(), 5);
-    Ok(made)
+    made.sheet("course-5-2", labels.into_iter().zip(all), 5);
+    Ok(())
 }
 
 /// Of each pixel whether two pictures differ there, by more than rounding.
@@ -264,8 +257,7 @@ fn differ(a: &Image, b: &Image) -> Vec<bool> {
     a.texels().zip(b.texels()).map(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3)).collect()
 }
 
-fn lepidolite(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn lepidolite(studio: &Studio, made: &mut Made) -> Outcome {
     let (materials, whole) = stone("lepidolite")?;
     let [marble, bright] = &whole.switches[..] else {
         return Err(Failure::Input(anyhow::anyhow!("the lepidolite has other switches than marble and bright tiles")));
@@ -306,6 +298,6 @@ fn lepidolite(studio: &Studio) -> Outcome<Made> {
     for (name, share) in names.iter().zip(shares(&whole)) {
         made.measure(format!("share of the square: {name}"), share);
     }
-    made.sheet("course-5-3", labels.map(str::to_owned).into_iter().zip(all).collect(), 3);
-    Ok(made)
+    made.sheet("course-5-3", labels.into_iter().zip(all), 3);
+    Ok(())
 }

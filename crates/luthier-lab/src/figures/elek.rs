@@ -1,19 +1,19 @@
 //! Figures of Elek 2010 about the model and its tables.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::Arc;
 
-use luthier_gpu::{Camera, Environment, Light, Shape, Sky};
+use luthier_gpu::{Camera, Light, Shape};
 use luthier_lut::{Image, TexelFormat, WeightBits, bilinear};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping, FresnelMapping, Material};
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
-use luthier_terminal::{Failure, Outcome};
+use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL, compared};
-use super::numbers::brightest;
+use super::numbers::light::even_sky;
 use super::numbers::spot::{softened, spot, spot_of};
+use super::numbers::{across, brightest, pixels};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -144,8 +144,7 @@ fn coated(name: &str, alphas: [f64; 2]) -> Outcome<Material> {
     material(name, &text)
 }
 
-fn clamp(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn clamp(studio: &Studio, made: &mut Made) -> Outcome {
     let series = [0.01, 0.1, 0.2, 0.4];
     let (clamped, bare) = (ShadingModel::Elek, ShadingModel::WeidlichWilkie);
     let mut materials = Vec::new();
@@ -168,7 +167,7 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         made.measure("torus, not clamped: width of the metal's highlight", metal_width(without));
         made.apart("tori m1 0.4, m2 0.05, with against without the clamp", with, without)?;
     }
-    made.sheet("elek-2", labels.into_iter().zip(pictures).collect(), 6);
+    made.sheet("elek-2", labels.into_iter().zip(pictures), 6);
 
     let reference = studio.simulated(&odd)?;
     let mut balls = vec![("simulation".to_owned(), reference.image.clone())];
@@ -194,7 +193,7 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("elek-2-simulation", balls, 4);
-    Ok(made)
+    Ok(())
 }
 
 /// Red over blue of the key light, and so of what a coat reflects.
@@ -224,10 +223,9 @@ fn sharp() -> Outcome<Vec<Material>> {
     SHARP.into_iter().enumerate().map(one).collect()
 }
 
-fn mapping(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn mapping(studio: &Studio, made: &mut Made) -> Outcome {
     let metals = sharp()?;
-    let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3])).map_err(luthier_gpu::GpuError::from)?);
+    let dark = even_sky(0.0)?;
     let render = |form: Form, angle: Option<DistributionMapping>| {
         let mut variants = metals.clone();
         for variant in &mut variants {
@@ -286,7 +284,7 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
             curves,
         },
     );
-    Ok(made)
+    Ok(())
 }
 
 /// Largest difference of the green channel, over its peak.
@@ -298,12 +296,8 @@ fn error(image: &Image, full: &Image) -> f64 {
 }
 
 /// Sum over all pixels and channels.
-fn light(image: &Image) -> f64 {
+pub(super) fn light(image: &Image) -> f64 {
     image.data.iter().map(|v| f64::from(*v)).sum()
-}
-
-fn nothing() -> Failure {
-    Failure::Input(anyhow::anyhow!("no picture"))
 }
 
 /// The tables of Elek's section 3.1: rows of 128 texels of 8 bits, 512 x 512 half floats.
@@ -320,9 +314,8 @@ fn elek_tables(bake: &mut BakeSettings, angle: DistributionMapping) {
 /// Angle of the half vector to the normal at a pixel of the zoomed ball; light and eye both at +z.
 fn half_angle(x: u32, y: u32, size: u32, alpha: f64) -> f64 {
     let [extent, distance] = [ZOOM[0] * alpha, ZOOM[1]];
-    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * extent;
     // Angle of the ray at the eye, then of the normal, by the law of sines.
-    let ray = libm::atan(libm::hypot(at(x), at(y)) / distance);
+    let ray = libm::atan(libm::hypot(across(x, size) * extent, across(y, size) * extent) / distance);
     let normal = libm::asin((distance * libm::sin(ray)).min(1.0)) - ray;
     // Light and eye differ by the angle of the ray: the half vector lies between.
     normal + 0.5 * ray
@@ -348,32 +341,27 @@ fn mipped(full: &Image, alpha: f64) -> Image {
     let peaks = [0, 1, 2].map(|c: usize| full.texels().map(|texel| texel[c]).fold(0.0, f32::max));
     let mut image = full.clone();
     let texels = f64::from(SIDE / BLOCK);
-    for y in 0..image.height {
-        for x in 0..image.width {
-            let u = libm::pow(half_angle(x, y, image.width, alpha) / FRAC_PI_2, 0.125);
-            let read = bilinear(&table, [u * texels, alpha * texels], WeightBits::Fixed(8))[0];
-            let ratio = (read / beckmann(0.0, alpha)) as f32;
-            image.texel_mut(x, y).copy_from_slice(&peaks.map(|peak| peak * ratio));
-        }
+    for (x, y) in pixels(full) {
+        let u = libm::pow(half_angle(x, y, image.width, alpha) / FRAC_PI_2, 0.125);
+        let read = bilinear(&table, [u * texels, alpha * texels], WeightBits::Fixed(8))[0];
+        let ratio = (read / beckmann(0.0, alpha)) as f32;
+        image.texel_mut(x, y).copy_from_slice(&peaks.map(|peak| peak * ratio));
     }
     image
 }
 
-fn tables(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn tables(studio: &Studio, made: &mut Made) -> Outcome {
     let ours = shaded(&coated("coated", [0.08, 0.3])?, "coated", ShadingModel::Elek);
     let mut his = ours.clone();
     elek_tables(&mut his.bake, DistributionMapping::Power);
-    let one = |material: &Material, form| -> Outcome<Image> {
-        studio.pictures(std::slice::from_ref(material), form, Shape::Torus, |_, _| {})?.pop().ok_or_else(nothing)
-    };
-    let full = one(&ours, Form::Full)?;
-    let (his, ours) = (one(&his, Form::Baked)?, one(&ours, Form::Baked)?);
+    let full = studio.picture(ours.clone(), Form::Full, Shape::Torus)?;
+    let [his, ours] = [his, ours].map(|material| studio.picture(material, Form::Baked, Shape::Torus));
+    let (his, ours) = (his?, ours?);
     let his_difference = made.compare("tables of the paper against full", &his, &full)?;
     let our_difference = made.compare("default tables against full", &ours, &full)?;
     let shown = |label: &str, image: Image| (label.to_owned(), super::figure::TONE.image(image));
     let pictures =
         vec![shown("full", full), shown("its tables", his), his_difference, shown("our tables", ours), our_difference];
     made.shown("elek-5", pictures, 5);
-    Ok(made)
+    Ok(())
 }

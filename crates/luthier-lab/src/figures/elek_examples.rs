@@ -2,20 +2,19 @@
 
 use luthier::{Bake, MemoryStore, lit};
 use luthier_gpu::Shape;
-use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
-use luthier_material::{Material, PictureRef, VariationSource};
+use luthier_material::Material;
 use luthier_report::lightness_chroma_hue;
-use luthier_terminal::{Failure, Outcome};
+use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
-use super::elek_places::{crusted, from_above};
-use super::figure::{Figure, Labelled, Made, SIMULATED, SMALL, TONE, compared};
+use super::elek_places::{from_above, grown};
+use super::figure::{Figure, Labelled, Made, SIMULATED, SMALL, TONE, enlarged};
 use super::numbers::places::{
     correlation, greenness, middle_values, nearest, places_of_square, quantile, sparkles, steepness,
 };
 use super::numbers::tint::saturations;
-use super::numbers::{highlight, middle};
+use super::numbers::{highlight, middle, share};
 use super::studio::{Studio, layered, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -110,49 +109,39 @@ const COMPARED: [(&str, &str); 5] = [
     ("car paint", file!("car-paint")),
 ];
 
-fn simulated(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn simulated(studio: &Studio, made: &mut Made) -> Outcome {
     let (mut top, mut bottom): (Labelled, Labelled) = (Vec::new(), Vec::new());
     for (label, text) in COMPARED {
         let material = material(label, text)?;
         let reference = studio.simulated(&material)?;
         let model = studio.ball(&material, "elek")?;
-        let apart = compared(&model, &reference.image)?;
         made.measure(format!("{label}, simulation: noise, in units of the RMSE"), reference.noise);
-        made.measure(format!("{label}: RMSE of linear radiance"), apart.rms_err);
-        made.measure(format!("{label}: mean FLIP"), apart.flip_mean);
+        made.errors(label, &model, &reference.image)?;
         top.push((label.to_owned(), TONE.image(reference.image)));
         bottom.push(("elek".to_owned(), TONE.image(model)));
     }
     top.append(&mut bottom);
     made.shown("elek-3", top, COMPARED.len() as u32);
-    Ok(made)
+    Ok(())
 }
 
 /// Transitions of figure 9.
 const TRANSITIONS: [f64; 2] = [0.9, 0.2];
 
-fn edges(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
-    let copper = crusted()?;
+fn edges(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
     for (i, transition) in TRANSITIONS.into_iter().enumerate() {
-        let mut stage = shaded(&copper, &format!("edge-{i}"), ShadingModel::Elek);
-        let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
-        let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
-        (patina.extent, patina.transition) = (0.45, transition);
-        patina.map = VariationSource::Image(PictureRef::plain("patina.png"));
-        materials.push(mapped(stage));
+        materials.push(grown(&format!("edge-{i}"), 0.45, transition)?);
     }
     let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let mut pictures: Labelled = Vec::new();
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::Patina) {
-        pictures.push(("map".to_owned(), scaled(&map.picture.image(), 2 * studio.size)));
+        pictures.push(("map".to_owned(), enlarged(&map.picture.image(), 2 * studio.size, [0; 3])));
     }
     for (transition, picture) in TRANSITIONS.into_iter().zip(from_above(studio, &package)?) {
         let green = greenness(&picture);
         let [least, most] = [0.1, 0.9].map(|share| quantile(&green, share));
-        let share = green.iter().filter(|green| **green > 0.0).count() as f64 / green.len().max(1) as f64;
+        let share = share(green.iter().map(|green| *green > 0.0));
         for (what, value) in [
             ("steepest change of green between pixels of the square", steepness(&green)),
             ("range of green", most - least),
@@ -168,20 +157,7 @@ fn edges(studio: &Studio) -> Outcome<Made> {
         pictures.push((format!("{transition}"), TONE.image(picture)));
     }
     made.shown("elek-9", pictures, 3);
-    Ok(made)
-}
-
-/// The first channel of a map, as grey, in another size.
-fn scaled(map: &Image, size: u32) -> Image {
-    let mut grey = Image::zeros(size, size, 3);
-    for y in 0..size {
-        for x in 0..size {
-            let value = map.texel(x * map.width / size, y * map.height / size)[0];
-            let at = 3 * (y * size + x) as usize;
-            grey.data[at..at + 3].fill(value);
-        }
-    }
-    grey
+    Ok(())
 }
 
 fn by_elek(name: &str, layers: &str) -> Outcome<Material> {
@@ -197,15 +173,14 @@ const CHROMIUM: &str = "[[layer]]\ntype = \"conductor\"\n\
 
 const CONCRETE: &str = "[[layer]]\ntype = \"diffuse\"\nalbedo = [0.42, 0.4, 0.37]\nsigma = 0.5\n";
 
-fn lacquer(absorption: &str) -> String {
+pub(super) fn lacquer(absorption: &str) -> String {
     format!(
         "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.03\ndistribution = \"beckmann\"\nthickness_um = 3\n\
          absorption_per_um = {absorption}\n"
     )
 }
 
-fn examples(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn examples(studio: &Studio, made: &mut Made) -> Outcome {
     let map = "[layer.maps]\nthickness = \"thickness.png\"\n";
     let mut paint =
         shaded(&material("chromium-car-paint.toml", file!("chromium-car-paint"))?, "strong-flakes", ShadingModel::Elek);
@@ -225,8 +200,7 @@ fn examples(studio: &Studio) -> Outcome<Made> {
     ];
     let mut pictures: Labelled = Vec::new();
     for (label, material) in &all {
-        let mut one = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, |_, _| {})?;
-        pictures.push(((*label).to_owned(), one.swap_remove(0)));
+        pictures.push(((*label).to_owned(), studio.picture(material.clone(), Form::Full, Shape::Sphere)?));
     }
     for (label, picture) in &pictures {
         let [_, chroma, hue] = lightness_chroma_hue(middle(picture, 0.5));
@@ -239,7 +213,7 @@ fn examples(studio: &Studio) -> Outcome<Made> {
     if let Some(flakes) = smooth.effects.flakes.as_mut() {
         flakes.scale = 0.0;
     }
-    let smooth = studio.pictures(&[smooth], Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
+    let smooth = studio.picture(smooth, Form::Full, Shape::Sphere)?;
     made.measure("the same paint without flakes: sparkles", sparkles(&smooth));
     for (label, lacquered) in &all[1..3] {
         let package = Bake::lit().package(&lit(std::slice::from_ref(lacquered)), &MemoryStore::default())?;
@@ -254,5 +228,5 @@ fn examples(studio: &Studio) -> Outcome<Made> {
         }
     }
     made.sheet("elek-10", pictures, all.len() as u32);
-    Ok(made)
+    Ok(())
 }

@@ -10,9 +10,9 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::course_surfaces::square;
-use super::figure::{Figure, Made, SMALL};
+use super::figure::{Figure, Made, SMALL, enlarged};
 use super::numbers::places::{correlation, greenness, nearest, noise, places_of_square};
-use super::numbers::{highlight, over_red};
+use super::numbers::{highlight, over_red, share};
 use super::studio::{Studio, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -103,8 +103,7 @@ const DISTANCES: [f32; 4] = [4.0, 8.0, 16.0, 32.0];
 /// Rays along each side of a pixel of the mean over flakes.
 const MANY_RAYS: u32 = 8;
 
-fn flakes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
     let variant = |name: &str, fade_start: f64, scale: f64| -> Outcome<Material> {
         let mut paint = shaded(&paint, name, ShadingModel::Elek);
@@ -146,7 +145,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
             let noise = noise(&image, &expected);
             made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise);
             noises.push(noise);
-            row.push((format!("{what}, {distance}"), enlarged(&image, studio.size)));
+            row.push((format!("{what}, {distance}"), enlarged(&image, studio.size, [0, 1, 2])));
         }
     }
     for (what, noises) in ["scaled", "plain"].into_iter().zip(noises) {
@@ -156,18 +155,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     }
     let [with, without] = rows;
     made.sheet("elek-7", [with, without].concat(), DISTANCES.len() as u32);
-    Ok(made)
-}
-
-/// Every pixel repeated.
-fn enlarged(image: &Image, size: u32) -> Image {
-    let mut large = Image::zeros(size, size, 3);
-    for y in 0..size {
-        for x in 0..size {
-            large.texel_mut(x, y).copy_from_slice(image.texel(x * image.width / size, y * image.height / size));
-        }
-    }
-    large
+    Ok(())
 }
 
 /// The stages of figure 8, and its transition.
@@ -175,33 +163,29 @@ const EXTENTS: [f64; 6] = [-0.65, -0.05, 0.15, 0.45, 0.75, 1.65];
 const TRANSITION: f64 = 0.65;
 
 /// Copper under a patina that lies thicker in some places than in others.
-pub(super) fn crusted() -> Outcome<Material> {
+pub(super) fn grown(name: &str, extent: f64, transition: f64) -> Outcome<Material> {
     let absorption = "absorption_per_um = [0.9, 0.25, 0.5]\n";
-    material(
-        "copper-patina.toml",
-        &PATINA.replace(absorption, &format!("{absorption}maps = {{ thickness = \"crust.png\" }}\n")),
-    )
+    let crusted = PATINA.replace(absorption, &format!("{absorption}maps = {{ thickness = \"crust.png\" }}\n"));
+    let mut stage = shaded(&material("copper-patina.toml", &crusted)?, name, ShadingModel::Elek);
+    let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
+    let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
+    (patina.extent, patina.transition) = (extent, transition);
+    patina.map = VariationSource::Image(PictureRef::plain("patina.png"));
+    Ok(mapped(stage))
 }
 
-fn patina(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
-    let copper = crusted()?;
+fn patina(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
     for (i, extent) in EXTENTS.into_iter().enumerate() {
-        let mut stage = shaded(&copper, &format!("stage-{i}"), ShadingModel::Elek);
-        let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
-        let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
-        (patina.extent, patina.transition, patina.map) =
-            (extent, TRANSITION, VariationSource::Image(PictureRef::plain("patina.png")));
-        materials.push(mapped(stage));
+        materials.push(grown(&format!("stage-{i}"), extent, TRANSITION)?);
     }
     let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let level = from_above(studio, &package)?;
     let dark = darkness(&package, level.first());
     for (extent, picture) in EXTENTS.iter().zip(&level) {
         let green = greenness(picture);
-        let share = green.iter().filter(|green| **green > 0.0).count() as f64 / green.len().max(1) as f64;
-        made.measure(format!("extent {extent}: share of the square that is green"), share);
+        let covered = share(green.iter().map(|green| *green > 0.0));
+        made.measure(format!("extent {extent}: share of the square that is green"), covered);
         let correlation = correlation(&green, &dark);
         made.measure(format!("extent {extent}: correlation of green with the darkness of the map"), correlation);
     }
@@ -211,8 +195,8 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("extent {extent}: highlight over the median"), highlight(picture));
     }
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
-    made.sheet("elek-8", labels.zip(pictures).collect(), 3);
-    Ok(made)
+    made.sheet("elek-8", labels.zip(pictures), 3);
+    Ok(())
 }
 
 /// Each material of a bake on a level square that fills the picture.

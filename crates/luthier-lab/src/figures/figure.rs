@@ -6,6 +6,7 @@ use luthier_report::{PictureComparison, Plot, brightened_difference, compare_pic
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::Claim;
+use super::numbers::pixels;
 use super::studio::Studio;
 
 /// A figure of a paper, and how to make it anew.
@@ -20,7 +21,7 @@ pub(crate) struct Figure {
     /// Side of each single picture in pixels, where the command line has none.
     pub(crate) size: u32,
     pub(crate) claim: Claim,
-    pub(crate) make: fn(&Studio) -> Outcome<Made>,
+    pub(crate) make: fn(&Studio, &mut Made) -> Outcome,
 }
 
 /// Results of a figure.
@@ -62,8 +63,14 @@ pub(crate) const TONE: ToneMapping = ToneMapping::Shoulder;
 
 impl Made {
     /// Adds a sheet of linear pictures.
-    pub(crate) fn sheet(&mut self, file: &str, pictures: Labelled, columns: u32) {
-        self.shown(file, pictures.into_iter().map(|(label, image)| (label, TONE.image(image))).collect(), columns);
+    pub(crate) fn sheet<L: Into<String>>(
+        &mut self,
+        file: &str,
+        pictures: impl IntoIterator<Item = (L, Image)>,
+        columns: u32,
+    ) {
+        let shown = pictures.into_iter().map(|(label, image)| (label.into(), TONE.image(image)));
+        self.shown(file, shown.collect(), columns);
     }
 
     /// Adds a sheet of pictures that are as a display shows them.
@@ -90,12 +97,18 @@ impl Made {
         Ok(())
     }
 
-    /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a
-    /// display shows, with its label.
-    pub(crate) fn compare(&mut self, what: &str, a: &Image, b: &Image) -> Outcome<(String, Image)> {
+    /// Notes the errors of a linear picture against another: RMSE, and FLIP.
+    pub(crate) fn errors(&mut self, what: &str, a: &Image, b: &Image) -> Outcome {
         let compared = compared(a, b)?;
         self.measure(format!("{what}: RMSE of linear radiance"), compared.rms_err);
         self.measure(format!("{what}: mean FLIP"), compared.flip_mean);
+        Ok(())
+    }
+
+    /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a
+    /// display shows, with its label.
+    pub(crate) fn compare(&mut self, what: &str, a: &Image, b: &Image) -> Outcome<(String, Image)> {
+        self.errors(what, a, b)?;
         let (shown, gain) = brightened_difference(a, b, |v| TONE.value(v));
         let largest = shown.data.iter().copied().fold(0.0, f32::max) / gain as f32;
         self.measure(format!("{what}: largest difference of what a display shows"), f64::from(largest));
@@ -106,4 +119,14 @@ impl Made {
 /// Two linear pictures as a display shows them.
 pub(crate) fn compared(a: &Image, b: &Image) -> Outcome<PictureComparison> {
     compare_pictures(a, b, |v| TONE.value(v)).map_err(Failure::input)
+}
+
+/// Some channels of an image as a square picture, enlarged without filtering.
+pub(crate) fn enlarged(image: &Image, size: u32, channels: [usize; 3]) -> Image {
+    let mut large = Image::zeros(size, size, 3);
+    for (x, y) in pixels(&large) {
+        let texel = image.texel(x * image.width / size, y * image.height / size);
+        large.texel_mut(x, y).copy_from_slice(&channels.map(|channel| texel[channel]));
+    }
+    large
 }

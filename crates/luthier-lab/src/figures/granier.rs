@@ -13,7 +13,7 @@ use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Made, SMALL, TONE};
-use super::numbers::light::{FROM_EYE, even_sky, one_light};
+use super::numbers::light::FROM_EYE;
 use super::numbers::over_red;
 use super::numbers::spot::{centres, spot};
 use super::numbers::tint::{hue, hues, tint_deviation, tint_grain, tints_apart};
@@ -173,22 +173,13 @@ const MESH_RANGES_NM: [[f64; 2]; 4] = [[60.0, 110.0], [140.0, 220.0], [220.0, 36
 /// Width of a repeat of the thickness map of figure 7: bumps that are seen, and do not hide the ball.
 const MESH_UM: f64 = 60.0;
 
-fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
-    let name = |i: usize| ["mesh-a", "mesh-b", "mesh-c", "mesh-d"][i];
-    let coating = |(i, thickness_nm): (usize, [f64; 2])| Coating {
-        name: name(i),
-        ior: COMBINED_IOR,
-        thickness_nm,
-        exponents: [90.0; 2],
-        diffuse: 0.5,
-        tilt_deg: 0.0,
-        extent_um: MESH_UM,
-        frequency: 5,
-    };
-    let coatings: Vec<Coating> = MESH_RANGES_NM.into_iter().enumerate().map(coating).collect();
+fn on_a_mesh(studio: &Studio, made: &mut Made) -> Outcome {
+    let on_mesh = Coating { exponents: [90.0; 2], diffuse: 0.5, extent_um: MESH_UM, frequency: 5, ..COATING };
     let tables = "phase = { size = 256 }\nthickness = { size = 256 }\n";
-    let materials = coatings.iter().map(|coating| coating.with_tables(tables)).collect::<Outcome<Vec<_>>>()?;
+    let mut materials = Vec::new();
+    for (name, thickness_nm) in ["mesh-a", "mesh-b", "mesh-c", "mesh-d"].into_iter().zip(MESH_RANGES_NM) {
+        materials.push(Coating { name, thickness_nm, ..on_mesh }.with_tables(tables)?);
+    }
     let package = Bake::lit().package(&materials, &MemoryStore::default())?;
     let look = |settings: &mut RenderSettings| {
         settings.environment_samples = 8;
@@ -213,7 +204,7 @@ fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
     look(&mut settings);
     settings.size = studio.size * 4;
     made.picture("granier-7-large", studio.gpu()?.scene(&package, Form::Baked)?.render(&[1], &settings)?);
-    Ok(made)
+    Ok(())
 }
 
 /// The wavelengths of the paper.
@@ -227,7 +218,7 @@ const FLAT_UM: f64 = 2e4;
 const HILLY_UM: f64 = 12.0;
 
 /// The transmitted lobe is no lobe of a mirror, so its sampling needs more directions; and the model is brighter than white.
-fn look(settings: &mut RenderSettings) {
+fn look(_: usize, settings: &mut RenderSettings) {
     settings.environment_samples = 64;
     settings.exposure = 0.8;
 }
@@ -248,6 +239,18 @@ struct Coating {
     /// Cells of the noise along one repeat.
     frequency: u32,
 }
+
+/// A coating of the printed indices and exponents of figure 6, without a diffuse part.
+const COATING: Coating = Coating {
+    name: "coating",
+    ior: COMBINED_IOR,
+    thickness_nm: [66.0, 76.0],
+    exponents: [130.0; 2],
+    diffuse: 0.0,
+    tilt_deg: 0.0,
+    extent_um: FLAT_UM,
+    frequency: 4,
+};
 
 impl Coating {
     /// The material. The object's index is not in the paper: 2 keeps indices rising, which its formula needs.
@@ -277,28 +280,20 @@ fn materials(coatings: &[Coating]) -> Outcome<Vec<Material>> {
     coatings.iter().map(Coating::material).collect()
 }
 
-fn diffuse(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
-    let coating = |name, thickness_nm, diffuse| {
-        let (ior, exponents, extent_um, frequency) = (COMBINED_IOR, [130.0; 2], FLAT_UM, 6);
-        Coating { name, ior, thickness_nm, exponents, diffuse, tilt_deg: 0.0, extent_um, frequency }
-    };
+fn diffuse(studio: &Studio, made: &mut Made) -> Outcome {
+    let coating = |name, thickness_nm, diffuse| Coating { name, thickness_nm, diffuse, frequency: 6, ..COATING };
     let ranges = [("old metal", [52.0, 84.0]), ("coloured", [200.0, 700.0]), ("clay", [54.0, 68.0])];
     let names = [["metal", "metal-0"], ["coloured", "coloured-0"], ["clay", "clay-0"]];
     let pairs = ranges
         .iter()
         .zip(names)
         .flat_map(|((_, range), [lit, unlit])| [coating(lit, *range, 0.6), coating(unlit, *range, 0.0)]);
-    let pictures =
-        studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, |_, settings| {
-            look(settings)
-        })?;
+    let pictures = studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
     for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
         // The specular part is the same in both: what is left is the diffuse one.
         if let [lit, unlit] = pair {
-            let mut image = lit.clone();
-            image.data.iter_mut().zip(&unlit.data).for_each(|(a, b)| *a = (*a - b).max(0.0));
+            let image = less(lit, unlit);
             made.measure(format!("{name}, {min} to {max} nm: spread of the channels"), spread(&image));
             made.measure(format!("{name}, {min} to {max} nm: share of the hues"), hues(&image));
             made.measure(format!("{name}, {min} to {max} nm: hue"), hue(&image, 0.5));
@@ -326,21 +321,12 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
             curves,
         },
     );
-    Ok(made)
+    Ok(())
 }
 
-fn deviation(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
-    let coating = |name, ior, inner, tilt_deg| Coating {
-        name,
-        ior,
-        thickness_nm: [66.0, 76.0],
-        exponents: [90.0, inner],
-        diffuse: 0.7,
-        tilt_deg,
-        extent_um: FLAT_UM,
-        frequency: 4,
-    };
+fn deviation(studio: &Studio, made: &mut Made) -> Outcome {
+    let coating =
+        |name, ior, inner, tilt_deg| Coating { name, ior, exponents: [90.0, inner], diffuse: 0.7, tilt_deg, ..COATING };
     let rising = [1.4, 1.45, 1.6];
     let coatings = [
         coating("parallel", rising, 170.0, 0.0),
@@ -348,8 +334,8 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
         coating("no-dispersion", [1.45; 3], 170.0, TILT_DEG),
         coating("rough", rising, 20.0, TILT_DEG),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| {
-        look(settings);
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |n, settings| {
+        look(n, settings);
         settings.environment_samples = 512;
     })?;
     let labels = ["parallel", "14 degrees", "one index", "90 and 20"];
@@ -357,16 +343,14 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
     // The specular part alone, under one light.
-    let dark = even_sky(0.0)?;
     let bare: Vec<Coating> = coatings
         .into_iter()
         .chain([coating("half", rising, 170.0, 0.5 * TILT_DEG)])
         .map(|coating| Coating { diffuse: 0.0, ..coating })
         .collect();
-    let lit = studio
-        .pictures(&materials(&bare)?, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, FROM_EYE))?;
+    let lit = studio.lit(&materials(&bare)?, Form::Baked, Shape::Sphere, FROM_EYE)?;
     for (label, picture) in labels.iter().chain([&"7 degrees"]).zip(&lit) {
-        let beam = less(picture, &lit[0], label == &"parallel");
+        let beam = if *label == "parallel" { picture.clone() } else { less(picture, &lit[0]) };
         let [red, green, blue] = centres(&beam).map(|[x, y]| libm::hypot(x, y));
         for (channel, aside) in [("red", red), ("green", green), ("blue", blue)] {
             made.measure(format!("{label}: {channel}, aside"), aside);
@@ -375,21 +359,18 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{label}: width of the second highlight"), spot(&beam).share.sqrt());
         made.measure(format!("{label}: colours of the highlights"), saturation_of_light(picture));
     }
-    made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
-    Ok(made)
+    made.sheet("granier-4", labels.into_iter().zip(pictures), 4);
+    Ok(())
 }
 
-fn correlated(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn correlated(studio: &Studio, made: &mut Made) -> Outcome {
     let coating = |name, extent_um, thickness_nm| Coating {
         name,
         ior: [1.4, 1.45, 1.6],
         thickness_nm,
         exponents: [90.0; 2],
-        diffuse: 0.0,
-        tilt_deg: 0.0,
         extent_um,
-        frequency: 4,
+        ..COATING
     };
     let coatings = [
         coating("flat", FLAT_UM, [100.0, 400.0]),
@@ -397,15 +378,15 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
         coating("flat-oil", FLAT_UM, [200.0, 900.0]),
         coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, look)?;
     let labels = ["flat 100-400", "bump 100-400", "flat 200-900", "bump 200-900"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: colour between neighbours"), tint_grain(picture));
         made.measure(format!("{label}: share of the hues"), hues(picture));
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
-    made.sheet("granier-5", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
-    Ok(made)
+    made.sheet("granier-5", labels.into_iter().zip(pictures), 4);
+    Ok(())
 }
 
 /// Thickness at which the beams of a film of index 1.6 are in phase at 80 degrees and 525 nm: 525 / (2 1.6 0.788).
@@ -414,20 +395,11 @@ const IN_PHASE_NM: f64 = 208.0;
 /// Index of the film of figure 6, and for want of others of figure 3.
 const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
 
-fn combined(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn combined(studio: &Studio, made: &mut Made) -> Outcome {
     let ranges = [("a", [50.0, 70.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
-    let coatings = ranges.map(|(name, thickness_nm)| Coating {
-        name,
-        ior: COMBINED_IOR,
-        thickness_nm,
-        exponents: [130.0; 2],
-        diffuse: 0.5,
-        tilt_deg: TILT_DEG,
-        extent_um: FLAT_UM,
-        frequency: 4,
-    });
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
+    let tilted = Coating { diffuse: 0.5, tilt_deg: TILT_DEG, ..COATING };
+    let coatings = ranges.map(|(name, thickness_nm)| Coating { name, thickness_nm, ..tilted });
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
     for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
@@ -439,23 +411,16 @@ fn combined(studio: &Studio) -> Outcome<Made> {
     }
     made.sheet("granier-6", shown, 4);
     // The specular part alone, under one light, of the indices of figure 6 and of figure 4.
-    let dark = even_sky(0.0)?;
     let bare = [COMBINED_IOR, [1.4, 1.45, 1.6]].map(|ior| [0.0, TILT_DEG].map(|tilt_deg| (ior, tilt_deg)));
     let bare = bare.concat().into_iter().zip(["p", "q", "r", "s"]).map(|((ior, tilt_deg), name)| Coating {
         name,
         ior,
-        thickness_nm: [66.0, 76.0],
-        exponents: [130.0; 2],
-        diffuse: 0.0,
         tilt_deg,
-        extent_um: FLAT_UM,
-        frequency: 4,
+        ..COATING
     });
-    let lit = studio.pictures(&materials(&bare.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, |_, settings| {
-        one_light(settings, &dark, FROM_EYE)
-    })?;
+    let lit = studio.lit(&materials(&bare.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, FROM_EYE)?;
     for (label, pair) in ["1.5, 1.6, 1.8", "1.4, 1.45, 1.6"].into_iter().zip(lit.chunks_exact(2)) {
-        let [red, green, blue] = centres(&less(&pair[1], &pair[0], false)).map(|[x, y]| libm::hypot(x, y));
+        let [red, green, blue] = centres(&less(&pair[1], &pair[0])).map(|[x, y]| libm::hypot(x, y));
         if label.starts_with("1.5") {
             for (channel, aside) in [("red", red), ("green", green), ("blue", blue)] {
                 made.measure(format!("highlight: {channel}, aside"), aside);
@@ -464,16 +429,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("indices {label}: blue and red apart"), (blue - red).abs());
     }
 
-    let green = Coating {
-        name: "green",
-        ior: [1.6; 3],
-        thickness_nm: [100.0, 100.0],
-        exponents: [130.0; 2],
-        diffuse: 0.0,
-        tilt_deg: 0.0,
-        extent_um: FLAT_UM,
-        frequency: 1,
-    };
+    let green = Coating { name: "green", ior: [1.6; 3], thickness_nm: [100.0; 2], frequency: 1, ..COATING };
     let stack = green.material()?.stack;
     let exact = |thickness_nm: f64, cos_theta: f64| {
         let mut here = Monochrome::new(&stack, WAVELENGTHS_NM[1], 1);
@@ -529,7 +485,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
             curves: over_angle,
         },
     );
-    Ok(made)
+    Ok(())
 }
 
 /// A film in air, `waves` wavelengths of vacuum thick.
@@ -547,12 +503,10 @@ fn spread(image: &Image) -> f64 {
     image.texels().map(one).sum::<f64>() / image.texel_count() as f64
 }
 
-/// The light of a picture that another has not; all of it where asked for.
-fn less(picture: &Image, other: &Image, all: bool) -> Image {
+/// The light of a picture that another has not.
+fn less(picture: &Image, other: &Image) -> Image {
     let mut rest = picture.clone();
-    if !all {
-        rest.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = (*a - b).max(0.0));
-    }
+    rest.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = (*a - b).max(0.0));
     rest
 }
 

@@ -10,8 +10,8 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL};
-use super::numbers::highlight;
 use super::numbers::spot::spot;
+use super::numbers::{highlight, pixels};
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -58,8 +58,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
 /// The lecture's F0 of copper.
 const COPPER: [f64; 3] = [0.955, 0.638, 0.538];
 
-fn balls(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn balls(studio: &Studio, made: &mut Made) -> Outcome {
     let last = f64::from(GRID_SIDE - 1);
     let mut materials = Vec::new();
     for row in 0..GRID_SIDE {
@@ -92,15 +91,13 @@ fn balls(studio: &Studio) -> Outcome<Made> {
     for column in 0..GRID_SIDE {
         // The ball of all metal, in its cell of the first row.
         let mut ball = Image::zeros(side, side, 3);
-        for y in 0..side {
-            for x in 0..side {
-                ball.texel_mut(x, y).copy_from_slice(picture.texel(column * side + x, y));
-            }
+        for (x, y) in pixels(&ball) {
+            ball.texel_mut(x, y).copy_from_slice(picture.texel(column * side + x, y));
         }
         let roughness = 0.1 + 0.9 * f64::from(column) / last;
         made.measure(format!("metallic 1, roughness {roughness}: highlight over the median"), highlight(&ball));
         made.measure(format!("metallic 1, roughness {roughness}: width of the highlight"), spot(&ball).share.sqrt());
     }
     made.sheet("lecture-25", vec![("metal down, rough right".to_owned(), picture)], 1);
-    Ok(made)
+    Ok(())
 }

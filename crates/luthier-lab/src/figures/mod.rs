@@ -76,9 +76,10 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
     let mut new: Vec<Done> = Vec::new();
     for &figure in &asked {
         studio.size = options.size.unwrap_or(figure.size);
-        let Made { files: made, measured } = (figure.make)(&studio)?;
+        let mut figured = Made::default();
+        (figure.make)(&studio, &mut figured)?;
         let mut names = Vec::new();
-        for (file, content) in made {
+        for (file, content) in figured.files {
             let path = folder.join(&file);
             let bytes = match content {
                 Content::Picture(image) => png::encode_image(&image).map_err(Failure::input)?,
@@ -88,7 +89,7 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
             names.push(file);
         }
         let command = page::command(options, figure.name);
-        new.push(Done::new(figure, studio.size, command, names, measured)?);
+        new.push(Done::new(figure, studio.size, command, names, figured.measured)?);
         bar.set(new.len() as u64, asked.len() as u64);
     }
     drop(bar);

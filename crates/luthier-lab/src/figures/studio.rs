@@ -15,6 +15,7 @@ use luthier_material::{Effects, Material, parse};
 use luthier_report::{BallPicture, DistantLight, render_ball, render_ball_of};
 use luthier_terminal::{Failure, Outcome, adapter_label, open};
 
+use super::numbers::light::{even_sky, one_light};
 use crate::cli::FiguresOptions;
 
 /// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
@@ -84,14 +85,7 @@ impl Studio {
 
     /// Renders each material of a bake on the stage, linear. `adjust` may change the settings of the n-th.
     pub(crate) fn staged(&self, package: &Package, adjust: impl Fn(usize, &mut RenderSettings)) -> Outcome<Vec<Image>> {
-        let scene = self.gpu()?.scene(package, Form::Baked)?;
-        (0..package.manifest.materials.len())
-            .map(|n: usize| {
-                let mut settings = self.stage()?;
-                adjust(n, &mut settings);
-                Ok(scene.render(&[n as u32], &settings)?)
-            })
-            .collect()
+        self.each(package, Form::Baked, &self.stage()?, adjust)
     }
 
     /// Bakes materials and renders each, linear. `adjust` may change the settings of the n-th.
@@ -113,14 +107,35 @@ impl Studio {
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
+        self.each(package, form, &self.settings(shape)?, adjust)
+    }
+
+    /// Renders each material of a bake, linear, with `settings` that `adjust` may change.
+    fn each(
+        &self,
+        package: &Package,
+        form: Form,
+        settings: &RenderSettings,
+        adjust: impl Fn(usize, &mut RenderSettings),
+    ) -> Outcome<Vec<Image>> {
         let scene = self.gpu()?.scene(package, form)?;
-        (0..package.manifest.materials.len())
-            .map(|n: usize| {
-                let mut settings = self.settings(shape)?;
-                adjust(n, &mut settings);
-                Ok(scene.render(&[n as u32], &settings)?)
-            })
-            .collect()
+        let render = |n: usize| {
+            let mut settings = settings.clone();
+            adjust(n, &mut settings);
+            Ok(scene.render(&[n as u32], &settings)?)
+        };
+        (0..package.manifest.materials.len()).map(render).collect()
+    }
+
+    /// Bakes a material and renders it, linear.
+    pub(crate) fn picture(&self, material: Material, form: Form, shape: Shape) -> Outcome<Image> {
+        Ok(self.pictures(&[material], form, shape, |_, _| {})?.swap_remove(0))
+    }
+
+    /// Bakes materials and renders each under one light from a direction, linear.
+    pub(crate) fn lit(&self, materials: &[Material], form: Form, shape: Shape, from: [f32; 3]) -> Outcome<Vec<Image>> {
+        let dark = even_sky(0.0)?;
+        self.pictures(materials, form, shape, |_, settings| one_light(settings, &dark, from))
     }
 
     /// A ball by a model in f64, under two lights and nothing else.

@@ -1,20 +1,20 @@
 //! Figures with textures of single layers: crossed tangents, bumps of one interface, flakes of a height field, colours and metal.
 
 use luthier::{Bake, MemoryStore};
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
-use luthier_material::Material;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
 
 use super::claim::{Check, Claim};
-use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, compared};
-use super::numbers::light::{KEY, even_sky, one_light};
-use super::numbers::over_red;
+use super::elek_examples::lacquer;
+use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, enlarged};
+use super::numbers::light::KEY;
 use super::numbers::places::{color_at, correlation, middle_values, nearest, places_of_ball, sparkles};
 use super::numbers::spot::{spot, spot_of};
 use super::numbers::tint::colors_apart;
+use super::numbers::{average, over_red, pixels};
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -138,64 +138,29 @@ pub(crate) const FIGURES: [Figure; 5] = [
     },
 ];
 
-/// Renders materials whose maps are those of the lab.
-fn pictures(studio: &Studio, materials: Vec<Material>, form: Form, shape: Shape) -> Outcome<Vec<Image>> {
-    let materials: Vec<Material> = materials.into_iter().map(mapped).collect();
-    studio.pictures(&materials, form, shape, |_, _| {})
-}
-
-/// Says how far two pictures are apart.
-fn measure(made: &mut Made, what: &str, a: &Image, b: &Image) -> Outcome {
-    let apart = compared(a, b)?;
-    made.measure(format!("{what}: RMSE of linear radiance"), apart.rms_err);
-    made.measure(format!("{what}: mean FLIP"), apart.flip_mean);
-    Ok(())
-}
-
-/// A map in another size, its first channel as grey where it has one colour.
-fn scaled(map: &Image, size: u32) -> Image {
-    let mut shown = Image::zeros(size, size, 3);
-    for y in 0..size {
-        for x in 0..size {
-            let texel = map.texel(x * map.width / size, y * map.height / size);
-            shown.texel_mut(x, y).copy_from_slice(&[texel[0], texel[1], texel[2]]);
-        }
-    }
-    shown
-}
-
 const CHROMIUM: &str = "[[layer]]\ntype = \"conductor\"\n\
      ior = { n = [3.84, 3.18, 1.99], k = [4.37, 4.41, 4.22], wavelengths_nm = [690, 550, 450] }\n\
      alpha = 0.12\ndistribution = \"beckmann\"\n";
 
-fn lacquer(absorption: &str) -> String {
-    format!(
-        "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.03\ndistribution = \"beckmann\"\nthickness_um = 3\n\
-         absorption_per_um = {absorption}\n"
-    )
-}
-
-fn flakes(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let heights =
         "[effects.flakes]\nheight_map = { image = \"heights.png\", height = 0.03 }\ntiling = 2\nfade_start = 1000\n";
     let coat = lacquer("[0.02, 0.2, 0.6]");
     let with = mapped(layered("flakes", &(coat.clone() + CHROMIUM + heights), ShadingModel::Elek)?);
     let package = Bake::lit().package(&[with], &MemoryStore::default())?;
     let ball = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
-    let plain = layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?;
-    let plain = pictures(studio, vec![plain], Form::Full, Shape::Sphere)?.swap_remove(0);
-    measure(&mut made, "flakes against none", &ball, &plain)?;
+    let plain = mapped(layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?);
+    let plain = studio.picture(plain, Form::Full, Shape::Sphere)?;
+    made.errors("flakes against none", &ball, &plain)?;
     made.measure("flakes: sparkles", sparkles(&ball));
     made.measure("none: sparkles", sparkles(&plain));
     let shaded = studio.rendered(&package, Form::Full, Shape::Sphere, |_, settings| settings.lights.clear())?;
     made.measure("flakes without the direct light: sparkles", shaded.first().map_or(0.0, sparkles));
     let opaque = ["", heights].map(|flakes| lacquer("100") + CHROMIUM + flakes);
-    let (mut alike, dark) = (Vec::new(), even_sky(0.0)?);
+    let mut alike = Vec::new();
     for (i, layers) in opaque.into_iter().enumerate() {
         let material = mapped(layered(&format!("opaque-{i}"), &layers, ShadingModel::Elek)?);
-        let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
-        alike.extend(studio.pictures(&[material], Form::Full, Shape::Sphere, light)?.iter().map(middle_values));
+        alike.extend(studio.lit(&[material], Form::Full, Shape::Sphere, KEY)?.iter().map(middle_values));
     }
     if let [none, with] = alike.as_slice() {
         let largest = none.iter().zip(with).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -203,13 +168,13 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     }
     let heights = png::decode(include_bytes!("../../maps/heights.png")).map_err(Failure::input)?;
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
-    shown.push(("heights".to_owned(), scaled(&heights, studio.size)));
+    shown.push(("heights".to_owned(), enlarged(&heights, studio.size, [0, 1, 2])));
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::FlakeNormal) {
-        slopes(&mut made, &heights, &map.picture.image());
-        shown.push(("normals".to_owned(), scaled(&map.picture.image(), studio.size)));
+        slopes(made, &heights, &map.picture.image());
+        shown.push(("normals".to_owned(), enlarged(&map.picture.image(), studio.size, [0, 1, 2])));
     }
     made.shown("elek-6", shown, 3);
-    Ok(made)
+    Ok(())
 }
 
 /// Compares a map of normals with the slopes of the heights that it is of. Heights rise towards the light: a normal leans to
@@ -218,14 +183,12 @@ fn slopes(made: &mut Made, heights: &Image, normals: &Image) {
     let (width, height) = (heights.width, heights.height);
     let at = |x: u32, y: u32| f64::from(heights.texel(x % width, y % height)[0]);
     let mut lists: [[Vec<f64>; 2]; 2] = Default::default();
-    for y in 0..height {
-        for x in 0..width {
-            let texel = normals.texel(x * normals.width / width, y * normals.height / height);
-            let fall = [at(x + width - 1, y) - at(x + 1, y), at(x, y + 1) - at(x, y + height - 1)];
-            for (axis, list) in lists.iter_mut().enumerate() {
-                list[0].push(2.0 * f64::from(texel[axis]) - 1.0);
-                list[1].push(fall[axis]);
-            }
+    for (x, y) in pixels(heights) {
+        let texel = normals.texel(x * normals.width / width, y * normals.height / height);
+        let fall = [at(x + width - 1, y) - at(x + 1, y), at(x, y + 1) - at(x, y + height - 1)];
+        for (axis, list) in lists.iter_mut().enumerate() {
+            list[0].push(2.0 * f64::from(texel[axis]) - 1.0);
+            list[1].push(fall[axis]);
         }
     }
     let (mut mean, mut square) = (0.0, 0.0);
@@ -239,17 +202,15 @@ fn slopes(made: &mut Made, heights: &Image, normals: &Image) {
     made.measure("mean of the normals' tilt over its root mean square", mean / square.max(1e-12).sqrt());
 }
 
-fn painted(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn painted(studio: &Studio, made: &mut Made) -> Outcome {
     let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.9\nmaps = { albedo = \"paint.png\" }\n";
     let all = [("bare", String::new()), ("clear", lacquer("0")), ("tinted", lacquer("[0.02, 0.12, 0.3]"))];
     let mut materials = Vec::new();
     for (label, coat) in &all {
-        materials.push(layered(&format!("paint-{label}"), &(coat.clone() + base), ShadingModel::Elek)?);
+        materials.push(mapped(layered(&format!("paint-{label}"), &(coat.clone() + base), ShadingModel::Elek)?));
     }
-    let shown = pictures(studio, materials, Form::Full, Shape::Sphere)?;
+    let shown = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     // Under the light alone, which the base sees from one side: painted, white and black, bare and lacquered.
-    let dark = even_sky(0.0)?;
     let white = base.replace("maps = { albedo = \"paint.png\" }\n", "");
     let black = white.replace("albedo = 0.9", "albedo = 0");
     let mut quotients = Vec::new();
@@ -257,8 +218,7 @@ fn painted(studio: &Studio) -> Outcome<Made> {
         let mut three = Vec::new();
         for (i, below) in [base, &white, &black].into_iter().enumerate() {
             let material = mapped(layered(&format!("part-{i}"), &(coat.to_owned() + below), ShadingModel::Elek)?);
-            let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
-            three.extend(studio.pictures(&[material], Form::Full, Shape::Sphere, light)?);
+            three.extend(studio.lit(&[material], Form::Full, Shape::Sphere, KEY)?);
         }
         if let [painted, white, black] = three.as_slice() {
             let quotient = |i: usize| {
@@ -279,12 +239,11 @@ fn painted(studio: &Studio) -> Outcome<Made> {
     for ((label, _), picture) in all.iter().zip(&shown) {
         made.measure(format!("{label}: blue over red"), over_red(picture, 2));
     }
-    made.sheet("elek-line-22", all.iter().map(|(label, _)| (*label).to_owned()).zip(shown).collect(), 3);
-    Ok(made)
+    made.sheet("elek-line-22", all.iter().map(|(label, _)| *label).zip(shown), 3);
+    Ok(())
 }
 
-fn metal(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn metal(studio: &Studio, made: &mut Made) -> Outcome {
     let surface = |metallic: u32, maps: &str| {
         format!(
             "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.95, 0.6, 0.4]\nmetallic = {metallic}\nroughness = 0.5\n{maps}"
@@ -297,37 +256,32 @@ fn metal(studio: &Studio) -> Outcome<Made> {
     ];
     let mut shown = Vec::new();
     for (label, layers) in &all {
-        let material = layered(&format!("metal-{label}"), layers, ShadingModel::Elek)?;
-        shown.extend(pictures(studio, vec![material], Form::Full, Shape::Sphere)?);
+        let material = mapped(layered(&format!("metal-{label}"), layers, ShadingModel::Elek)?);
+        shown.push(studio.picture(material, Form::Full, Shape::Sphere)?);
     }
-    measure(&mut made, "the map against paint", &shown[1], &shown[0])?;
-    measure(&mut made, "the map against metal", &shown[1], &shown[2])?;
+    made.errors("the map against paint", &shown[1], &shown[0])?;
+    made.errors("the map against metal", &shown[1], &shown[2])?;
     let map = png::decode(include_bytes!("../../maps/thickness.png")).map_err(Failure::input)?;
     for (label, is_there) in [("dark", (0.0..0.2)), ("bright", (0.8..1.01))] {
         for (to, other) in [("paint", &shown[0]), ("metal", &shown[2])] {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for (place, [u, v]) in places_of_ball(&shown[1]) {
-                if is_there.contains(&f64::from(nearest(&map, [u, v])[0])) {
-                    sum += colors_apart(color_at(&shown[1], place), color_at(other, place));
-                    count += 1.0;
-                }
-            }
-            made.measure(format!("{label} places of the map: difference to {to}"), sum / f64::max(count, 1.0));
+            let places =
+                places_of_ball(&shown[1]).filter(|(_, uv)| is_there.contains(&f64::from(nearest(&map, *uv)[0])));
+            let apart = places.map(|(place, _)| colors_apart(color_at(&shown[1], place), color_at(other, place)));
+            made.measure(format!("{label} places of the map: difference to {to}"), average(apart));
         }
     }
-    made.sheet("lecture-metal", all.iter().map(|(label, _)| (*label).to_owned()).zip(shown).collect(), 3);
-    Ok(made)
+    made.sheet("lecture-metal", all.iter().map(|(label, _)| *label).zip(shown), 3);
+    Ok(())
 }
 
-fn crossed(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn crossed(studio: &Studio, made: &mut Made) -> Outcome {
     let all = [
         ("isotropic", ["", ""], [0.12, 0.12], [0.23, 0.23]),
         ("base", ["", "circles.png"], [0.12, 0.12], [0.45, 0.12]),
         ("coat", ["rays.png", ""], [0.25, 0.06], [0.23, 0.23]),
         ("crossed", ["rays.png", "circles.png"], [0.25, 0.06], [0.45, 0.12]),
     ];
-    let (mut shown, mut materials) = (Vec::new(), Vec::new());
+    let (mut shown, mut measured) = (Vec::new(), Vec::new());
     for (label, [coat, base], above, below) in all {
         let surface = |[x, y]: [f64; 2], map: &str| {
             let map = if map.is_empty() { String::new() } else { format!("maps = {{ tangent = \"{map}\" }}\n") };
@@ -340,20 +294,14 @@ fn crossed(studio: &Studio) -> Outcome<Made> {
             surface(below, base)
         );
         let material = mapped(layered(&format!("field-{label}"), &layers, ShadingModel::Yamaguchi)?);
-        shown.extend(studio.pictures(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, |_, _| {})?);
-        materials.push(material);
-    }
-    let dark = even_sky(0.0)?;
-    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, BESIDE);
-    let mut measured: Vec<(&str, Material)> = Vec::new();
-    for ((label, ..), material) in all.iter().zip(materials) {
+        shown.push(studio.picture(material.clone(), Form::Baked, Shape::Sphere)?);
         measured.push((label, material));
     }
     let alone = "[[layer]]\ntype = \"dielectric\"\nior = 1.49\nalpha_x = 0.25\nalpha_y = 0.06\nmaps = { tangent = \"rays.png\" }\n\
                  thickness_um = 1\nabsorption_per_um = 100\n[[layer]]\ntype = \"conductor\"\nior = { n = 1.5, k = 1.5 }\nalpha = 0.23\n";
     measured.push(("coat alone", mapped(layered("coat-alone", alone, ShadingModel::Yamaguchi)?)));
     for (label, material) in measured {
-        let picture = studio.pictures(&[material], Form::Baked, Shape::Sphere, light)?.swap_remove(0);
+        let picture = studio.lit(&[material], Form::Baked, Shape::Sphere, BESIDE)?.swap_remove(0);
         // The coat reflects without colour, and gold does not.
         for (part, spot) in [("whole", spot(&picture)), ("base", spot_of(&picture, |[red, _, blue]| red - blue))] {
             let [x, y] = spot.middle;
@@ -361,15 +309,14 @@ fn crossed(studio: &Studio) -> Outcome<Made> {
             made.measure(format!("{label}, {part}: length along the circle over that along the ray"), length);
         }
     }
-    made.sheet("yamaguchi-2", all.iter().map(|(label, ..)| (*label).to_owned()).zip(shown).collect(), 4);
-    Ok(made)
+    made.sheet("yamaguchi-2", all.iter().map(|(label, ..)| *label).zip(shown), 4);
+    Ok(())
 }
 
 /// Direction of a light whose highlight lies beside the middle of a ball, at a slant.
 const BESIDE: [f32; 3] = [0.5, 0.5, 0.7];
 
-fn bumps(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn bumps(studio: &Studio, made: &mut Made) -> Outcome {
     let layers = |coat: &str, base: &str| {
         let bumpy = "maps = { bumps = \"bumps.png\" }\n";
         let of = |which: &str| if which == "bumps" { bumpy } else { "" };
@@ -387,19 +334,18 @@ fn bumps(studio: &Studio) -> Outcome<Made> {
         })?);
     }
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
-        measure(&mut made, &format!("{label} against flat"), picture, &shown[0])?;
+        made.errors(&format!("{label} against flat"), picture, &shown[0])?;
     }
     // Under a varnish that lets nothing through, its own reflection is left.
-    let (mut alone, dark) = (Vec::new(), even_sky(0.0)?);
+    let mut alone = Vec::new();
     for (label, coat, base) in &all[..3] {
         let layers = layers(coat, base).replace("thickness_um = 0.3", "thickness_um = 1\nabsorption_per_um = 100");
         let material = mapped(layered(&format!("opaque-{label}"), &layers, ShadingModel::WeidlichWilkie)?);
-        let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
-        alone.extend(studio.pictures(&[material], Form::Full, Shape::Torus, light)?);
+        alone.extend(studio.lit(&[material], Form::Full, Shape::Torus, KEY)?);
     }
     for (label, picture) in ["below", "above"].into_iter().zip(&alone[1..]) {
-        measure(&mut made, &format!("opaque varnish, {label} against flat"), picture, &alone[0])?;
+        made.errors(&format!("opaque varnish, {label} against flat"), picture, &alone[0])?;
     }
-    made.sheet("course-3-9-own", all.iter().map(|(label, ..)| (*label).to_owned()).zip(shown).collect(), 4);
-    Ok(made)
+    made.sheet("course-3-9-own", all.iter().map(|(label, ..)| *label).zip(shown), 4);
+    Ok(())
 }

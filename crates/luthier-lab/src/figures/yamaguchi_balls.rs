@@ -11,7 +11,8 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Labelled, Made, SMALL};
-use super::numbers::light::{FROM_EYE, even_sky, one_light};
+use super::numbers::across;
+use super::numbers::light::FROM_EYE;
 use super::numbers::spot::{Spot, spot, spot_in, spot_of};
 use super::studio::{Studio, material, shaded};
 
@@ -75,8 +76,9 @@ const BALLS: [(&str, [f64; 3], [f64; 3]); 5] = [
     ("e crossed", [0.25, 0.06, 90.0], [0.45, 0.12, 0.0]),
 ];
 
-/// A coat and a base of some slopes, with what else the file says of the coat.
-fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
+/// A coat of index 1.49 on gold (figure 1 (e)), of some slopes, with what else the file says of the coat. Wavelengths are labels, see
+/// `materials/papers/yamaguchi-brushed.toml`.
+pub(super) fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
     let surface = |[x, y, turn]: [f64; 3]| format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}");
     let text = format!(
         "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{}\n{more}[[layer]]\ntype = \"conductor\"\n{}\n\
@@ -88,8 +90,7 @@ fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Ma
     Ok(shaded(&material(name, &text)?, name, ShadingModel::Yamaguchi))
 }
 
-fn balls(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn balls(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
     for (i, (_, coat, base)) in BALLS.into_iter().enumerate() {
         materials.push(brushed(&format!("ball-{i}"), coat, base, "")?);
@@ -104,10 +105,7 @@ fn balls(studio: &Studio) -> Outcome<Made> {
             "thickness_um = 1\nabsorption_per_um = 100\n",
         )?);
     }
-    let dark = even_sky(0.0)?;
-    let lit = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, settings| {
-        one_light(settings, &dark, FROM_EYE);
-    })?;
+    let lit = studio.lit(&materials, Form::Baked, Shape::Sphere, FROM_EYE)?;
     let labels = BALLS.iter().map(|(label, ..)| *label).chain(["coat alone, one way", "coat alone, crossed"]);
     for (label, picture) in labels.zip(&lit) {
         made.measure(format!("{label}: length of the whole highlight over its height"), spot(picture).elongation());
@@ -115,8 +113,8 @@ fn balls(studio: &Studio) -> Outcome<Made> {
         let base = spot_of(picture, |[red, _, blue]| red - blue).elongation();
         made.measure(format!("{label}: length of the base's highlight over its height"), base);
     }
-    made.sheet("yamaguchi-1", BALLS.iter().map(|(label, ..)| (*label).to_owned()).zip(pictures).collect(), 5);
-    Ok(made)
+    made.sheet("yamaguchi-1", BALLS.iter().map(|(label, ..)| *label).zip(pictures), 5);
+    Ok(())
 }
 
 /// Side of the grid on which deviations are measured.
@@ -124,9 +122,8 @@ const FINE: u32 = 768;
 
 /// A picture of a function over the unit disk of the base plane, as a share of its greatest value, with the part above half of it.
 fn over_plane(size: u32, f: impl Fn(f64, f64) -> f64) -> (Image, Spot) {
-    let at = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0;
     let values: Vec<f64> = (0..size * size)
-        .map(|i| (at(i % size), -at(i / size)))
+        .map(|i| (across(i % size, size), -across(i / size, size)))
         .map(|(x, y)| if x * x + y * y < 0.999 { f(x, y) } else { 0.0 })
         .collect();
     let most = values.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -137,8 +134,7 @@ fn over_plane(size: u32, f: impl Fn(f64, f64) -> f64) -> (Image, Spot) {
     (image, spot_in(&values, size))
 }
 
-fn projected(studio: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn projected(studio: &Studio, made: &mut Made) -> Outcome {
     let text = "schema = 1\nname = \"brushed\"\n[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.12\nalpha_y = 0.04\n";
     let stack = Monochrome::new(&material("brushed", text)?.stack, 550.0, 1);
     let turned = Monochrome::new(&material("turned", &format!("{text}rotation_deg = 30\n"))?.stack, 550.0, 1);
@@ -168,5 +164,5 @@ fn projected(studio: &Studio) -> Outcome<Made> {
         pictures.push((label.to_owned(), image));
     }
     made.shown("yamaguchi-3", pictures, 2);
-    Ok(made)
+    Ok(())
 }

@@ -40,8 +40,7 @@ fn medians(all: &Value, material: &str, way: &str) -> Vec<[f64; 2]> {
     of.filter_map(|time| Some([time["samples"].as_f64()?, time["median_ms"].as_f64()?])).collect()
 }
 
-fn times(_: &Studio) -> Outcome<Made> {
-    let mut made = Made::default();
+fn times(_: &Studio, made: &mut Made) -> Outcome {
     let all: Value = serde_json::from_str(TIMES).map_err(Failure::input)?;
     let (mut absolute, mut percent) = (Vec::new(), Vec::new());
     for (material, colors) in MATERIALS {
@@ -62,7 +61,7 @@ fn times(_: &Studio) -> Outcome<Made> {
     made.plot("yamaguchi-5", Plot { title, x: x.clone(), y: axis_over("milliseconds", &absolute), curves: absolute });
     let title = "Time of Yamaguchi's model over Belcour's".to_owned();
     made.plot("yamaguchi-5-more", Plot { title, x, y: axis_over("percent more", &percent), curves: percent });
-    Ok(made)
+    Ok(())
 }
 
 /// The next larger of 1, 2 and 5 times a power of ten.

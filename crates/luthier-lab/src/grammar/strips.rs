@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use luthier::{Bake, MemoryStore, Source, Sources, refuse};
-use luthier_export::sha256;
-use luthier_gpu::{Gpu, RenderSettings, Shape, Shown, ToneMapping};
+use luthier_export::{Package, sha256};
+use luthier_gpu::{RenderSettings, Shape, Shown, ToneMapping};
 use luthier_lut::Image;
 use luthier_manifest::Form;
 use luthier_terminal::{Bar, Failure, Outcome, files, open, valid};
@@ -45,8 +45,11 @@ pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions
     let work = std::env::temp_dir().join(format!("luthier-grammar-{}", std::process::id()));
     std::fs::create_dir_all(&work).map_err(files(&work, "make"))?;
     for (done, sample) in asked.iter().enumerate() {
-        let pictures =
-            if sample.is_surface() { surfaces(sample, &gpu, size, &work) } else { balls(sample, &gpu, size) }?;
+        let mut pictures = Vec::new();
+        for text in sample.texts() {
+            let (package, shown) = if sample.is_surface() { surface(&text, &work)? } else { ball(text)? };
+            pictures.push(gpu.scene(&package, Form::Baked)?.render_shown(&[shown], &settings(size)?)?);
+        }
         let path = folder.join(sample.picture());
         let bytes = png::encode_image(&strip(&pictures)).map_err(Failure::input)?;
         std::fs::write(&path, bytes).map_err(files(&path, "write"))?;
@@ -74,32 +77,22 @@ fn settings(size: u32) -> Outcome<RenderSettings> {
     })
 }
 
-/// A ball of each material, baked by itself: materials of one bake share sizes of tables.
-fn balls(sample: &Sample, gpu: &Gpu, size: u32) -> Outcome<Vec<Image>> {
+/// A material, baked by itself: materials of one bake share sizes of tables.
+fn ball(text: String) -> Outcome<(Package, Shown)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
-    let mut pictures = Vec::new();
-    for text in sample.texts() {
-        let mut sources: Vec<Source> = vec![luthier::Source::of_text(&path, text)];
-        refuse(&mut sources, |material| luthier::refusals::of_model(material, None));
-        let materials = valid(sources, true)?;
-        let package = Bake::lit().package(&materials, &MemoryStore::default())?;
-        pictures.push(gpu.scene(&package, Form::Baked)?.render(&[0], &settings(size)?)?);
-    }
-    Ok(pictures)
+    let mut sources: Vec<Source> = vec![Source::of_text(&path, text)];
+    refuse(&mut sources, |material| luthier::refusals::of_model(material, None));
+    let package = Bake::lit().package(&valid(sources, true)?, &MemoryStore::default())?;
+    Ok((package, Shown::Material(0)))
 }
 
-/// A ball of each surface, whose file is written into a folder first.
-fn surfaces(sample: &Sample, gpu: &Gpu, size: u32, work: &Path) -> Outcome<Vec<Image>> {
+/// A surface of several materials, whose file is written into a folder first.
+fn surface(text: &str, work: &Path) -> Outcome<(Package, Shown)> {
     let path = work.join("surface.toml");
-    let mut pictures = Vec::new();
-    for text in sample.texts() {
-        std::fs::write(&path, text).map_err(files(&path, "write"))?;
-        let sources = Sources::read([&path])?;
-        let bake = Bake { surfaces: sources.surface_entries(), ..Bake::lit() };
-        let package = bake.package(&valid(sources.materials, true)?, &MemoryStore::default())?;
-        pictures.push(gpu.scene(&package, Form::Baked)?.render_shown(&[Shown::Surface(0)], &settings(size)?)?);
-    }
-    Ok(pictures)
+    std::fs::write(&path, text).map_err(files(&path, "write"))?;
+    let sources = Sources::read([&path])?;
+    let bake = Bake { surfaces: sources.surface_entries(), ..Bake::lit() };
+    Ok((bake.package(&valid(sources.materials, true)?, &MemoryStore::default())?, Shown::Surface(0)))
 }
 
 /// Pictures side by side, as a display shows them.

@@ -4,6 +4,7 @@ mod page;
 mod reasons;
 mod stacks;
 
+use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier::read_materials;
@@ -133,12 +134,8 @@ fn judge_all(
     options: &LobesOptions,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Judged> {
-    let outcome = |subject: &ModelSubject| {
-        let judged = judge(subject, options);
-        progress();
-        judged
-    };
-    let mut judged: Vec<(Judged, Reference)> = subjects.par_iter().map(outcome).collect();
+    let mut judged: Vec<(Judged, Reference)> =
+        subjects.par_iter().map(|subject| judge(subject, options)).inspect(|_| progress()).collect();
     let stacks: Vec<&Judged> = judged.iter().map(|(stack, _)| stack).collect();
     let mut chosen: Vec<usize> = (0..QUANTITIES).flat_map(|quantity| choice.of(&stacks, quantity)).collect();
     chosen.sort_unstable();
@@ -150,6 +147,32 @@ fn judge_all(
     let reasons: Vec<Reasons> = chosen.par_iter().map(reasons).collect();
     chosen.into_iter().zip(reasons).for_each(|(number, reasons)| judged[number].0.reasons = Some(reasons));
     judged.into_iter().map(|(stack, _)| stack).collect()
+}
+
+/// A table of errors by stack and column, those of another fit in brackets, and their medians.
+pub(crate) fn table(
+    out: &mut String,
+    [title, kind]: [&str; 2],
+    columns: &[String],
+    rows: &[(String, Vec<[f64; 2]>)],
+) -> std::fmt::Result {
+    let rule = "--:|".repeat(columns.len());
+    writeln!(out, "\n## {title}\n\n| stack | {kind} | lobes | {} |\n|---|---|--:|{rule}", columns.join(" | "))?;
+    for (stack, errors) in rows {
+        writeln!(out, "| {stack} |{}", errors.iter().map(cell).collect::<String>())?;
+    }
+    let medians = (0..columns.len()).map(|c| [0, 1].map(|fit: usize| median(rows.iter().map(|row| row.1[c][fit]))));
+    writeln!(out, "| **median** | | |{}", medians.map(|errors| cell(&errors)).collect::<String>())
+}
+
+fn cell([own, beside]: &[f64; 2]) -> String {
+    format!(" {own:.3} ({beside:.3}) |")
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Settings of the judge, with a family of random numbers.

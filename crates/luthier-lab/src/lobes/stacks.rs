@@ -34,6 +34,11 @@ impl Draw {
         0.001 * libm::pow(800.0, self.uniform())
     }
 
+    fn metal(&mut self) -> (&'static str, Ior) {
+        let id = METALS[(self.uniform() * METALS.len() as f64) as usize];
+        (id, dataset(id).map_or_else(|| constant(1.0), |data| data.ior.clone()))
+    }
+
     fn rgb(&mut self, low: f64, high: f64) -> [f64; 3] {
         [0; 3].map(|_| self.between(low, high))
     }
@@ -78,10 +83,9 @@ pub(crate) fn random(seed: u64) -> ModelSubject {
         layers.push(Layer { films, surface: Surface::isotropic(distribution, alpha), base });
     }
     if draw.chance(0.5) {
-        let id = METALS[(draw.uniform() * METALS.len() as f64) as usize];
+        let (id, ior) = draw.metal();
         let alpha = draw.alpha();
         name += &format!(" {id}/{alpha:.3}");
-        let ior = dataset(id).map_or_else(|| constant(1.0), |data| data.ior.clone());
         let surface = Surface::isotropic(distribution, alpha);
         layers.push(Layer { films: Vec::new(), surface, base: Base::Conductor { ior } });
     } else {
@@ -123,10 +127,9 @@ pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
     let mut layers =
         vec![Layer { films: Vec::new(), surface: coat, base: Base::Dielectric { ior: constant(index), slab } }];
     if is_metal {
-        let id = METALS[(draw.uniform() * METALS.len() as f64) as usize];
+        let (id, ior) = draw.metal();
         let (base, [x, y]) = surface(&mut draw, true, 0.0);
         name += &format!(" {id}/{x:.3}x{y:.3}");
-        let ior = dataset(id).map_or_else(|| constant(1.0), |data| data.ior.clone());
         layers.push(Layer { films: Vec::new(), surface: base, base: Base::Conductor { ior } });
     } else {
         name += " diffuse";

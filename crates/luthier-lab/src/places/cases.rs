@@ -69,6 +69,13 @@ const CROSSED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha_x = 0.
     [[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.35\nalpha_y = 0.12\nmaps = { tangent = \"rays.png\", alpha_x = \"thickness.png\" }\n";
 
 const PATH: &[ShadingModel] = &[Elek, WeidlichWilkie];
+
+/// Models of layers of their own roughness and thickness.
+const LAYERED: &[ShadingModel] = &[Elek, WeidlichWilkie, Belcour, Yamaguchi];
+
+/// Models whose roughness a map scales.
+const ROUGH: &[ShadingModel] = &[Elek, WeidlichWilkie, Microfacet, Belcour, Yamaguchi];
+
 const MAPPED: &[ShadingModel] = &[Elek, WeidlichWilkie, GranierHeidrich, Microfacet, Belcour, Yamaguchi];
 
 /// All kinds.
@@ -80,20 +87,8 @@ pub(super) fn all() -> Vec<Case> {
     };
     vec![
         case("normal map", "place.normal", MAPPED, &[COATED], normal),
-        case(
-            "roughness map",
-            "place.alpha_factor",
-            &[Elek, WeidlichWilkie, Microfacet, Belcour, Yamaguchi],
-            &[COATED],
-            roughness,
-        ),
-        case(
-            "thickness map of a slab",
-            "place.slab_factor",
-            &[Elek, WeidlichWilkie, Belcour, Yamaguchi],
-            &[LACQUERED],
-            slab,
-        ),
+        case("roughness map", "place.alpha_factor", ROUGH, &[COATED], roughness),
+        case("thickness map of a slab", "place.slab_factor", LAYERED, &[LACQUERED], slab),
         case("thickness map of a film", "place.film_factor", &[Elek, WeidlichWilkie, Microfacet], &[FILMED], film),
         case("thickness map of a film, and its lean", "place.inner_normal", &[GranierHeidrich], &[BUBBLE], lean),
         case("map of the base's colour", "place.base_color", PATH, &[PAINTED], color),
@@ -102,7 +97,7 @@ pub(super) fn all() -> Vec<Case> {
         case(
             "slope parameters of one interface",
             "place.layers[1].alpha_factors",
-            &[Elek, WeidlichWilkie, Belcour, Yamaguchi],
+            LAYERED,
             &[COATED, OF_THE_METAL],
             slopes,
         ),

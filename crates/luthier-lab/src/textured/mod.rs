@@ -11,13 +11,13 @@ use luthier_manifest::ShadingModel;
 use luthier_material::{Effects, Material, left_out};
 use luthier_optics::stack::Film;
 use luthier_report::{
-    AT_PLACES, AtPlaces, PLACES_SEED, SimulatedAt, SimulatedSettings, Subject, Weights, at_places, simulated,
-    simulated_by,
+    AT_PLACES, AtPlaces, PLACES_SEED, SimulatedAt, SimulatedSettings, Weights, at_places, simulated, simulated_by,
 };
-use luthier_terminal::{Bar, Outcome, Shaders, adapter_label, complain, deliver, open, surface_maps, valid};
+use luthier_terminal::{Bar, Outcome, Shaders, adapter_label, complain, deliver, open, valid};
 
 use crate::cli::TexturedOptions;
 use crate::lobes::{JUDGE_SEED, judge_settings};
+use crate::parity::subject;
 
 /// Angles of the eye at every place, degrees.
 const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
@@ -90,12 +90,7 @@ fn judge(material: &Material, gpu: &Gpu, options: &TexturedOptions) -> Outcome<O
     let bake = Bake { refuses: false, ..Bake::wgsl(&[]) };
     let package = bake.package(std::slice::from_ref(material), &MemoryStore::default())?;
     let shaders = Shaders::new(gpu, &package)?;
-    let subject = Subject {
-        manifest: &package.manifest,
-        textures: package.textures()?,
-        stacks: vec![material.reflecting_stack().into_owned()],
-        maps: surface_maps(&package),
-    };
+    let subject = subject(&package, vec![material.reflecting_stack().into_owned()])?;
     let device: &dyn luthier_report::Device = &shaders;
     let weights = if gpu.is_software() { Weights::Exact } else { Weights::EightBit };
     let found = at_places(&subject, 0, Some((device, weights)), options.pairs, PLACES_SEED);

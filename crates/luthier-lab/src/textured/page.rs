@@ -6,7 +6,7 @@ use luthier_report::{AT_PLACES, SimulatedAt, SimulatedErrors};
 use luthier_terminal::{Failure, Outcome};
 
 use super::{Judged, THETAS_DEG};
-use crate::cli::TexturedOptions;
+use crate::cli::{TexturedOptions, call};
 
 /// The page.
 pub(super) fn write(judged: &[Judged], generator: &str, adapter: &str, options: &TexturedOptions) -> Outcome<String> {
@@ -42,8 +42,7 @@ fn introduction(generator: &str, adapter: &str, options: &TexturedOptions) -> St
 
 /// The command line that makes the page.
 fn command(options: &TexturedOptions) -> String {
-    let mut words = vec!["luthier-lab textured".to_owned()];
-    words.extend(options.paths.iter().map(|path| path.display().to_string()));
+    let mut words = vec![call("textured", &options.paths)];
     words.push(format!("--pairs {} --places {} --noise {}", options.pairs, options.places, options.precision.noise));
     words.extend(options.no_generated.then(|| "--no-generated".to_owned()));
     words.extend(options.only.as_ref().map(|name| format!("--only {name}")));

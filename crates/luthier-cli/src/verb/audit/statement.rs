@@ -1,6 +1,5 @@
 //! A foreign table as the command line states it.
 
-use luthier_optics::constants::{dataset, datasets};
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::split_sum::Masking;
@@ -11,6 +10,7 @@ use luthier_terminal::{Failure, Outcome};
 use luthier_texture::table::Table;
 
 use crate::cli::{AuditOptions, NodesName};
+use crate::verb::ior;
 
 /// Terms of the channels of a preset that hold a split sum: the first ones.
 fn preset_terms(preset: &Preset) -> Vec<Term> {
@@ -115,13 +115,7 @@ fn interface(model: &str, ior: Option<&str>) -> Outcome<Interface> {
     let below = match numbers.as_deref() {
         Some([n]) => Ior::constant(*n, 0.0).map_err(|source| Failure::Usage(source.into()))?,
         Some([n, k]) => Ior::constant(*n, *k).map_err(|source| Failure::Usage(source.into()))?,
-        _ => {
-            let unknown = || {
-                let known: Vec<&str> = datasets().iter().map(|d| d.id).collect();
-                Failure::unknown("data set", text, &known)
-            };
-            dataset(text).ok_or_else(unknown)?.ior.clone()
-        }
+        _ => ior::named(text)?.ior.clone(),
     };
     Ok(Interface { above: Ior::vacuum(), films: Vec::new(), below })
 }

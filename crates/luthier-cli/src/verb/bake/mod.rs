@@ -131,6 +131,12 @@ impl Emission {
 }
 
 impl BakeOptions {
+    /// As many threads as are asked for.
+    pub(super) fn pool(&self) -> Outcome<rayon::ThreadPool> {
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from));
+        threads.build().map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))
+    }
+
     /// The files of a package, as these options ask for them.
     pub(super) fn encoded(&self, package: &Package) -> Outcome<Encoded> {
         let compression = if self.no_zstd { Compression::None } else { Compression::Zstd };

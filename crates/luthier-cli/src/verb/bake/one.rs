@@ -116,10 +116,7 @@ impl<'a> Begun<'a> {
         let Self { options, lock, progress, .. } = &self;
         let Found::Set(set) = &self.found else { return Ok(Made { begun: self, encoded: None, said: None }) };
         progress.resumes();
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(options.threads.map_or(0, usize::from))
-            .build()
-            .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
+        let pool = options.pool()?;
         let observer: &(dyn Observer + Sync) =
             if options.quiet && !options.pipeline.events { &Silent } else { progress };
         let bake = Bake {

@@ -10,7 +10,7 @@ use luthier_terminal::{Failure, Outcome, complain};
 
 use super::once;
 use crate::cli::BakeOptions;
-use crate::watched;
+use crate::watched::{self, seen};
 
 /// Time between two looks at the files.
 const PERIOD: Duration = Duration::from_millis(200);
@@ -63,10 +63,6 @@ fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
 }
 
 fn state(options: &BakeOptions, read: &[PathBuf]) -> State {
-    let seen = |path: PathBuf| {
-        let state = watched::state(&path);
-        (path, state)
-    };
     let paths = &options.sources.paths;
     let inner = inner_files(paths).unwrap_or_default().into_iter().map(|(_, _, file)| file);
     let found = find(paths).unwrap_or_default().into_iter().chain(inner);

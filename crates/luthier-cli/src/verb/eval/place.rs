@@ -46,10 +46,10 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
                 texel(&height_normals(&map.channel(0), *height), moved(heights, uv * tiling))
             }
         };
-        place.under.flake_normal = all.tilted(flake, inputs.distance().unwrap_or(0.0));
+        place.under.flake_normal = all.tilted(flake, inputs.distance.unwrap_or(0.0));
     }
     if let Some(patina) = &shows.patina {
-        let map = match (inputs.map(), &patina.map) {
+        let map = match (inputs.map, &patina.map) {
             (Some(map), _) => map,
             (None, VariationSource::Image(named)) => {
                 filtered(&picture(material, named, TexelUse::Number)?.channel(0), moved(named, uv))
@@ -59,7 +59,7 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
                 noise.map_or(0.5, |noise| filtered(&noise, uv))
             }
         };
-        let extent = inputs.extent().unwrap_or(patina.extent);
+        let extent = inputs.extent.unwrap_or(patina.extent);
         let (transition, base_alpha) = (patina.transition, patina.base_alpha);
         let grown = Patina { extent, transition, diffuse_albedo: 0.0, base_alpha, tarnish: 1.0 };
         let (diffuse_albedo, tarnish) = (patina.diffuse_albedo, patina.tarnish);

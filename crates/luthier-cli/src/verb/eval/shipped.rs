@@ -2,11 +2,9 @@
 
 use std::path::Path;
 
-use luthier::source_hash;
 use luthier_export::{Folder, shared};
 use luthier_layers::model::Estimate;
 use luthier_manifest::ColorMode;
-use luthier_manifest::ModelPart;
 use luthier_optics::color::Color;
 use luthier_report::{Rows, Subject as Judged, Weights};
 use luthier_terminal::{Failure, Outcome};
@@ -15,6 +13,7 @@ use rayon::prelude::*;
 use super::function::Kind;
 use super::{Subject, values};
 use crate::directions::Angles;
+use crate::materials::is_baked_as;
 
 /// Prints the values of the rows in a folder for pairs (wi, wo).
 pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], json: bool) -> Outcome {
@@ -31,12 +30,7 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
         let text = format!("the bake shades `{}` by `{}`, not by `{model}`", material.name, entry.model.name());
         return Err(missing(text));
     }
-    let mut same = material.clone();
-    same.bake.model = Some(entry.model);
-    let (masking, reflectance) = entry.parts();
-    same.bake.masking = entry.model.takes(ModelPart::Masking).then_some(masking);
-    same.bake.reflectance = Some(reflectance);
-    if source_hash(&same)? != entry.source_hash {
+    if !is_baked_as(&mut material.clone(), entry)? {
         return Err(missing(format!(
             "{} has changed since it was baked, or a file that it names; bake again",
             material.source

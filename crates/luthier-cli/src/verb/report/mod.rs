@@ -7,10 +7,9 @@ mod pictures;
 
 use std::path::Path;
 
-use luthier::{Source, source_hash};
+use luthier::Source;
 use luthier_export::{Folder, GENERATOR, REPORT_FILES, label, origin, publish_beside, shared};
 use luthier_manifest::Manifest;
-use luthier_manifest::ModelPart;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, SurfaceMap, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
@@ -18,6 +17,7 @@ use luthier_terminal::{Bar, Failure, Outcome, print};
 
 use crate::cli::ReportOptions;
 use crate::interrupt::whole;
+use crate::materials::is_baked_as;
 use crate::store::store;
 
 /// Judges a bake and writes the report beside it.
@@ -146,11 +146,7 @@ fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
             let Ok(Parsed { mut material, .. }) = source.parsed else {
                 return Err(changed(&file));
             };
-            material.bake.model = Some(entry.model);
-            let (masking, reflectance) = entry.parts();
-            material.bake.masking = entry.model.takes(ModelPart::Masking).then_some(masking);
-            material.bake.reflectance = Some(reflectance);
-            if source_hash(&material)? != entry.source_hash {
+            if !is_baked_as(&mut material, entry)? {
                 return Err(changed(&file));
             }
             // A scene may have left out parts of a material: the tables are of what is left.

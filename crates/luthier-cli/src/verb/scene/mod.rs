@@ -55,10 +55,7 @@ pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
                     --no-search and limits on tables";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads.map_or(0, usize::from))
-        .build()
-        .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
+    let pool = options.pool()?;
     if !options.budgets.is_empty() {
         return pool.install(|| tighten(options, scenes));
     }

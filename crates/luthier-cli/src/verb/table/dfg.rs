@@ -17,7 +17,7 @@ use serde_json::{Value as Json, json};
 
 use super::container::{by_ending, ending_of};
 use super::look_up;
-use super::product::{Product, Sampled, distribution, domain, error_facts, fact, nodes_name, sampled};
+use super::product::{Product, Sampled, distribution, domain, error_facts, fact, nodes_name, sampled, verdict};
 use crate::cli::DfgOptions;
 
 const QUANTITIES: [&str; 2] = ["cos_theta", "alpha"];
@@ -118,7 +118,7 @@ fn closed(options: &DfgOptions) -> Outcome<Product> {
     }
     let certificate = Certificate {
         title: "Split sum in closed form".to_owned(),
-        verdict: verdict(options, &error),
+        verdict: verdict(options.max_abs, format!("largest error {:.2e}", error.max_abs_err)),
         facts,
         maps,
         method: "The form is evaluated in single precision, as a shader does, and compared with quadrature over reflected directions: the largest error of bias \
@@ -138,14 +138,6 @@ fn closed(options: &DfgOptions) -> Outcome<Product> {
         error.max_abs_err, error.worst.at[0], error.worst.at[1], error.rms_err
     );
     Ok(Product { files: written, certificate, json, text })
-}
-
-fn verdict(options: &DfgOptions, error: &ErrorStats) -> (String, Option<bool>) {
-    let largest = format!("largest error {:.2e}", error.max_abs_err);
-    match options.max_abs {
-        Some(limit) => (format!("holds {limit}: {largest}"), Some(true)),
-        None => (largest, None),
-    }
 }
 
 fn of_preset(preset: &Preset, options: &DfgOptions) -> Found {

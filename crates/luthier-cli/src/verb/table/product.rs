@@ -82,10 +82,7 @@ pub(super) fn sampled(table: Sampled<'_>, delivery: &Delivery) -> Outcome<Produc
     facts.push(fact("Domain", domain.clone()));
     facts.extend(error_facts(&error, quantities));
     let largest = format!("largest error as sampled {:.2e}", error.max_abs_err);
-    let verdict = match max_abs {
-        Some(limit) => (format!("holds {limit}: {largest}"), Some(true)),
-        None => (largest, None),
-    };
+    let verdict = verdict(max_abs, largest);
     let certificate = Certificate { title: title.to_owned(), verdict, facts, maps, method: method.to_owned() };
     let held = max_abs.map_or(String::new(), |limit| format!("holds {limit}\n"));
     let text = format!("{words}\n{}{held}", error_text(&error, quantities, &domain));
@@ -94,6 +91,14 @@ pub(super) fn sampled(table: Sampled<'_>, delivery: &Delivery) -> Outcome<Produc
 }
 
 /// A row of the page.
+/// The verdict on what holds a limit, if there is one.
+pub(super) fn verdict(max_abs: Option<f64>, largest: String) -> (String, Option<bool>) {
+    match max_abs {
+        Some(limit) => (format!("holds {limit}: {largest}"), Some(true)),
+        None => (largest, None),
+    }
+}
+
 pub(super) fn fact(name: &str, value: impl Into<String>) -> (String, String) {
     (name.to_owned(), value.into())
 }

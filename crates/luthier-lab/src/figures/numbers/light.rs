@@ -24,8 +24,3 @@ pub(crate) fn one_light(settings: &mut RenderSettings, dark: &Arc<Environment>, 
     // Dark from wherever it comes.
     settings.environment_samples = 1;
 }
-
-/// The surroundings without the lights.
-pub(crate) fn surroundings_alone(settings: &mut RenderSettings) {
-    settings.lights.clear();
-}

@@ -41,21 +41,16 @@ pub(crate) fn brightest(image: &Image) -> f64 {
 /// Standard deviation of luminance over its mean, in the middle half of a picture.
 pub(crate) fn variation(image: &Image) -> f64 {
     let mean = luminance(middle(image, 0.5));
-    let (mut squares, mut count) = (0.0, 0.0);
-    for value in luminances(image, 0.5) {
-        squares += (value - mean) * (value - mean);
-        count += 1.0;
-    }
-    (squares / f64::max(count, 1.0)).sqrt() / mean.max(1e-9)
+    let squares = luminances(image, 0.5).map(|value| (value - mean) * (value - mean));
+    average(squares).sqrt() / mean.max(1e-9)
 }
 
 /// Mean difference of luminance between neighbours in a row, over the mean, in the middle half of a picture.
 pub(crate) fn grain(image: &Image) -> f64 {
     let values: Vec<f64> = luminances(image, 0.5).collect();
     let side = values.len().isqrt().max(1);
-    let differences = values.chunks(side).flat_map(|row| row.windows(2)).map(|pair| (pair[0] - pair[1]).abs());
     let count = (side * (side - 1)).max(1) as f64;
-    differences.sum::<f64>() / count / luminance(middle(image, 0.5)).max(1e-9)
+    steps(&values).sum::<f64>() / count / luminance(middle(image, 0.5)).max(1e-9)
 }
 
 /// Largest luminance in the middle half of a picture over the median there.
@@ -87,7 +82,7 @@ fn median(image: &Image) -> f64 {
 }
 
 fn luminances(image: &Image, share: f64) -> impl Iterator<Item = f64> {
-    texels(image, share).map(|texel| luminance([0, 1, 2].map(|c: usize| f64::from(texel[c]))))
+    texels(image, share).map(|texel| luminance(rgb(texel)))
 }
 
 /// Texels of the middle of a picture.
@@ -101,13 +96,36 @@ fn middle_of(side: u32, share: f64) -> Range<u32> {
     margin..(side - margin).max(margin + 1)
 }
 
-fn share(values: impl Iterator<Item = bool>) -> f64 {
-    let (mut hits, mut count) = (0.0, 0.0);
-    for value in values {
-        hits += f64::from(u8::from(value));
-        count += 1.0;
-    }
-    hits / f64::max(count, 1.0)
+pub(crate) fn share(values: impl Iterator<Item = bool>) -> f64 {
+    average(values.map(|value| f64::from(u8::from(value))))
+}
+
+/// The mean, or 0 of nothing.
+pub(crate) fn average(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// Differences between neighbours in the rows of a square.
+fn steps(values: &[f64]) -> impl Iterator<Item = f64> {
+    let side = values.len().isqrt().max(1);
+    values.chunks(side).flat_map(|row| row.windows(2)).map(|pair| (pair[0] - pair[1]).abs())
+}
+
+/// The middle of a pixel, from -1 to 1 over the side of a picture.
+pub(crate) fn across(i: u32, side: u32) -> f64 {
+    2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0
+}
+
+/// The pixels of a picture, row by row.
+pub(crate) fn pixels(image: &Image) -> impl Iterator<Item = (u32, u32)> + use<> {
+    let [width, height] = image.size();
+    (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}
+
+/// The linear colour of a texel.
+pub(crate) fn rgb(texel: &[f32]) -> [f64; 3] {
+    [0, 1, 2].map(|c: usize| f64::from(texel[c]))
 }
 
 #[cfg(test)]

@@ -5,21 +5,18 @@ use std::f64::consts::PI;
 use luthier_lut::Image;
 use luthier_optics::color::luminance;
 
-use super::{middle_of, texels};
+use super::{across, luminances, middle_of, rgb, share, steps, texels};
 
 /// Share of the middle half of a picture that is at least twice as bright as the median around it, within a sixteenth of the
 /// side.
 pub(crate) fn sparkles(image: &Image) -> f64 {
-    let of = points(image);
-    of.iter().filter(|is_point| **is_point).count() as f64 / of.len().max(1) as f64
+    share(points(image).into_iter())
 }
 
 /// Share of the sparkles of a picture that another has in the same pixels.
 pub(crate) fn sparkles_that_stay(image: &Image, other: &Image) -> f64 {
     let (here, there) = (points(image), points(other));
-    let all = here.iter().filter(|is_point| **is_point).count();
-    let both = here.iter().zip(&there).filter(|(a, b)| **a && **b).count();
-    both as f64 / all.max(1) as f64
+    share(here.into_iter().zip(there).filter(|(is_here, _)| *is_here).map(|(_, is_there)| is_there))
 }
 
 /// Of each pixel of the middle half whether it sparkles: the median is that of nine by nine places around it.
@@ -99,33 +96,26 @@ pub(crate) fn greenness(image: &Image) -> Vec<f64> {
 /// The steepest change between neighbours in the rows of a square, as a share of the range of values: at most one pair in a
 /// hundred changes more.
 pub(crate) fn steepness(values: &[f64]) -> f64 {
-    let side = values.len().isqrt().max(1);
-    let steps: Vec<f64> =
-        values.chunks(side).flat_map(|row| row.windows(2)).map(|pair| (pair[0] - pair[1]).abs()).collect();
-    quantile(&steps, 0.99)
+    quantile(&steps(values).collect::<Vec<f64>>(), 0.99)
 }
 
 /// Share of the neighbours in rows, in the middle half of a picture, whose luminance differs by more than a hundredth of its
 /// mean: the least contrast that an eye sees.
 pub(crate) fn edges(image: &Image) -> f64 {
-    let values: Vec<f64> = middle_values(image);
+    let values = middle_values(image);
     let limit = values.iter().sum::<f64>() / values.len().max(1) as f64 / 100.0;
-    let side = values.len().isqrt().max(1);
-    let pairs: Vec<bool> =
-        values.chunks(side).flat_map(|row| row.windows(2)).map(|pair| (pair[0] - pair[1]).abs() > limit).collect();
-    pairs.iter().filter(|is_edge| **is_edge).count() as f64 / pairs.len().max(1) as f64
+    share(steps(&values).map(|step| step > limit))
 }
 
 /// Luminance of the middle half of a picture, row by row.
 pub(crate) fn middle_values(image: &Image) -> Vec<f64> {
-    texels(image, 0.5).map(|texel| luminance([0, 1, 2].map(|c: usize| f64::from(texel[c])))).collect()
+    luminances(image, 0.5).collect()
 }
 
 /// Colour at a place from -1 to 1, +x right and +y up.
 pub(crate) fn color_at(image: &Image, [x, y]: [f64; 2]) -> [f64; 3] {
     let at = |v: f64, side: u32| (((0.5 + 0.5 * v) * f64::from(side)) as u32).min(side - 1);
-    let texel = image.texel(at(x, image.width), at(-y, image.height));
-    [0, 1, 2].map(|c: usize| f64::from(texel[c]))
+    rgb(image.texel(at(x, image.width), at(-y, image.height)))
 }
 
 /// Texture coordinates of the middle half of a picture of a level square that fills it, row by row. The square ends at 0.97
@@ -139,10 +129,7 @@ pub(crate) fn places_of_square(image: &Image) -> impl Iterator<Item = [f64; 2]> 
 /// Places of the pixels of a ball that face the eye, and their texture coordinates. The camera is that of all balls.
 pub(crate) fn places_of_ball(image: &Image) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + use<> {
     let (width, height) = (image.width, image.height);
-    let places = (0..width * height).map(move |i| {
-        let at = |i: u32, side: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0;
-        [at(i % width, width), -at(i / width, height)]
-    });
+    let places = (0..width * height).map(move |i| [across(i % width, width), -across(i / width, height)]);
     places.filter_map(|place| {
         let [x, y, z] = ball_normal(place)?;
         let uv = [0.5 + libm::atan2(x, z) / (2.0 * PI), libm::acos(y.clamp(-1.0, 1.0)) / PI];
@@ -173,8 +160,7 @@ pub(crate) fn nearest(map: &Image, [u, v]: [f64; 2]) -> &[f32] {
 }
 
 fn value(image: &Image, x: u32, y: u32) -> f64 {
-    let texel = image.texel(x, y);
-    luminance([0, 1, 2].map(|c: usize| f64::from(texel[c])))
+    luminance(rgb(image.texel(x, y)))
 }
 
 #[cfg(test)]

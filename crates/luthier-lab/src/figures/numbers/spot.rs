@@ -3,6 +3,8 @@
 use luthier_lut::Image;
 use luthier_optics::color::luminance;
 
+use super::{across, pixels, rgb};
+
 /// Part of a picture that is at least half as bright as its brightest pixel. Places are from -1 to 1, +x right and +y up.
 #[derive(Clone, Copy)]
 pub(crate) struct Spot {
@@ -40,30 +42,28 @@ impl Spot {
 
 /// The brightest part of a picture.
 pub(crate) fn spot(image: &Image) -> Spot {
-    spot_of(image, |[r, g, b]| luminance([r, g, b]))
+    spot_of(image, luminance)
 }
 
 /// A picture of which each pixel is the mean of itself and its neighbours, so that noise does not make its brightest one.
 pub(crate) fn softened(image: &Image) -> Image {
     let mut soft = image.clone();
-    for y in 0..image.height {
-        for x in 0..image.width {
-            let (mut sum, mut count) = (vec![0.0; image.channels as usize], 0.0);
-            for j in (y.max(1) - 1)..=(y + 1).min(image.height - 1) {
-                for i in (x.max(1) - 1)..=(x + 1).min(image.width - 1) {
-                    sum.iter_mut().zip(image.texel(i, j)).for_each(|(sum, value)| *sum += value);
-                    count += 1.0;
-                }
+    for (x, y) in pixels(image) {
+        let (mut sum, mut count) = (vec![0.0; image.channels as usize], 0.0);
+        for j in (y.max(1) - 1)..=(y + 1).min(image.height - 1) {
+            for i in (x.max(1) - 1)..=(x + 1).min(image.width - 1) {
+                sum.iter_mut().zip(image.texel(i, j)).for_each(|(sum, value)| *sum += value);
+                count += 1.0;
             }
-            soft.texel_mut(x, y).iter_mut().zip(sum).for_each(|(soft, sum)| *soft = sum / count);
         }
+        soft.texel_mut(x, y).iter_mut().zip(sum).for_each(|(soft, sum)| *soft = sum / count);
     }
     soft
 }
 
 /// The part of a picture where a value of its pixels is at least half of the greatest.
 pub(crate) fn spot_of(image: &Image, value: impl Fn([f64; 3]) -> f64) -> Spot {
-    let values: Vec<f64> = image.texels().map(|texel| value([0, 1, 2].map(|c: usize| f64::from(texel[c])))).collect();
+    let values: Vec<f64> = image.texels().map(|texel| value(rgb(texel))).collect();
     spot_in(&values, image.width)
 }
 
@@ -87,7 +87,7 @@ fn weighed(values: &[f64], width: u32, weight: impl Fn(f64) -> f64) -> Spot {
     for (i, value) in (0_u32..).zip(values) {
         let weight = weight(*value);
         if weight > 0.0 {
-            let x = 2.0 * (f64::from(i % width) + 0.5) / f64::from(width) - 1.0;
+            let x = across(i % width, width);
             let y = 1.0 - 2.0 * (f64::from(i / width) + 0.5) / height;
             (sum, count) = (sum + weight, count + 1.0);
             first = [first[0] + weight * x, first[1] + weight * y];

@@ -5,7 +5,7 @@ use luthier_optics::color::luminance;
 use luthier_report::lightness_chroma_hue;
 
 use super::super::figure::TONE;
-use super::{middle, texels};
+use super::{average, middle, rgb, texels};
 
 /// Chroma from which a colour has a hue: four of the differences that an eye just notices (2.3 units of CIELAB, Mahy et al.
 /// 1994).
@@ -27,12 +27,12 @@ pub(crate) fn hue(image: &Image, share: f64) -> f64 {
 
 /// Saturation of the middle half of a picture, row by row.
 pub(crate) fn saturations(image: &Image) -> Vec<f64> {
-    texels(image, 0.5).map(|texel| saturation(linear(texel))).collect()
+    texels(image, 0.5).map(|texel| saturation(rgb(texel))).collect()
 }
 
 /// Mean chroma of what a display shows in the middle half of a picture.
 pub(crate) fn chroma(image: &Image) -> f64 {
-    mean(texels(image, 0.5).map(|texel| lightness_chroma_hue(shown(texel))[1]))
+    average(texels(image, 0.5).map(|texel| lightness_chroma_hue(shown(texel))[1]))
 }
 
 /// Share of the circle of hues that a picture's middle half shows: of twelve sectors, those that hold a hundredth of it.
@@ -50,33 +50,33 @@ pub(crate) fn hues(image: &Image) -> f64 {
 
 /// Mean difference of colour between neighbours in a row, without lightness, in the middle half of a picture.
 pub(crate) fn tint_grain(image: &Image) -> f64 {
-    let colours: Vec<[f64; 2]> = texels(image, 0.5).map(|texel| plane(shown(texel))).collect();
+    let colours = planes(image);
     let side = colours.len().isqrt().max(1);
     let apart = |pair: &[[f64; 2]]| libm::hypot(pair[0][0] - pair[1][0], pair[0][1] - pair[1][1]);
-    mean(colours.chunks(side).flat_map(|row| row.windows(2)).map(apart))
+    average(colours.chunks(side).flat_map(|row| row.windows(2)).map(apart))
 }
 
 /// Difference of the mean colours of two pictures in their middle half without lightness, in units of CIELAB.
 pub(crate) fn tints_apart(a: &Image, b: &Image) -> f64 {
     let [a, b] = [a, b].map(|image| {
-        let all: Vec<[f64; 2]> = texels(image, 0.5).map(|texel| plane(shown(texel))).collect();
-        [0, 1].map(|c: usize| mean(all.iter().map(|colour| colour[c])))
+        let all = planes(image);
+        [0, 1].map(|c: usize| average(all.iter().map(|colour| colour[c])))
     });
     libm::hypot(a[0] - b[0], a[1] - b[1])
 }
 
 /// Standard deviation of the colour without lightness in the middle half of a picture, in units of CIELAB.
 pub(crate) fn tint_deviation(image: &Image) -> f64 {
-    let all: Vec<[f64; 2]> = texels(image, 0.5).map(|texel| plane(shown(texel))).collect();
-    let middle = [0, 1].map(|c: usize| mean(all.iter().map(|colour| colour[c])));
+    let all = planes(image);
+    let middle = [0, 1].map(|c: usize| average(all.iter().map(|colour| colour[c])));
     let squares = all.iter().map(|[a, b]| (a - middle[0]) * (a - middle[0]) + (b - middle[1]) * (b - middle[1]));
-    mean(squares).sqrt()
+    average(squares).sqrt()
 }
 
 /// Mean difference of lightness of what a display shows of two pictures, in their middle half.
 pub(crate) fn lightness_apart(a: &Image, b: &Image) -> f64 {
     let lightness = |texel: &[f32]| lightness_chroma_hue(shown(texel))[0];
-    mean(texels(a, 0.5).zip(texels(b, 0.5)).map(|(a, b)| (lightness(a) - lightness(b)).abs()))
+    average(texels(a, 0.5).zip(texels(b, 0.5)).map(|(a, b)| (lightness(a) - lightness(b)).abs()))
 }
 
 /// Difference of two colours as a display shows them, CIELAB of 1976.
@@ -88,23 +88,18 @@ pub(crate) fn colors_apart(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// CIELAB's a* and b*.
+fn planes(image: &Image) -> Vec<[f64; 2]> {
+    texels(image, 0.5).map(|texel| plane(shown(texel))).collect()
+}
+
 fn plane(rgb: [f64; 3]) -> [f64; 2] {
     let [_, chroma, hue] = lightness_chroma_hue(rgb);
     let (sin, cos) = libm::sincos(hue.to_radians());
     [chroma * cos, chroma * sin]
 }
 
-fn linear(texel: &[f32]) -> [f64; 3] {
-    [0, 1, 2].map(|c: usize| f64::from(texel[c]))
-}
-
 fn shown(texel: &[f32]) -> [f64; 3] {
     [0, 1, 2].map(|c: usize| f64::from(TONE.value(texel[c])))
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    sum / f64::max(count, 1.0)
 }
 
 #[cfg(test)]
