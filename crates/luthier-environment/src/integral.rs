@@ -62,16 +62,16 @@ impl<'a> Integral<'a> {
                 sums.push(sum);
             }
         }
-        let azimuth = |x| {
+        let azimuths = (0..map.width).map(|x| {
             let (sin, cos) = libm::sincos(2.0 * PI * ((f64::from(x) + 0.5) / f64::from(map.width) - 0.5));
             [cos, sin]
-        };
-        let row = |y| {
+        });
+        let rows = (0..map.height).map(|y| {
             let theta = PI * (f64::from(y) + 0.5) / f64::from(map.height);
             let (sin_theta, cos_theta) = libm::sincos(theta);
             Height { cos_theta, moment: theta * cos_theta - sin_theta }
-        };
-        Self { map, sums, azimuths: (0..map.width).map(azimuth).collect(), rows: (0..map.height).map(row).collect() }
+        });
+        Self { map, sums, azimuths: azimuths.collect(), rows: rows.collect() }
     }
 
     /// Means over the texels of a face of a cube of an even size, row by row.
@@ -87,12 +87,14 @@ impl<'a> Integral<'a> {
         let corner = |x: u32, y: u32| &corners[(y * side + x) as usize];
         // The ends of the map meet in the middle of faces, between texels.
         let is_right = |x: u32| 2 * x >= size;
-        let level = |i: u32| {
-            let (x, y) = (i % size, i / size);
-            self.line(corner(x, y), corner(x + 1, y), is_right(x))
-        };
-        let level: Vec<Line> = (0..side * size).into_par_iter().map(level).collect();
-        let row = |y: u32| {
+        let level: Vec<Line> = (0..side * size)
+            .into_par_iter()
+            .map(|i| {
+                let (x, y) = (i % size, i / size);
+                self.line(corner(x, y), corner(x + 1, y), is_right(x))
+            })
+            .collect();
+        let rows = (0..size).into_par_iter().flat_map_iter(|y| {
             let mut left = [0.0; 4];
             let mut means = Vec::with_capacity(size as usize);
             for x in 0..size {
@@ -107,8 +109,8 @@ impl<'a> Integral<'a> {
                 left = right;
             }
             means
-        };
-        (0..size).into_par_iter().flat_map_iter(row).collect()
+        });
+        rows.collect()
     }
 
     fn corner(&self, direction: [f64; 3]) -> Corner {
@@ -144,11 +146,11 @@ impl<'a> Integral<'a> {
     fn line(&self, from: &Corner, to: &Corner, is_right: bool) -> Line {
         let [mut a, mut b] = [from, to].map(|corner| self.seen(corner, is_right));
         let (from, to) = (from.direction, to.direction);
-        let is_pole = |[x, _, z]: [f64; 3]| x == 0.0 && z == 0.0;
-        if is_pole(from) {
+        let [from_pole, to_pole] = [from, to].map(|[x, _, z]| x == 0.0 && z == 0.0);
+        if from_pole {
             a.column = b.column;
         }
-        if is_pole(to) {
+        if to_pole {
             b.column = a.column;
         }
         let step = [0, 1, 2].map(|c| to[c] - from[c]);

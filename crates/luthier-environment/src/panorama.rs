@@ -25,10 +25,14 @@ pub(crate) fn texel_direction(map: &Image, x: u32, y: u32) -> [f64; 3] {
     direction((f64::from(x) + 0.5) / f64::from(map.width), (f64::from(y) + 0.5) / f64::from(map.height))
 }
 
+/// Cosine of the angle from +y at a number of rows from the top.
+fn height_at(map: &Image, rows: f64) -> f64 {
+    libm::cos(PI * rows / f64::from(map.height))
+}
+
 /// Two directions in the middle of the column of a texel: the places of Gauss's rule in the height of its row.
 pub(crate) fn gauss_directions(map: &Image, x: u32, y: u32) -> [[f64; 3]; 2] {
-    let edge = |y: u32| libm::cos(PI * f64::from(y) / f64::from(map.height));
-    let (top, bottom) = (edge(y), edge(y + 1));
+    let [top, bottom] = [y, y + 1].map(|y| height_at(map, f64::from(y)));
     let u = (f64::from(x) + 0.5) / f64::from(map.width);
     [1.0, -1.0].map(|side| {
         let height = 0.5 * (top + bottom) + side * 0.5 * (top - bottom) / 3.0_f64.sqrt();
@@ -38,8 +42,8 @@ pub(crate) fn gauss_directions(map: &Image, x: u32, y: u32) -> [[f64; 3]; 2] {
 
 /// Solid angle of a texel of a row.
 pub(crate) fn solid_angle(map: &Image, y: u32) -> f64 {
-    let edge = |y: u32| libm::cos(PI * f64::from(y) / f64::from(map.height));
-    2.0 * PI / f64::from(map.width) * (edge(y) - edge(y + 1))
+    let [top, bottom] = [y, y + 1].map(|y| height_at(map, f64::from(y)));
+    2.0 * PI / f64::from(map.width) * (top - bottom)
 }
 
 /// Bilinear read of an RGB map around a direction's coordinates. Columns go round, rows end.
@@ -64,9 +68,9 @@ pub(crate) fn shrunk(map: &Image, height: u32) -> Image {
     let mut small = Image::zeros(2 * height, height, 3);
     let columns: Vec<_> = (0..small.width).map(|x| overlaps(x, small.width, map.width)).collect();
     for y in 0..height {
-        let edge = |share: f64| libm::cos(PI * share / f64::from(map.height));
+        let rows = overlaps(y, height, map.height).into_iter();
         let rows: Vec<(u32, f64)> =
-            overlaps(y, height, map.height).into_iter().map(|(row, [from, to])| (row, edge(from) - edge(to))).collect();
+            rows.map(|(row, [from, to])| (row, height_at(map, from) - height_at(map, to))).collect();
         for (x, columns) in columns.iter().enumerate() {
             let (mut sum, mut weights) = ([0.0; 3], 0.0);
             for &(row, row_weight) in &rows {

@@ -73,8 +73,8 @@ impl Mesh {
 
     /// The nearest triangle that a ray meets.
     pub fn nearest(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Meeting> {
-        let positions = |i: u32| Some(self.triangles[i as usize].positions(&self.vertices));
-        self.bvh.nearest(origin, direction, f32::INFINITY, positions)
+        self.bvh
+            .nearest(origin, direction, f32::INFINITY, |i| Some(self.triangles[i as usize].positions(&self.vertices)))
     }
 
     /// Height of a level floor: the plane that holds a plain part which lies below all that is shown.

@@ -29,11 +29,11 @@ pub(crate) fn openness(vertices: &[Vertex], triangles: &[Triangle], bvh: &Bvh) -
             let triangle = triangles[i as usize];
             (part > 0 || triangle.part == 0).then(|| triangle.positions(vertices))
         };
-        let is_open = |d: &&V| {
+        let open = directions.iter().filter(|d| {
             let direction = [0, 1, 2].map(|c| d[0] * t[c] + d[1] * b[c] + d[2] * n[c]);
             bvh.nearest(origin, direction, f32::INFINITY, hides).is_none()
-        };
-        directions.iter().filter(is_open).count() as f32 / count as f32
+        });
+        open.count() as f32 / count as f32
     };
     vertices.par_iter().zip(part).map(open).collect()
 }

@@ -184,7 +184,7 @@ impl Quantity {
 
     /// The value of a theta, an alpha, an index or a thickness.
     pub fn of_canonical(self, canonical: f64) -> f64 {
-        let sqrt_f0 = || ((canonical - 1.0) / (canonical + 1.0)).max(0.0);
+        let sqrt_f0 = ((canonical - 1.0) / (canonical + 1.0)).max(0.0);
         match self {
             Self::CosTheta => libm::cos(canonical),
             Self::CosThetaSq => libm::cos(canonical) * libm::cos(canonical),
@@ -197,9 +197,9 @@ impl Quantity {
             Self::SqrtRoughness => canonical.sqrt().sqrt(),
             Self::Ior => canonical,
             Self::InverseIor => 1.0 / canonical,
-            Self::F0 => sqrt_f0() * sqrt_f0(),
-            Self::SqrtF0 => sqrt_f0(),
-            Self::FourthRootF0 => sqrt_f0().sqrt(),
+            Self::F0 => sqrt_f0 * sqrt_f0,
+            Self::SqrtF0 => sqrt_f0,
+            Self::FourthRootF0 => sqrt_f0.sqrt(),
             Self::IorN | Self::IorK | Self::ThicknessNm => canonical,
         }
     }
@@ -285,17 +285,14 @@ impl AxisSpec {
         Axis { quantity: String::new(), unit: String::new(), min, max, size: 2, mapping }
     }
 
-    fn canonical_at(&self, u: f64) -> f64 {
+    pub(crate) fn canonical(&self, texel: u32, size: u32) -> f64 {
+        let u = self.nodes.coordinate(texel, size);
         let u = if self.descending { 1.0 - u } else { u };
         self.quantity.to_canonical(self.axis().decode(u).max(self.floor).min(self.ceiling))
     }
 
-    pub(crate) fn canonical(&self, texel: u32, size: u32) -> f64 {
-        self.canonical_at(self.nodes.coordinate(texel, size))
-    }
-
     pub(crate) fn position(&self, canonical: f64, size: u32) -> f64 {
-        let u = self.axis().encode(self.quantity.of_canonical(canonical));
+        let u = self.coordinate(canonical);
         self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
     }
 
@@ -318,6 +315,22 @@ impl AxisSpec {
     /// The value as it reads in the axis' own words, and the coordinate of a theta, alpha, index or thickness, ascending or not.
     pub fn coordinate(&self, canonical: f64) -> f64 {
         self.axis().encode(self.quantity.of_canonical(canonical))
+    }
+
+    /// Coordinates of two canonical values, the lower coordinate first.
+    pub(crate) fn ends(&self, canonical: [f64; 2]) -> [f64; 2] {
+        let [a, b] = canonical.map(|value| self.coordinate(value));
+        [a.min(b), a.max(b)]
+    }
+
+    /// Coordinates from normal incidence down to a cosine; the whole axis where it is not of the direction.
+    pub(crate) fn ends_from_cosine(&self, min_cos: f64) -> [f64; 2] {
+        if self.quantity.is_angle() { self.ends([0.0, libm::acos(min_cos.clamp(0.0, 1.0))]) } else { [0.0, 1.0] }
+    }
+
+    /// Axes separated by commas, all with the same positions of nodes.
+    pub(crate) fn parse_all(text: &str, nodes: Nodes) -> Result<Vec<Self>, AxesError> {
+        text.split(',').map(|axis| Ok(Self { nodes, ..axis.parse()? })).collect()
     }
 
     /// Theta, alpha, index or thickness at a coordinate, ascending or not.
@@ -348,29 +361,36 @@ impl FromStr for AxisSpec {
 
     /// `[-]QUANTITY[=MIN..MAX][^EXPONENT|@log]`: `cos_theta`, `-roughness`, `theta_h=0..1.5707963^8`, `alpha=0.01..1@log`.
     fn from_str(text: &str) -> Result<Self, AxesError> {
-        let bad = || AxesError::Axis(text.to_owned());
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(bad);
-        let rest = text.trim();
-        let (descending, rest) = rest.strip_prefix('-').map_or((false, rest), |rest| (true, rest));
+        Self::parse(text.trim()).ok_or_else(|| AxesError::Axis(text.to_owned()))
+    }
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+impl AxisSpec {
+    fn parse(text: &str) -> Option<Self> {
+        let (descending, rest) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
         let (rest, mapping) = if let Some((rest, exponent)) = rest.split_once('^') {
-            (rest, Mapping::Power { exponent: number(exponent)? })
+            (rest, Mapping::Power { exponent: finite(exponent)? })
         } else if let Some(rest) = rest.strip_suffix("@log") {
             (rest, Mapping::Logarithmic)
         } else {
             (rest, Mapping::Linear)
         };
         let (name, range) = rest.split_once('=').map_or((rest, None), |(name, range)| (name, Some(range)));
-        let mut spec = Self::whole(Quantity::from_name(name.trim()).ok_or_else(bad)?, Nodes::CENTRES);
+        let mut spec = Self::whole(Quantity::from_name(name.trim())?, Nodes::CENTRES);
         if let Some(range) = range {
-            let (min, max) = range.split_once("..").ok_or_else(bad)?;
-            (spec.min, spec.max) = (number(min)?, number(max)?);
+            let (min, max) = range.split_once("..")?;
+            (spec.min, spec.max) = (finite(min)?, finite(max)?);
         }
         (spec.mapping, spec.descending) = (mapping, descending);
         let [least, limit] = spec.quantity.range();
         let exponent_ok = !matches!(mapping, Mapping::Power { exponent } if exponent <= 0.0);
         let range_ok = least <= spec.min && spec.min < spec.max && spec.max <= limit;
         let logarithmic_ok = mapping != Mapping::Logarithmic || spec.min > 0.0;
-        if exponent_ok && range_ok && logarithmic_ok { Ok(spec) } else { Err(bad()) }
+        (exponent_ok && range_ok && logarithmic_ok).then_some(spec)
     }
 }
 
@@ -392,15 +412,13 @@ impl Layout {
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::Axes`] unless there is one of the direction and at most one
     /// of the micro-surface.
     pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AxesError> {
-        let axes: Vec<AxisSpec> = text.split(',').map(str::parse).collect::<Result<_, _>>()?;
-        let with = |axis: AxisSpec| AxisSpec { nodes, ..axis };
-        match *axes.as_slice() {
-            [angle] if angle.quantity.is_angle() => Ok(Self { angle: with(angle), slope: None, transposed: false }),
+        match *AxisSpec::parse_all(text, nodes)?.as_slice() {
+            [angle] if angle.quantity.is_angle() => Ok(Self { angle, slope: None, transposed: false }),
             [x, y] if x.quantity.is_angle() && y.quantity.is_slope() => {
-                Ok(Self { angle: with(x), slope: Some(with(y)), transposed: false })
+                Ok(Self { angle: x, slope: Some(y), transposed: false })
             }
             [x, y] if y.quantity.is_angle() && x.quantity.is_slope() => {
-                Ok(Self { angle: with(y), slope: Some(with(x)), transposed: true })
+                Ok(Self { angle: y, slope: Some(x), transposed: true })
             }
             _ => Err(AxesError::Axes(text.to_owned())),
         }
@@ -420,6 +438,11 @@ impl Layout {
         let axis = |quantity, min, mapping| AxisSpec { min, mapping, ..AxisSpec::whole(quantity, nodes) };
         let angle = axis(Quantity::CosTheta, min_cos, cos);
         Self { angle, slope: Some(axis(Quantity::Alpha, min_alpha, alpha)), transposed: false }
+    }
+
+    /// The texel of a place along the axis of the direction and one along that of the micro-surface.
+    pub(crate) fn texel(&self, along_angle: u32, along_slope: u32) -> [u32; 2] {
+        if self.transposed { [along_slope, along_angle] } else { [along_angle, along_slope] }
     }
 
     /// Theta and alpha of a texel; alpha is 0 where there is no such axis.

@@ -46,7 +46,6 @@ impl Base {
 
     /// The split sum of the form.
     pub(crate) fn sum(&self, alpha: f64, cos_theta: f64) -> SplitSum {
-        let [scale, bias] = self.form.eval_f32(cos_theta as f32, alpha as f32).map(f64::from);
-        SplitSum { scale, bias }
+        self.form.read(cos_theta, alpha)
     }
 }

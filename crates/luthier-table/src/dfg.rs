@@ -60,38 +60,29 @@ impl DfgTable {
         let lines: Vec<Vec<f32>> = (0..self.size[slopes])
             .into_par_iter()
             .map(|line| {
-                let at = |along: u32| {
-                    let mut texel = [0; 2];
-                    (texel[angles], texel[slopes]) = (along, line);
-                    self.layout.at_texel(self.size, texel)
-                };
-                let alpha = at(0)[1];
+                let [_, alpha] = self.layout.at_texel(self.size, self.layout.texel(0, line));
                 let row = Line::new(needs, surface, alpha);
                 let beyond = self.layout.slope.and_then(|axis| axis.beyond(line, self.size[slopes]));
                 let beyond_row = beyond.map(|alpha| Line::new(needs, surface, alpha));
-                let contents = |along: u32| {
-                    let cosine = |theta: f64| libm::cos(theta).max(0.0);
-                    let cos = cosine(at(along)[0]);
+                let texels = (0..self.size[angles]).map(|along| {
+                    let [theta, _] = self.layout.at_texel(self.size, self.layout.texel(along, line));
+                    let cos = libm::cos(theta).max(0.0);
                     let here = self.texel_of(&row, cos);
                     let across = beyond_row.as_ref().map(|row| self.texel_of(row, cos));
                     let end = self.layout.angle.beyond(along, self.size[angles]);
-                    let ahead = end.map(|theta| self.texel_of(&row, cosine(theta)));
+                    let ahead = end.map(|theta| self.texel_of(&row, libm::cos(theta).max(0.0)));
                     // Halfway to what the end holds, so that both err alike.
-                    std::array::from_fn(|c| {
-                        let step = |other: Option<[f64; 4]>| other.map_or(0.0, |other| 0.5 * (other[c] - here[c]));
-                        here[c] + step(across) + step(ahead)
-                    })
-                };
-                let texels = (0..self.size[angles]).map(contents);
+                    let [across, ahead] = [across, ahead].map(|other| other.unwrap_or(here));
+                    std::array::from_fn(|c| here[c] + 0.5 * (across[c] - here[c]) + 0.5 * (ahead[c] - here[c]))
+                });
                 texels.flat_map(|texel: [f64; 4]| texel.into_iter().take(channels).map(|value| value as f32)).collect()
             })
             .collect();
         let mut image = Image::zeros(width, height, channels as u32);
         for (line, values) in (0..).zip(&lines) {
             for (along, texel) in (0..).zip(values.chunks_exact(channels)) {
-                let mut place = [0; 2];
-                (place[angles], place[slopes]) = (along, line);
-                image.texel_mut(place[0], place[1]).copy_from_slice(texel);
+                let [x, y] = self.layout.texel(along, line);
+                image.texel_mut(x, y).copy_from_slice(texel);
             }
         }
         // Rests have both signs.
@@ -114,12 +105,15 @@ impl DfgTable {
 
     /// As [`Self::error`], of each channel apart: cloth errs by far the most.
     pub fn channel_errors(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> Vec<ErrorStats> {
-        let one = |(channel, value): (usize, &Value)| {
-            let values = texels.texels().map(|texel| texel[channel]).collect();
-            let alone = Image { width: texels.width, height: texels.height, channels: 1, data: values };
-            Self { values: vec![*value], ..self.clone() }.error(&alone, min_cos, min_alpha)
-        };
-        self.values.iter().enumerate().map(one).collect()
+        self.values
+            .iter()
+            .enumerate()
+            .map(|(channel, value)| {
+                let data = texels.texels().map(|texel| texel[channel]).collect();
+                let alone = Image { channels: 1, data, ..*texels };
+                Self { values: vec![*value], ..self.clone() }.error(&alone, min_cos, min_alpha)
+            })
+            .collect()
     }
 
     /// The content of each channel for a split sum, where no value needs more.
@@ -193,26 +187,23 @@ impl DfgTable {
         exact: impl Fn(f64, f64) -> [f64; 4] + Sync,
     ) -> ErrorStats {
         let Layout { angle, slope, .. } = self.layout;
-        let ends = |a: f64, b: f64| (a.min(b), a.max(b));
-        let (from, to) = ends(angle.coordinate(0.0), angle.coordinate(libm::acos(min_cos.clamp(0.0, 1.0))));
+        let [from, to] = angle.ends_from_cosine(min_cos);
         // Nodes too, of which the first and last are the ends of the axes: errors are largest there.
         let nodes = [points, 0];
         let mut scan = Scan { points: [points, 1], from: [from, 0.5], to: [to, 0.5], nodes, refinements: REFINEMENTS };
         if let Some(slope) = slope {
-            let (from, to) = ends(slope.coordinate(min_alpha), slope.coordinate(1.0));
+            let [from, to] = slope.ends([min_alpha, 1.0]);
             (scan.points[1], scan.nodes[1], scan.from[1], scan.to[1]) = (points, points, from, to);
         }
         let canonical = |u: [f64; 2]| {
             [angle.canonical_of_coordinate(u[0]), slope.map_or(0.0, |slope| slope.canonical_of_coordinate(u[1]))]
         };
-        let compare = |u: [f64; 2]| {
-            let at = canonical(u);
-            Comparison { expected: exact(at[1], libm::cos(at[0]).max(0.0)), sampled: self.read_at(texels, at) }
+        let compare = |[theta, alpha]: [f64; 2]| Comparison {
+            expected: exact(alpha, libm::cos(theta).max(0.0)),
+            sampled: self.read_at(texels, [theta, alpha]),
         };
-        measure_scan(&scan, compare, |u| {
-            let [theta, alpha] = canonical(u);
-            vec![libm::cos(theta), alpha]
-        })
+        let named = |[theta, alpha]: [f64; 2]| vec![libm::cos(theta), alpha];
+        measure_scan(&scan, |u| compare(canonical(u)), |u| named(canonical(u)))
     }
 }
 

@@ -31,13 +31,11 @@ impl FilmLayout {
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::FilmAxes`] unless there is one of the direction and one of the thickness.
     pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AxesError> {
-        let axes: Vec<AxisSpec> = text.split(',').map(str::parse).collect::<Result<_, _>>()?;
-        let is_fit =
-            |angle: &AxisSpec, film: &AxisSpec| angle.quantity.is_angle() && film.quantity == Quantity::ThicknessNm;
+        let axes = AxisSpec::parse_all(text, nodes)?;
+        let is_fit = axes.iter().any(|axis| axis.quantity.is_angle())
+            && axes.iter().any(|axis| axis.quantity == Quantity::ThicknessNm);
         match *axes.as_slice() {
-            [x, y] if is_fit(&x, &y) || is_fit(&y, &x) => {
-                Ok(Self { axes: [AxisSpec { nodes, ..x }, AxisSpec { nodes, ..y }] })
-            }
+            [x, y] if is_fit => Ok(Self { axes: [x, y] }),
             _ => Err(AxesError::FilmAxes(text.to_owned())),
         }
     }
@@ -106,13 +104,7 @@ impl FilmTable {
     /// every channel. Axis values of the worst point are the cosine and the thickness.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
         let wavelengths = self.color.nodes();
-        let ends = self.layout.axes.map(|axis| {
-            if !axis.quantity.is_angle() {
-                return [0.0, 1.0];
-            }
-            let [a, b] = [0.0, libm::acos(min_cos.clamp(0.0, 1.0))].map(|theta| axis.coordinate(theta));
-            [a.min(b), a.max(b)]
-        });
+        let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
         let scan = Scan {
             points: [SCAN_POINTS; 2],
             from: ends.map(|[from, _]| from),

@@ -27,13 +27,12 @@ impl FresnelLayout {
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::FresnelAxes`] unless there is one of the direction, one of n and one of k.
     pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AxesError> {
-        let axes: Vec<AxisSpec> = text.split(',').map(str::parse).collect::<Result<_, _>>()?;
-        let has = |is: fn(&AxisSpec) -> bool| axes.iter().filter(|axis| is(axis)).count() == 1;
-        let is_fit = has(|axis| axis.quantity.is_angle())
-            && has(|axis| axis.quantity == Quantity::IorN)
-            && has(|axis| axis.quantity == Quantity::IorK);
+        let axes = AxisSpec::parse_all(text, nodes)?;
+        let is_fit = axes.iter().any(|axis| axis.quantity.is_angle())
+            && axes.iter().any(|axis| axis.quantity == Quantity::IorN)
+            && axes.iter().any(|axis| axis.quantity == Quantity::IorK);
         match *axes.as_slice() {
-            [x, y, z] if is_fit => Ok(Self { axes: [x, y, z].map(|axis| AxisSpec { nodes, ..axis }) }),
+            [x, y, z] if is_fit => Ok(Self { axes: [x, y, z] }),
             _ => Err(AxesError::FresnelAxes(text.to_owned())),
         }
     }
@@ -95,21 +94,20 @@ impl FresnelTable {
     /// The error of reads from texels of this statement (linear along each axis, weights of 8 bits), over cosines from the given one on and all n
     /// and k of the table: absolute. Axis values of the worst point are the cosine, n and k.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
-        let ends = self.layout.axes.map(|axis| {
-            if !axis.quantity.is_angle() {
-                return [0.0, 1.0];
-            }
-            let [a, b] = [0.0, libm::acos(min_cos.clamp(0.0, 1.0))].map(|theta| axis.coordinate(theta));
-            [a.min(b), a.max(b)]
-        });
-        let canonical = |u: [f64; 3]| [0, 1, 2].map(|k: usize| self.layout.axes[k].canonical_of_coordinate(u[k]));
-        let place = |u: [f64; 3]| self.layout.place(canonical(u));
-        let compare = |u: [f64; 3]| {
-            let expected = [Self::exact(place(u)), 0.0, 0.0, 0.0];
-            let [sampled, ..] = self.read(texels, canonical(u));
-            Comparison { expected, sampled: [sampled, 0.0, 0.0, 0.0] }
+        let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
+        let compare = |canonical: [f64; 3]| {
+            let exact = Self::exact(self.layout.place(canonical));
+            let [sampled, ..] = self.read(texels, canonical);
+            Comparison { expected: [exact, 0.0, 0.0, 0.0], sampled: [sampled, 0.0, 0.0, 0.0] }
         };
-        slices::measure(SCAN_POINTS, ends, REFINEMENTS, compare, |u| place(u).to_vec())
+        let canonical = |u: [f64; 3]| [0, 1, 2].map(|k: usize| self.layout.axes[k].canonical_of_coordinate(u[k]));
+        slices::measure(
+            SCAN_POINTS,
+            ends,
+            REFINEMENTS,
+            |u| compare(canonical(u)),
+            |u| self.layout.place(canonical(u)).to_vec(),
+        )
     }
 
     /// The reflectance that reads give for a cosine, n and k.

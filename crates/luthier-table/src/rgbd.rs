@@ -36,17 +36,17 @@ pub fn texels(image: &Image) -> Vec<u8> {
 
 /// The values of an image of bytes over 255, RGBD each.
 pub fn decode_image(bytes: &Image) -> Image {
-    let byte = |value: Option<&f32>| value.map_or(u8::MAX, |value| libm::roundf(value * 255.0) as u8);
-    let read = |texel: &[f32]| decode(std::array::from_fn(|c| byte(texel.get(c)))).map(|value| value as f32);
-    Image { channels: 3, data: bytes.texels().flat_map(read).collect(), ..*bytes }
+    let read = bytes.texels().flat_map(|texel| {
+        decode(std::array::from_fn(|c| texel.get(c).map_or(u8::MAX, |value| libm::roundf(value * 255.0) as u8)))
+    });
+    Image { channels: 3, data: read.map(|value| value as f32).collect(), ..*bytes }
 }
 
 /// The values that a shader reads once it has decoded an image of up to three channels.
 pub(crate) fn quantise(image: &Image) -> Image {
     let channels = image.channels as usize;
-    let read = |texel: &[f32]| decode(encode(color(texel))).map(|value| value as f32);
-    let data = image.texels().flat_map(|texel| read(texel).into_iter().take(channels)).collect();
-    Image { data, ..image.clone() }
+    let read = image.texels().flat_map(|texel| decode(encode(color(texel))).into_iter().take(channels));
+    Image { data: read.map(|value| value as f32).collect(), ..*image }
 }
 
 fn color(texel: &[f32]) -> [f64; 3] {

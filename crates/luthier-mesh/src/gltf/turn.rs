@@ -28,9 +28,11 @@ pub(super) fn of_node(node: &Node) -> Option<Matrix> {
     ];
     let scale = node.scale.unwrap_or([1.0; 3]);
     let [x, y, z] = node.translation.unwrap_or([0.0; 3]);
-    let scaled = |k: usize| columns[k].map(|v: f64| v * scale[k]);
-    let column = |k: usize| [scaled(k)[0], scaled(k)[1], scaled(k)[2], 0.0];
-    Some([column(0), column(1), column(2), [x, y, z, 1.0]])
+    let [a, b, c] = [0, 1, 2].map(|k: usize| {
+        let [x, y, z] = columns[k].map(|v: f64| v * scale[k]);
+        [x, y, z, 0.0]
+    });
+    Some([a, b, c, [x, y, z, 1.0]])
 }
 
 /// The product of two matrices of columns.

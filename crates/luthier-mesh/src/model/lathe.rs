@@ -41,8 +41,7 @@ impl Curve {
     /// The other side.
     pub(super) fn reversed(self) -> Self {
         let length = self.points.last().map_or(0.0, |point| point.2);
-        let turned = |(at, n, s): (Point, Point, f64)| (at, n.map(|v| -v), length - s);
-        Self { points: self.points.into_iter().rev().map(turned).collect() }
+        Self { points: self.points.into_iter().rev().map(|(at, n, s)| (at, n.map(|v| -v), length - s)).collect() }
     }
 }
 
@@ -80,13 +79,12 @@ impl Part {
                 }
             }
             for (column, row) in (0..columns).flat_map(|column| (0..rows - 1).map(move |row| (column, row))) {
-                let corner = |dc: u32, dr: u32| first + (column + dc) * rows + row + dr;
-                let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-                let on_axis = |n: usize| curve.points[n].0[0] == 0.0;
-                if !on_axis(row as usize) {
+                let [a, b, c, d] =
+                    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[dc, dr]| first + (column + dc) * rows + row + dr);
+                if curve.points[row as usize].0[0] != 0.0 {
                     self.triangles.push([a, b, c]);
                 }
-                if !on_axis(row as usize + 1) {
+                if curve.points[row as usize + 1].0[0] != 0.0 {
                     self.triangles.push([a, c, d]);
                 }
             }

@@ -4,6 +4,23 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// Adds a vector, times a factor.
+pub(super) fn add(sum: &mut [f64], factor: f64, vector: &[f64]) {
+    sum.iter_mut().zip(vector).for_each(|(s, v)| *s += factor * v);
+}
+
+/// The sum of rows, each times its factor.
+pub(super) fn combined(rows: &[Vec<f64>], factors: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; rows[0].len()];
+    rows.iter().zip(factors).for_each(|(row, factor)| add(&mut sum, *factor, row));
+    sum
+}
+
+/// The largest magnitude.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, v| most.max(v.abs()))
+}
+
 /// The lower Cholesky factor of a symmetric matrix, whose upper half is not read; none of a matrix that is not positive definite.
 pub(super) fn cholesky(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     for i in 0..matrix.len() {

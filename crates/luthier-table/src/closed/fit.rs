@@ -126,11 +126,9 @@ fn along(lowest: f64, count: u32) -> impl Iterator<Item = f64> + Clone {
 
 impl Points {
     fn new(distribution: Distribution, masking: Masking, floor: [f64; 2]) -> Self {
-        let row = |alpha: f64| {
-            along(floor[0], NODES)
-                .map(move |cos_theta| ([cos_theta, alpha], split_sum(distribution, masking, alpha, cos_theta)))
-        };
-        Self { floor, sums: along(floor[1], NODES).flat_map(row).collect() }
+        let [cosines, alphas] = floor.map(|lowest| along(lowest, NODES));
+        let points = alphas.flat_map(|alpha| cosines.clone().map(move |cos_theta| [cos_theta, alpha]));
+        Self { floor, sums: points.map(|at| (at, split_sum(distribution, masking, at[1], at[0]))).collect() }
     }
 
     /// Points of a grid four times as fine, in some variables.
@@ -144,11 +142,13 @@ impl Points {
     }
 
     fn cosines(&self, loss: &Rational) -> Vec<Cosine> {
-        let cosine = |&(point, sum): &([f64; 2], SplitSum)| {
-            let albedo = (1.0 - loss.at(loss_variables(point))).clamp(1e-6, 1.0);
-            Cosine { at: polar(point), albedo, bias: sum.bias }
-        };
-        self.sums.iter().map(cosine).collect()
+        self.sums
+            .iter()
+            .map(|&(point, sum)| {
+                let albedo = (1.0 - loss.at(loss_variables(point))).clamp(1e-6, 1.0);
+                Cosine { at: polar(point), albedo, bias: sum.bias }
+            })
+            .collect()
     }
 }
 
@@ -195,11 +195,10 @@ impl Target for Cosine {
     }
 
     fn within(&self, error: f64) -> [f64; 2] {
-        let cosine = |bias: f64| {
+        [self.bias + error, self.bias - error].map(|bias| {
             let power = bias / self.albedo;
             1.0 - libm::pow(power.abs(), 0.2).copysign(power)
-        };
-        [cosine(self.bias + error), cosine(self.bias - error)]
+        })
     }
 
     fn error(&self, value: f64) -> f64 {

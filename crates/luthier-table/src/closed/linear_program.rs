@@ -1,6 +1,6 @@
 //! Small dense linear programs by an interior-point method.
 
-use super::cholesky::{cholesky, dot, solve};
+use super::cholesky::{add, cholesky, combined, dot, largest, solve};
 
 /// Steps after which a program is given up.
 const STEPS: usize = 60;
@@ -22,8 +22,7 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
     for _ in 0..STEPS {
         let gap = mean_product(&slacks, &duals);
         let primal: Vec<f64> = (0..rows.len()).map(|i| dot(&rows[i], &x) + slacks[i] - limits[i]).collect();
-        let dual: Vec<f64> = transposed(rows, &duals).iter().zip(cost).map(|(a, c)| a + c).collect();
-        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let dual: Vec<f64> = combined(rows, &duals).iter().zip(cost).map(|(a, c)| a + c).collect();
         if gap < GAP && largest(&primal) < 1e-9 && largest(&dual) < 1e-7 {
             return Some(x);
         }
@@ -33,7 +32,7 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
         let factor = cholesky(normal)?;
         let step = |products: &[f64]| {
             let inner: Vec<f64> = (0..rows.len()).map(|i| (duals[i] * primal[i] - products[i]) / slacks[i]).collect();
-            let right: Vec<f64> = transposed(rows, &inner).iter().zip(&dual).map(|(a, d)| -d - a).collect();
+            let right: Vec<f64> = combined(rows, &inner).iter().zip(&dual).map(|(a, d)| -d - a).collect();
             let dx = solve(&factor, right);
             let along: Vec<f64> = rows.iter().map(|row| dot(row, &dx)).collect();
             let ds: Vec<f64> = (0..rows.len()).map(|i| -primal[i] - along[i]).collect();
@@ -51,11 +50,9 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
         let corrected: Vec<f64> = (0..rows.len()).map(|i| products[i] + ds[i] * dl[i] - centre).collect();
         let (dx, ds, dl) = step(&corrected);
         let (to_primal, to_dual) = (STAY_INSIDE * reach(&slacks, &ds), STAY_INSIDE * reach(&duals, &dl));
-        let add =
-            |values: &mut [f64], by: &[f64], part: f64| values.iter_mut().zip(by).for_each(|(v, d)| *v += part * d);
-        add(&mut x, &dx, to_primal.min(1.0));
-        add(&mut slacks, &ds, to_primal.min(1.0));
-        add(&mut duals, &dl, to_dual.min(1.0));
+        add(&mut x, to_primal.min(1.0), &dx);
+        add(&mut slacks, to_primal.min(1.0), &ds);
+        add(&mut duals, to_dual.min(1.0), &dl);
         if !x.iter().all(|v| v.is_finite()) {
             return None;
         }
@@ -67,15 +64,6 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
 
 fn mean_product(a: &[f64], b: &[f64]) -> f64 {
     dot(a, b) / a.len() as f64
-}
-
-/// The sum of rows, each times its factor.
-fn transposed(rows: &[Vec<f64>], factors: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; rows[0].len()];
-    for (row, factor) in rows.iter().zip(factors) {
-        sum.iter_mut().zip(row).for_each(|(s, v)| *s += factor * v);
-    }
-    sum
 }
 
 /// The largest step up to 1 that keeps all values at or above 0, or what goes beyond 1 if nothing falls.
@@ -93,8 +81,7 @@ fn normal_matrix(n: usize, rows: &[Vec<f64>], weights: &[f64]) -> Vec<Vec<f64>> 
     let mut matrix = vec![vec![0.0; n]; n];
     for (row, weight) in rows.iter().zip(weights) {
         for i in 0..n {
-            let scaled = weight * row[i];
-            matrix[i][..=i].iter_mut().zip(row).for_each(|(m, v)| *m += scaled * v);
+            add(&mut matrix[i][..=i], weight * row[i], row);
         }
     }
     matrix

@@ -1,5 +1,6 @@
 //! Rational functions with the least largest error.
 
+use super::cholesky::{combined, dot, largest};
 use super::linear_program::minimise;
 use super::rational::{Polynomial, Rational};
 
@@ -70,10 +71,11 @@ pub(super) fn fit<T: Target>(degrees: Degrees, grid: &[T]) -> Option<(Rational, 
             }
         }
         let Some(x) = minimise(&cost, &rows, &limits) else { break };
-        let found = rational(&numerator.polynomial(&x[..p]), &denominator.polynomial(&x[p..p + q]), degrees);
+        let above = combined(&numerator.coefficients, &x[..p]);
+        let found = rational(&above, &combined(&denominator.coefficients, &x[p..p + q]), degrees);
         let largest = grid.iter().map(|target| target.error(found.at(target.at()))).fold(0.0, f64::max);
         let before = best.as_ref().map_or(f64::INFINITY, |(_, error)| *error);
-        divisors = denominator.at.iter().map(|d| d.iter().zip(&x[p..]).map(|(d, x)| d * x).sum()).collect();
+        divisors = denominator.at.iter().map(|d| dot(d, &x[p..])).collect();
         if largest < before {
             best = Some((found, largest));
         }
@@ -106,17 +108,16 @@ impl Basis {
         let mut columns: Vec<Vec<f64>> = (0..count).map(|j| powers.iter().map(|row| row[j]).collect()).collect();
         let mut coefficients: Vec<Vec<f64>> =
             (0..count).map(|j| (0..count).map(|i| if i == j { 1.0 } else { 0.0 }).collect()).collect();
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / grid.len() as f64;
         // Gram and Schmidt, twice against rounding.
         for j in (0..count).flat_map(|j| [j, j]) {
             for i in 0..j {
-                let part = product(&columns[i], &columns[j]);
+                let part = dot(&columns[i], &columns[j]) / grid.len() as f64;
                 for vectors in [&mut columns, &mut coefficients] {
                     let (before, rest) = vectors.split_at_mut(j);
                     rest[0].iter_mut().zip(&before[i]).for_each(|(v, b)| *v -= part * b);
                 }
             }
-            let inverse = 1.0 / product(&columns[j], &columns[j]).sqrt();
+            let inverse = 1.0 / (dot(&columns[j], &columns[j]) / grid.len() as f64).sqrt();
             for vector in [&mut columns[j], &mut coefficients[j]] {
                 vector.iter_mut().for_each(|v| *v *= inverse);
             }
@@ -128,26 +129,16 @@ impl Basis {
     fn len(&self) -> usize {
         self.coefficients.len()
     }
-
-    /// Coefficients of powers, of a sum of these polynomials.
-    fn polynomial(&self, factors: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.len()];
-        for (coefficients, factor) in self.coefficients.iter().zip(factors) {
-            sum.iter_mut().zip(coefficients).for_each(|(s, c)| *s += factor * c);
-        }
-        sum
-    }
 }
 
 /// The quotient with its coefficients rounded, divided by the constant of the divisor, or by its largest coefficient where that is much larger.
 fn rational(numerator: &[f64], denominator: &[f64], [above, below]: Degrees) -> Rational {
-    let largest = denominator.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let largest = largest(denominator);
     let by = if denominator[0] > 1e-3 * largest { denominator[0] } else { largest };
-    let polynomial = |degrees, coefficients: &[f64]| Polynomial {
-        degrees,
-        coefficients: coefficients.iter().map(|c| (c / by) as f32).collect(),
-    };
-    Rational { numerator: polynomial(above, numerator), denominator: polynomial(below, denominator) }
+    Rational {
+        numerator: Polynomial::rounded(above, numerator.iter().map(|c| c / by)),
+        denominator: Polynomial::rounded(below, denominator.iter().map(|c| c / by)),
+    }
 }
 
 #[cfg(test)]

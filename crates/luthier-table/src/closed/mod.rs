@@ -73,16 +73,21 @@ impl ClosedForm {
     /// The error in single precision over cosines and alphas from the given ones on, as [`measure_form`] has it.
     pub fn error(&self, min_cos: f64, min_alpha: f64) -> ErrorStats {
         measure_form(self.distribution, self.masking, [min_cos, min_alpha], |cos_theta, alpha| {
-            let [scale, bias] = self.eval_f32(cos_theta as f32, alpha as f32).map(f64::from);
-            SplitSum { scale, bias }
+            self.read(cos_theta, alpha)
         })
+    }
+
+    /// The split sum as a shader computes it, in single precision.
+    pub(crate) fn read(&self, cos_theta: f64, alpha: f64) -> SplitSum {
+        let [scale, bias] = self.eval_f32(cos_theta as f32, alpha as f32).map(f64::from);
+        SplitSum { scale, bias }
     }
 
     /// The largest error of bias and albedo in single precision at one place, against quadrature.
     pub fn error_at(&self, cos_theta: f64, alpha: f64) -> f64 {
         let exact = split_sum(self.distribution, self.masking, alpha, cos_theta);
-        let [scale, bias] = self.eval_f32(cos_theta as f32, alpha as f32).map(f64::from);
-        (bias - exact.bias).abs().max((scale + bias - exact.albedo()).abs())
+        let read = self.read(cos_theta, alpha);
+        (read.bias - exact.bias).abs().max((read.albedo() - exact.albedo()).abs())
     }
 
     /// Operations of a read.
@@ -147,11 +152,10 @@ pub fn measure_form(
         refinements: REFINEMENTS,
     };
     let place = |u: [f64; 2]| [0, 1].map(|k: usize| lowest[k] + (1.0 - lowest[k]) * u[k] * u[k]);
-    let compare = |u: [f64; 2]| {
-        let [cos_theta, alpha] = place(u);
-        let (exact, found) = (split_sum(distribution, masking, alpha, cos_theta), form(cos_theta, alpha));
-        let channels = |sum: SplitSum| [sum.bias, sum.albedo(), 0.0, 0.0];
-        Comparison { expected: channels(exact), sampled: channels(found) }
+    let compare = |[cos_theta, alpha]: [f64; 2]| {
+        let sums = [split_sum(distribution, masking, alpha, cos_theta), form(cos_theta, alpha)];
+        let [expected, sampled] = sums.map(|sum| [sum.bias, sum.albedo(), 0.0, 0.0]);
+        Comparison { expected, sampled }
     };
-    measure_scan(&scan, compare, |u| place(u).to_vec())
+    measure_scan(&scan, |u| compare(place(u)), |u| place(u).to_vec())
 }

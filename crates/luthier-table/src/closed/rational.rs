@@ -10,22 +10,23 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
+    pub(super) fn rounded(degrees: [usize; 2], coefficients: impl Iterator<Item = f64>) -> Self {
+        Self { degrees, coefficients: coefficients.map(|c| c as f32).collect() }
+    }
     /// The value by Horner's rule, in y within x.
     pub fn at(&self, [x, y]: [f64; 2]) -> f64 {
-        let line = |line: &[f32]| line.iter().rev().fold(0.0, |sum, c| sum * y + f64::from(*c));
         self.coefficients
             .chunks_exact(self.degrees[1] + 1)
             .rev()
-            .fold(0.0, |sum, coefficients| sum * x + line(coefficients))
+            .fold(0.0, |sum, line| sum * x + line.iter().rev().fold(0.0, |sum, c| sum * y + f64::from(*c)))
     }
 
     /// As [`Self::at`], in single precision.
     pub fn at_f32(&self, [x, y]: [f32; 2]) -> f32 {
-        let line = |line: &[f32]| line.iter().rev().fold(0.0, |sum, c| sum * y + c);
         self.coefficients
             .chunks_exact(self.degrees[1] + 1)
             .rev()
-            .fold(0.0, |sum, coefficients| sum * x + line(coefficients))
+            .fold(0.0, |sum, line| sum * x + line.iter().rev().fold(0.0, |sum, c| sum * y + c))
     }
 
     /// The multiply-adds of Horner's rule.

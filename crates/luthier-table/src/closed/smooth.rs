@@ -3,7 +3,7 @@
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
 use luthier_optics::stack::Distribution;
 
-use super::cholesky::{cholesky, dot, solve};
+use super::cholesky::{add, cholesky, dot, solve};
 use super::rational::{Polynomial, Rational};
 use super::{ClosedForm, STRETCH};
 use crate::Layout;
@@ -52,11 +52,10 @@ struct Grid {
 impl Grid {
     fn new(surface: &SplitSumSurface, layout: &Layout) -> Self {
         let (mut variables, mut sums) = (Vec::new(), Vec::new());
-        let at = |i, j| layout.at_texel([NODES; 2], [i, j]);
         for j in 0..NODES {
-            let row = surface.row(at(0, j)[1]);
+            let row = surface.row(layout.at_texel([NODES; 2], [0, j])[1]);
             for i in 0..NODES {
-                let [theta, alpha] = at(i, j);
+                let [theta, alpha] = layout.at_texel([NODES; 2], [i, j]);
                 let cos_theta = libm::cos(theta);
                 let r = (cos_theta * cos_theta + STRETCH * alpha * alpha).sqrt();
                 variables.push([cos_theta / r, r, alpha]);
@@ -91,13 +90,12 @@ impl Grid {
         let rests: Vec<f64> =
             self.sums.iter().map(|sum| libm::pow((sum.bias / sum.albedo().max(1e-6)).clamp(0.0, 1.0), 0.2)).collect();
         let weights: Vec<f64> = self.sums.iter().zip(&rests).map(|(sum, rest)| slope(sum.albedo(), *rest)).collect();
-        let weighted = |column: &[f64]| column.iter().zip(&weights).map(|(v, weight)| v * weight).collect::<Vec<f64>>();
         let cosines: Vec<f64> = rests.iter().map(|rest| 1.0 - rest).collect();
-        let start: Vec<Vec<f64>> = columns.iter().map(|column| weighted(column)).collect();
-        let mut coefficients = least_squares(&start, &weighted(&cosines));
+        let start: Vec<Vec<f64>> = columns.iter().map(|column| products(column, &weights)).collect();
+        let mut coefficients = least_squares(&start, &products(&cosines, &weights));
         for round in 0..ROUNDS {
-            let rest = |i| (1.0 - value(&columns, &coefficients, i)).clamp(0.0, 1.0);
-            let rests: Vec<f64> = (0..cosines.len()).map(rest).collect();
+            let rests: Vec<f64> =
+                (0..cosines.len()).map(|i| (1.0 - value(&columns, &coefficients, i)).clamp(0.0, 1.0)).collect();
             let slopes: Vec<f64> = albedos.iter().zip(&rests).map(|(albedo, rest)| -slope(*albedo, *rest)).collect();
             // The bias of the form is a fifth of its slope, times the rest.
             let lacking: Vec<f64> = self
@@ -106,24 +104,25 @@ impl Grid {
                 .zip(slopes.iter().zip(&rests))
                 .map(|(sum, (s, rest))| sum.bias + 0.2 * s * rest)
                 .collect();
-            let bends: Vec<Vec<f64>> = columns
-                .iter()
-                .map(|column| second_differences(&column.iter().zip(&slopes).map(|(v, s)| v * s).collect::<Vec<f64>>()))
-                .collect();
+            let bends: Vec<Vec<f64>> =
+                columns.iter().map(|column| second_differences(&products(column, &slopes))).collect();
             let step = least_squares(&bends, &second_differences(&lacking));
             let part = if 2 * round < ROUNDS { 0.5 } else { 1.0 };
-            coefficients.iter_mut().zip(step).for_each(|(c, step)| *c += part * step);
+            add(&mut coefficients, part, &step);
         }
         polynomial(degrees, &coefficients)
     }
 }
 
 fn polynomial(degrees: [usize; 2], coefficients: &[f64]) -> Rational {
-    let polynomial = |degrees, coefficients: &[f64]| Polynomial {
-        degrees,
-        coefficients: coefficients.iter().map(|c| *c as f32).collect(),
-    };
-    Rational { numerator: polynomial(degrees, coefficients), denominator: polynomial([0, 0], &[1.0]) }
+    Rational {
+        numerator: Polynomial::rounded(degrees, coefficients.iter().copied()),
+        denominator: Polynomial::rounded([0, 0], std::iter::once(1.0)),
+    }
+}
+
+fn products(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
 }
 
 /// Powers at all nodes, by power.

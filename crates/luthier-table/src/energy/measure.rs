@@ -26,15 +26,11 @@ pub struct EnergyDomain {
 impl EnergyDomain {
     /// Ends of the coordinate of an axis.
     fn ends(&self, axis: &AxisSpec) -> [f64; 2] {
-        let canonical = if axis.quantity.is_angle() {
-            [0.0, libm::acos(self.min_cos.clamp(0.0, 1.0))]
-        } else if axis.quantity.is_slope() {
-            [self.min_alpha, 1.0]
-        } else {
-            self.ior
-        };
-        let [a, b] = canonical.map(|value| axis.coordinate(value));
-        [a.min(b), a.max(b)]
+        match axis.quantity {
+            quantity if quantity.is_angle() => axis.ends_from_cosine(self.min_cos),
+            quantity if quantity.is_slope() => axis.ends([self.min_alpha, 1.0]),
+            _ => axis.ends(self.ior),
+        }
     }
 }
 
@@ -48,27 +44,15 @@ impl EnergyTable {
         let ends: Vec<[f64; 2]> = axes.iter().map(|axis| domain.ends(axis)).collect();
         let is_average = !axes.iter().any(|axis| axis.quantity.is_angle());
         let points = if is_average { POINTS_OF_AVERAGES[axes.len() - 1] } else { POINTS[axes.len() - 1] };
-        let scan = |count: u32| {
-            let mut scan = Scan {
-                points: [1; 2],
-                from: [0.5; 2],
-                to: [0.5; 2],
-                nodes: [0, 0],
-                refinements: if is_average { 1 } else { REFINEMENTS },
-            };
-            for (k, [from, to]) in ends.iter().take(2).enumerate() {
-                (scan.points[k], scan.from[k], scan.to[k]) = (count, *from, *to);
-            }
-            scan
-        };
-        let slice = |third: f64, count: u32| {
-            let u3 = |u: [f64; 2]| [u[0], u[1], third];
-            measure_scan(&scan(count), |u| self.compare(texels, u3(u)), |u| self.named(u3(u)))
-        };
-        let &[x, y, z] = ends.as_slice() else {
-            return slice(0.5, points);
-        };
-        slices::measure(points, [x, y, z], REFINEMENTS, |u| self.compare(texels, u), |u| self.named(u))
+        if let &[x, y, z] = ends.as_slice() {
+            return slices::measure(points, [x, y, z], REFINEMENTS, |u| self.compare(texels, u), |u| self.named(u));
+        }
+        let refinements = if is_average { 1 } else { REFINEMENTS };
+        let mut scan = Scan { points: [1; 2], from: [0.5; 2], to: [0.5; 2], nodes: [0, 0], refinements };
+        for (k, [from, to]) in ends.into_iter().enumerate() {
+            (scan.points[k], scan.from[k], scan.to[k]) = (points, from, to);
+        }
+        measure_scan(&scan, |[x, y]| self.compare(texels, [x, y, 0.5]), |[x, y]| self.named([x, y, 0.5]))
     }
 
     /// The largest error of all channels of a read at one cosine and alpha, of a table over these two.

@@ -13,7 +13,7 @@ use luthier_optics::dielectric_albedo::{
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
-use crate::{AxesError, AxisSpec, Nodes, Stored};
+use crate::{AxesError, AxisSpec, Nodes, Quantity, Stored};
 
 pub use container::EnergyContainer;
 pub use measure::EnergyDomain;
@@ -129,20 +129,11 @@ impl EnergyLayout {
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::EnergyAxes`] unless there is one of the micro-surface and at most one
     /// each of the direction and the index.
     pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AxesError> {
-        let axes: Vec<AxisSpec> = text
-            .split(',')
-            .map(|axis| axis.parse().map(|axis: AxisSpec| AxisSpec { nodes, ..axis }))
-            .collect::<Result<_, _>>()?;
-        Self::new(axes).ok_or_else(|| AxesError::EnergyAxes(text.to_owned()))
-    }
-
-    /// The layout of these axes, or none for axes that make no table.
-    pub fn new(axes: Vec<AxisSpec>) -> Option<Self> {
-        let count = |is: fn(crate::Quantity) -> bool| axes.iter().filter(|axis| is(axis.quantity)).count();
-        let is_fit = count(crate::Quantity::is_slope) == 1
-            && count(crate::Quantity::is_angle) <= 1
-            && count(crate::Quantity::is_index) <= 1;
-        is_fit.then_some(Self { axes })
+        let axes = AxisSpec::parse_all(text, nodes)?;
+        let [slopes, angles, indices] = [Quantity::is_slope, Quantity::is_angle, Quantity::is_index]
+            .map(|is: fn(Quantity) -> bool| axes.iter().filter(|axis| is(axis.quantity)).count());
+        let is_fit = slopes == 1 && angles <= 1 && indices <= 1;
+        if is_fit { Ok(Self { axes }) } else { Err(AxesError::EnergyAxes(text.to_owned())) }
     }
 
     /// The axes, the fastest in memory first.
@@ -223,22 +214,21 @@ impl EnergyTable {
         let Self { distribution, masking, surface, .. } = *self;
         let Place { cos_theta, alpha, ior } = place;
         let ior = ior.unwrap_or(SQRT_2);
-        let reflector = || InterfaceAlbedo {
-            reflected: match cos_theta {
-                Some(cos) => reflected_dir(distribution, masking, alpha, cos, |_| 1.0),
-                None => reflected_avg(distribution, masking, alpha, |_| 1.0),
-            },
-            transmitted: 0.0,
+        let eta_ti = match surface {
+            EnergySurface::Reflector => {
+                let reflected = match cos_theta {
+                    Some(cos) => reflected_dir(distribution, masking, alpha, cos, |_| 1.0),
+                    None => reflected_avg(distribution, masking, alpha, |_| 1.0),
+                };
+                return InterfaceAlbedo { reflected, transmitted: 0.0 };
+            }
+            EnergySurface::FromRarer => ior,
+            EnergySurface::FromDenser => 1.0 / ior,
         };
-        let interface = |eta_ti: f64| match cos_theta {
+        match cos_theta {
             _ if ior - 1.0 < self.clear_within => InterfaceAlbedo { reflected: 0.0, transmitted: 1.0 },
             Some(cos) => albedo_dir(distribution, masking, alpha, eta_ti, cos),
             None => albedo_avg(distribution, masking, alpha, eta_ti),
-        };
-        match surface {
-            EnergySurface::Reflector => reflector(),
-            EnergySurface::FromRarer => interface(ior),
-            EnergySurface::FromDenser => interface(1.0 / ior),
         }
     }
 }

@@ -113,8 +113,7 @@ const ROOTS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 /// The root of an expression in 0..1 by square roots where the exponent is a power of two up to 8, else by a power.
 fn root(part: &str, exponent: f64) -> String {
-    let roots = ROOTS.into_iter().position(|power| power == exponent);
-    match roots {
+    match ROOTS.into_iter().position(|power| power == exponent) {
         Some(count) => format!("{}{part}{}", "sqrt(".repeat(count), ")".repeat(count)),
         None => format!("pow({part}, {})", float(1.0 / exponent)),
     }

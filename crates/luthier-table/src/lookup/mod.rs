@@ -87,11 +87,12 @@ impl DfgTable {
     /// Operations of a read beside the texture; none where there is no look-up.
     pub fn cost(&self) -> Option<Cost> {
         result(&self.values, false)?;
-        let has = |value: Value| self.values.contains(&value);
         let axes = [Some(&self.layout.angle), self.layout.slope.as_ref()];
         let mut cost =
             axes.into_iter().flatten().try_fold(Cost::default(), |sum, axis| Some(sum + axis::cost(axis)?))?;
-        cost.multiply_adds += match (has(Value::Scale) && has(Value::Bias), has(Value::Albedo)) {
+        let [scale, bias, albedo] =
+            [Value::Scale, Value::Bias, Value::Albedo].map(|value| self.values.contains(&value));
+        cost.multiply_adds += match (scale && bias, albedo) {
             (true, _) => 0,
             (false, true) => 1,
             (false, false) => 2,
@@ -128,10 +129,9 @@ impl DfgTable {
 
 /// Scale and bias as an expression of a texel, or of what its channels add.
 fn result(values: &[Value], is_rest: bool) -> Option<String> {
-    let channel = |value: Value| {
-        values.iter().take(4).position(|v| *v == value).map(|i| format!("texel.{}", ["r", "g", "b", "a"][i]))
-    };
-    let [scale, bias, albedo, loss] = [Value::Scale, Value::Bias, Value::Albedo, Value::Loss].map(channel);
+    let [scale, bias, albedo, loss] = [Value::Scale, Value::Bias, Value::Albedo, Value::Loss].map(|value| {
+        values.iter().zip(["r", "g", "b", "a"]).find(|(v, _)| **v == value).map(|(_, name)| format!("texel.{name}"))
+    });
     let albedo = albedo.or_else(|| loss.map(|loss| format!("{}{loss}", if is_rest { "-" } else { "1.0 - " })));
     Some(match (scale, bias, albedo) {
         (Some(scale), Some(bias), _) => format!("vec2<f32>({scale}, {bias})"),

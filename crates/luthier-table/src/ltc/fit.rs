@@ -122,12 +122,11 @@ pub(super) fn fit_column(targets: impl Iterator<Item = Target>) -> Vec<Shape> {
 }
 
 fn search(target: &Target, start: Shape, steps: [f64; 4]) -> Shape {
-    let loss = |by: [f64; 4]| {
+    start.moved(minimise(steps, |by| {
         let lobe = start.moved(by).lobe();
         // Lobes that are turned inside out, or away from the normal, are none that reads between texels could pass.
         if lobe.determinant() > 0.0 && lobe.m11 > 0.0 && lobe.m33 > 0.0 { 1.0 - target.shared(lobe, 1.0) } else { 1.0 }
-    };
-    start.moved(minimise(steps, loss))
+    }))
 }
 
 #[cfg(test)]

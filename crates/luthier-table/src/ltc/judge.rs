@@ -46,8 +46,8 @@ pub struct IrradianceError {
 impl LtcError {
     pub(super) fn of(mut errors: Vec<PlacedError>) -> Self {
         errors.sort_by(|a, b| a.error.total_cmp(&b.error));
-        let at = |part: f64| errors[((errors.len() - 1) as f64 * part) as usize];
-        Self { median: at(0.5).error, p95: at(0.95).error, max: at(1.0) }
+        let [median, p95, max] = [0.5, 0.95, 1.0].map(|part| errors[((errors.len() - 1) as f64 * part) as usize]);
+        Self { median: median.error, p95: p95.error, max }
     }
 }
 
@@ -123,11 +123,10 @@ impl LtcTable {
                 (PlacedError { error: (found - exact).abs() / albedo, cos_theta_o: cos, alpha }, exact / albedo)
             })
             .collect();
-        let lit = |&&(_, part): &&(PlacedError, f64)| part > 0.01;
-        let over = |&(placed, part): &(PlacedError, f64)| PlacedError { error: placed.error / part, ..placed };
+        let lit = errors.iter().filter(|(_, part)| *part > 0.01);
         IrradianceError {
             absolute: LtcError::of(errors.iter().map(|(placed, _)| *placed).collect()),
-            relative: LtcError::of(errors.iter().filter(lit).map(over).collect()),
+            relative: LtcError::of(lit.map(|(at, part)| PlacedError { error: at.error / part, ..*at }).collect()),
         }
     }
 }

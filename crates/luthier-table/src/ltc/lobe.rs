@@ -66,8 +66,8 @@ impl Lobe {
         let transform = |w: &DVec3| DVec3::new(self.m11 * w.x + self.m13 * w.z, w.y, self.m31 * w.x + self.m33 * w.z);
         let transformed: Vec<DVec3> = corners.iter().map(transform).collect();
         let clipped: Vec<DVec3> = clip(&transformed).into_iter().map(DVec3::normalize_or_zero).collect();
-        let next = |i: usize| clipped[(i + 1) % clipped.len()];
-        let sum: f64 = clipped.iter().enumerate().map(|(i, &a)| edge(a, next(i))).sum();
+        let next = clipped.iter().cycle().skip(1);
+        let sum: f64 = clipped.iter().zip(next).map(|(&a, &b)| edge(a, b)).sum();
         sum.abs() / (2.0 * PI)
     }
 }

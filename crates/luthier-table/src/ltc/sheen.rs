@@ -44,20 +44,13 @@ impl SheenTable {
         Self { layout, size: [32, 32], stored: Stored::Float }
     }
 
-    fn texel(&self, along_angle: u32, along_slope: u32) -> [u32; 2] {
-        let [a, s] = self.layout.order();
-        let mut texel = [0; 2];
-        (texel[a], texel[s]) = (along_angle, along_slope);
-        texel
-    }
-
     /// Reflections at all texels, or half-way between them: one line of cosines for each cross section.
     fn targets(&self, offset: [f64; 2]) -> Vec<Vec<Target>> {
         let [a, s] = self.layout.order();
         let [angles, slopes] = [a, s].map(|k| self.size[k] - u32::from(offset[k] > 0.0));
         let rules = kernel_rules();
         let at = |angle: u32, slope: u32| {
-            let [theta, sigma] = place(&self.layout, self.size, self.texel(angle, slope), offset);
+            let [theta, sigma] = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
             [libm::cos(theta).clamp(LOWEST, 1.0), sigma.clamp(LOWEST * LOWEST, 1.0)]
         };
         let cosines: Vec<f64> = (0..angles).map(|angle| at(angle, 0)[0]).collect();
@@ -104,7 +97,7 @@ impl SheenTable {
         for (angle, line) in (0..).zip(&lines) {
             for (&slope, &[a, b]) in order.iter().zip(line) {
                 let albedo = targets[slope as usize][angle as usize].albedo_dir;
-                let [x, y] = self.texel(angle, slope);
+                let [x, y] = self.layout.texel(angle, slope);
                 image.texel_mut(x, y).copy_from_slice(&[a as f32, b as f32, albedo as f32]);
             }
         }
@@ -131,7 +124,7 @@ impl SheenTable {
             .zip(0..)
             .flat_map(|(line, slope)| line.iter().zip(0..).map(move |(t, angle)| (t, angle, slope)));
         for (target, angle, slope) in places.filter(|(target, ..)| target.albedo_dir >= min_albedo) {
-            let at = place(&self.layout, self.size, self.texel(angle, slope), offset);
+            let at = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
             let [a, b, albedo, _] = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
             let placed = |error: f64| PlacedError { error, cos_theta_o: target.cos_theta_o, alpha: target.alpha };
             // A table may leave out lobes that reflect too little.
@@ -183,11 +176,8 @@ pub(super) fn ordinates(cosines: &[f64]) -> Vec<f64> {
 }
 
 fn target(layer: &FibreLayer, sigma: f64, cos_theta_o: f64) -> Target {
-    let nearest = |i: &usize, j: &usize| {
-        let off = |i: usize| (layer.cosines[i] - cos_theta_o).abs();
-        off(*i).total_cmp(&off(*j))
-    };
-    let row = layer.row((0..layer.cosines.len()).min_by(nearest).unwrap_or(0));
+    let offs = layer.cosines.iter().map(|cos| (cos - cos_theta_o).abs());
+    let row = layer.row(offs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i));
     let albedo_dir = row.albedo_dir();
     let mut nodes = Vec::new();
     for k in 0..AZIMUTHS {

@@ -57,15 +57,8 @@ impl LtcTable {
 
     /// Cosine and alpha of a place along both axes.
     fn at(&self, along_angle: u32, along_slope: u32) -> [f64; 2] {
-        let [theta, alpha] = self.layout.at_texel(self.size, self.place(along_angle, along_slope));
+        let [theta, alpha] = self.layout.at_texel(self.size, self.layout.texel(along_angle, along_slope));
         [libm::cos(theta).max(0.0), alpha]
-    }
-
-    fn place(&self, along_angle: u32, along_slope: u32) -> [u32; 2] {
-        let [a, s] = self.layout.order();
-        let mut texel = [0; 2];
-        (texel[a], texel[s]) = (along_angle, along_slope);
-        texel
     }
 
     /// Both tables.
@@ -97,7 +90,7 @@ impl LtcTable {
         let mut image = Image::zeros(self.size[0], self.size[1], 4);
         for (slope, column) in (0..).zip(columns) {
             for (&angle, shape) in order.iter().zip(column) {
-                let [x, y] = self.place(angle, slope);
+                let [x, y] = self.layout.texel(angle, slope);
                 image.texel_mut(x, y).copy_from_slice(&shape.lobe().texel().map(|entry| entry as f32));
             }
         }
@@ -116,7 +109,7 @@ impl LtcTable {
             let row = surface.row(self.at(0, slope)[1]);
             for angle in 0..self.size[a] {
                 let sum = row.at(self.at(angle, slope)[0]);
-                let [x, y] = self.place(angle, slope);
+                let [x, y] = self.layout.texel(angle, slope);
                 sums.texel_mut(x, y).copy_from_slice(&[sum.albedo() as f32, sum.bias as f32]);
             }
         }

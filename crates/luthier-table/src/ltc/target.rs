@@ -33,12 +33,11 @@ impl Rules {
     }
 
     fn new(tilt: [f64; 2], azimuth: [f64; 2], behind: usize) -> Self {
-        let front = |t: f64, weight: f64| (t, 2.0 * weight / (1.0 + t * t));
         let back: Vec<(f64, f64)> =
             gauss_legendre(behind).into_iter().map(|(t, weight)| (1.0 / t, 2.0 * weight / (1.0 + t * t))).collect();
         Self {
             tilt: GradedRules::new(tilt[0], tilt[1]),
-            azimuth: GradedRules::new(azimuth[0], azimuth[1]).map(front, &back),
+            azimuth: GradedRules::new(azimuth[0], azimuth[1]).map(|t, weight| (t, 2.0 * weight / (1.0 + t * t)), &back),
         }
     }
 }

@@ -100,17 +100,16 @@ impl Judge {
 
     /// Polynomials with straight rests, each with its axes, by what a read costs.
     fn straight(&self) -> Vec<(ClosedForm, Vec<Layout>)> {
-        let one = |degrees, exponents| {
-            let layout = self.layout(exponents);
-            let form = ClosedForm::straightest(self.distribution, self.masking, &self.surface, &layout, degrees);
-            (form, vec![layout])
-        };
-        let mut all: Vec<_> =
-            STRAIGHT.into_iter().flat_map(|degrees| EXPONENTS.map(|exponents| one(degrees, exponents))).collect();
-        let slots = |form: &ClosedForm, layout: Layout| {
-            self.table(form, layout, SIDES[0], SIDES[0], Stored::Half).cost().map(Cost::slots)
-        };
-        all.sort_by_key(|(form, layouts)| slots(form, layouts[0]));
+        let mut all = Vec::new();
+        for degrees in STRAIGHT {
+            for layout in EXPONENTS.map(|exponents| self.layout(exponents)) {
+                let form = ClosedForm::straightest(self.distribution, self.masking, &self.surface, &layout, degrees);
+                all.push((form, vec![layout]));
+            }
+        }
+        all.sort_by_key(|(form, layouts)| {
+            self.table(form, layouts[0], SIDES[0], SIDES[0], Stored::Half).cost().map(Cost::slots)
+        });
         all
     }
 
@@ -163,11 +162,11 @@ impl Judge {
             table.base = Some(Base::normalised(form.clone(), most * MARGIN));
         }
         let texels = table.bake_from(Some(&self.surface));
-        let worst = |worst: f64, (&(at, exact), &form): (&([f64; 2], SplitSum), &SplitSum)| {
+        let mut error = 0.0_f64;
+        for (&(at, exact), &form) in self.points.iter().zip(sums) {
             let (read, exact) = (table.read_beside(&texels, at, form), table.of_split_sum(exact));
-            read.iter().zip(exact).fold(worst, |worst, (read, exact)| worst.max((read - exact).abs()))
-        };
-        let error = self.points.iter().zip(sums).fold(0.0, worst);
+            error = read.iter().zip(exact).fold(error, |worst, (read, exact)| worst.max((read - exact).abs()));
+        }
         Candidate { table, error }
     }
 }

@@ -70,9 +70,11 @@ pub fn search(
         let errors: Vec<f64> = candidates
             .par_iter()
             .map(|table| {
-                let exact = |alpha: f64, cos: f64| table.of_split_sum(surface.row(alpha).at(cos));
                 let texels = table.bake_from(Some(&surface));
-                table.error_against(&texels, [min_cos, min_alpha], POINTS, exact).max_abs_err
+                let error = table.error_against(&texels, [min_cos, min_alpha], POINTS, |alpha, cos| {
+                    table.of_split_sum(surface.row(alpha).at(cos))
+                });
+                error.max_abs_err
             })
             .collect();
         // Squares come first, and of one size the least error.
@@ -97,12 +99,11 @@ pub fn search(
 }
 
 fn layouts(min_cos: f64, min_alpha: f64) -> impl Iterator<Item = Layout> + Clone {
-    let layout = move |cos_exponent: f64, alpha_exponent: f64| {
-        Layout::powers([min_cos, min_alpha], [cos_exponent, alpha_exponent], Nodes::Ends)
-    };
-    let powers = EXPONENTS[0].iter().flat_map(move |&cos| EXPONENTS[1].iter().map(move |&alpha| layout(cos, alpha)));
+    let lowest = [min_cos, min_alpha];
+    let exponents = EXPONENTS[0].iter().flat_map(|&cos| EXPONENTS[1].iter().map(move |&alpha| [cos, alpha]));
+    let powers = exponents.map(move |exponents| Layout::powers(lowest, exponents, Nodes::Ends));
     let has_logarithms = min_cos > 0.0 && min_alpha > 0.0;
-    powers.chain(has_logarithms.then(|| Layout::logarithms([min_cos, min_alpha], Nodes::Ends)))
+    powers.chain(has_logarithms.then(|| Layout::logarithms(lowest, Nodes::Ends)))
 }
 
 #[cfg(test)]
