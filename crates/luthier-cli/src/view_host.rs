@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use luthier::{Bake, MemoryStore, Source, find, lit};
+use luthier::{Bake, MemoryStore, Source, find, lit, named_files};
 use luthier_export::Package;
 use luthier_gpu::ToneMapping;
 use luthier_lut::Image;
@@ -21,7 +21,7 @@ use luthier_view::{Differences, Form, Host, MaterialFile, Screenshot};
 use crate::cli::Shading;
 use crate::simulated;
 use crate::store::store;
-use crate::watched::{State, named, seen, state};
+use crate::watched::{State, seen, state};
 
 /// Each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<State>>;
@@ -145,7 +145,7 @@ fn rendered(diagnostics: &[Diagnostic], text: &str) -> String {
 fn stamps(paths: &[PathBuf], files: &[MaterialFile]) -> Stamps {
     let mut watched: BTreeSet<PathBuf> = find(paths).unwrap_or_default().into_iter().collect();
     watched.extend(files.iter().map(|file| PathBuf::from(&file.label)));
-    watched.extend(files.iter().filter_map(|file| file.material.as_ref().ok()).flat_map(named));
+    watched.extend(files.iter().filter_map(|file| file.material.as_ref().ok()).flat_map(named_files));
     let folders: BTreeSet<PathBuf> = watched.iter().map(|path| folder(path)).collect();
     for folder in folders {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -163,7 +163,7 @@ fn folder(path: &Path) -> PathBuf {
 
 fn revision(material: &Material) -> u64 {
     let mut hasher = DefaultHasher::new();
-    named(material).for_each(|path| state(&path).hash(&mut hasher));
+    named_files(material).for_each(|path| state(&path).hash(&mut hasher));
     hasher.finish()
 }
 

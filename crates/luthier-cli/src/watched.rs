@@ -1,8 +1,10 @@
 //! Files that are looked at again: whether they have changed.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use luthier::named_files;
 use luthier_material::Material;
 
 /// Time of the last change and length of a file.
@@ -20,16 +22,7 @@ pub(crate) fn seen(path: PathBuf) -> (PathBuf, Option<State>) {
     (path, state)
 }
 
-/// The files that a material names, beside its own.
-pub(crate) fn named(material: &Material) -> impl Iterator<Item = PathBuf> {
-    let folder = Path::new(&material.source).parent().unwrap_or(Path::new(""));
-    material.files.iter().map(move |file| folder.join(file))
-}
-
 /// The files that materials name, each once, by their paths.
 pub(crate) fn all_named(materials: &[Material]) -> Vec<PathBuf> {
-    let mut all: Vec<PathBuf> = materials.iter().flat_map(named).collect();
-    all.sort();
-    all.dedup();
-    all
+    materials.iter().flat_map(named_files).collect::<BTreeSet<_>>().into_iter().collect()
 }

@@ -17,25 +17,35 @@ impl Scene {
     /// [`GpuError::NoMaterial`], and whatever the device reports.
     pub fn evaluate(&self, material: u32, pairs: &[([f32; 3], [f32; 3])]) -> Result<Vec<[f32; 3]>, GpuError> {
         self.layers(material)?;
-        let mut values = Vec::with_capacity(pairs.len());
-        for chunk in pairs.chunks(CHUNK) {
-            let words: Vec<[u32; 8]> = chunk
-                .iter()
-                .map(|(wi, wo)| {
-                    let ([ix, iy, iz], [ox, oy, oz]) = (wi.map(f32::to_bits), wo.map(f32::to_bits));
-                    [ix, iy, iz, material, ox, oy, oz, 0]
-                })
-                .collect();
+        self.values("evaluation", &self.evaluate, pairs, |chunk| pair_words(material, chunk))
+    }
+
+    /// Runs a kernel that gives a colour for each of some elements, which are words in its input.
+    pub(crate) fn values<T, W: bytemuck::NoUninit>(
+        &self,
+        what: &'static str,
+        pipeline: &wgpu::ComputePipeline,
+        elements: &[T],
+        words: impl Fn(&[T]) -> Vec<W>,
+    ) -> Result<Vec<[f32; 3]>, GpuError> {
+        let mut values = Vec::with_capacity(elements.len());
+        for chunk in elements.chunks(CHUNK) {
             let out = self.context.run(&Pass {
-                what: "evaluation",
-                pipeline: &self.evaluate,
+                what,
+                pipeline,
                 shader_group: &self.group,
                 workgroups: [chunk.len().div_ceil(WORKGROUP) as u32, 1],
-                inputs: bytemuck::cast_slice(&words),
+                inputs: bytemuck::cast_slice(&words(chunk)),
                 output_words: chunk.len(),
             })?;
             values.extend(out.into_iter().map(|[r, g, b, _]| [r, g, b]));
         }
         Ok(values)
     }
+}
+
+/// Pairs of directions of a material as kernels read them.
+pub(crate) fn pair_words(material: u32, pairs: &[([f32; 3], [f32; 3])]) -> Vec<[u32; 8]> {
+    let words = pairs.iter().map(|(wi, wo)| (wi.map(f32::to_bits), wo.map(f32::to_bits)));
+    words.map(|([ix, iy, iz], [ox, oy, oz])| [ix, iy, iz, material, ox, oy, oz, 0]).collect()
 }

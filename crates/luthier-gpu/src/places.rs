@@ -2,8 +2,6 @@
 
 use luthier_manifest::{LayerValues, PlaceValues};
 
-use crate::context::Pass;
-use crate::evaluate::{CHUNK, WORKGROUP};
 use crate::{GpuError, Scene};
 
 const KERNEL: &str = include_str!("wgsl/places.wgsl");
@@ -32,20 +30,9 @@ impl Scene {
         self.layers(material)?;
         let layers = self.layer_places();
         let pipeline = self.pipeline(&self.places, &self.places_kernel(layers))?;
-        let mut values = Vec::with_capacity(spots.len());
-        for chunk in spots.chunks(CHUNK) {
-            let words: Vec<[f32; 4]> = chunk.iter().flat_map(|spot| words(material, spot, layers)).collect();
-            let out = self.context.run(&Pass {
-                what: "evaluation at places",
-                pipeline,
-                shader_group: &self.group,
-                workgroups: [chunk.len().div_ceil(WORKGROUP) as u32, 1],
-                inputs: bytemuck::cast_slice(&words),
-                output_words: chunk.len(),
-            })?;
-            values.extend(out.into_iter().map(|[r, g, b, _]| [r, g, b]));
-        }
-        Ok(values)
+        self.values("evaluation at places", pipeline, spots, |chunk| {
+            chunk.iter().flat_map(|spot| words(material, spot, layers)).collect::<Vec<[f32; 4]>>()
+        })
     }
 
     fn places_kernel(&self, layers: usize) -> String {

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::context::TimedPass;
-use crate::evaluate::WORKGROUP;
+use crate::evaluate::{WORKGROUP, pair_words};
 use crate::{GpuError, Scene};
 
 const KERNEL: &str = include_str!("wgsl/time.wgsl");
@@ -36,13 +36,7 @@ impl Scene {
         self.layers(material)?;
         let kernel = if is_empty { KERNEL.replace("+= luthier_eval(", "+= kernel_empty(") } else { KERNEL.to_owned() };
         let pipeline = self.compile(&kernel)?;
-        let words: Vec<[u32; 8]> = pairs
-            .iter()
-            .map(|(wi, wo)| {
-                let ([ix, iy, iz], [ox, oy, oz]) = (wi.map(f32::to_bits), wo.map(f32::to_bits));
-                [ix, iy, iz, material, ox, oy, oz, 0]
-            })
-            .collect();
+        let words = pair_words(material, pairs);
         let workgroups = evaluations.div_ceil(PER_THREAD * WORKGROUP as u32).clamp(1, 65_535);
         let outputs = workgroups as usize * WORKGROUP;
         let pass = self.context.timed_pass(&pipeline, bytemuck::cast_slice(&words), outputs)?;

@@ -46,11 +46,8 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     }
     drop(bar);
     let report = Parity::new(GENERATOR, adapter, options.pairs, rows);
-    let text = if options.format.json {
-        report.to_json().map_err(Failure::input)?
-    } else {
-        report.to_markdown(&command(options))
-    };
+    let json = options.format.json.then(|| report.to_json().map_err(Failure::input));
+    let text = json.unwrap_or_else(|| Ok(report.to_markdown(&command(options))))?;
     deliver(&text, options.destination.output.as_deref())?;
     for row in report.rows.iter().filter(|row| !row.holds()) {
         let broken = Share::ALL.into_iter().filter(|share| row.verdict(*share) == Verdict::Broken);

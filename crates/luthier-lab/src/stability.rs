@@ -26,11 +26,8 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
     drop(bar);
     let adapter = gpu_cells(&gpu, &cases, &mut cells)?;
     let report = Stability::new(GENERATOR, Some(adapter), cells);
-    let text = if options.format.json {
-        report.to_json().map_err(Failure::input)?
-    } else {
-        report.to_markdown(&command(options))
-    };
+    let json = options.format.json.then(|| report.to_json().map_err(Failure::input));
+    let text = json.unwrap_or_else(|| Ok(report.to_markdown(&command(options))))?;
     deliver(&text, options.destination.output.as_deref())?;
     for cell in report.not_finite() {
         complain(&format!("{}, {}, {}: not finite", cell.level.name(), cell.method, cell.case));

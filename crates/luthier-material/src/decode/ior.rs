@@ -140,17 +140,19 @@ fn as_many(
     }
 }
 
+/// The text of a file that the material names.
+pub(super) fn named_text(name: &str, span: &Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<String> {
+    let told = |error| {
+        let hint = "the path is relative to the material file".to_owned();
+        sink.error(span.clone(), format!("cannot read `{name}`: {error}"), Some(hint));
+    };
+    read(name).map_err(told).ok()
+}
+
 /// A file, or a built-in data set.
 fn by_name(name: &str, span: Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
     if let Some(parse) = reader(name) {
-        let text = match read(name) {
-            Ok(text) => text,
-            Err(error) => {
-                let hint = "the path is relative to the material file".to_owned();
-                sink.error(span, format!("cannot read `{name}`: {error}"), Some(hint));
-                return None;
-            }
-        };
+        let text = named_text(name, &span, read, sink)?;
         return match parse(&text) {
             Ok(IndexFile { ior, notes }) => {
                 notes.iter().for_each(|note| sink.warn(span.clone(), format!("`{name}`: {note}"), None));

@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::reradiation::{Matrix, rgb};
 
-use super::ior::Read;
+use super::ior::{Read, named_text};
 use crate::diagnostic::Sink;
 use crate::section::Section;
 
@@ -15,14 +15,7 @@ pub(super) fn decode(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> O
         let hint = "remove `sigma`: a fluorescent base is Lambert's".to_owned();
         sink.error(at.key_span("sigma"), "a base with `reradiation` has no slopes", Some(hint));
     }
-    let text = match read(name) {
-        Ok(text) => text,
-        Err(error) => {
-            let hint = "the path is relative to the material file".to_owned();
-            sink.error(span, format!("cannot read `{name}`: {error}"), Some(hint));
-            return None;
-        }
-    };
+    let text = named_text(name, &span, read, sink)?;
     match Matrix::parse(&text) {
         Ok(matrix) => Some(rgb(&matrix)),
         Err(error) => {

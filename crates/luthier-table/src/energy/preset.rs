@@ -4,6 +4,7 @@ use luthier_lut::Image;
 use luthier_optics::dielectric_albedo::JointMasking;
 use luthier_optics::stack::Distribution;
 
+use super::EnergySurface::{FromDenser, FromRarer, Reflector};
 use super::{EnergyContainer, EnergyLayout, EnergySurface, EnergyTable, EnergyValue};
 use crate::{Nodes, Stored};
 
@@ -68,17 +69,15 @@ const fn ospray(name: &'static str, value: EnergyValue, parts: &'static [Part]) 
 
 /// Both sides of an index, one after the other: 1/2.5 to 1, then 1 to 2.5.
 const OPENPBR_DIR: &[Part] = &[
-    part(EnergySurface::FromDenser, "cos_theta,roughness,-ior=1..2.5", [32, 32, 16]),
-    part(EnergySurface::FromRarer, "cos_theta,roughness,ior=1..2.5", [32, 32, 16]),
+    part(FromDenser, "cos_theta,roughness,-ior=1..2.5", [32, 32, 16]),
+    part(FromRarer, "cos_theta,roughness,ior=1..2.5", [32, 32, 16]),
 ];
-const OPENPBR_AVG: &[Part] = &[
-    part(EnergySurface::FromDenser, "roughness,-ior=1..2.5", [32, 16, 1]),
-    part(EnergySurface::FromRarer, "roughness,ior=1..2.5", [32, 16, 1]),
-];
+const OPENPBR_AVG: &[Part] =
+    &[part(FromDenser, "roughness,-ior=1..2.5", [32, 16, 1]), part(FromRarer, "roughness,ior=1..2.5", [32, 16, 1])];
 
 /// OSPRay's index is that above over that below: for light from the rarer side 1/3 to 1.
-const OSPRAY_DIR: &[Part] = &[part(EnergySurface::FromRarer, "cos_theta,inverse_ior,roughness", [16, 16, 16])];
-const OSPRAY_AVG: &[Part] = &[part(EnergySurface::FromRarer, "inverse_ior,roughness", [16, 16, 1])];
+const OSPRAY_DIR: &[Part] = &[part(FromRarer, "cos_theta,inverse_ior,roughness", [16, 16, 16])];
+const OSPRAY_AVG: &[Part] = &[part(FromRarer, "inverse_ior,roughness", [16, 16, 1])];
 
 impl EnergyPreset {
     /// All presets, by name.
@@ -86,21 +85,12 @@ impl EnergyPreset {
         Self {
             name: "cycles",
             files: &[
-                cycles("ggx_E", &[part(EnergySurface::Reflector, "roughness,cos_theta", [32, 32, 1])]),
-                cycles("ggx_Eavg", &[part(EnergySurface::Reflector, "roughness", [32, 1, 1])]),
-                cycles(
-                    "ggx_glass_E",
-                    &[part(EnergySurface::FromRarer, "roughness,cos_theta,fourth_root_f0", [16, 16, 16])],
-                ),
-                cycles("ggx_glass_Eavg", &[part(EnergySurface::FromRarer, "roughness,fourth_root_f0", [16, 16, 1])]),
-                cycles(
-                    "ggx_glass_inv_E",
-                    &[part(EnergySurface::FromDenser, "roughness,cos_theta,fourth_root_f0", [16, 16, 16])],
-                ),
-                cycles(
-                    "ggx_glass_inv_Eavg",
-                    &[part(EnergySurface::FromDenser, "roughness,fourth_root_f0", [16, 16, 1])],
-                ),
+                cycles("ggx_E", &[part(Reflector, "roughness,cos_theta", [32, 32, 1])]),
+                cycles("ggx_Eavg", &[part(Reflector, "roughness", [32, 1, 1])]),
+                cycles("ggx_glass_E", &[part(FromRarer, "roughness,cos_theta,fourth_root_f0", [16, 16, 16])]),
+                cycles("ggx_glass_Eavg", &[part(FromRarer, "roughness,fourth_root_f0", [16, 16, 1])]),
+                cycles("ggx_glass_inv_E", &[part(FromDenser, "roughness,cos_theta,fourth_root_f0", [16, 16, 16])]),
+                cycles("ggx_glass_inv_Eavg", &[part(FromDenser, "roughness,fourth_root_f0", [16, 16, 1])]),
             ],
             stored: Stored::Float,
             container: EnergyContainer::CArray,
@@ -111,21 +101,12 @@ impl EnergyPreset {
         Self {
             name: "cycles-32",
             files: &[
-                cycles("ggx_E", &[part(EnergySurface::Reflector, "roughness,sqrt_cos_theta", [32, 32, 1])]),
-                cycles("ggx_Eavg", &[part(EnergySurface::Reflector, "roughness", [32, 1, 1])]),
-                cycles(
-                    "ggx_glass_E",
-                    &[part(EnergySurface::FromRarer, "roughness,sqrt_cos_theta,fourth_root_f0", [32, 32, 32])],
-                ),
-                cycles("ggx_glass_Eavg", &[part(EnergySurface::FromRarer, "roughness,fourth_root_f0", [32, 32, 1])]),
-                cycles(
-                    "ggx_glass_inv_E",
-                    &[part(EnergySurface::FromDenser, "roughness,sqrt_cos_theta,fourth_root_f0", [32, 32, 32])],
-                ),
-                cycles(
-                    "ggx_glass_inv_Eavg",
-                    &[part(EnergySurface::FromDenser, "roughness,fourth_root_f0", [32, 32, 1])],
-                ),
+                cycles("ggx_E", &[part(Reflector, "roughness,sqrt_cos_theta", [32, 32, 1])]),
+                cycles("ggx_Eavg", &[part(Reflector, "roughness", [32, 1, 1])]),
+                cycles("ggx_glass_E", &[part(FromRarer, "roughness,sqrt_cos_theta,fourth_root_f0", [32, 32, 32])]),
+                cycles("ggx_glass_Eavg", &[part(FromRarer, "roughness,fourth_root_f0", [32, 32, 1])]),
+                cycles("ggx_glass_inv_E", &[part(FromDenser, "roughness,sqrt_cos_theta,fourth_root_f0", [32, 32, 32])]),
+                cycles("ggx_glass_inv_Eavg", &[part(FromDenser, "roughness,fourth_root_f0", [32, 32, 1])]),
             ],
             stored: Stored::Float,
             container: EnergyContainer::CArray,
@@ -143,12 +124,12 @@ impl EnergyPreset {
                 openpbr(
                     "ideal_metal_energy_complement",
                     EnergyValue::Loss,
-                    &[part(EnergySurface::Reflector, "cos_theta,roughness", [32, 32, 1])],
+                    &[part(Reflector, "cos_theta,roughness", [32, 32, 1])],
                 ),
                 openpbr(
                     "ideal_metal_avg_energy_complement",
                     EnergyValue::Loss,
-                    &[part(EnergySurface::Reflector, "roughness", [32, 1, 1])],
+                    &[part(Reflector, "roughness", [32, 1, 1])],
                 ),
             ],
             stored: Stored::Unorm16,
@@ -160,23 +141,19 @@ impl EnergyPreset {
         Self {
             name: "ospray",
             files: &[
-                ospray(
-                    "albedo_dir",
-                    EnergyValue::Albedo,
-                    &[part(EnergySurface::Reflector, "cos_theta,roughness", [32, 32, 1])],
-                ),
-                ospray("albedo_avg", EnergyValue::Albedo, &[part(EnergySurface::Reflector, "roughness", [32, 1, 1])]),
+                ospray("albedo_dir", EnergyValue::Albedo, &[part(Reflector, "cos_theta,roughness", [32, 32, 1])]),
+                ospray("albedo_avg", EnergyValue::Albedo, &[part(Reflector, "roughness", [32, 1, 1])]),
                 ospray("dielectricAlbedo_dir", EnergyValue::Albedo, OSPRAY_DIR),
                 ospray("dielectricAlbedo_avg", EnergyValue::Albedo, OSPRAY_AVG),
                 ospray(
                     "dielectricRcpEtaAlbedo_dir",
                     EnergyValue::Albedo,
-                    &[part(EnergySurface::FromDenser, "cos_theta,ior=1..3,roughness", [16, 16, 16])],
+                    &[part(FromDenser, "cos_theta,ior=1..3,roughness", [16, 16, 16])],
                 ),
                 ospray(
                     "dielectricRcpEtaAlbedo_avg",
                     EnergyValue::Albedo,
-                    &[part(EnergySurface::FromDenser, "ior=1..3,roughness", [16, 16, 1])],
+                    &[part(FromDenser, "ior=1..3,roughness", [16, 16, 1])],
                 ),
                 ospray("dielectricReflectionAlbedo_dir", EnergyValue::Reflected, OSPRAY_DIR),
                 ospray("dielectricReflectionAlbedo_avg", EnergyValue::Reflected, OSPRAY_AVG),
