@@ -111,7 +111,7 @@ fn case(n: u32, material: &Material) -> ParityCase {
     }
 }
 
-/// What the judge compares of a package: its tables as they ship, and the surfaces that its materials describe.
+/// The subject of a judgement: the tables of a package as they ship, and the surfaces that its materials describe.
 pub(crate) fn subject(package: &Package, stacks: Vec<Stack>) -> Outcome<Subject<'_>> {
     Ok(Subject { manifest: &package.manifest, textures: package.textures()?, stacks, maps: surface_maps(package) })
 }
