@@ -36,8 +36,9 @@ fn bad_shaders_are_errors_and_the_device_lives_on() {
     }
     let error = gpu.scene(&bake(GOOD, materials, "texture_3d<f32>"), Form::Full).unwrap_err();
     assert!(matches!(error, GpuError::Binding { .. }), "{error}");
-    let error =
-        gpu.scene(&bake("const luthier_water = 1.0;", "luthier_water", "texture_2d<f32>"), Form::Full).unwrap_err();
+    // A table of no kind.
+    let water = "@group(0) @binding(6) var luthier_water: texture_2d<f32>;";
+    let error = gpu.scene(&bake(water, "luthier_water", "texture_2d<f32>"), Form::Full).unwrap_err();
     assert!(matches!(error, GpuError::Binding { .. }), "{error}");
 
     let scene = gpu.scene(&bake(GOOD, materials, "buffer"), Form::Full).unwrap();
