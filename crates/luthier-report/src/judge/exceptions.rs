@@ -11,7 +11,7 @@ use crate::measure::statistics::WorstPair;
 /// Pairs whose cause is looked for at most, evenly taken from all that miss.
 const ATTRIBUTED_MAX: usize = 512;
 
-/// A material whose shader misses [`TARGET_MAX_REL_ERR`] somewhere (without a device: whose tables do).
+/// A material whose shader misses [`TARGET_MAX_REL_ERR`](crate::TARGET_MAX_REL_ERR) somewhere (without a device: whose tables do).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Exception {
     /// Name of the material.
