@@ -7,6 +7,7 @@ use std::path::Path;
 fn main() -> Result<(), luthier::Error> {
     let mut sources = Sources::read(["materials"])?;
     sources.check(&Shading::default());
+    println!("cargo::rerun-if-changed=materials");
     for file in sources.files() {
         println!("cargo::rerun-if-changed={}", file.display());
     }

@@ -11,6 +11,10 @@ const RED: &str = "schema = 1\nname = \"red\"\n[[layer]]\ntype = \"diffuse\"\nal
 const LEATHER: &str = "schema = 1\nname = \"leather\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n\
                        [[layer]]\ntype = \"diffuse\"\nalbedo = 0.3\n[layer.maps]\nalbedo = \"grain.png\"\n";
 
+/// A scene, which the baker of packages does not bake.
+const SHELF: &str = "scene = 1\nname = \"shelf\"\n[[material]]\nfile = \"red.toml\"\n\
+                     [[light]]\ntype = \"directional\"\nfrom_eye_deg = 40\n[budget]\nmax_rel = 0.1\n";
+
 /// The example beside this test, which Cargo builds with it.
 fn script() -> PathBuf {
     let test = std::env::current_exe().unwrap();
@@ -38,7 +42,10 @@ fn a_folder_is_baked() {
     let (folder, output) = run(&[("red.toml", RED)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let told = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(told.lines().collect::<Vec<_>>(), ["cargo::rerun-if-changed=materials/red.toml"]);
+    assert_eq!(
+        told.lines().collect::<Vec<_>>(),
+        ["cargo::rerun-if-changed=materials", "cargo::rerun-if-changed=materials/red.toml"]
+    );
     let package = Package::read(&folder.path().join("out/materials")).unwrap();
     assert_eq!(package.manifest.materials[0].name, "red");
     package.wgsl(Form::Baked).unwrap();
@@ -53,6 +60,10 @@ fn diagnostics_are_those_of_cargo() {
     let error = told.lines().find(|line| line.starts_with("cargo::error=materials/leather.toml:")).unwrap();
     assert!(error.contains("grain.png"), "{told}");
     assert!(!folder.path().join("out").exists(), "nothing is written");
+
+    let (_folder, output) = run(&[("red.toml", RED), ("shelf.toml", SHELF)]);
+    let refused = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && refused.contains("materials/shelf.toml is a scene"), "{refused}");
 
     let dim = "schema = 1\nname = \"dim\"\n[[layer]]\ntype = \"conductor\"\nf0 = 0.9\nalpha = 0.5\n[bake]\nmasking = \"implicit\"\nmodel = \"microfacet\"\n";
     let (_folder, output) = run(&[("dim.toml", dim)]);

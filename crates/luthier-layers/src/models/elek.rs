@@ -181,7 +181,7 @@ mod tests {
         Stack { exterior: Ior::vacuum(), layers: vec![layer(0.05, coat), layer(0.3, metal)] }
     }
 
-    /// Oracle: the colour form, which is tested against other programs.
+    /// One channel is that of three: channels share directions, and nothing else. Values are compared with other programs elsewhere.
     #[test]
     fn one_wavelength_at_a_time_is_the_colour_form() {
         let stack = lacquer();

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use luthier_export::{Map, Package, Shader};
-use luthier_manifest::{Form, MaterialTexture, Target, material_buffer};
+use luthier_manifest::{Form, Interface, MaterialTexture, Target, material_buffer};
 use luthier_shader::{MaterialSet, ShaderError};
 use rayon::prelude::*;
 
@@ -14,14 +14,16 @@ pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) ->
     let manifest = &mut package.manifest;
     manifest.material_texture = MaterialTexture::of(material_buffer(&manifest.materials).len());
     let set = MaterialSet::from_manifest(manifest);
-    let wanted: Vec<(Form, Target)> =
-        forms.iter().flat_map(|&form| targets.iter().map(move |&target| (form, target))).collect();
-    let shader = |(form, target)| {
+    // A form declares alike in all languages.
+    let interfaces = forms.par_iter().map(|&form| Ok((form, luthier_shader::interface(&set, form)?)));
+    let interfaces = interfaces.collect::<Result<Vec<_>, ShaderError>>()?;
+    let wanted: Vec<_> = interfaces.iter().flat_map(|declared| targets.iter().map(move |&to| (declared, to))).collect();
+    let shader = |((form, interface), target): (&(Form, Interface), Target)| {
         let bytes = match target {
-            Target::SpirV => luthier_shader::emit_spirv(&set, form),
-            _ => luthier_shader::emit(&set, form, target).map(String::into_bytes),
+            Target::SpirV => luthier_shader::emit_spirv(&set, *form),
+            _ => luthier_shader::emit(&set, *form, target).map(String::into_bytes),
         };
-        Ok(Shader { form, target, bytes: bytes?, interface: luthier_shader::interface(&set, form)? })
+        Ok(Shader { form: *form, target, bytes: bytes?, interface: interface.clone() })
     };
     package.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
     manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));

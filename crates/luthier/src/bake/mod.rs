@@ -89,11 +89,15 @@ impl<'a> Bake<'a> {
     /// Bakes the materials and surfaces of sources, which were refused where that was called for ([`Sources::refuse`]).
     ///
     /// # Errors
-    /// [`Error`]; [`Error::Refused`] where a source is unusable.
+    /// [`Error`]; [`Error::Refused`] where a source is unusable, or is a scene: luthier-scene chooses the models of its materials.
     pub fn of(&self, sources: &Sources, store: &dyn Store) -> Result<Package, Error> {
         if !sources.is_usable() {
             let diagnostics: Vec<Diagnostic> = sources.diagnostics().filter(|d| d.is_error()).cloned().collect();
             return Err(refused(diagnostics));
+        }
+        if let Some(scene) = sources.scenes.first() {
+            let sentence = format!("{} is a scene, whose models are chosen: it is no part of a package", scene.label);
+            return Err(Error::Refused { sentence, diagnostics: Vec::new() });
         }
         let surfaces = sources.surface_entries();
         Self { surfaces, ..self.clone() }.package(&sources.materials(&Shading::default()), store)
