@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use luthier::read_materials;
-use luthier_layers::lobes::Lobes;
+use luthier_layers::models::lobes::Lobes;
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
 use luthier_report::{ModelSubject, PHI_DEG, Reference, Shown, ViewError};

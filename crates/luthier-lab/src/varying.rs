@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use luthier_layers::lobes::{Lobes, Varied, Varying};
+use luthier_layers::models::lobes::{Lobes, Varied, Varying};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, FilmThickness};

@@ -40,7 +40,6 @@ pub mod formulas;
 pub mod frame;
 pub mod furnace;
 pub mod layers;
-pub mod lobes;
 mod memo;
 pub mod model;
 pub mod models;

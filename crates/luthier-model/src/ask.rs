@@ -8,6 +8,11 @@ use crate::rows::row;
 use crate::{DefaultFor, Feature, Form, Limit, ModelPart, ShadingModel};
 
 impl ShadingModel {
+    /// Its number in the material buffer.
+    pub const fn number(self) -> u32 {
+        self as u32
+    }
+
     /// Its row of facts.
     pub const fn facts(self) -> &'static Facts {
         row(self)
@@ -84,6 +89,17 @@ impl DefaultFor {
 mod tests {
     use super::*;
     use crate::{Feature, Form};
+
+    #[test]
+    fn names_and_numbers_are_those_of_files_and_buffers() {
+        for (i, model) in ShadingModel::ALL.into_iter().enumerate() {
+            assert_eq!(model.number() as usize, i);
+            assert!(model.title().starts_with(model.name()), "{model}");
+            assert_eq!(ShadingModel::from_name(model.name()), Some(model));
+            assert_eq!(serde_json::to_string(&model).unwrap(), format!("\"{}\"", model.name()));
+        }
+        assert_eq!(ShadingModel::from_name("Elek"), None);
+    }
 
     #[test]
     fn ranks_are_places_of_a_list() {

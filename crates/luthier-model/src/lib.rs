@@ -14,7 +14,6 @@ mod feature;
 mod form;
 mod parts;
 mod rows;
-mod shading;
 mod tolerance;
 
 pub use default_for::DefaultFor;
@@ -23,5 +22,5 @@ pub use facts::{Facts, Family, Reach, ReadWhen, Shows, TableRead};
 pub use feature::Feature;
 pub use form::Form;
 pub use parts::{InternalReflection, LowerReflectance, Masking, ModelPart, Reflectance, ReflectanceCurve};
-pub use shading::ShadingModel;
+pub use rows::ShadingModel;
 pub use tolerance::{Tolerance, Tolerances};

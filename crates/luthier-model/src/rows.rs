@@ -1,6 +1,7 @@
-//! The rows of facts, one for each model.
+//! The rows of facts, one for each model, and the models that they are rows of.
 
 use luthier_lut::TableKind;
+use serde::{Deserialize, Serialize};
 
 use crate::domain::{BETWEEN_ROWS, BRIGHT, FEW_NODES, ONE_SURFACE};
 use crate::facts::{Facts, Family, Reach, ReadWhen, Shows, TableRead};
@@ -8,7 +9,7 @@ use crate::tolerance::{
     BEAMS_IN_F32, ENERGY_TABLE, FILTERED_BELOW_A_COAT, FILTERED_BY_HARDWARE, LAYERS_IN_F32, LOBE_READ, LOBE_TABLE,
     LOBES_IN_F32, PHASE_TABLE, PHONG_IN_F32, ROW_TABLE, STATISTICS_IN_F32, Tolerance, Tolerances,
 };
-use crate::{DefaultFor, Feature::*, Form, ModelPart, ShadingModel};
+use crate::{DefaultFor, Feature::*, Form, ModelPart};
 
 const fn read(kind: TableKind, when: ReadWhen) -> TableRead {
     TableRead { kind, when }
@@ -26,12 +27,12 @@ const FACET_TABLES: &[TableRead] = &[
 const STATISTICS_TABLES: &[TableRead] =
     &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
 
-/// Parts of models that go down a path.
 /// Headings that models share.
 const ONE_LAYER: &str = "One layer";
 const ELEK_AND_GRANIER: &str = "Elek, Granier and Heidrich";
 const STATISTICS: &str = "Statistics of light";
 
+/// Parts of models that go down a path.
 const PATH_PARTS: &[ModelPart] = &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance];
 
 /// Tolerances of models that go down a path.
@@ -357,16 +358,44 @@ const LOBES: Facts = Facts {
     default_for: &[(DefaultFor::Stack, 0), (DefaultFor::Facets, 0)],
 };
 
-/// The row of a model.
-pub(crate) const fn row(model: ShadingModel) -> &'static Facts {
-    match model {
-        ShadingModel::Elek => &ELEK,
-        ShadingModel::WeidlichWilkie => &WEIDLICH_WILKIE,
-        ShadingModel::GranierHeidrich => &GRANIER_HEIDRICH,
-        ShadingModel::Belcour => &BELCOUR,
-        ShadingModel::Yamaguchi => &YAMAGUCHI,
-        ShadingModel::Phong => &PHONG,
-        ShadingModel::Microfacet => &MICROFACET,
-        ShadingModel::Lobes => &LOBES,
-    }
+macro_rules! models {
+    ($($(#[$about:meta])* $model:ident = $name:literal: $facts:expr,)*) => {
+        luthier_lut::named! {
+            /// A reflectance model that shaders evaluate.
+            #[derive(Default, Serialize, Deserialize)]
+            #[serde(into = "&'static str", try_from = "String")]
+            pub enum ShadingModel("model") {
+                $($(#[$about])* $model = $name,)*
+            }
+        }
+
+        /// The row of a model.
+        pub(crate) const fn row(model: ShadingModel) -> &'static Facts {
+            match model {
+                $(ShadingModel::$model => &$facts,)*
+            }
+        }
+    };
+}
+
+// A model's number in the material buffer is its place here: new ones come last.
+models! {
+    /// O. Elek, "Layered Materials in Real-Time Rendering", CESCG 2010.
+    #[default]
+    Elek = "elek": ELEK,
+    /// A. Weidlich and A. Wilkie, "Arbitrarily layered micro-facet surfaces", GRAPHITE 2007.
+    WeidlichWilkie = "weidlich-wilkie": WEIDLICH_WILKIE,
+    /// X. Granier and W. Heidrich, "A Simple Layered RGB BRDF Model", Graphical Models 2003.
+    GranierHeidrich = "granier-heidrich": GRANIER_HEIDRICH,
+    /// L. Belcour, "Efficient Rendering of Layered Materials using an Atomic Decomposition with Statistical Operators", SIGGRAPH
+    /// 2018.
+    Belcour = "belcour": BELCOUR,
+    /// T. Yamaguchi et al., "Real-time Rendering of Layered Materials with Anisotropic Normal Distributions", SIGGRAPH Asia 2019.
+    Yamaguchi = "yamaguchi": YAMAGUCHI,
+    /// One Phong lobe over one diffuse term.
+    Phong = "phong": PHONG,
+    /// The first interface alone: K. Torrance and E. Sparrow 1967, with the masking of Heitz 2014, eq. 99.
+    Microfacet = "microfacet": MICROFACET,
+    /// The first interface, and the simulated light from below it in lobes.
+    Lobes = "lobes": LOBES,
 }

@@ -3,8 +3,9 @@
 use std::f64::consts::FRAC_1_PI;
 use std::sync::OnceLock;
 
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::twins::terms::{Exact, ShaderTerms};
+use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{ColorMode, Feature, Form, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::Rgb;

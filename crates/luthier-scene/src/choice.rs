@@ -1,6 +1,6 @@
 //! Choice of the first candidate that holds the budget.
 
-use luthier_layers::twins::terms::ShaderTerms;
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_manifest::{ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, Verdict};
 use luthier_material::{Light, Material, View};
 

@@ -13,6 +13,9 @@ use tempfile::TempDir;
 
 use crate::{LOOK, Patience, Run};
 
+/// Variable with the folder of a store that the tests of one run share.
+const STORE: &str = "LUTHIER_TEST_STORE";
+
 /// A command under test.
 pub trait Program {
     /// Its name.
@@ -85,8 +88,9 @@ impl<P: Program> Workshop<P> {
     pub fn run_in(folder: &Path, args: &[&str]) -> Run {
         let said = format!("{} {}", P::NAME, args.join(" "));
         let mut command = Command::new(P::PATH);
-        // Tests compute what they judge, and leave nothing in the caches of who runs them.
-        command.env("LUTHIER_CACHE", "").current_dir(folder).args(args);
+        // Tests leave nothing in the caches of who runs them. Those of one run of scripts/test.sh share a store, so that none computes
+        // what another has.
+        command.env("LUTHIER_CACHE", std::env::var_os(STORE).unwrap_or_default()).current_dir(folder).args(args);
         // No test opens a window through this.
         command.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT");
         let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

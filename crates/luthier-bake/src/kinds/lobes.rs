@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luthier_layers::lobes::{
+use luthier_layers::models::lobes::{
     Axes, Cover, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Painted, Row, Traced, Varied, Varying,
     base_below, most_lobes, shown,
 };

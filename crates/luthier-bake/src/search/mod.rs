@@ -6,7 +6,7 @@
 mod decisions;
 mod refusal;
 
-use luthier_layers::lobes::LOBES;
+use luthier_layers::models::lobes::LOBES;
 use luthier_lut::{AtlasLayout, TableKind};
 use luthier_manifest::{Budget, CandidateForm, Decision, Search};
 use luthier_material::Material;

@@ -1,7 +1,7 @@
 //! The environment as lobes show it: against energies, and against the directions of a brute force.
 
 use luthier_gpu::{Package, RenderSettings, Scene, Shader};
-use luthier_layers::lobes::Axes;
+use luthier_layers::models::lobes::Axes;
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{AxesRecord, FunctionGroup, LobesRecord, ShadingModel};
 use luthier_shader::{Form, MaterialSet, Target};

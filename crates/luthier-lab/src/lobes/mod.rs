@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier::read_materials;
-use luthier_layers::lobes::{EXCESS, FitSettings, Lobes, Simulation, most_lobes, shown};
+use luthier_layers::models::lobes::{EXCESS, FitSettings, Lobes, Simulation, most_lobes, shown};
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;

@@ -1,6 +1,6 @@
 //! Why a fit is as far from the simulation as it is: the fit anew, with one thing changed at a time.
 
-use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, most_lobes, shown};
+use luthier_layers::models::lobes::{EXCESS, FitSettings, LOBES, Lobes, most_lobes, shown};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::JointPaths;
 use luthier_optics::stack::{Base, Stack};

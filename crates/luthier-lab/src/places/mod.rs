@@ -8,7 +8,7 @@ use luthier::{Bake, MemoryStore};
 use luthier_export::{GENERATOR, Shader};
 use luthier_gpu::Gpu;
 use luthier_layers::layers::Layers;
-use luthier_layers::twins::parts::Parts;
+use luthier_layers::models::parts::Parts;
 use luthier_layers::twins::shaded::Shaded;
 use luthier_manifest::{ColorMode, Form, FunctionGroup, Functions, ShadingModel};
 use luthier_material::Material;

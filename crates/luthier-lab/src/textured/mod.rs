@@ -6,7 +6,7 @@ mod page;
 use luthier::{Bake, MemoryStore, read_materials};
 use luthier_export::GENERATOR;
 use luthier_gpu::Gpu;
-use luthier_layers::lobes::Lobes;
+use luthier_layers::models::lobes::Lobes;
 use luthier_manifest::ShadingModel;
 use luthier_material::{Effects, Material, left_out};
 use luthier_optics::stack::Film;

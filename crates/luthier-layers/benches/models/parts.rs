@@ -14,7 +14,7 @@ use luthier_layers::formulas::oren_nayar;
 use luthier_layers::layers::Layers;
 use luthier_layers::models::elek::Elek;
 use luthier_layers::models::statistics::evaluate::Prepared;
-use luthier_layers::models::weidlich_wilkie_sampling::Sampler;
+use luthier_layers::models::weidlich_wilkie::sampling::Sampler;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::noise::perlin::Perlin;
 use luthier_layers::noise::voronoi::Voronoi;

@@ -113,7 +113,7 @@ impl Facets {
     /// [`Facets::lobe`] with the distribution that [`Terms`] have of a layer.
     pub fn lobe_of<const C: usize>(
         &self,
-        terms: &impl Terms<C>,
+        terms: &dyn Terms<C>,
         layer: usize,
         masking: Masking,
         wi: DVec3,

@@ -11,7 +11,7 @@ use luthier_optics::stack::Surface;
 
 use crate::formulas::facets::ALPHA_MIN;
 use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::models::weidlich_wilkie_sampling::Sampler;
+use crate::models::weidlich_wilkie::sampling::Sampler;
 use crate::monochrome::Monochrome;
 
 /// A sampling method.

@@ -1,15 +1,38 @@
 //! Reflectance models, each under its own name.
+//!
+//! A model that has a shader has a room, [`room::Room`]: the folder with its formula, its kernels in WGSL, and `eval.rs`, which is
+//! the f64 twin of `eval.wgsl`.
 
 pub mod belcour;
 pub mod densities;
 pub mod diffuse;
 pub mod elek;
 pub mod granier_heidrich;
+pub mod lobes;
 pub mod microfacet;
-pub(crate) mod path;
+pub mod parts;
+pub mod path;
 pub mod phong;
+pub mod room;
+pub mod shade;
 pub mod statistics;
 pub mod weidlich_wilkie;
-pub mod weidlich_wilkie_corrected;
-pub mod weidlich_wilkie_sampling;
 pub mod yamaguchi;
+
+use luthier_model::ShadingModel;
+
+use room::Room;
+
+/// The room of a model.
+pub fn room(model: ShadingModel) -> Room {
+    match model {
+        ShadingModel::Elek => elek::ROOM,
+        ShadingModel::WeidlichWilkie => weidlich_wilkie::ROOM,
+        ShadingModel::GranierHeidrich => granier_heidrich::ROOM,
+        ShadingModel::Belcour => belcour::ROOM,
+        ShadingModel::Yamaguchi => yamaguchi::ROOM,
+        ShadingModel::Phong => phong::ROOM,
+        ShadingModel::Microfacet => microfacet::ROOM,
+        ShadingModel::Lobes => lobes::ROOM,
+    }
+}

@@ -1,77 +1,35 @@
 //! Twins in f64 of the emitted shaders: models in three colour channels, with optical terms computed or read from tables.
 //!
-//! No model is written here: a twin evaluates the model of its module, channel by channel, with what is particular to shaders: one
-//! set of slope parameters, at least [`ALPHA_MIN`]; one index at [`REFRACTION_WAVELENGTH_NM`] that bends the directions of all
-//! channels, except in Granier and Heidrich's model, which bends each by the index of its own wavelength unless the first interface is
-//! Schlick's; reflectances from
-//! [`Terms`]. Belcour's and Yamaguchi's models have one spread for all three channels, too.
+//! No model is written here: a twin evaluates the model of its room, channel by channel, with what is particular to shaders: one
+//! set of slope parameters, at least [`ALPHA_MIN`](crate::layers::ALPHA_MIN); one index at
+//! [`REFRACTION_WAVELENGTH_NM`](crate::formulas::refraction::REFRACTION_WAVELENGTH_NM) that bends the directions of all channels, except in
+//! Granier and Heidrich's model, which bends each by the index of its own wavelength unless the first interface is Schlick's; reflectances
+//! from [`Terms`](crate::terms::Terms). Belcour's and Yamaguchi's models have one spread for all three channels, too.
 
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
-use luthier_model::{Masking, ModelPart, Reflectance, ShadingModel};
+use luthier_model::{ModelPart, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::Stack;
 
-use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
-use crate::layers::{ALPHA_MIN, Below, Layers};
-use crate::models::elek::Elek;
-use crate::models::granier_heidrich::GranierHeidrich;
-use crate::models::microfacet::{Components, Microfacet};
-use crate::models::path::{Tilts, walk};
-use crate::models::phong::Coefficients;
-use crate::models::statistics::diffuse_base::DiffuseBase;
-use crate::models::statistics::evaluate::{Follow, evaluate};
-use crate::models::statistics::spread::{Covariance, Spread};
-use crate::models::weidlich_wilkie::WeidlichWilkie;
-use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::terms::Terms;
-use crate::twins::parts::{Parts, Reflectances};
-use crate::twins::terms::ShaderTerms;
-
-/// Normals below the first interface of a surface, each unit, and the variance of its own: those of `LuthierPlace`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Under {
-    /// Normal of the flakes, which all that lies below is turned by; for `elek`, `weidlich-wilkie` and `lobes`.
-    pub flake_normal: DVec3,
-    /// Normal of the lower boundary of the film; for `granier-heidrich`.
-    pub inner_normal: DVec3,
-    /// Variance of the slopes of normals in a pixel, which widens what comes from below; for `lobes`. Others have it in their slope parameters.
-    pub slope_variance: f64,
-    /// Albedo of the diffuse base, where it is not that of the stack; for `lobes`. Others have it in their layers.
-    pub base_color: Option<Rgb>,
-}
-
-impl Under {
-    /// Normals of the surface itself.
-    pub const NONE: Self =
-        Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z, slope_variance: 0.0, base_color: None };
-}
+use crate::models::parts::{Parts, Reflectances};
+use crate::models::path::Tilts;
+use crate::models::room;
+use crate::models::shade::{Given, Shade, ShaderTerms, Under};
 
 /// The twin of a shader, for one surface.
 #[derive(Debug)]
 pub struct Twin {
-    kind: Kind,
+    model: ShadingModel,
+    shade: Box<dyn Shade>,
     /// Reflectances in place of those of terms, where a material chooses them.
     reflectances: Option<Reflectances>,
     /// Rows of the matrix from light to light of a fluorescent base.
     reradiation: Option<[Rgb; 3]>,
     /// Own normals of interfaces, from the top down.
     normals: Vec<DVec3>,
-}
-
-#[derive(Debug)]
-enum Kind {
-    Elek(Elek, Layers),
-    WeidlichWilkie(WeidlichWilkie, Layers),
-    GranierHeidrich(GranierHeidrich, [Monochrome; 3]),
-    Phong([Coefficients; 3]),
-    Microfacet(Box<Microfacet>, Layers),
-    /// The first interface, with light from below where there is an interface.
-    Lobes(Box<Microfacet>, Layers),
-    Belcour(Layers),
-    Yamaguchi(Layers),
 }
 
 impl Twin {
@@ -85,32 +43,15 @@ impl Twin {
     pub fn with(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Self {
         let is_chosen = model.takes(ModelPart::Reflectance) && parts.reflectance != Reflectance::Table;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
-        let Parts { masking, internal_reflection, .. } = parts;
-        let microfacet = |masking| Box::new(Microfacet::new(Components { masking, ..Components::PLAIN }));
-        let kind = match model {
-            ShadingModel::Elek => Kind::Elek(Elek { internal_reflection }, Layers::isotropic_rgb(stack)),
-            ShadingModel::WeidlichWilkie => {
-                let model = WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() };
-                Kind::WeidlichWilkie(model, Layers::rgb(stack))
-            }
-            ShadingModel::GranierHeidrich => {
-                Kind::GranierHeidrich(parts.beams, granier_channels(stack, wavelengths_nm))
-            }
-            ShadingModel::Phong => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
-            ShadingModel::Belcour => Kind::Belcour(Layers::rgb(stack)),
-            ShadingModel::Yamaguchi => Kind::Yamaguchi(Layers::rgb(stack)),
-            ShadingModel::Microfacet => Kind::Microfacet(microfacet(masking), Layers::rgb(stack)),
-            ShadingModel::Lobes => Kind::Lobes(microfacet(Masking::Smith), Layers::rgb(stack)),
-        };
-        Self { kind, reflectances, reradiation: None, normals: Vec::new() }
+        let shade = (room(model).twin)(&Given { stack, wavelengths_nm, color, parts });
+        Self { model, shade, reflectances, reradiation: None, normals: Vec::new() }
     }
 
     /// The twin over a base that is fluorescent, if there are rows of a matrix from light to light (linear Rec.709,
     /// [`luthier_optics::reradiation::rgb`]), which take the place of its albedo in `elek` and `weidlich-wilkie`.
     #[must_use]
     pub fn reradiating(self, rows: Option<[Rgb; 3]>) -> Self {
-        let is_chain = matches!(self.kind, Kind::Elek(..) | Kind::WeidlichWilkie(..));
-        Self { reradiation: rows.filter(|_| is_chain), ..self }
+        Self { reradiation: rows.filter(|_| self.model.is_path()), ..self }
     }
 
     /// The twin with normals of single interfaces, from the top down, unit, in the frame of the surface; for `elek` and `weidlich-wilkie`.
@@ -121,7 +62,7 @@ impl Twin {
 
     /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
     /// channels need it.
-    pub fn eval(&self, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
+    pub fn eval(&self, terms: &dyn ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
         self.eval_over(terms, &Under::NONE, wi, wo)
     }
 
@@ -134,22 +75,18 @@ impl Twin {
     /// ```
     ///
     /// f being that of the interfaces. It is linear in the light; [`Twin::eval_over`] is that for white light.
-    pub fn eval_lit(&self, terms: &impl ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
+    pub fn eval_lit(&self, terms: &dyn ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
         match &self.reflectances {
             Some(reflectances) => self.lit_on(&reflectances.over(terms), under, light, wi, wo),
             None => self.lit_on(terms, under, light, wi, wo),
         }
     }
 
-    fn lit_on(&self, terms: &impl ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
-        let tilts = Tilts { below: under.flake_normal, own: &self.normals };
-        let walked = match (&self.kind, self.reradiation) {
-            (Kind::Elek(model, layers), Some(_)) => walk(model, &layers.layers, terms, wi, wo, tilts),
-            (Kind::WeidlichWilkie(model, layers), Some(_)) => walk(model, &layers.layers, terms, wi, wo, tilts),
-            _ => {
-                let plain = self.eval_on(terms, under, wi, wo);
-                return [0, 1, 2].map(|c| plain[c] * light[c]);
-            }
+    fn lit_on(&self, terms: &dyn ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
+        let walked = self.reradiation.and_then(|_| self.shade.walked(terms, self.tilts(under), wi, wo));
+        let Some(walked) = walked else {
+            let plain = self.eval_on(terms, under, wi, wo);
+            return [0, 1, 2].map(|c| plain[c] * light[c]);
         };
         let rows = self.reradiation.unwrap_or_default();
         let (down, up) = walked.base.map(|base| (base.down, base.up)).unwrap_or_default();
@@ -160,7 +97,7 @@ impl Twin {
     }
 
     /// [`Twin::eval`] with other normals below the first interface, and a base that may be fluorescent, under white light.
-    pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
+    pub fn eval_over(&self, terms: &dyn ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
         if self.reradiation.is_some() {
             return self.eval_lit(terms, under, [1.0; 3], wi, wo);
         }
@@ -170,98 +107,30 @@ impl Twin {
         }
     }
 
-    fn eval_on(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
-        let &Under { flake_normal, inner_normal, slope_variance, base_color } = under;
-        let tilts = Tilts { below: flake_normal, own: &self.normals };
-        match &self.kind {
-            Kind::Elek(model, layers) => walk(model, &layers.layers, terms, wi, wo, tilts).value(),
-            Kind::WeidlichWilkie(model, layers) => walk(model, &layers.layers, terms, wi, wo, tilts).value(),
-            Kind::GranierHeidrich(model, stacks) => model.leaning(inner_normal).eval_with(stacks, terms, wi, wo),
-            Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),
-            Kind::Yamaguchi(layers) => statistical::<Covariance>(layers, terms, wi, wo),
-            Kind::Phong(channels) => channels.map(|coefficients| coefficients.eval(wi, wo)),
-            Kind::Microfacet(model, layers) => first_layer(model, layers, terms, wi, wo),
-            Kind::Lobes(model, layers) => {
-                let first = first_layer(model, layers, terms, wi, wo);
-                let below = match layers.layers.first().map(|layer| layer.below) {
-                    Some(Below::Dielectric { .. } | Below::Conductor) if wi.z > 0.0 => terms.below(wo),
-                    _ => None,
-                };
-                let Some(mut below) = below else { return first };
-                if slope_variance > 0.0 {
-                    below = below.widened(wo, slope_variance);
-                }
-                if let Some(albedo) = base_color {
-                    below = below.over_base(albedo);
-                }
-                if let Below::Dielectric { ior, .. } = layers.layers[0].below
-                    && flake_normal != DVec3::Z
-                {
-                    below = below.tilted(flake_normal, ior / layers.exterior);
-                }
-                let below = below.eval(wi);
-                [0, 1, 2].map(|c: usize| first[c] + below[c])
-            }
-        }
+    fn eval_on(&self, terms: &dyn ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
+        self.shade.eval(terms, under, self.tilts(under), wi, wo)
     }
-}
 
-/// The first layer alone; nothing where there is none.
-fn first_layer(model: &Microfacet, layers: &Layers, terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
-    layers.layers.first().map_or([0.0; 3], |layer| model.eval_with(layer, terms, wi, wo))
-}
-
-/// Belcour's or Yamaguchi's model: three channels that share directions and spreads, as their shader has them.
-fn statistical<S: Spread>(layers: &Layers, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
-    let base = DiffuseBase::veiled(layers, terms.veil());
-    evaluate::<S, 3>(layers, terms, base.as_ref(), Follow::Eye, wi, wo)
-}
-
-/// Stacks of the channels with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
-fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
-    let mut channels = [0, 1, 2].map(|c| Monochrome::new(stack, wavelengths_nm[c], c));
-    for one in &mut channels {
-        for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
-            let alpha = given.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0);
-            layer.surface = Surface::isotropic(given.surface.distribution, alpha);
-        }
+    fn tilts(&self, under: &Under) -> Tilts<'_> {
+        Tilts { below: under.flake_normal, own: &self.normals }
     }
-    // A record of Schlick's interface has one index.
-    let has_f0 = channels[0].layers.first().is_some_and(|layer| layer.f0.is_some());
-    channels.map(|one| if has_f0 { bend_alike(one, stack) } else { one })
-}
-
-/// The stack with the real indices of the common wavelength, which bend directions. Reflectances come from elsewhere.
-fn bend_alike(mut one: Monochrome, stack: &Stack) -> Monochrome {
-    for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
-        if let (MonochromeBelow::Dielectric { ior, .. }, Base::Dielectric { ior: given, .. }) =
-            (&mut layer.below, &given.base)
-        {
-            *ior = given.at(REFRACTION_WAVELENGTH_NM).re;
-        }
-    }
-    Monochrome::joined(stack.exterior.at(REFRACTION_WAVELENGTH_NM).re, one.layers)
-}
-
-/// Phong's coefficients in colour; one lobe has one exponent, that of the green wavelength.
-fn coefficients(stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> [Coefficients; 3] {
-    let [diffuse, specular] = Coefficients::in_color(stack, &color);
-    let Coefficients { exponent, .. } = Coefficients::of(&Monochrome::new(stack, wavelengths_nm[1], 1));
-    [0, 1, 2].map(|c| Coefficients { diffuse: diffuse[c], specular: specular[c], exponent })
 }
 
 #[cfg(test)]
 mod tests {
     use luthier_optics::ior::{Ior, IorSample};
-    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab};
+    use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Surface};
 
     use super::*;
-    use crate::lobes::Below;
     use crate::model::Model;
+    use crate::models::lobes::Below;
     use crate::models::statistics::diffuse_base::Veil;
     use crate::models::statistics::energy::Energy;
     use crate::models::statistics::evaluate::Prepared;
+    use crate::models::weidlich_wilkie::WeidlichWilkie;
+    use crate::monochrome::Monochrome;
     use crate::registry;
+    use crate::terms::Terms;
     use crate::twins::terms::Exact;
 
     const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -406,8 +275,5 @@ mod tests {
         let found = twin.eval(&Exact::new(&stack, color), wi, wo);
         let own = WeidlichWilkie::default().eval(&Monochrome::new(&stack, 645.0, 0), wi, wo);
         assert!((found[0] / own - 1.0).abs() > 1e-4, "{} {own}", found[0]);
-        let alike = bend_alike(Monochrome::new(&stack, 645.0, 0), &stack);
-        assert!((alike.layers[0].eta() - dispersive(1.5).at(REFRACTION_WAVELENGTH_NM).re).abs() < 1e-15);
-        assert_eq!(alike.layers[1].above, alike.layers[0].eta());
     }
 }

@@ -15,13 +15,15 @@ use crate::effects::layer_sample::LayerSample;
 use crate::effects::textured::TextureSample;
 use crate::frame;
 use crate::layers::ALPHA_MIN;
-use crate::lobes::{self, Below, Cover, Fit, Lobes, Varied, Varying};
+use crate::models::lobes::{self, Below, Cover, Fit, Lobes, Varied, Varying};
+use crate::models::parts::{Chosen, Parts, Reflectances};
+use crate::models::shade::ShaderTerms;
+use crate::models::shade::Under;
 use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::Energy;
 use crate::terms::Terms;
-use crate::twins::parts::{Chosen, Parts, Reflectances};
-use crate::twins::real_time::{Twin, Under};
-use crate::twins::terms::{Exact, ShaderTerms};
+use crate::twins::real_time::Twin;
+use crate::twins::terms::Exact;
 
 /// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,8 +99,8 @@ struct PartTwin<T> {
     reflectances: Reflectances,
 }
 
-impl<T> PartTwin<T> {
-    fn terms(&self) -> Chosen<'_, T> {
+impl<T: ShaderTerms> PartTwin<T> {
+    fn terms(&self) -> Chosen<'_> {
         self.reflectances.over(&self.terms)
     }
 }
@@ -371,13 +373,13 @@ fn hold(ior: &mut Ior, wavelength_nm: f64) {
 }
 
 /// Terms whose reflectances are dimmed, those of the first layer and those of the layers below.
-struct Tarnished<'a, T> {
-    terms: Chosen<'a, T>,
+struct Tarnished<'a> {
+    terms: Chosen<'a>,
     first: Rgb,
     below: Rgb,
 }
 
-impl<T: Terms> Terms for Tarnished<'_, T> {
+impl Terms for Tarnished<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let factor = if layer == 0 { self.first } else { self.below };
         let bright = self.terms.fresnel(layer, cos_theta_d);
@@ -389,13 +391,13 @@ impl<T: Terms> Terms for Tarnished<'_, T> {
     }
 }
 
-impl<T: Energy<3>> Energy<3> for Tarnished<'_, T> {
+impl Energy<3> for Tarnished<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
         self.terms.fgd(layer, cos_theta_i, alpha)
     }
 }
 
-impl<T: ShaderTerms> ShaderTerms for Tarnished<'_, T> {
+impl ShaderTerms for Tarnished<'_> {
     fn veil(&self) -> Veil<3> {
         self.terms.veil()
     }

@@ -1,4 +1,4 @@
-//! Terms that shaders are given, and their exact values.
+//! Exact values of the terms that shaders are given.
 
 use std::sync::OnceLock;
 
@@ -9,20 +9,11 @@ use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::stack::{Base, Stack};
 
 use crate::layers::Layers;
-use crate::lobes::{Below, Lobes, Varied, Varying};
+use crate::models::lobes::{Below, Lobes, Varied, Varying};
+use crate::models::shade::ShaderTerms;
 use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::{ColorEnergy, Energy};
 use crate::terms::Terms;
-
-/// All that the shaders of any model are given: what [`Terms`] are; for `belcour` and `yamaguchi` energies, and what layers do to the light
-/// of a diffuse base; for `lobes` the light from below the first interface.
-pub trait ShaderTerms: Terms + Energy<3> {
-    /// Effect of the layers above a diffuse base on its light; anything where there is no such base.
-    fn veil(&self) -> Veil<3>;
-
-    /// Light from below the first interface as seen from `wo`; `None` below the horizon, and where the terms have none.
-    fn below(&self, wo: DVec3) -> Option<Below>;
-}
 
 /// Exact terms. Fresnel and distribution terms are evaluated at every call. Energies are prepared at the first, see [`ColorEnergy`]; so are
 /// lobes, which are simulated then ([`Varied::of`]).

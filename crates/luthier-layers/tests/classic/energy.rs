@@ -12,7 +12,7 @@ use luthier_layers::models::microfacet::{Components, Microfacet};
 use luthier_layers::models::phong::Phong;
 use luthier_layers::models::statistics::evaluate::Follow;
 use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
-use luthier_layers::models::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
+use luthier_layers::models::weidlich_wilkie::corrected::WeidlichWilkieCorrected;
 use luthier_layers::models::yamaguchi::Yamaguchi;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_optics::quadrature::gauss_legendre;

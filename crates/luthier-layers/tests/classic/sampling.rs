@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_layers::model::Model;
 use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
-use luthier_layers::models::weidlich_wilkie_sampling::Sampler;
+use luthier_layers::models::weidlich_wilkie::sampling::Sampler;
 use luthier_layers::monochrome::Monochrome;
 use luthier_optics::stack::{Distribution, Surface};
 
@@ -160,7 +160,7 @@ fn both_methods_estimate_the_albedo() {
             let proposals: Vec<_> = (0..sampler.count())
                 .filter_map(|layer| sampler.propose(layer, [numbers.next(), numbers.next()]))
                 .collect();
-            let carried = |p: &luthier_layers::models::weidlich_wilkie_sampling::Proposal| {
+            let carried = |p: &luthier_layers::models::weidlich_wilkie::sampling::Proposal| {
                 model.eval(stack, p.wi, wo) / sampler.sum_of_densities(p.wi)
             };
             let global = Sampler::follow(&proposals, carried, numbers.next()).map_or(0.0, |(p, q)| carried(&p) / q);

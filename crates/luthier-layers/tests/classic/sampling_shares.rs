@@ -4,7 +4,7 @@
 use glam::DVec3;
 use luthier_layers::model::Model;
 use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
-use luthier_layers::models::weidlich_wilkie_sampling::Sampler;
+use luthier_layers::models::weidlich_wilkie::sampling::Sampler;
 use luthier_layers::monochrome::Monochrome;
 use luthier_optics::stack::{Distribution, Surface};
 

@@ -9,8 +9,8 @@ use luthier_layers::luthier_model::{InternalReflection, Masking};
 use luthier_layers::model::Model;
 use luthier_layers::models::elek::Elek;
 use luthier_layers::models::microfacet::{Components, Microfacet};
+use luthier_layers::models::weidlich_wilkie::corrected::WeidlichWilkieCorrected;
 use luthier_layers::models::weidlich_wilkie::{Refraction, WeidlichWilkie};
-use luthier_layers::models::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 
 use crate::sphere::{albedo, at, mirrored};

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use luthier_layers::directional_albedo::over_hemisphere;
-use luthier_layers::lobes::{Lobes, Varied, Varying};
 use luthier_layers::model::Model;
+use luthier_layers::models::lobes::{Lobes, Varied, Varying};
 use luthier_layers::models::microfacet::{Components, Microfacet};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};

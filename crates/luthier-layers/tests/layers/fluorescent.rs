@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::luthier_model::{Reflectance, ShadingModel};
-use luthier_layers::twins::parts::Parts;
-use luthier_layers::twins::real_time::{Twin, Under};
+use luthier_layers::models::parts::Parts;
+use luthier_layers::models::shade::Under;
+use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_layers::twins::terms::Exact;
 use luthier_optics::Rgb;

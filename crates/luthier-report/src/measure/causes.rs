@@ -3,12 +3,13 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
-use luthier_layers::lobes::Below;
+use luthier_layers::models::lobes::Below;
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
 use luthier_layers::models::statistics::energy::Energy;
 use luthier_layers::terms::Terms;
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::twins::terms::{Exact, ShaderTerms};
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::TableKind;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;

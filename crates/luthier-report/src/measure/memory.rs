@@ -2,7 +2,7 @@
 
 use std::fmt::{Debug, Write as _};
 
-use luthier_layers::lobes::{Lobes, Varied};
+use luthier_layers::models::lobes::{Lobes, Varied};
 use luthier_lut::TableKind;
 use luthier_manifest::{LayerRecord, MaterialEntry, Tiles};
 use serde::Serialize;

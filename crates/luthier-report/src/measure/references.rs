@@ -1,10 +1,11 @@
 //! The f64 side of a comparison: the twin of a material's shader, and its exact terms.
 
 use luthier_layers::layers::{Layer, Layers};
-use luthier_layers::lobes::{Cover, Varying};
-use luthier_layers::twins::parts::Parts;
+use luthier_layers::models::lobes::{Cover, Varying};
+use luthier_layers::models::parts::Parts;
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::twins::terms::{Exact, ShaderTerms};
+use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{ColorMode, MaterialEntry, PatinaRecord, VaryingFactor};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
-use luthier_layers::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
 use luthier_layers::models::statistics::energy::Energy;
 use luthier_layers::terms::Terms;
 use luthier_layers::twins::shaded::{Part, Place};
-use luthier_layers::twins::terms::ShaderTerms;
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
 use luthier_manifest::reads;
 use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};

@@ -199,7 +199,7 @@ fn grazing(values: impl Fn(DVec3) -> Rgb) -> Rgb {
 
 #[cfg(test)]
 mod tests {
-    use luthier_layers::lobes::Lobes;
+    use luthier_layers::models::lobes::Lobes;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Diffuse, Distribution, Layer, Slab, Surface};
 
@@ -217,7 +217,8 @@ mod tests {
         let nm = [645.0, 525.0, 445.0];
         let color = Color::ThreeWavelengths(nm);
         let settings = |seed| ReferenceSettings { noise: 0.015, albedo_std_err: 2e-3, most: 1 << 20, seed };
-        let lobes = Lobes::with(&stack, &color, luthier_layers::lobes::FitSettings { rows: 6, paths: 4096, seed: 3 });
+        let lobes =
+            Lobes::with(&stack, &color, luthier_layers::models::lobes::FitSettings { rows: 6, paths: 4096, seed: 3 });
         let view = ColorView::new(&stack, &color, nm, 50.0, settings(1));
         let found = view.errors(|wi| lobes.eval(wi, view.cells.wo), 0.01);
         let subject = ModelSubject { name: "coated".to_owned(), stack, wavelengths_nm: nm };

@@ -5,8 +5,8 @@
 //! its own mirror image in the plane of the eye, so that a cell has the mean of both sides. Every view has as many paths as its noise asks for.
 
 use glam::DVec3;
-use luthier_layers::lobes::Lobes;
 use luthier_layers::model::Model;
+use luthier_layers::models::lobes::Lobes;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::JointPaths;
 use luthier_optics::Rgb;

@@ -4,8 +4,8 @@ mod page;
 mod sets;
 mod tolerances;
 
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
-use luthier_layers::twins::terms::ShaderTerms;
 use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_optics::Rgb;
 use rayon::prelude::*;

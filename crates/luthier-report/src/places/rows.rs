@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::textured::TextureSample;
-use luthier_layers::twins::real_time::Under;
+use luthier_layers::models::shade::Under;
 use luthier_layers::twins::shaded::{Growth, Part, Place, Shaded};
 use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};

@@ -1,7 +1,7 @@
 //! Rows of lobes at places against the simulation of the stack that the material file means there.
 
 use glam::DVec3;
-use luthier_layers::lobes::{self, Lobes};
+use luthier_layers::models::lobes::{self, Lobes};
 use luthier_layers::twins::shaded::Place;
 use luthier_manifest::{MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
@@ -127,7 +127,7 @@ impl SimulatedErrors {
 /// for a diffuse base alone.
 ///
 /// Places have what the maps vary, but for normals, which turn the frame of the eye alone, and flakes, whose shift of the lobes is an approximation that has a
-/// measure of its own (`luthier_layers::lobes::Below::tilted`). A patina is there whole or not at all: light is linear between.
+/// measure of its own (`luthier_layers::models::lobes::Below::tilted`). A patina is there whole or not at all: light is linear between.
 ///
 /// # Errors
 /// See [`ReportError`].

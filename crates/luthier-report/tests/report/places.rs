@@ -1,6 +1,6 @@
 //! Materials that vary, at random places: shaders that ignore what varies, and rows of another stack.
 
-use luthier_layers::lobes::{Critical, FitSettings, Varied, Varying};
+use luthier_layers::models::lobes::{Critical, FitSettings, Varied, Varying};
 use luthier_lut::{AtlasLayout, Image, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{
     ColorMode, FileEntry, LobesRecord, MapEntry, MapSlot, PlaceValues, ShadingModel, VaryingFactor, VaryingRecord,

@@ -127,13 +127,18 @@ fn named(word: &str) -> Feature {
 /// Every module, with its file.
 #[cfg(test)]
 pub(crate) fn modules() -> Vec<(std::path::PathBuf, String)> {
-    let mut folders = vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/wgsl")];
+    let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut folders = vec![crates.join("luthier-shader/src/wgsl"), crates.join("luthier-layers/src/models")];
     let mut modules = Vec::new();
     while let Some(folder) = folders.pop() {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-            match std::fs::read_to_string(&path) {
-                Ok(text) => modules.push((path, text)),
-                Err(_) => folders.push(path),
+            match path.extension() {
+                Some(ending) if ending == "wgsl" => {
+                    let text = std::fs::read_to_string(&path).unwrap();
+                    modules.push((path, text));
+                }
+                Some(_) => {}
+                None => folders.push(path),
             }
         }
     }

@@ -2,17 +2,37 @@
 
 use std::fmt::Write as _;
 
+use luthier_layers::models::room;
 use luthier_manifest::{LayerKind, ShadingModel};
 
 use crate::MaterialSet;
 use crate::compose::face::parts_function;
 use crate::compose::feature::Feature;
 use crate::compose::features::Features;
-use crate::compose::function;
+use crate::compose::{function, text};
 use crate::identifiers::rename;
 
-/// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
-pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
+/// The modules of a model, `luthier_eval_<model>` last.
+pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
+    let steps = if is_clamped(model, features) { room(model).kernels.eval } else { "" };
+    vec![text(steps, features), text(&eval(set, model, features), features)]
+}
+
+/// Whether a model clamps slope parameters, and some are to be. A model of one slope parameter does; where no interface is smoother than
+/// one above it, it is the same path as that of a model of two.
+fn is_clamped(model: ShadingModel, features: &Features) -> bool {
+    model.facts().is_isotropic && features.has(Feature::Clamped)
+}
+
+/// The function of a model that adds an interface to a `LuthierPath`.
+fn interface(model: ShadingModel, features: &Features) -> String {
+    let owner = if is_clamped(model, features) { model.name() } else { "add" };
+    format!("luthier_{owner}_interface")
+}
+
+/// `luthier_eval_<model>` of a model.
+fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
+    let interface = &interface(model, features);
     let name = function(model);
     let layers: Vec<_> = set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect();
     let has_patina = features.has(Feature::ChainPatina);
@@ -224,14 +244,12 @@ fn walk(
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     let (has_flakes, is_clamped) = (features.has(Feature::Flakes), features.has(Feature::Clamped));
     let is_folded = features.has(Feature::Folded) && features.has(Feature::Media);
-    let (interface, alpha, axis) = match model {
-        ShadingModel::Elek if is_clamped => {
-            ("luthier_elek_interface", "vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)")
-        }
-        ShadingModel::WeidlichWilkie if features.has(Feature::Anisotropic) => {
-            ("luthier_add_interface", "layer.alpha_xy", "layer.rotation")
-        }
-        _ => ("luthier_add_interface", "vec2<f32>(layer.alpha)", "vec2<f32>(1.0, 0.0)"),
+    let interface = interface(model, features);
+    let is_isotropic = model.facts().is_isotropic;
+    let (alpha, axis) = match () {
+        () if is_isotropic && is_clamped => ("vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)"),
+        () if !is_isotropic && features.has(Feature::Anisotropic) => ("layer.alpha_xy", "layer.rotation"),
+        () => ("vec2<f32>(layer.alpha)", "vec2<f32>(1.0, 0.0)"),
     };
     let normal = if walk.is_bare { LEVEL } else { "place.flake_normal" };
     let below = if has_flakes { format!(", {normal}") } else { String::new() };

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use luthier_layers::models::path;
+use luthier_layers::models::room;
 use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel};
 use luthier_model::Family;
 
@@ -27,20 +29,18 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
     let least = if features.has(Feature::Folded) && features.has(Feature::Media) { ", least: f32" } else { "" };
     let module = |wgsl: &str| {
         let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE).replace("$least", least);
-        text(&wgsl.replace("$model_lobes", &number(ShadingModel::Lobes)), features)
+        let fitted = set.models().find(|model| model.is_fitted()).map(number).unwrap_or_default();
+        text(&wgsl.replace("$model_lobes", &fitted), features)
     };
     let mut modules = vec![module(include_str!("../wgsl/face/prepared.wgsl"))];
     if features.has(Feature::Chain) {
-        modules.push(module(include_str!("../wgsl/face/path_part.wgsl")));
+        modules.push(module(path::PARTS));
     }
     for model in set.models() {
         modules.push(match model.facts().family {
             Family::Path => module(&chain::parts(set, model, features)),
             Family::Statistics => module(&statistics::parts(set, model)),
-            Family::Beams => module(include_str!("../wgsl/face/granier_heidrich.wgsl")),
-            Family::Coefficients => module(include_str!("../wgsl/face/phong.wgsl")),
-            Family::Facets => module(include_str!("../wgsl/face/microfacet.wgsl")),
-            Family::Lobes => module(include_str!("../wgsl/face/lobes.wgsl")),
+            Family::Beams | Family::Coefficients | Family::Facets | Family::Lobes => module(room(model).kernels.parts),
         });
     }
     modules.extend([module(&prepare(set, features, parts)), module(&light(set, features))]);
@@ -49,7 +49,7 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
             modules.push(module(include_str!("../wgsl/face/visible.wgsl")));
         }
         if features.has(Feature::Lobes) {
-            modules.push(module(include_str!("../wgsl/face/lobes_sample.wgsl")));
+            modules.extend(set.models().map(|model| module(room(model).kernels.sample)));
         }
         modules.push(unrolled(&module(include_str!("../wgsl/face/sample.wgsl")), parts, features));
         if set.functions.has(FunctionGroup::Propose) {
@@ -168,9 +168,9 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
         for &other in others {
             out.push_str(&case(&number(other), &call(other)));
         }
-        if models.contains(&ShadingModel::Lobes) && features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse)
-        {
-            out.push_str(&case(BASE, &eval(ShadingModel::Lobes)));
+        let fitted = models.iter().copied().find(|model| model.is_fitted());
+        if let Some(model) = fitted.filter(|_| features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse)) {
+            out.push_str(&case(BASE, &eval(model)));
         }
         let _ = writeln!(out, "    {}\n}}", call(*first));
     }

@@ -114,9 +114,9 @@ impl Features {
         if form == Form::Full || has_facets && !names.contains(&Feature::Distribution) {
             names.insert(Feature::Closed);
         }
-        // Slope parameters that vary may come in any order; those along two axes are one for Elek's model.
-        let has_elek = set.models().any(|model| model == ShadingModel::Elek);
-        if has_elek
+        // Slope parameters that vary may come in any order; those along two axes are one for models that take one.
+        let has_one_slope = set.models().any(|model| model.is_path() && model.facts().is_isotropic);
+        if has_one_slope
             && names.contains(&Feature::Chain)
             && [Feature::Place, Feature::Anisotropic].iter().any(|name| names.contains(name))
         {
@@ -318,7 +318,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             if has_diffuse {
                 names.insert(Feature::ChainDiffuse);
             }
-            if material.model == ShadingModel::Elek && gets_smoother(layers) {
+            if facts.is_isotropic && gets_smoother(layers) {
                 names.insert(Feature::Clamped);
             }
             // Beside these and `lobes`, models have no layer below the first interface that flakes could tilt or patina cover.

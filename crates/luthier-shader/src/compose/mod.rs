@@ -16,8 +16,12 @@ mod words;
 
 use std::fmt::Write as _;
 
+use luthier_layers::models::path;
+use luthier_layers::models::room;
+use luthier_layers::models::room::Kernels;
 use luthier_lut::TableKind;
 use luthier_manifest::{MapSlot, MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_model::Family;
 
 use self::blocks::prune;
 use self::feature::Feature;
@@ -89,8 +93,8 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (true, include_str!("../wgsl/interface/slopes.wgsl")),
         (true, masking.as_str()),
         (true, include_str!("../wgsl/interface/smith.wgsl")),
-        (has(Feature::Chain), include_str!("../wgsl/models/path.wgsl")),
-        (has(Feature::Statistics), include_str!("../wgsl/models/statistics.wgsl")),
+        (has(Feature::Chain), path::EVAL),
+        (has(Feature::Statistics), luthier_layers::models::statistics::SPREAD),
     ];
     parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
     for model in set.models() {
@@ -184,30 +188,18 @@ fn assign_tiles() -> String {
     TableKind::ALL.into_iter().filter_map(assignment).collect()
 }
 
-/// The modules of a model, `luthier_eval_<model>` last.
+/// The modules of a model: kernels of its room, and for families that write them for each stack, steps and a function of these.
 fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
-    let module = |text| self::text(text, features);
-    match model {
-        ShadingModel::Elek if features.has(Feature::Clamped) => vec![
-            module(include_str!("../wgsl/models/elek.wgsl")),
-            module(&chain::eval(set, model, "luthier_elek_interface", features)),
-        ],
-        // Elek's model is the same chain where no interface is smoother than one above it.
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
-            vec![module(&chain::eval(set, model, "luthier_add_interface", features))]
-        }
-        ShadingModel::GranierHeidrich => vec![module(include_str!("../wgsl/models/granier_heidrich.wgsl"))],
-        ShadingModel::Phong => vec![module(include_str!("../wgsl/models/phong.wgsl"))],
-        ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
-        ShadingModel::Lobes => {
-            let mut modules = vec![module(include_str!("../wgsl/models/lobes.wgsl"))];
-            if features.has(Feature::Environment) {
-                modules.push(module(include_str!("../wgsl/models/lobes_environment.wgsl")));
-            }
-            modules
-        }
-        ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
+    let Kernels { eval, environment, .. } = room(model).kernels;
+    let mut modules = match model.facts().family {
+        Family::Path => chain::modules(set, model, features),
+        Family::Statistics => statistics::modules(set, model, features),
+        Family::Beams | Family::Coefficients | Family::Facets | Family::Lobes => vec![text(eval, features)],
+    };
+    if features.has(Feature::Environment) {
+        modules.push(text(environment, features));
     }
+    modules
 }
 
 /// Numbers of the materials and surfaces, by name.

@@ -1,8 +1,10 @@
-//! Belcour's and Yamaguchi's models, which differ in the type of a spread only: written out, one step for every layer that a
+//! Models that follow statistics of light, which differ in the type of a spread only: written out, one step for every layer that a
 //! material of the set may have.
 
 use std::fmt::Write as _;
 
+use luthier_layers::models::room;
+use luthier_layers::models::statistics;
 use luthier_manifest::{LayerKind, LayerRecord, ShadingModel};
 
 use crate::MaterialSet;
@@ -13,25 +15,25 @@ use crate::compose::{function, text};
 
 /// The modules of a model, `luthier_eval_<model>` last.
 pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
-    let (path, spread, spreads) = match model {
-        ShadingModel::Yamaguchi => ("LuthierYamaguchi", "vec3<f32>", include_str!("../wgsl/models/yamaguchi.wgsl")),
-        _ => ("LuthierBelcour", "f32", include_str!("../wgsl/models/belcour.wgsl")),
-    };
-    let named = |module: String| {
-        let mut module = module.replace("$Path", path).replace("$spread", spread);
-        for name in ["start", "add_base", "add", "interface_spread", "mean_alpha", "limited"] {
-            module = module.replace(&format!("${name}("), &format!("luthier_{}_{name}(", model.name()));
-        }
-        module
-    };
     if is_bare(set, model) {
         return vec![text(&eval(set, model), features)];
     }
     vec![
-        named(text(include_str!("../wgsl/models/statistics_path.wgsl"), features)),
-        text(spreads, features),
+        named(text(statistics::ADDING, features), model),
+        text(room(model).kernels.eval, features),
         text(&eval(set, model), features),
     ]
+}
+
+/// The adding of layers with the types and functions of a model in place of `$Path`, `$spread` and `$add(`.
+fn named(module: String, model: ShadingModel) -> String {
+    let name = model.name();
+    let path = format!("Luthier{}{}", name[..1].to_uppercase(), &name[1..]);
+    let spread = if model.facts().is_isotropic { "f32" } else { "vec3<f32>" };
+    let module = module.replace("$Path", &path).replace("$spread", spread);
+    ["start", "add_base", "add", "interface_spread", "mean_alpha", "limited"].iter().fold(module, |module, function| {
+        module.replace(&format!("${function}("), &format!("luthier_{name}_{function}("))
+    })
 }
 
 /// Whether every material of a model is a diffuse base alone.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::formulas::oren_nayar;
-use luthier_layers::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
     AxesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry, PaintedRecord,

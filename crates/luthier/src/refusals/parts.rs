@@ -1,7 +1,7 @@
 //! Doubts about the parts of a model that a material chooses: those that its model does not have, distributions among them, and errors of
 //! approximations.
 
-use luthier_layers::twins::parts::Parts;
+use luthier_layers::models::parts::Parts;
 use luthier_lut::TableKind;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{

@@ -5,29 +5,27 @@ use std::collections::BTreeSet;
 use super::sources::sources;
 
 /// Files that name single models, tests and the project's own pages apart.
-const NAMING: [(&str, &str); 22] = [
+const NAMING: [(&str, &str); 20] = [
     ("cli/src/model_inputs.rs", "names the model that could show what another drops"),
     ("cli/src/simulated.rs", "takes the cheapest model where only stacks count"),
     ("cli/src/verb/bench.rs", "times everything over Phong's model"),
     ("cli/src/verb/eval/sweep.rs", "makes models with the parts of a file"),
     ("cli/src/verb/gallery/page.rs", "shows a second model beside that of the file"),
     ("crates/luthier/src/refusals/energy.rs", "names the model that returns what the simulation does"),
-    ("layers/src/lobes/mod.rs", "is the model"),
     ("layers/src/models/belcour/mod.rs", "is the model"),
-    ("layers/src/models/elek.rs", "is the model"),
-    ("layers/src/models/granier_heidrich.rs", "is the model"),
-    ("layers/src/models/microfacet.rs", "is the model"),
-    ("layers/src/models/phong.rs", "is the model"),
-    ("layers/src/models/weidlich_wilkie.rs", "is the model"),
+    ("layers/src/models/elek/mod.rs", "is the model"),
+    ("layers/src/models/granier_heidrich/mod.rs", "is the model"),
+    ("layers/src/models/lobes/mod.rs", "is the model"),
+    ("layers/src/models/microfacet/mod.rs", "is the model"),
+    ("layers/src/models/mod.rs", "has the doors of rooms"),
+    ("layers/src/models/phong/mod.rs", "is the model"),
+    ("layers/src/models/weidlich_wilkie/mod.rs", "is the model"),
     ("layers/src/models/yamaguchi/mod.rs", "is the model"),
-    ("layers/src/twins/real_time.rs", "makes the twin of each model"),
     ("layers/src/twins/shaded.rs", "has Elek's mean of slope parameters, and rows of lobes at a place"),
     ("material/src/default_model.rs", "says what keeps a material from the best model"),
     ("material/src/doubt.rs", "says what two models do with a smooth layer below a rough one"),
     ("report/src/models/colored.rs", "takes one facet for the first bounce"),
     ("scene/src/director.rs", "leaves costs out where rows are not baked"),
-    ("shader/src/compose", "puts the modules of each model together"),
-    ("model/src/rows.rs", "has the facts"),
 ];
 
 /// Whether code of a file, tests apart, names a single model.

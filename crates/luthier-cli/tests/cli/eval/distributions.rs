@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use luthier::{Bake, MemoryStore};
 use luthier_export::Shader;
 use luthier_layers::effects::textured::TextureSample;
-use luthier_layers::twins::parts::Parts;
+use luthier_layers::models::parts::Parts;
 use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_lut::TableKind;
 use luthier_manifest::Masking;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier::{Bake, MemoryStore};
 use luthier_export::Shader;
-use luthier_layers::twins::parts::Parts;
+use luthier_layers::models::parts::Parts;
 use luthier_layers::twins::shaded::{Place, Shaded};
 use luthier_manifest::{BeamsRecord, ColorMode, Form, Masking, Reflectance, ShadingModel};
 use luthier_material::{Material, parse};

@@ -19,8 +19,17 @@
 
 use luthier_model::ShadingModel;
 
+use crate::models::room::{Kernels, Room};
+use crate::models::statistics::eval;
 use crate::models::statistics::evaluate::Follow;
 use crate::models::statistics::model::Statistical;
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels { eval: include_str!("spread.wgsl"), ..Kernels::NONE },
+    twin: eval::twin::<f64>,
+    models: || vec![Box::new(Belcour::new(Follow::Eye)), Box::new(Belcour::new(Follow::HalfVector))],
+};
 
 /// Belcour 2018.
 pub type Belcour = Statistical<f64>;

@@ -41,7 +41,7 @@ impl<const C: usize> Veil<C> {
     /// The veil of the layers above the base of a stack, or `None` if it has no diffuse one.
     ///
     /// Light of the base beyond the critical angle of the exterior is totally reflected; it crosses the lowest slab only.
-    pub fn new(stack: &Layers<C>, energy: &impl Energy<C>) -> Option<Self> {
+    pub fn new(stack: &Layers<C>, energy: &dyn Energy<C>) -> Option<Self> {
         let (base, ..) = stack.base()?;
         let Some(lowest) = base.checked_sub(1).and_then(|above| stack.layers.get(above)) else {
             return Some(Self::NONE);
@@ -80,7 +80,7 @@ impl<const C: usize> Veil<C> {
 
 impl<const C: usize> DiffuseBase<C> {
     /// The base of a stack, or `None` if it has no diffuse one.
-    pub fn new(stack: &Layers<C>, energy: &impl Energy<C>) -> Option<Self> {
+    pub fn new(stack: &Layers<C>, energy: &dyn Energy<C>) -> Option<Self> {
         Self::veiled(stack, Veil::new(stack, energy)?)
     }
 

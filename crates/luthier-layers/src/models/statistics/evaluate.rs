@@ -30,7 +30,7 @@ pub enum Follow {
 /// fall short of the energies by what single scattering loses.
 pub fn evaluate<S: Spread, const C: usize>(
     stack: &Layers<C>,
-    energy: &impl Energy<C>,
+    energy: &dyn Energy<C>,
     base: Option<&DiffuseBase<C>>,
     follow: Follow,
     wi: DVec3,

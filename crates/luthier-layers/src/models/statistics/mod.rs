@@ -15,9 +15,16 @@
 pub mod adding;
 pub mod diffuse_base;
 pub mod energy;
+pub(in crate::models) mod eval;
 pub mod evaluate;
 #[cfg(test)]
 pub(crate) mod fixtures;
 pub mod model;
 pub mod spread;
 pub mod total_reflection;
+
+/// Kernels of spreads.
+pub const SPREAD: &str = include_str!("spread.wgsl");
+
+/// Kernels of the adding of layers. `$Path`, `$spread` and `$add(` stand for the types and functions of a model.
+pub const ADDING: &str = include_str!("adding.wgsl");

@@ -17,9 +17,18 @@
 
 use luthier_model::ShadingModel;
 
+use crate::models::room::{Kernels, Room};
+use crate::models::statistics::eval;
 use crate::models::statistics::evaluate::Follow;
 use crate::models::statistics::model::Statistical;
 use crate::models::statistics::spread::Covariance;
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels { eval: include_str!("spread.wgsl"), ..Kernels::NONE },
+    twin: eval::twin::<Covariance>,
+    models: || vec![Box::new(Yamaguchi::new(Follow::Eye)), Box::new(Yamaguchi::new(Follow::HalfVector))],
+};
 
 /// Yamaguchi et al. 2019.
 pub type Yamaguchi = Statistical<Covariance>;

@@ -28,7 +28,9 @@ fn explained(page: &str) -> BTreeSet<&str> {
 fn every_word_is_explained() {
     let crate_folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = fs::read_to_string(crate_folder.join("../../docs/shader-modules.md")).unwrap();
-    let modules = texts(&crate_folder.join("src/wgsl"));
+    let modules = [crate_folder.join("src/wgsl"), crate_folder.join("../luthier-layers/src/models")]
+        .map(|folder| texts(&folder))
+        .concat();
     let explained = explained(&page);
     let tables: BTreeSet<&str> =
         luthier_lut::TableKind::NAMES.iter().copied().chain(["film_table"]).filter(|name| *name != "film").collect();

@@ -61,7 +61,7 @@ impl<S, const C: usize> Transport<S, C> {
 ///
 /// For any energies in 0..=1 those of the lobes sum to at most 1, and to 1 if nothing is absorbed or sent below: where
 /// the series diverges its limit without absorption is taken.
-pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &impl Energy<C>, cos_theta: f64) -> Transport<S, C> {
+pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>, cos_theta: f64) -> Transport<S, C> {
     let mut lobes = Vec::with_capacity(stack.layers.len());
     let (mut t0i, mut ti0, mut ri0) = ([1.0; C], [1.0; C], [0.0; C]);
     let (mut spread_t0i, mut spread_ti0, mut spread_ri0) = (S::ZERO, S::ZERO, S::ZERO);

@@ -11,6 +11,12 @@ use crate::frame::{self, off, onto};
 use crate::layers::{Below, Layer};
 use crate::terms::Terms;
 
+/// Kernels of the walk.
+pub const EVAL: &str = include_str!("eval.wgsl");
+
+/// Kernels of the interfaces that it meets as lobes to draw directions from.
+pub const PARTS: &str = include_str!("parts.wgsl");
+
 /// A model that walks, by the steps that are its own. Factors are multiplied in the order of each model.
 pub(crate) trait PathModel {
     /// Light from below that interfaces let out.
@@ -20,7 +26,7 @@ pub(crate) trait PathModel {
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2];
 
     /// The facets of the last of some layers that reflect `wi` to `wo`.
-    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe>;
+    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe>;
 
     /// Both directions in the medium below, pointing up; `None` where either is totally reflected or leaves upward.
     fn refracted(&self, eta: f64, wi: DVec3, wo: DVec3) -> Option<[DVec3; 2]>;
@@ -78,7 +84,7 @@ impl<const C: usize> Walked<C> {
 pub(crate) fn walk<const C: usize>(
     model: &impl PathModel,
     layers: &[Layer<C>],
-    terms: &impl Terms<C>,
+    terms: &dyn Terms<C>,
     wi: DVec3,
     wo: DVec3,
     tilts: Tilts<'_>,

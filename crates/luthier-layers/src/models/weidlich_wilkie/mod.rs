@@ -13,8 +13,12 @@
 //!
 //! The model errs in two ways, which the tests measure: radiance is not compressed by 1/n^2 on its way out, so that a smooth
 //! coat over a white base returns about twice what it receives; and light that comes back from the underside of an
-//! interface is lost or, by `t`, made up for where facets hide each other. [`crate::models::weidlich_wilkie_corrected`] mends
+//! interface is lost or, by `t`, made up for where facets hide each other. [`crate::models::weidlich_wilkie::corrected`] mends
 //! both.
+
+pub mod corrected;
+mod eval;
+pub mod sampling;
 
 use glam::DVec3;
 use luthier_model::{InternalReflection, Masking, ShadingModel};
@@ -24,8 +28,27 @@ use crate::formulas::refraction::{refract, refract_at};
 use crate::layers::{Layer, Layers};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::models::path::{PathModel, Tilts, walk};
+use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
+use corrected::WeidlichWilkieCorrected;
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels::NONE,
+    twin: eval::twin,
+    models: || {
+        vec![
+            Box::new(WeidlichWilkie::default()),
+            Box::new(WeidlichWilkie {
+                internal_reflection: InternalReflection::Directions,
+                ..WeidlichWilkie::default()
+            }),
+            Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
+            Box::new(WeidlichWilkieCorrected),
+        ]
+    },
+};
 
 /// Normal at which both directions are refracted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,7 +80,7 @@ impl PathModel for WeidlichWilkie {
         [1.0, cos_theta_i]
     }
 
-    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
+    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let (last, above) = layers.split_last()?;
         Facets::new(&last.surface).lobe_of(terms, above.len(), Masking::VCavity, wi, wo)
     }

@@ -7,8 +7,8 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 
-use super::tests::{direction, integral};
-use super::{Axes, Below, FitSettings, Lobes, Simulation};
+use super::{direction, integral};
+use crate::models::lobes::{Axes, Below, FitSettings, Lobes, Simulation};
 use crate::monochrome::Monochrome;
 use crate::references::layered_mc::{InterfaceMode, LayeredMc};
 

@@ -1,5 +1,9 @@
 //! Tests of the fit, and of values and samples of fitted lobes.
 
+mod anisotropic;
+mod place;
+mod tilt;
+
 use glam::DVec3;
 use luthier_model::Masking;
 use luthier_optics::color::Color;
@@ -7,7 +11,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
-use super::{FirstInterface, FitSettings, Lobes, Simulation};
+use crate::models::lobes::{FirstInterface, FitSettings, Lobes, Simulation};
 use crate::monochrome::Monochrome;
 use crate::references::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 

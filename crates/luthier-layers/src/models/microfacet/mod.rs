@@ -1,5 +1,7 @@
 //! The model of Torrance and Sparrow for one rough interface and one bounce, by its components.
 
+mod eval;
+
 use glam::DVec3;
 use luthier_model::{Masking, ShadingModel};
 use luthier_optics::Rgb;
@@ -13,8 +15,18 @@ use crate::frame::cos_theta_d;
 use crate::layers::{Below, Layer};
 use crate::memo::Memo;
 use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels { eval: include_str!("eval.wgsl"), parts: include_str!("parts.wgsl"), ..Kernels::NONE },
+    twin: eval::twin,
+    models: || {
+        VARIANTS.iter().map(|(_, components, _)| Box::new(Microfacet::new(*components)) as Box<dyn Model>).collect()
+    },
+};
 
 /// Parts of a microfacet model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,7 +160,7 @@ impl Microfacet {
     }
 
     /// The facets of the first layer that reflect `wi` to `wo`.
-    fn lobe<const C: usize>(&self, surface: &Surface, terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
+    fn lobe<const C: usize>(&self, surface: &Surface, terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let Components { normals, masking, .. } = self.components;
         match normals {
             Normals::Surface => Facets::new(surface).lobe_of(terms, 0, masking, wi, wo),
@@ -158,14 +170,14 @@ impl Microfacet {
 
     /// [`Model::eval`] of the first layer with terms that may come from elsewhere; of the components, these are the surface's own distribution
     /// and the reflectance.
-    pub fn eval_with<const C: usize>(&self, layer: &Layer<C>, terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> [f64; C] {
+    pub fn eval_with<const C: usize>(&self, layer: &Layer<C>, terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> [f64; C] {
         self.eval_by(layer, terms, |cos_theta_d| terms.fresnel(0, cos_theta_d), wi, wo)
     }
 
     fn eval_by<const C: usize>(
         &self,
         layer: &Layer<C>,
-        terms: &impl Terms<C>,
+        terms: &dyn Terms<C>,
         reflectance: impl FnOnce(f64) -> [f64; C],
         wi: DVec3,
         wo: DVec3,

@@ -563,8 +563,8 @@ mod tests {
     use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 
     use super::*;
-    use crate::lobes::FitSettings;
-    use crate::lobes::parameters::{Start, parameters};
+    use crate::models::lobes::FitSettings;
+    use crate::models::lobes::parameters::{Start, parameters};
 
     fn stack(coat_alphas: [f64; 2], coat_rotation: f64, base_alphas: [f64; 2]) -> Stack {
         let layer = |[alpha_x, alpha_y]: [f64; 2], rotation, base| Layer {

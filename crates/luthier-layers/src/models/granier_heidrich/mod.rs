@@ -30,6 +30,8 @@
 //!   without a cosine;
 //! - no half-wave shifts: indices have to rise from outside to inside.
 
+mod eval;
+
 use std::array::from_fn;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -42,8 +44,16 @@ use crate::formulas::refraction::refract;
 use crate::layers::ALPHA_MIN;
 use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo};
 use crate::models::phong::lobe;
+use crate::models::room::{Kernels, Room};
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use crate::terms::Terms;
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels { eval: include_str!("eval.wgsl"), parts: include_str!("parts.wgsl"), ..Kernels::NONE },
+    twin: eval::twin,
+    models: || vec![Box::new(GranierHeidrich::default())],
+};
 
 /// A film as the model takes it, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -261,7 +271,7 @@ impl GranierHeidrich {
     pub fn eval_with<const C: usize>(
         &self,
         stacks: &[Monochrome; C],
-        terms: &impl Terms<C>,
+        terms: &dyn Terms<C>,
         wi: DVec3,
         wo: DVec3,
     ) -> [f64; C] {

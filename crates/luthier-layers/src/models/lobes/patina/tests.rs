@@ -7,8 +7,8 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
 use super::{Cover, bare};
-use crate::lobes::tests::direction;
-use crate::lobes::{Below, FitSettings, Judge, Lobes, Varied, Varying};
+use crate::models::lobes::tests::direction;
+use crate::models::lobes::{Below, FitSettings, Judge, Lobes, Varied, Varying};
 use crate::references::layered_mc::ColorPaths;
 
 const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);

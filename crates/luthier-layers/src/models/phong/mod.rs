@@ -1,5 +1,7 @@
 //! Phong's model: one lobe over one diffuse term, the baseline for layered models.
 
+mod eval;
+
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
@@ -11,7 +13,15 @@ use luthier_optics::stack::Stack;
 use crate::formulas::normals::exponent;
 use crate::formulas::plane_stack::seen_from_above;
 use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::models::room::{Kernels, Room};
 use crate::monochrome::{Monochrome, MonochromeBelow, in_colors};
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels { eval: include_str!("eval.wgsl"), parts: include_str!("parts.wgsl"), ..Kernels::NONE },
+    twin: eval::twin,
+    models: || vec![Box::new(Phong)],
+};
 
 /// B. T. Phong, "Illumination for computer generated pictures", 1975: the single-layer shader of Elek's Table 1.
 ///

@@ -8,8 +8,8 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
-use super::tests::direction;
-use super::{FitSettings, Judge, Lobes, Varied, Varying};
+use super::direction;
+use crate::models::lobes::{FitSettings, Judge, Lobes, Varied, Varying};
 use crate::monochrome::Monochrome;
 use crate::references::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 

@@ -166,7 +166,7 @@ impl Wide {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lobes::Critical;
+    use crate::models::lobes::Critical;
     use luthier_optics::microfacet;
     use luthier_optics::stack::Distribution;
 

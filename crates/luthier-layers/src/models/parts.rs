@@ -10,13 +10,13 @@ use luthier_optics::schlick::Lazanyi;
 use luthier_optics::stack::{Distribution, Stack};
 
 use crate::formulas::interface_fresnel::Fresnel;
-use crate::lobes::Below;
 use crate::models::granier_heidrich::GranierHeidrich;
+use crate::models::lobes::Below;
 use crate::models::microfacet::Components;
+use crate::models::shade::ShaderTerms;
 use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::Energy;
 use crate::terms::Terms;
-use crate::twins::terms::ShaderTerms;
 
 /// Parts of the model of a shader; each is ignored by models that have no choice of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,19 +105,19 @@ impl Reflectances {
     }
 
     /// Terms with these reflectances.
-    pub fn over<'a, T>(&'a self, terms: &'a T) -> Chosen<'a, T> {
+    pub fn over<'a>(&'a self, terms: &'a dyn ShaderTerms) -> Chosen<'a> {
         Chosen { terms, reflectances: self }
     }
 }
 
 /// Terms with reflectances of their own.
-#[derive(Debug, Clone, Copy)]
-pub struct Chosen<'a, T> {
-    terms: &'a T,
+#[derive(Clone, Copy)]
+pub struct Chosen<'a> {
+    terms: &'a dyn ShaderTerms,
     reflectances: &'a Reflectances,
 }
 
-impl<T: Terms> Terms for Chosen<'_, T> {
+impl Terms for Chosen<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         match self.reflectances.0.get(layer) {
             Some(Some(own)) => own.rgb(cos_theta_d),
@@ -134,7 +134,7 @@ impl<T: Terms> Terms for Chosen<'_, T> {
     }
 }
 
-impl<T: Energy<3>> Energy<3> for Chosen<'_, T> {
+impl Energy<3> for Chosen<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
         self.terms.fgd(layer, cos_theta_i, alpha)
     }
@@ -144,7 +144,7 @@ impl<T: Energy<3>> Energy<3> for Chosen<'_, T> {
     }
 }
 
-impl<T: ShaderTerms> ShaderTerms for Chosen<'_, T> {
+impl ShaderTerms for Chosen<'_> {
     fn veil(&self) -> Veil<3> {
         self.terms.veil()
     }

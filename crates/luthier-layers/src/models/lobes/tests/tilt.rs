@@ -7,9 +7,9 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 use num_complex::Complex64;
 
-use super::{Below, FitSettings, Lobes, Simulation};
 use crate::formulas::facets::Facets;
 use crate::frame;
+use crate::models::lobes::{Below, FitSettings, Lobes, Simulation};
 
 const INDEX: f64 = 1.5;
 const METAL: [f64; 2] = [0.3, 3.0];

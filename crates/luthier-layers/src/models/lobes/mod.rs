@@ -33,14 +33,13 @@
 mod axes;
 mod below;
 mod ellipse;
+mod eval;
 mod fit;
 mod fitted;
 mod half_vector;
 mod judge;
 mod parameters;
 mod patina;
-#[cfg(test)]
-mod place_tests;
 mod prepared;
 mod problem;
 mod rows;
@@ -49,10 +48,6 @@ mod solve;
 mod tally;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod tests_anisotropic;
-#[cfg(test)]
-mod tilt_tests;
 mod varied;
 
 pub use axes::Axes;
@@ -77,7 +72,20 @@ use luthier_optics::stack::{Base, Diffuse, Layer, Stack};
 use crate::formulas::facets::Facets;
 use crate::formulas::oren_nayar;
 use crate::model::{Claims, Kind, ModelInfo};
+use crate::models::room::{Kernels, Room};
 use crate::monochrome::{Monochrome, MonochromeBelow};
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels {
+        eval: include_str!("eval.wgsl"),
+        parts: include_str!("parts.wgsl"),
+        sample: include_str!("sample.wgsl"),
+        environment: include_str!("environment.wgsl"),
+    },
+    twin: eval::twin,
+    models: || vec![Box::new(Fitted::default())],
+};
 
 /// A stack in lobes, in the colour in which it was simulated.
 #[derive(Debug, Clone)]

@@ -15,6 +15,8 @@
 //! radiance, `t` gives back blocked light heuristically, absorption and `f_i` combine in three colour channels.
 //! Roughness is isotropic: anisotropic surfaces enter with the geometric mean of their slope parameters.
 
+mod eval;
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
@@ -27,8 +29,16 @@ use crate::frame::half_vector;
 use crate::layers::{ALPHA_MIN, Layer, Layers};
 use crate::model::{Claims, Input, Kind, Model, ModelInfo};
 use crate::models::path::{PathModel, Tilts, walk};
+use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
+
+/// The room of the model.
+pub(crate) const ROOM: Room = Room {
+    kernels: Kernels { eval: include_str!("eval.wgsl"), ..Kernels::NONE },
+    twin: eval::twin,
+    models: || vec![Box::new(Elek::default())],
+};
 
 /// The real-time model. Layers are isotropic ([`Layers::isotropic`]); at one wavelength, as a [`Model`], its own index bends the
 /// directions, where the colour form has one scalar.
@@ -45,7 +55,7 @@ impl Elek {
     pub fn eval_with<const C: usize>(
         &self,
         layers: &[Layer<C>],
-        terms: &impl Terms<C>,
+        terms: &dyn Terms<C>,
         wi: DVec3,
         wo: DVec3,
     ) -> [f64; C] {
@@ -58,7 +68,7 @@ impl Elek {
     pub fn eval_below<const C: usize>(
         &self,
         layers: &[Layer<C>],
-        terms: &impl Terms<C>,
+        terms: &dyn Terms<C>,
         wi: DVec3,
         wo: DVec3,
         normal_below: DVec3,
@@ -91,7 +101,7 @@ impl PathModel for Elek {
     }
 
     /// A layer is never smoother than one above it.
-    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &impl Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
+    fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let (wh, cos_theta_d) = half_vector(wi, wo)?;
         let (last, above) = layers.split_last()?;
         let alpha = layers.iter().map(|layer| layer.surface.alpha_x).fold(ALPHA_MIN, f64::max);

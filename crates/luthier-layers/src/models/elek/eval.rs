@@ -1,0 +1,31 @@
+//! Twin of `eval.wgsl` and of the path's kernels.
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+
+use super::Elek;
+use crate::layers::Layers;
+use crate::models::path::{Tilts, Walked, walk};
+use crate::models::shade::{Given, Shade, ShaderTerms, Under};
+
+#[derive(Debug)]
+struct Twin {
+    model: Elek,
+    layers: Layers,
+}
+
+/// The twin for a surface.
+pub(super) fn twin(given: &Given<'_>) -> Box<dyn Shade> {
+    let model = Elek { internal_reflection: given.parts.internal_reflection };
+    Box::new(Twin { model, layers: Layers::isotropic_rgb(given.stack) })
+}
+
+impl Shade for Twin {
+    fn eval(&self, terms: &dyn ShaderTerms, _: &Under, tilts: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
+        walk(&self.model, &self.layers.layers, terms, wi, wo, tilts).value()
+    }
+
+    fn walked(&self, terms: &dyn ShaderTerms, tilts: Tilts<'_>, wi: DVec3, wo: DVec3) -> Option<Walked<3>> {
+        Some(walk(&self.model, &self.layers.layers, terms, wi, wo, tilts))
+    }
+}

@@ -1,0 +1,32 @@
+//! Twin of the kernels that models of statistics have: three channels that share directions and spreads.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+
+use super::diffuse_base::DiffuseBase;
+use super::evaluate::{Follow, evaluate};
+use super::spread::Spread;
+use crate::layers::Layers;
+use crate::models::path::Tilts;
+use crate::models::shade::{Given, Shade, ShaderTerms, Under};
+
+#[derive(Debug)]
+struct Twin<S> {
+    layers: Layers,
+    spread: PhantomData<fn() -> S>,
+}
+
+/// The twin for a surface, with spreads of type `S`.
+pub(in crate::models) fn twin<S: Spread + Debug + 'static>(given: &Given<'_>) -> Box<dyn Shade> {
+    Box::new(Twin::<S> { layers: Layers::rgb(given.stack), spread: PhantomData })
+}
+
+impl<S: Spread + Debug> Shade for Twin<S> {
+    fn eval(&self, terms: &dyn ShaderTerms, _: &Under, _: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
+        let base = DiffuseBase::veiled(&self.layers, terms.veil());
+        evaluate::<S, 3>(&self.layers, terms, base.as_ref(), Follow::Eye, wi, wo)
+    }
+}
