@@ -1,6 +1,7 @@
 //! Rooms: a folder for each model that has a shader, with its formula, its kernels and their f64 twin.
 
 use crate::model::Model;
+use crate::models::parts::Parts;
 use crate::models::shade::{Given, Shade};
 
 /// The door of a model's room.
@@ -12,6 +13,8 @@ pub struct Room {
     pub(crate) twin: fn(&Given<'_>) -> Box<dyn Shade>,
     /// The model at one wavelength, and variants of it, for listings.
     pub(crate) models: fn() -> Vec<Box<dyn Model>>,
+    /// The model at one wavelength with parts that a material chooses; `None` of one without a choice.
+    pub composed: fn(Parts) -> Option<Box<dyn Model>>,
 }
 
 /// Kernels of a model: modules in the template language of luthier-shader (docs/shader-modules.md). An empty text is no module.

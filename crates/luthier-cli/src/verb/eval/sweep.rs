@@ -3,11 +3,10 @@
 use luthier_layers::directional_albedo::DirectionalAlbedo;
 use luthier_layers::furnace::furnace;
 use luthier_layers::model::{Estimate, Model};
-use luthier_layers::models::elek::{Elek, environment};
-use luthier_layers::models::microfacet::Microfacet;
+use luthier_layers::models::elek::environment;
 use luthier_layers::models::parts::Parts;
-use luthier_layers::models::weidlich_wilkie::WeidlichWilkie;
-use luthier_manifest::{LowerReflectance, ShadingModel};
+use luthier_layers::models::room;
+use luthier_manifest::LowerReflectance;
 use luthier_terminal::{Failure, Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -66,15 +65,9 @@ fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
         );
         return Err(Failure::Input(anyhow::anyhow!(text)));
     }
-    let Parts { internal_reflection, .. } = parts;
-    let model: Box<dyn Model> = match model {
-        ShadingModel::Microfacet => Box::new(Microfacet::new(parts.components())),
-        ShadingModel::GranierHeidrich => Box::new(parts.beams.leaning(subject.place.under.inner_normal)),
-        ShadingModel::Elek => Box::new(Elek { internal_reflection }),
-        ShadingModel::WeidlichWilkie => Box::new(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }),
-        ShadingModel::Belcour | ShadingModel::Yamaguchi | ShadingModel::Phong | ShadingModel::Lobes => return Ok(None),
-    };
-    Ok(Some(ModelInputs::textured(subject.place.sample, model)))
+    let beams = parts.beams.leaning(subject.place.under.inner_normal);
+    let model = (room(model).composed)(Parts { beams, ..parts });
+    Ok(model.map(|model| ModelInputs::textured(subject.place.sample, model)))
 }
 
 /// Prints a table.

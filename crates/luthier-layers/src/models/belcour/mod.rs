@@ -29,6 +29,7 @@ pub(crate) const ROOM: Room = Room {
     kernels: Kernels { eval: include_str!("spread.wgsl"), ..Kernels::NONE },
     twin: eval::twin::<f64>,
     models: || vec![Box::new(Belcour::new(Follow::Eye)), Box::new(Belcour::new(Follow::HalfVector))],
+    composed: |_| None,
 };
 
 /// Belcour 2018.

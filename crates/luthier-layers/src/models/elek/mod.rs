@@ -28,6 +28,7 @@ use crate::formulas::refraction::refract;
 use crate::frame::half_vector;
 use crate::layers::{ALPHA_MIN, Layer, Layers};
 use crate::model::{Claims, Input, Kind, Model, ModelInfo};
+use crate::models::parts::Parts;
 use crate::models::path::{PathModel, Tilts, walk};
 use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
@@ -38,6 +39,7 @@ pub(crate) const ROOM: Room = Room {
     kernels: Kernels { eval: include_str!("eval.wgsl"), ..Kernels::NONE },
     twin: eval::twin,
     models: || vec![Box::new(Elek::default())],
+    composed: |Parts { internal_reflection, .. }| Some(Box::new(Elek { internal_reflection })),
 };
 
 /// The real-time model. Layers are isotropic ([`Layers::isotropic`]); at one wavelength, as a [`Model`], its own index bends the

@@ -53,6 +53,7 @@ pub(crate) const ROOM: Room = Room {
     kernels: Kernels { eval: include_str!("eval.wgsl"), parts: include_str!("parts.wgsl"), ..Kernels::NONE },
     twin: eval::twin,
     models: || vec![Box::new(GranierHeidrich::default())],
+    composed: |parts| Some(Box::new(parts.beams)),
 };
 
 /// A film as the model takes it, at one wavelength.

@@ -85,6 +85,7 @@ pub(crate) const ROOM: Room = Room {
     },
     twin: eval::twin,
     models: || vec![Box::new(Fitted::default())],
+    composed: |_| None,
 };
 
 /// A stack in lobes, in the colour in which it was simulated.

@@ -26,6 +26,7 @@ pub(crate) const ROOM: Room = Room {
     models: || {
         VARIANTS.iter().map(|(_, components, _)| Box::new(Microfacet::new(*components)) as Box<dyn Model>).collect()
     },
+    composed: |parts| Some(Box::new(Microfacet::new(parts.components()))),
 };
 
 /// Parts of a microfacet model.

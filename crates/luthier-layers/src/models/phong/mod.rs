@@ -21,6 +21,7 @@ pub(crate) const ROOM: Room = Room {
     kernels: Kernels { eval: include_str!("eval.wgsl"), parts: include_str!("parts.wgsl"), ..Kernels::NONE },
     twin: eval::twin,
     models: || vec![Box::new(Phong)],
+    composed: |_| None,
 };
 
 /// B. T. Phong, "Illumination for computer generated pictures", 1975: the single-layer shader of Elek's Table 1.

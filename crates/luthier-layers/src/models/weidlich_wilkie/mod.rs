@@ -27,6 +27,7 @@ use crate::formulas::facets::{Facets, Lobe};
 use crate::formulas::refraction::{refract, refract_at};
 use crate::layers::{Layer, Layers};
 use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::models::parts::Parts;
 use crate::models::path::{PathModel, Tilts, walk};
 use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
@@ -47,6 +48,9 @@ pub(crate) const ROOM: Room = Room {
             Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
             Box::new(WeidlichWilkieCorrected),
         ]
+    },
+    composed: |Parts { internal_reflection, .. }| {
+        Some(Box::new(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }))
     },
 };
 

@@ -28,6 +28,7 @@ pub(crate) const ROOM: Room = Room {
     kernels: Kernels { eval: include_str!("spread.wgsl"), ..Kernels::NONE },
     twin: eval::twin::<Covariance>,
     models: || vec![Box::new(Yamaguchi::new(Follow::Eye)), Box::new(Yamaguchi::new(Follow::HalfVector))],
+    composed: |_| None,
 };
 
 /// Yamaguchi et al. 2019.
