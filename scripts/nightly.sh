@@ -25,7 +25,7 @@ declare -A says=(
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
-  [kind]='a kind of table is added by the six files of CONTRIBUTING.md, baked and judged'
+  [kind]='a kind of table is added by the six files of CONTRIBUTING.md, and a reflectance model by a folder and a row; both are baked and judged'
   [packages]='every crate is packed, and built from its package'
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
@@ -45,7 +45,7 @@ declare -A reads=(
   [release]="crate:luthier-cli materials $built"
   [examples]="lean:luthier-cli crates/luthier-material/examples materials examples scripts/run-examples.sh scripts/patience.mjs $built"
   [engines]="crate:luthier-table crate:luthier-texture crates/luthier-cli/src scripts/engines scripts/patience.mjs $built"
-  [kind]="lean:luthier-cli scripts/add-kind.sh scripts/add-kind.patch $built"
+  [kind]="crate:luthier-cli scripts/add-kind.sh scripts/add-kind.patch scripts/add-model.sh scripts/add-model.patch $built"
   [packages]="crates README.md scripts/package.sh $built"
   [scale]="lean:luthier-cli crates/luthier-material/examples scripts/many.sh $built"
   [crash]="lean:luthier-cli tests/crash $built"
@@ -78,7 +78,7 @@ engines() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/engines/furnace.sh
 }
-kind() { ./scripts/add-kind.sh; }
+kind() { ./scripts/add-kind.sh && ./scripts/add-model.sh; }
 book() { ./scripts/book.sh; }
 packages() { ./scripts/package.sh --verify; }
 crash() {

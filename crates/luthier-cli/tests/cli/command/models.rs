@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use luthier_workshop::root;
+
 use super::sources::sources;
 
 /// Files that name single models, tests and the project's own pages apart.
@@ -51,5 +53,40 @@ fn few_files_name_single_models() {
     }
     for (listed, _) in NAMING {
         assert!(found.iter().any(|name| name.starts_with(listed)), "{listed} names no model any more");
+    }
+}
+
+/// Files of a patch, new ones apart, with the lines of each change that are there before it.
+fn changed(patch: &str) -> (BTreeSet<String>, Vec<(String, Vec<String>)>) {
+    let (mut new, mut changes) = (BTreeSet::new(), Vec::new());
+    for file in patch.split("diff --git ").skip(1) {
+        let name = file.lines().next().unwrap().split(" b/").nth(1).unwrap().to_owned();
+        if file.contains("\nnew file mode ") {
+            new.insert(name);
+            continue;
+        }
+        for change in file.split("\n@@ ").skip(1) {
+            let before = change.lines().skip(1).filter(|line| !line.starts_with('+')).map(|line| line[1..].to_owned());
+            changes.push((name.clone(), before.collect()));
+        }
+    }
+    (new, changes)
+}
+
+/// `scripts/add-model.sh` builds what the patch makes, in the nightly step `kind`.
+#[test]
+fn a_model_is_one_folder_and_one_row() {
+    let patch = std::fs::read_to_string(root().join("scripts/add-model.patch")).unwrap();
+    let (new, changes) = changed(&patch);
+    let folders: BTreeSet<&str> = new.iter().filter_map(|file| Some(file.rsplit_once('/')?.0)).collect();
+    assert_eq!(folders.into_iter().collect::<Vec<_>>(), ["crates/luthier-layers/src/models/neumann"]);
+    let files: BTreeSet<&str> = changes.iter().map(|(file, _)| file.as_str()).collect();
+    let expected = ["crates/luthier-layers/src/models/mod.rs", "crates/luthier-model/src/rows.rs"];
+    assert_eq!(files.into_iter().collect::<Vec<_>>(), expected);
+    for (file, before) in &changes {
+        let text = std::fs::read_to_string(root().join(file)).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let is_there = lines.windows(before.len()).any(|window| window == before.as_slice());
+        assert!(is_there, "scripts/add-model.patch does not apply to {file}: {before:#?}");
     }
 }

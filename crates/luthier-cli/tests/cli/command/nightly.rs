@@ -11,12 +11,13 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 13] = [
+const CALLED: [&str; 14] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
     "engines/furnace.sh",
     "add-kind.sh",
+    "add-model.sh",
     "package.sh",
     "many.sh",
     "book.sh",
@@ -76,6 +77,7 @@ impl Repository {
             "crates/luthier-material/examples/library.rs",
             "crates/luthier-fuzz/corpus/a",
             "scripts/add-kind.patch",
+            "scripts/add-model.patch",
             "scripts/patience.mjs",
         ] {
             workshop.write(file, "");
