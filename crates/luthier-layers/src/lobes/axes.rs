@@ -38,12 +38,12 @@ impl Axes {
         let anisotropic = stack.layers.iter().filter(|layer| layer.is_anisotropic());
         let rotations: Vec<f64> = anisotropic.map(|layer| layer.surface.rotation).collect();
         let last = *rotations.last()?;
-        let off = |rotation: &f64| {
+        let is_mirrored = rotations.iter().all(|rotation| {
             let quarters = (rotation - last) / FRAC_PI_2;
-            (quarters - libm::round(quarters)).abs() * FRAC_PI_2
-        };
+            (quarters - libm::round(quarters)).abs() * FRAC_PI_2 <= ANGLE_MIN
+        });
         let (sin, cos) = libm::sincos(last);
-        Some(Self { turn: [cos, sin], is_mirrored: rotations.iter().all(|rotation| off(rotation) <= ANGLE_MIN) })
+        Some(Self { turn: [cos, sin], is_mirrored })
     }
 
     /// Number of azimuths at which rows differ.

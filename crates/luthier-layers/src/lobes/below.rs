@@ -37,8 +37,8 @@ impl Below {
             Some(axes) => {
                 let at = axes.inside(wo);
                 let sign = axes.sign(at.x, at.y);
-                let shape = |lobe: &Lobe| Lobe { shear: sign * lobe.shear, ..*lobe }.in_axes([at.x, at.y]);
-                (axes.turn, at, row.lobes.iter().map(shape).collect())
+                let lobes = row.lobes.iter().map(|lobe| Lobe { shear: sign * lobe.shear, ..*lobe });
+                (axes.turn, at, lobes.map(|lobe| lobe.in_axes([at.x, at.y])).collect())
             }
         };
         let eye = refracted(at, frame.index);
@@ -98,14 +98,14 @@ impl Below {
 
     /// `f cos_theta_i` by channel, without the first facet; `wi` is above the horizon.
     pub fn eval(&self, wi: DVec3) -> Rgb {
-        let mut sum = [0.0; 3];
-        let mut add = |rgb: Rgb, value: f64| (0..3).for_each(|c| sum[c] += rgb[c] * value);
         let (at, factor) = self.slope(wi);
-        for (shape, lobe) in self.shapes.iter().zip(&self.row.lobes) {
-            add(lobe.strength, shape.density(at) * factor);
-        }
+        let shapes = self.shapes.iter().zip(&self.row.lobes);
+        let lobes = shapes.map(|(shape, lobe)| (lobe.strength, shape.density(at) * factor));
         let wide = &self.frame.wide;
-        add(self.row.wide, wide.value(wi.z) * wi.z / (PI * wide.integral()));
+        let mut sum = [0.0; 3];
+        for (rgb, value) in lobes.chain([(self.row.wide, wide.value(wi.z) * wi.z / (PI * wide.integral()))]) {
+            (0..3).for_each(|c| sum[c] += rgb[c] * value);
+        }
         sum
     }
 

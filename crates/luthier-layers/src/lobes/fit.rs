@@ -11,7 +11,7 @@ use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
-use super::problem::{Lobed, Problem, ViewProblem, seen_from};
+use super::problem::{Lobed, Problem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
@@ -144,7 +144,7 @@ impl Views {
     /// Views beside each: of the next rows, and of the next azimuths.
     pub(super) fn beside(self) -> Vec<Vec<usize>> {
         let (azimuths, last) = (self.azimuths(), self.rows - 1);
-        let of = |(azimuth, row): (usize, usize)| {
+        let views = self.all().map(|(azimuth, row)| {
             if row == last {
                 return (0..azimuths).map(|azimuth| self.number(azimuth, last - 1)).collect();
             }
@@ -157,8 +157,8 @@ impl Views {
                 beside.extend(self.next_azimuths(azimuth).map(|azimuth| self.number(azimuth, row)));
             }
             beside
-        };
-        self.all().map(of).collect()
+        });
+        views.collect()
     }
 }
 
@@ -200,7 +200,7 @@ impl Simulation {
         let views = Views { rows: seen.size(), axes };
         let base = base_below(stack)
             .map(|Diffuse { albedo, sigma }| Painted { albedo, is_lambertian: sigma == 0.0 && albedo != [0.0; 3] });
-        let view = |(number, (azimuth, row)): (usize, (usize, usize))| {
+        let tallies = views.all().enumerate().map(|(number, (azimuth, row))| {
             let wo = seen_from(seen, views.azimuth(azimuth), row);
             // The light is traced in the tangents of the stack.
             let outside = axes.map_or(wo, |axes| axes.outside(wo));
@@ -225,8 +225,8 @@ impl Simulation {
                 tally.first_facet = first.energy(outside);
             }
             tally
-        };
-        let tallies: Vec<Tally> = views.all().enumerate().map(view).collect();
+        });
+        let tallies: Vec<Tally> = tallies.collect();
         let base_falloff = Wide::falloff_of(axis, &tallies);
         Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff }
     }
@@ -274,12 +274,11 @@ impl Simulation {
         let costs: Vec<Vec<f64>> = fits.iter().map(|found| found.costs(&problems)).collect();
         let worst: Vec<f64> = costs.iter().map(|costs| costs.iter().copied().fold(0.0, f64::max)).collect();
         let best = (0..fits.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or(0);
-        let error = |cost: &Vec<f64>| {
+        let fewest = costs.iter().position(|cost| {
             let gains = cost.iter().zip(&costs[best]).map(|(own, best)| 0.5 * (own - best).max(0.0).sqrt());
-            gains.fold(0.0, f64::max)
-        };
-        let fewest = costs.iter().position(|cost| error(cost) <= excess).unwrap_or(best);
-        self.polished(fits.swap_remove(fewest))
+            gains.fold(0.0, f64::max) <= excess
+        });
+        self.polished(fits.swap_remove(fewest.unwrap_or(best)))
     }
 
     /// The place that a search with all views comes to.
@@ -327,11 +326,10 @@ impl Simulation {
     /// however often it came back. So that share is one less the light that met the base once over all that met it, over the albedo.
     pub(super) fn internal(&self) -> Option<Rgb> {
         let albedo = self.base?.albedo;
-        let sum = |of: fn(&Tally) -> Rgb, c: usize| self.views.iter().map(|tally| of(tally)[c]).sum::<f64>();
-        let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
         Some([0, 1, 2].map(|c: usize| {
-            let (once, all) = (sum(|tally| tally.base_once, c), sum(|tally| tally.base, c));
-            over(over(all - once, all), albedo[c]).clamp(0.0, 1.0)
+            let once: f64 = self.views.iter().map(|tally| tally.base_once[c]).sum();
+            let all: f64 = self.views.iter().map(|tally| tally.base[c]).sum();
+            ratio(ratio(all - once, all), albedo[c]).clamp(0.0, 1.0)
         }))
     }
 
@@ -342,12 +340,11 @@ impl Simulation {
     /// Fits of no lobe, of one, and so on; those that gain nothing by another are the last.
     fn fits(&self, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
         let (basis, falloff) = (self.basis(), self.base_falloff.unwrap_or(REMAINDER_START));
-        let alone = |set: usize| {
-            let start =
-                move |&shape: &Numbers| TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff));
-            self.starts.iter().flat_map(start)
-        };
-        let one = (most > 0).then(|| nearest(problems, (0..problems.len()).flat_map(alone).collect()));
+        let mut alone = Vec::new();
+        for (set, &shape) in (0..problems.len()).flat_map(|set| self.starts.iter().map(move |shape| (set, shape))) {
+            alone.extend(TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff)));
+        }
+        let one = (most > 0).then(|| nearest(problems, alone));
         // In the cells of the others, so that residuals compare.
         let set = one.as_ref().map_or(0, |one| one.set);
         let mut fits = vec![nearest(problems, vec![(set, Vec::new(), falloff)])];
@@ -359,14 +356,14 @@ impl Simulation {
             let last = &lobes[lobes.len() - 1];
             let scaled = [2.5, 0.4].map(|factor| last.scaled(factor));
             let of_interfaces = self.widths.iter().map(|&shape| Start::new(basis, shape, 0.0));
-            let beside = |another: Start| {
+            let starts = scaled.into_iter().chain(of_interfaces).flat_map(|another| {
                 TAIL_STARTS.map(|tail| {
                     let mut starts = lobes.clone();
                     starts.push(Start { tail, ..another.clone() });
                     (fewer.set, starts, wide)
                 })
-            };
-            let more = nearest(problems, scaled.into_iter().chain(of_interfaces).flat_map(beside).collect());
+            });
+            let more = nearest(problems, starts.collect());
             if more.place.cost >= fewer.place.cost {
                 break;
             }
@@ -376,24 +373,28 @@ impl Simulation {
     }
 }
 
+/// `a / b`; 0 unless b is positive.
+fn ratio(a: f64, b: f64) -> f64 {
+    if b > 0.0 { a / b } else { 0.0 }
+}
+
 /// Coefficients of the remainder with which a fit starts.
 const REMAINDER_START: [f64; 2] = [0.3, 0.0];
 
 /// The best place that searches from some starts come to: in a set of cells, with lobes and falloff of the remainder.
 fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>) -> Found {
-    let first = |(set, lobes, wide): (usize, Vec<Start>, [f64; 2])| {
+    let first = starts.into_iter().map(|(set, lobes, wide)| {
         let problem = Lobed::new(&problems[set], lobes.len());
         let place = Place::new(parameters(lobes, wide), &problem);
         Found { set, place: SEARCH.descend(place, &problem, FIRST_STEPS) }
-    };
-    let mut found: Vec<Found> = starts.into_iter().map(first).collect();
-    found.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
-    found.truncate(FOLLOWED);
-    let last = |Found { set, place }: Found| {
+    });
+    let mut first: Vec<Found> = first.collect();
+    first.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
+    let last = first.into_iter().take(FOLLOWED).map(|Found { set, place }| {
         let problem = Lobed::new(&problems[set], place.parameters.len() / problems[set].basis.per_lobe());
         Found { set, place: SEARCH.descend(place, &problem, LAST_STEPS) }
-    };
-    let best = found.into_iter().map(last).min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
+    });
+    let best = last.min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
     best.unwrap_or_else(|| unreachable!("there is a start"))
 }
 
@@ -526,18 +527,18 @@ impl Found {
     fn costs(&self, problems: &[Problem<'_>]) -> Vec<f64> {
         let (p, problem) = (&self.place.parameters, &problems[self.set]);
         let count = p.len() / problem.basis.per_lobe();
-        let cost = |view: &ViewProblem| view.residuals(&view.profiles(p, count)).iter().map(|x| x * x).sum();
-        problem.views.iter().map(cost).collect()
+        let residuals = problem.views.iter().map(|view| view.residuals(&view.profiles(p, count)));
+        residuals.map(|residuals| residuals.iter().map(|x| x * x).sum()).collect()
     }
 
     /// The lobes found.
     pub(super) fn starts(&self, basis: Basis) -> Vec<Start> {
-        let of = |p: &[f64]| {
-            let rows = p.chunks_exact(NODES).map(<[f64]>::to_vec).collect();
-            Start { rows, tail: p[p.len() - 1] }
-        };
         let p = &self.place.parameters;
-        p[..p.len() - 2].chunks(basis.per_lobe()).map(of).collect()
+        let lobes = p[..p.len() - 2].chunks(basis.per_lobe()).map(|lobe| Start {
+            rows: lobe.chunks_exact(NODES).map(<[f64]>::to_vec).collect(),
+            tail: lobe[lobe.len() - 1],
+        });
+        lobes.collect()
     }
 
     fn wide_falloff(&self) -> [f64; 2] {

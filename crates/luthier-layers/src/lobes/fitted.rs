@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use luthier_optics::color::Color;
-use luthier_optics::fresnel::FilmLayer;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
 use num_complex::Complex64;
@@ -78,35 +77,39 @@ impl Model for Fitted {
 
 /// The stack that is this one at every wavelength and in every channel; `None` where an index is infinite or not a number.
 fn in_all_colors(stack: &Monochrome) -> Option<Stack> {
-    let constant = |ior: Complex64| Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok();
-    let layer = |layer: &MonochromeLayer| {
-        let film = |film: &FilmLayer| {
-            let thickness_nm = film.waves * WAVELENGTH_NM;
-            let thickness = FilmThickness { min_nm: thickness_nm, max_nm: thickness_nm };
-            Some(Film { ior: constant(film.ior)?, thickness })
-        };
-        let of = |ior: Complex64| {
-            let ior = constant(ior)?;
-            Some(layer.f0.map_or_else(|| ior.clone(), |f0| ior.clone().with_f0([f0; 3])))
-        };
-        let base = match layer.below {
-            MonochromeBelow::Dielectric { complex_ior, optical_depth, .. } => {
-                let slab = Slab { thickness_um: 1.0, absorption_per_um: [optical_depth; 3] };
-                Base::Dielectric { ior: of(complex_ior)?, slab }
-            }
-            MonochromeBelow::Conductor { ior } => Base::Conductor { ior: of(ior)? },
-            MonochromeBelow::Diffuse { albedo, sigma } => Base::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
-        };
-        Some(Layer { films: layer.films.iter().map(film).collect::<Option<_>>()?, surface: layer.surface, base })
-    };
     Some(Stack {
-        exterior: constant(Complex64::new(stack.exterior, 0.0))?,
-        layers: stack.layers.iter().map(layer).collect::<Option<_>>()?,
+        exterior: constant(Complex64::from(stack.exterior), None)?,
+        layers: stack.layers.iter().map(layer_in_all_colors).collect::<Option<_>>()?,
     })
+}
+
+fn layer_in_all_colors(layer: &MonochromeLayer) -> Option<Layer> {
+    let films = layer.films.iter().map(|film| {
+        let thickness_nm = film.waves * WAVELENGTH_NM;
+        let thickness = FilmThickness { min_nm: thickness_nm, max_nm: thickness_nm };
+        Some(Film { ior: constant(film.ior, None)?, thickness })
+    });
+    let films = films.collect::<Option<_>>()?;
+    let base = match layer.below {
+        MonochromeBelow::Dielectric { complex_ior, optical_depth, .. } => {
+            let slab = Slab { thickness_um: 1.0, absorption_per_um: [optical_depth; 3] };
+            Base::Dielectric { ior: constant(complex_ior, layer.f0)?, slab }
+        }
+        MonochromeBelow::Conductor { ior } => Base::Conductor { ior: constant(ior, layer.f0)? },
+        MonochromeBelow::Diffuse { albedo, sigma } => Base::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
+    };
+    Some(Layer { films, surface: layer.surface, base })
+}
+
+/// An index that is the same at all wavelengths, with an F0 if the interface has one; `None` where it is infinite or not a number.
+fn constant(ior: Complex64, f0: Option<f64>) -> Option<Ior> {
+    let constant = Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok()?;
+    Some(if let Some(f0) = f0 { constant.with_f0([f0; 3]) } else { constant })
 }
 
 #[cfg(test)]
 mod tests {
+    use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::{Distribution, Surface};
 
     use super::*;

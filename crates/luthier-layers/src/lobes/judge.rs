@@ -81,17 +81,15 @@ impl Judge {
         let index = indices(&stack).last().copied().unwrap_or(1.0);
         let cells = cells(index, &covariances(&stack, axes), axes);
         let axis = ViewAxis::of(&stack, FitSettings::default().rows);
-        let view = |number: usize| {
+        let views = (0..VIEWS).map(|number| {
             let share = number as f64 / (VIEWS - 1) as f64;
-            let between =
-                |first: usize, steps: usize| first as f64 + libm::floor(share * (steps - 1 - first) as f64) + 0.5;
-            let theta = libm::acos(axis.cos_theta(between(FIRST_ROW, axis.size() - 1)));
-            let wo = {
-                let (sin, cos) = libm::sincos(theta);
-                let azimuth = axes.map_or([1.0, 0.0], |axes| axes.azimuth(between(0, Axes::TILES - 1)));
-                let inside = DVec3::new(sin * azimuth[0], sin * azimuth[1], cos);
-                axes.map_or(inside, |axes| axes.outside(inside))
-            };
+            // Half way between two rows, and between two azimuths.
+            let [row, azimuth] = [(FIRST_ROW, axis.size() - 1), (0, Axes::TILES - 1)]
+                .map(|(first, steps)| first as f64 + libm::floor(share * (steps - 1 - first) as f64) + 0.5);
+            let (sin, cos) = libm::sincos(libm::acos(axis.cos_theta(row)));
+            let azimuth = axes.map_or([1.0, 0.0], |axes| axes.azimuth(azimuth));
+            let inside = DVec3::new(sin * azimuth[0], sin * azimuth[1], cos);
+            let wo = axes.map_or(inside, |axes| axes.outside(inside));
             // Another order than that of the views.
             let factor = varying.map_or(1.0, |varying| {
                 // Light is linear between the ends of a patina, of which the grown one has scattering that no path shows. Diffuse bases are closed forms.
@@ -105,8 +103,8 @@ impl Judge {
             });
             let here = varying.map_or_else(|| stack.clone(), |varying| varying.apply(&stack, factor));
             View::new(&here, color, SEEDS + number as u64, (factor, wo), &cells, axes)
-        };
-        Self { cells, axes, views: (0..VIEWS).map(view).collect() }
+        });
+        Self { cells, axes, views: views.collect() }
     }
 
     /// The errors of lobes of the stack, over the same factor.
@@ -131,12 +129,11 @@ impl Judge {
             (0..3).for_each(|c| cell[c] += value[c] * point.solid_angle);
         }
         let stated = below.row().albedo_dir;
-        let of = |c: usize| {
+        let channels = [0, 1, 2].map(|c: usize| {
             let albedo = view.first_facet[c] + view.energies.iter().map(|rgb| rgb[c]).sum::<f64>();
             let differences = found.iter().zip(&view.energies).map(|(found, energy)| (found[c] - energy[c]).abs());
             (0.5 * differences.sum::<f64>() / albedo.max(f64::MIN_POSITIVE), (stated[c] - albedo).abs(), albedo)
-        };
-        let channels = [0, 1, 2].map(of);
+        });
         let mean = channels.iter().map(|(_, _, albedo)| albedo).sum::<f64>() / 3.0;
         // The mean of the absolute value of a normal number is sqrt(2 / pi) of its deviation.
         let deviations: f64 = view.squares.iter().map(|squares| (FRAC_2_PI * squares).sqrt()).sum();

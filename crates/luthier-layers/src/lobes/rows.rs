@@ -138,13 +138,8 @@ impl ViewAxis {
     /// Rows at the nodes for those of more views, given by their cosines: what is linear between them is as near as it can be, by least squares.
     /// A curve errs half as much between nodes as between rows that lie on it, and as much at them.
     pub(super) fn nearest(self, rows: &[Row], cosines: &[f64]) -> Vec<Row> {
-        let ends = |cos_theta: f64| {
-            let place = self.place(cos_theta);
-            let first = (place as usize).min(self.size - 2);
-            [(first, 1.0 - (place - first as f64)), (first + 1, place - first as f64)]
-        };
         let mut matrix = vec![vec![0.0; self.size]; self.size];
-        for ends in cosines.iter().map(|cos_theta| ends(*cos_theta)) {
+        for ends in cosines.iter().map(|cos_theta| self.ends(*cos_theta)) {
             ends.iter().for_each(|(i, x)| ends.iter().for_each(|(j, y)| matrix[*i][*j] += x * y));
         }
         let (given, has_base): (Vec<Vec<[f64; 4]>>, _) =
@@ -153,11 +148,18 @@ impl ViewAxis {
         for (part, c) in (0..given[0].len()).flat_map(|part| [0, 1, 2, 3].map(|c: usize| (part, c))) {
             let mut right = vec![0.0; self.size];
             for (row, cos_theta) in given.iter().zip(cosines) {
-                ends(*cos_theta).iter().for_each(|(i, x)| right[*i] += x * row[part][c]);
+                self.ends(*cos_theta).iter().for_each(|(i, x)| right[*i] += x * row[part][c]);
             }
             parts.iter_mut().zip(solve(matrix.clone(), right)).for_each(|(parts, x)| parts[part][c] = x);
         }
         parts.iter().map(|parts| Row::of_parts(parts, has_base)).collect()
+    }
+
+    /// The nodes on both sides of a view, each with its share in what is linear between them.
+    fn ends(self, cos_theta: f64) -> [(usize, f64); 2] {
+        let place = self.place(cos_theta);
+        let first = (place as usize).min(self.size - 2);
+        [(first, 1.0 - (place - first as f64)), (first + 1, place - first as f64)]
     }
 }
 
@@ -203,10 +205,9 @@ impl BaseLight {
     /// r being what the layers send back.
     pub fn more(&self, simulated: Rgb, albedo: Rgb) -> Rgb {
         [0, 1, 2].map(|c: usize| {
-            let light = |albedo: f64| albedo / (1.0 - self.internal[c] * albedo).max(1e-3);
-            let own = light(simulated[c]);
+            let [own, other] = [simulated[c], albedo[c]].map(|r| r / (1.0 - self.internal[c] * r).max(1e-3));
             // A black base leaves no light to scale.
-            if own > 0.0 { self.energy[c] * (light(albedo[c]) / own - 1.0) } else { 0.0 }
+            if own > 0.0 { self.energy[c] * (other / own - 1.0) } else { 0.0 }
         })
     }
 }
@@ -283,34 +284,31 @@ impl Row {
     ///
     /// Sharpness x and y and shear k are times the root of the tail: with it the shape is `(x y - k^2) z / pi (1 + q)^-(1 + z)`.
     pub fn to_parts(&self) -> Vec<[f64; 4]> {
-        let rgb = |[r, g, b]: Rgb, w: f64| [r, g, b, w];
-        let shear = |lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt());
-        let of_base = |BaseLight { energy, internal, falloff: [a, b] }| [rgb(internal, b), rgb(energy, a)];
-        let mut parts: Vec<[f64; 4]> = self.base.map(of_base).into_iter().flatten().collect();
-        parts.push(rgb(self.wide, shear(0)));
+        let [shear_first, shear_second] = [0, 1]
+            .map(|lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt()));
+        let mut parts = Vec::new();
+        if let Some(BaseLight { energy, internal, falloff: [a, b] }) = self.base {
+            parts.extend([part(internal, b), part(energy, a)]);
+        }
+        parts.push(part(self.wide, shear_first));
         for lobe in &self.lobes {
-            parts.push(rgb(lobe.strength, lobe.shift));
+            parts.push(part(lobe.strength, lobe.shift));
             let tail = lobe.tail.max(TAIL_MIN);
             let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
             parts.push([x, y, 1.0 / tail, lobe.share]);
         }
-        parts.push(rgb(self.albedo_dir, shear(1)));
+        parts.push(part(self.albedo_dir, shear_second));
         parts
     }
 
     /// The row of parts, of which the first two are those of a diffuse base if there are such.
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
-        let rgb = |part: Option<&[f64; 4]>| part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b]);
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
         let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
-        let shear = |lobe: usize| match lobe {
-            0 => parts.first(),
-            1 => parts.last(),
-            _ => None,
-        };
-        let lobe = |(number, pair): (usize, &[[f64; 4]])| {
+        let shears = [parts.first(), parts.last()].into_iter().chain(std::iter::repeat(None));
+        let lobes = inner.chunks_exact(2).zip(shears).filter_map(|(pair, shear)| {
             let &[strength, [x, y, inverse_tail, share]] = pair else { return None };
             let inverse_tail = inverse_tail.max(1.0);
             let sharpness = [x, y].map(|x| x * inverse_tail.sqrt());
@@ -319,13 +317,13 @@ impl Row {
                 share,
                 shift: strength[3],
                 sharpness,
-                shear: shear(number).map_or(0.0, |part| part[3] * inverse_tail.sqrt()),
+                shear: shear.map_or(0.0, |part| part[3] * inverse_tail.sqrt()),
                 tail: 1.0 / inverse_tail,
             })
-        };
+        });
         Self {
             albedo_dir: rgb(parts.last()),
-            lobes: inner.chunks_exact(2).enumerate().filter_map(lobe).collect(),
+            lobes: lobes.collect(),
             wide: rgb(parts.first()),
             base: has_base.then_some(base),
         }
@@ -360,18 +358,20 @@ impl Row {
     /// Energy of one facet of the first interface: the albedo without lobes and remainder.
     pub fn first_facet(&self) -> Rgb {
         let energies = self.energies();
-        let below = |c: usize| energies[1..2].iter().chain(&energies[3..]).map(|energy| energy[c]).sum::<f64>();
-        [0, 1, 2].map(|c: usize| (self.albedo_dir[c] - below(c)).max(0.0))
+        [0, 1, 2].map(|c: usize| {
+            let below: f64 = energies[1..2].iter().chain(&energies[3..]).map(|energy| energy[c]).sum();
+            (self.albedo_dir[c] - below).max(0.0)
+        })
     }
 
     /// The row without light below 0, shares above 1, and more light than falls in, as noise and least squares may leave: of what comes from below
     /// is so much less.
     pub(super) fn bounded(mut self) -> Self {
-        let positive = |rgb: Rgb| rgb.map(|x| x.max(0.0));
-        (self.wide, self.albedo_dir) = (positive(self.wide), positive(self.albedo_dir));
-        self.base.iter_mut().for_each(|base| base.energy = positive(base.energy));
-        for lobe in &mut self.lobes {
-            (lobe.strength, lobe.share) = (positive(lobe.strength), lobe.share.clamp(0.0, 1.0));
+        self.lobes.iter_mut().for_each(|lobe| lobe.share = lobe.share.clamp(0.0, 1.0));
+        let strengths = self.lobes.iter_mut().map(|lobe| &mut lobe.strength);
+        let of_base = self.base.iter_mut().map(|base| &mut base.energy);
+        for energy in strengths.chain(of_base).chain([&mut self.wide, &mut self.albedo_dir]) {
+            *energy = energy.map(|x| x.max(0.0));
         }
         let first = self.first_facet();
         for (c, facet) in first.into_iter().enumerate() {
@@ -390,10 +390,20 @@ impl Row {
     /// The row between two others.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
-        let mix = |a: &[f64; 4], b: &[f64; 4]| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]));
-        let parts: Vec<[f64; 4]> = self.to_parts().iter().zip(&other.to_parts()).map(|(a, b)| mix(a, b)).collect();
-        Self::of_parts(&parts, self.base.is_some())
+        let (own, other) = (self.to_parts(), other.to_parts());
+        let parts = own.iter().zip(&other).map(|(a, b)| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i])));
+        Self::of_parts(&parts.collect::<Vec<_>>(), self.base.is_some())
     }
+}
+
+/// A part of a row.
+fn part([r, g, b]: Rgb, w: f64) -> [f64; 4] {
+    [r, g, b, w]
+}
+
+/// The colour of a part; black where there is none.
+fn rgb(part: Option<&[f64; 4]>) -> Rgb {
+    part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b])
 }
 
 #[cfg(test)]

@@ -125,8 +125,8 @@ impl Wide {
     /// The mean of a function over the squared cosine, by the midpoint rule.
     fn mean(&self, of: impl Fn(&Self, f64) -> f64) -> f64 {
         const POINTS: u32 = 256;
-        let value = |i: u32| of(self, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
-        (0..POINTS).map(value).sum::<f64>() / f64::from(POINTS)
+        let sum: f64 = (0..POINTS).map(|i| of(self, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt())).sum();
+        sum / f64::from(POINTS)
     }
 
     /// Coefficients of the shape that is the nearest to the light of a Lambertian base, by least squares over the cosine of that light: it is the
@@ -140,14 +140,9 @@ impl Wide {
         let shape = Self { falloff: [0.0; 2], axis, integral: 1.0 };
         let (mut matrix, mut right) = (vec![vec![0.0; 3]; 3], vec![0.0; 3]);
         for (bin, light) in light.iter().enumerate() {
-            // The integral of a function of the cosine over a bin.
-            let integral = |of: &dyn Fn(f64) -> f64| -> f64 {
-                let point = |i: usize| (bin as f64 + (i as f64 + 0.5) / STEPS as f64) / COSINES as f64;
-                (0..STEPS).map(point).map(|mu| 2.0 * mu * of(mu)).sum::<f64>() / (STEPS * COSINES) as f64
-            };
-            let of_cosine = integral(&|_| 1.0);
-            let slope = |power: usize| integral(&|mu| shape.slopes(mu)[power]);
-            let terms = [of_cosine, slope(0), slope(1)];
+            let of_cosine = over_bin(bin, |_| 1.0);
+            let [fifth, square] = [0, 1].map(|power: usize| over_bin(bin, |mu| shape.slopes(mu)[power]));
+            let terms = [of_cosine, fifth, square];
             for i in 0..3 {
                 right[i] += terms[i] * light / total / of_cosine;
                 (0..3).for_each(|j| matrix[i][j] += terms[i] * terms[j] / of_cosine);
@@ -161,6 +156,12 @@ impl Wide {
     pub fn integral(&self) -> f64 {
         self.integral
     }
+}
+
+/// The integral of a function of the cosine mu over a bin of cosines, with weight 2 mu.
+fn over_bin(bin: usize, of: impl Fn(f64) -> f64) -> f64 {
+    let points = (0..STEPS).map(|i| (bin as f64 + (i as f64 + 0.5) / STEPS as f64) / COSINES as f64);
+    points.map(|mu| 2.0 * mu * of(mu)).sum::<f64>() / (STEPS * COSINES) as f64
 }
 
 #[cfg(test)]

@@ -46,19 +46,16 @@ pub(super) struct Guess<'a> {
 impl<'a> Amounts<'a> {
     /// For profiles by cell and weights of the squared residuals.
     pub(super) fn new(profiles: &'a [Vec<f64>], weights: &'a [f64]) -> Self {
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter().zip(b).zip(weights).map(|((a, b), w)| a * b * w).sum::<f64>() + TOTAL_WEIGHT
-        };
-        let matrix = profiles.iter().map(|a| profiles.iter().map(|b| product(a, b)).collect()).collect();
-        Self { profiles, weights, matrix }
+        let rows = profiles.iter().map(|a| profiles.iter().map(|b| weighted(a, b, weights) + TOTAL_WEIGHT).collect());
+        Self { profiles, weights, matrix: rows.collect() }
     }
 
     fn right(&self, found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
-        let product = |(part, profile): (usize, &Vec<f64>)| -> f64 {
-            let data: f64 = profile.iter().zip(found).zip(self.weights).map(|((a, f), w)| a * f * w).sum();
+        let products = self.profiles.iter().enumerate().map(|(part, profile)| {
+            let data = weighted(profile, found, self.weights);
             data + TOTAL_WEIGHT * total + guess.map_or(0.0, |guess| guess.weight * guess.amounts[part])
-        };
-        self.profiles.iter().enumerate().map(product).collect()
+        });
+        products.collect()
     }
 
     /// The amounts, not negative, that leave the least residuals, by trying every set of profiles that count.
@@ -88,14 +85,20 @@ impl<'a> Amounts<'a> {
 
     fn of(&self, set: usize, right: &[f64], guess: Option<Guess<'_>>) -> Vec<f64> {
         let members: Vec<usize> = (0..right.len()).filter(|i| set >> i & 1 == 1).collect();
+        let mut matrix: Vec<Vec<f64>> =
+            members.iter().map(|&i| members.iter().map(|&j| self.matrix[i][j]).collect()).collect();
         let pull = guess.map_or(0.0, |guess| guess.weight);
-        let element = |i: usize, j: usize| self.matrix[i][j] + if i == j { pull } else { 0.0 };
-        let matrix = members.iter().map(|&i| members.iter().map(|&j| element(i, j)).collect()).collect();
+        (0..members.len()).for_each(|i| matrix[i][i] += pull);
         let solved = solve(matrix, members.iter().map(|&i| right[i]).collect());
         let mut amounts = vec![0.0; right.len()];
         members.iter().zip(solved).for_each(|(&i, x)| amounts[i] = x);
         amounts
     }
+}
+
+/// The sum of products with weights.
+fn weighted(a: &[f64], b: &[f64], weights: &[f64]) -> f64 {
+    a.iter().zip(b).zip(weights).map(|((a, b), w)| a * b * w).sum()
 }
 
 /// Least squares by Levenberg's and Marquardt's damping.
@@ -179,9 +182,12 @@ impl LeastSquares {
     }
 }
 
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
 /// The normal matrix and the gradient.
 fn normal(n: usize, residuals: &impl Residuals, parameters: &[f64], now: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
     let (mut matrix, mut gradient) = (vec![vec![0.0; n]; n], vec![0.0; n]);
     for (block, now) in now.iter().enumerate() {
         let columns = residuals.slopes(parameters, block, now);

@@ -71,20 +71,20 @@ impl Cells {
     /// Means of values over the rings and sectors around each cell.
     pub(super) fn smoothed(&self, values: &[f64]) -> Vec<f64> {
         let sectors = self.sectors();
-        let around = |sector: usize| match self.stretch {
-            None => [sector.saturating_sub(1), sector, (sector + 1).min(sectors - 1)],
-            Some(_) => [(sector + sectors - 1) % sectors, sector, (sector + 1) % sectors],
-        };
-        let mean = |cell: usize| {
+        let means = (0..values.len()).map(|cell| {
             // The innermost disc has no neighbours that are like it.
             let Some(number) = cell.checked_sub(1) else { return values[0] };
-            let ring = number / sectors;
+            let (ring, sector) = (number / sectors, number % sectors);
+            let around = match self.stretch {
+                None => [sector.saturating_sub(1), sector, (sector + 1).min(sectors - 1)],
+                Some(_) => [(sector + sectors - 1) % sectors, sector, (sector + 1) % sectors],
+            };
             let rings = ring.saturating_sub(1)..(ring + 2).min(RINGS);
             let count = 3 * rings.len();
-            let sum = |ring: usize| around(number % sectors).map(|sector| values[1 + ring * sectors + sector]);
-            rings.flat_map(sum).sum::<f64>() / count as f64
-        };
-        (0..values.len()).map(mean).collect()
+            let sum: f64 = rings.flat_map(|ring| around.map(|sector| values[1 + ring * sectors + sector])).sum();
+            sum / count as f64
+        });
+        means.collect()
     }
 
     fn sectors(&self) -> usize {
@@ -120,41 +120,50 @@ impl Cells {
     pub(super) fn points(&self, wo: DVec3) -> Vec<Point> {
         let eye = refracted(wo, self.index);
         let mut points = Vec::new();
-        let (turn, least_angle) = if self.stretch.is_some() { (TAU, PI) } else { (PI, 0.0) };
-        let mut add = |cell: usize, radius: [f64; 2], phi: [f64; 2]| {
-            let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
-            // The mean of the squared radius over the area.
-            let middle = (0.5 * (radius[0] * radius[0] + radius[1] * radius[1])).sqrt();
-            let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]) - least_angle);
-            let mut at = [middle * cos, middle * sin];
-            if let Some(shape) = &self.stretch {
-                at = shape.unscaled(at);
-                // Half of what both halves have.
-                area *= 0.5 * shape.width[0] * shape.width[1];
-            }
-            let Some(wi) = outside(at, eye, self.index) else { return };
-            let (_, factor) = slope(wi, refracted(wi, self.index), eye, self.index);
-            points.push(Point { cell, slope: at, area, cos_theta: wi.z, solid_angle: area / factor });
-        };
+        let turn = if self.stretch.is_some() { TAU } else { PI };
         let sectors = self.sectors();
         for sector in 0..sectors {
             let phi = [sector, sector + 1].map(|i| i as f64 * turn / sectors as f64);
             for i in 0..INNER {
-                add(0, [i, i + 1].map(|i| self.least * i as f64 / INNER as f64), phi);
+                points.extend(self.point(0, [i, i + 1].map(|i| self.least * i as f64 / INNER as f64), phi, eye));
             }
             for ring in 0..RINGS {
                 let cell = 1 + ring * sectors + sector;
-                let edge = |i: usize| self.least * libm::exp(self.step * (ring as f64 + i as f64 / POINTS as f64));
-                let turn = |j: usize| phi[0] + (phi[1] - phi[0]) * j as f64 / POINTS as f64;
                 for i in 0..POINTS {
+                    let radius = [i, i + 1]
+                        .map(|i| self.least * libm::exp(self.step * (ring as f64 + i as f64 / POINTS as f64)));
                     for j in 0..POINTS {
-                        add(cell, [edge(i), edge(i + 1)], [turn(j), turn(j + 1)]);
+                        let phi = [j, j + 1].map(|j| phi[0] + (phi[1] - phi[0]) * j as f64 / POINTS as f64);
+                        points.extend(self.point(cell, radius, phi, eye));
                     }
                 }
             }
         }
         points
     }
+
+    /// The middle of a part of a cell, between two radii and two angles; `None` where no light from there leaves the medium.
+    fn point(&self, cell: usize, radius: [f64; 2], phi: [f64; 2], eye: DVec3) -> Option<Point> {
+        let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
+        // The mean of the squared radius over the area.
+        let middle = (0.5 * (radius[0] * radius[0] + radius[1] * radius[1])).sqrt();
+        let least_angle = if self.stretch.is_some() { PI } else { 0.0 };
+        let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]) - least_angle);
+        let mut at = [middle * cos, middle * sin];
+        if let Some(shape) = &self.stretch {
+            at = shape.unscaled(at);
+            // Half of what both halves have.
+            area *= 0.5 * shape.width[0] * shape.width[1];
+        }
+        let wi = outside(at, eye, self.index)?;
+        let (_, factor) = slope(wi, refracted(wi, self.index), eye, self.index);
+        Some(Point { cell, slope: at, area, cos_theta: wi.z, solid_angle: area / factor })
+    }
+}
+
+/// Mean of the channels.
+pub(super) fn mean(rgb: Rgb) -> f64 {
+    rgb.iter().sum::<f64>() / 3.0
 }
 
 /// Cosines of light among which that of a Lambertian base is counted.
@@ -188,22 +197,22 @@ impl Tally {
 
     /// Counts light of the rest with a weight, that has met a diffuse base so often.
     pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, base_visits: u32) {
-        let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
-        let mean = weight.iter().sum::<f64>() / 3.0;
+        let mean = mean(weight);
         if base_visits > 0 {
-            plus(&mut self.base);
+            self.base = plus(self.base, weight);
         }
         if base_visits == 1 {
-            plus(&mut self.base_once);
+            self.base_once = plus(self.base_once, weight);
         }
         if let Some(by_cosine) = self.by_cosine.as_mut().filter(|_| base_visits > 0) {
             by_cosine[((wi.z * COSINES as f64) as usize).min(COSINES - 1)] += mean;
             return;
         }
-        plus(&mut self.total);
+        self.total = plus(self.total, weight);
         self.squares += mean * mean;
         for (cells, rest) in cells.iter().zip(&mut self.rest) {
-            plus(&mut rest[cells.cell(wi, wo)]);
+            let cell = &mut rest[cells.cell(wi, wo)];
+            *cell = plus(*cell, weight);
         }
     }
 
@@ -214,9 +223,13 @@ impl Tally {
 
     /// Number of paths in cells, as many alike ones as have the noise of their sum.
     pub(super) fn paths(&self) -> f64 {
-        let total = self.total.iter().sum::<f64>() / 3.0;
+        let total = mean(self.total);
         if self.squares > 0.0 { total * total / self.squares } else { 0.0 }
     }
+}
+
+fn plus(a: Rgb, b: Rgb) -> Rgb {
+    [0, 1, 2].map(|c: usize| a[c] + b[c])
 }
 
 #[cfg(test)]

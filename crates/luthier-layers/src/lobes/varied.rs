@@ -5,6 +5,7 @@ use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
 use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
+use super::tally::mean;
 use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, Lobes, Row, ViewAxis, most_lobes, patina, shown};
 use crate::layers::ALPHA_MIN;
 
@@ -146,6 +147,11 @@ impl Over {
             Varying::Slab | Varying::Film(_) | Varying::Patina(_) => 1.0,
         }
     }
+
+    /// The factor on slopes at a node.
+    fn spread_at(&self, node: usize) -> f64 {
+        self.spread(self.varying.factor(node as f64))
+    }
 }
 
 /// A function that fits lobes as [`Varied::of`] does; it may have kept what it found before.
@@ -196,7 +202,7 @@ impl Varied {
 
     /// A row of a tile, as tables have it: with slopes divided by the factor on them.
     pub fn stored(&self, tile: usize, row: usize) -> Row {
-        let spread = self.varying.as_ref().map_or(1.0, |over| over.spread(over.varying.factor(tile as f64)));
+        let spread = self.varying.as_ref().map_or(1.0, |over| over.spread_at(tile));
         let (lobes, tile) = self.tile(tile);
         lobes.tile(tile)[row].clone().spread(1.0 / spread)
     }
@@ -205,9 +211,7 @@ impl Varied {
     /// elsewhere. Shaders draw directions by it.
     pub fn bare_facets(&self, tile: usize, row: usize) -> f64 {
         let is_bare = matches!(self.varying(), Some(Varying::Patina(_))) && tile + 1 == self.nodes.len();
-        let facets =
-            |lobes: &Lobes| lobes.first.is_some().then(|| lobes.rows[row].first_facet().iter().sum::<f64>() / 3.0);
-        is_bare.then(|| facets(&self.nodes[tile])).flatten().unwrap_or(0.0)
+        if is_bare && self.nodes[tile].first.is_some() { mean(self.nodes[tile].rows[row].first_facet()) } else { 0.0 }
     }
 
     /// The lobes of the stack as it is given.
@@ -222,11 +226,11 @@ impl Varied {
         let Some(over) = &self.varying else { return lobes };
         let place = over.varying.place(factor);
         let first = (place as usize).min(self.nodes.len() - 2);
-        let row = |row: usize| {
+        let rows = (0..lobes.rows.len()).map(|row| {
             let ends = [first, first + 1].map(|node| self.stored(node, row));
             ends[0].between(&ends[1], place - first as f64).spread(over.spread(factor))
-        };
-        lobes.rows = (0..lobes.rows.len()).map(row).collect();
+        });
+        lobes.rows = rows.collect();
         lobes.first = FirstInterface::of(&over.varying.apply(&over.stack, factor), &over.color);
         lobes
     }
@@ -256,13 +260,13 @@ impl Traced {
             return Self { simulations, varying: Some(Over { varying, least: 1.0, stack, color: *color }) };
         }
         let indices = indices(&stack);
-        let simulate = |node: usize| {
+        let simulations = (0..varying.nodes()).map(|node| {
             let here = varying.apply(&stack, varying.factor(node as f64));
             let share = if node == varying.nominal() { 1 } else { varying.path_share() };
             // All nodes have the media of the first.
             Simulation::within(&indices, axis, &here, color, FitSettings { paths: settings.paths / share, ..settings })
-        };
-        let simulations = (0..varying.nodes()).map(simulate).collect();
+        });
+        let simulations = simulations.collect();
         Self { simulations, varying: Some(Over { varying, least, stack, color: *color }) }
     }
 
@@ -276,21 +280,20 @@ impl Traced {
             return Varied { nodes, varying: self.varying.clone() };
         }
         let (count, nominal) = (self.simulations.len(), over.varying.nominal());
-        let spread = |node: usize| over.spread(over.varying.factor(node as f64));
-        let best = |node: usize| (node, self.simulations[node].fewest(most, excess));
-        let lobes = |found: &Found| found.starts(Basis::Isotropic).len();
+        let [here, middle] = [nominal, count / 2].map(|node| (node, self.simulations[node].fewest(most, excess)));
         // Where the lobes are farther apart, more of them may be seen.
-        let (here, middle) = (best(nominal), best(count / 2));
-        let (seed, start) = if lobes(&middle.1) > lobes(&here.1) { middle } else { here };
+        let [lobes, lobes_middle] = [&here, &middle].map(|(_, found)| found.starts(Basis::Isotropic).len());
+        let (seed, start) = if lobes_middle > lobes { middle } else { here };
         let mut found: Vec<Option<Found>> = (0..count).map(|_| None).collect();
         found[seed] = Some(start);
         let pairs = (seed + 1..count).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
         for (node, beside) in pairs {
             let from = found[beside].as_ref();
-            found[node] = from.map(|from| self.simulations[node].follow(from, spread(node) / spread(beside)));
+            let factor = over.spread_at(node) / over.spread_at(beside);
+            found[node] = from.map(|from| self.simulations[node].follow(from, factor));
         }
-        let lobes = |(simulation, found): (&Simulation, &Option<Found>)| Some(simulation.lobes(found.as_ref()?));
-        let nodes = self.simulations.iter().zip(&found).filter_map(lobes).collect();
+        let pairs = self.simulations.iter().zip(&found);
+        let nodes = pairs.filter_map(|(simulation, found)| Some(simulation.lobes(found.as_ref()?))).collect();
         Varied { nodes, varying: self.varying.clone() }
     }
 }
@@ -305,8 +308,9 @@ fn scaled_surface(surface: Surface, factor: f64) -> Surface {
     if factor == 1.0 {
         return surface;
     }
-    let scaled = |alpha: f64| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0);
-    Surface { alpha_x: scaled(surface.alpha_x), alpha_y: scaled(surface.alpha_y), ..surface }
+    let [alpha_x, alpha_y] =
+        [surface.alpha_x, surface.alpha_y].map(|alpha| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0));
+    Surface { alpha_x, alpha_y, ..surface }
 }
 
 #[cfg(test)]

@@ -79,13 +79,13 @@ impl Cover {
 
 /// Coefficients of the remainder that are nearest to what an interface lets through, in the units of a cosine.
 fn of_transmitted(first: &FirstInterface, axis: ViewAxis) -> [f64; 2] {
-    let passed = |cos_theta: f64| 3.0 - first.reflectance.rgb(cos_theta).iter().sum::<f64>();
+    let straight = passed(first, 1.0);
     let shape = Wide::new([0.0; 2], axis);
     let (mut matrix, mut right) = (vec![vec![0.0; 2]; 2], vec![0.0; 2]);
     for i in 0..COSINES {
         let cos_theta = (f64::from(i) + 0.5) / f64::from(COSINES);
         let slopes = shape.slopes(cos_theta);
-        let lack = passed(cos_theta) / passed(1.0) - 1.0;
+        let lack = passed(first, cos_theta) / straight - 1.0;
         for j in 0..2 {
             right[j] += cos_theta * slopes[j] * lack;
             (0..2).for_each(|k| matrix[j][k] += cos_theta * slopes[j] * slopes[k]);
@@ -93,6 +93,11 @@ fn of_transmitted(first: &FirstInterface, axis: ViewAxis) -> [f64; 2] {
     }
     let found = solve(matrix, right);
     [found[0], found[1]]
+}
+
+/// Sum of the channels of what an interface lets through.
+fn passed(first: &FirstInterface, cos_theta: f64) -> f64 {
+    3.0 - first.reflectance.rgb(cos_theta).iter().sum::<f64>()
 }
 
 /// Cosines at which that is compared, all weighed by themselves.
@@ -118,6 +123,11 @@ pub(super) fn simulations(
     simulations
 }
 
+/// The lobes of a row, without light.
+fn unlit(row: &Row) -> impl Iterator<Item = Lobe> + '_ {
+    row.lobes.iter().map(|lobe| Lobe { strength: [0.0; 3], ..*lobe })
+}
+
 /// The lobes of each node, from all layers to the bare ones, so many at most. They have axis, medium and shape of the remainder in common.
 ///
 /// Patina and bare layers have one lobe each; above a diffuse base, which has none, patina has all of them.
@@ -134,26 +144,20 @@ pub(super) fn nodes(cover: &Cover, simulations: &[Simulation], most: usize, exce
     let of_bare = without.fewest(most - of_cover, excess);
     let bare = without.lobes(&without.with_falloff(&of_bare, falloff));
 
-    let unlit =
-        |row: &Row| -> Vec<Lobe> { row.lobes.iter().map(|lobe| Lobe { strength: [0.0; 3], ..*lobe }).collect() };
-    let covered = |lobes: &Lobes, of_row: &dyn Fn(&Row) -> Row| {
-        let row = |(row, bare): (&Row, &Row)| {
-            let mut row = of_row(row);
-            row.lobes.extend(unlit(bare));
-            row
-        };
-        Lobes { rows: lobes.rows.iter().zip(&bare.rows).map(row).collect(), ..lobes.clone() }
-    };
-    let mut nodes = vec![covered(&whole, &Row::clone)];
+    let mut nodes = vec![whole.clone()];
     if !cover.is_plain() {
-        nodes.push(covered(&grown, &|row| cover.dimmed(row.clone())));
+        let rows = grown.rows.iter().map(|row| cover.dimmed(row.clone())).collect();
+        nodes.push(Lobes { rows, ..grown.clone() });
     }
-    let row = |(grown, row): (&Row, &Row)| {
-        let mut lobes = unlit(grown);
-        lobes.extend(row.lobes.iter().copied());
-        Row { lobes, ..row.clone() }
-    };
-    let rows = grown.rows.iter().zip(&bare.rows).map(row).collect();
+    for (row, bare) in nodes.iter_mut().flat_map(|node| node.rows.iter_mut().zip(&bare.rows)) {
+        row.lobes.extend(unlit(bare));
+    }
+    let rows = grown
+        .rows
+        .iter()
+        .zip(&bare.rows)
+        .map(|(grown, bare)| Row { lobes: unlit(grown).chain(bare.lobes.iter().copied()).collect(), ..bare.clone() });
+    let rows = rows.collect();
     nodes.push(Lobes { first: bare.first, frame: whole.frame, axis: whole.axis, rows });
     // What a base of another colour would change is not known of both ends.
     for node in &mut nodes {
