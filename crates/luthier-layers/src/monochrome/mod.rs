@@ -72,6 +72,11 @@ impl MonochromeBelow {
     pub const fn dielectric(ior: f64, optical_depth: f64) -> Self {
         Self::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth }
     }
+
+    /// Optical depth along the normal; 0 if the material is opaque.
+    pub(crate) fn optical_depth(self) -> f64 {
+        if let Self::Dielectric { optical_depth, .. } = self { optical_depth } else { 0.0 }
+    }
 }
 
 impl Monochrome {

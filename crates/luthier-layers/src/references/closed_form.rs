@@ -23,9 +23,8 @@ pub struct ClosedForm;
 /// Cosines and weights, on both sides of the one from which all azimuths are above the plane with the normal `up`.
 fn nodes(up: DVec3) -> impl Iterator<Item = (f64, f64)> {
     let kink = libm::hypot(up.x, up.y).min(1.0);
-    let pieces = [(0.0, kink), (kink, 1.0 - kink)];
-    let piece = move |(from, length)| rule().iter().map(move |&(x, w)| (from + length * x, length * w));
-    pieces.into_iter().filter(|(_, length)| *length > 0.0).flat_map(piece)
+    let pieces = [(0.0, kink), (kink, 1.0 - kink)].into_iter().filter(|(_, length)| *length > 0.0);
+    pieces.flat_map(|(from, length)| rule().iter().map(move |&(x, w)| (from + length * x, length * w)))
 }
 
 /// The share of the azimuths at a cosine that is above the plane with the normal `up`.

@@ -43,8 +43,7 @@ impl RandomWalk {
     /// Shares of the light from a side that leave on the same side and on the other, over all directions: what they
     /// lack to 1 is absorbed.
     pub fn albedo(&self, layer: &MonochromeLayer, side: Side, direction: DVec3) -> (Estimate, Estimate) {
-        let share = |wanted| self.share(layer, (side, direction), wanted, DVec3::Z);
-        (share(side), share(side.other()))
+        [side, side.other()].map(|wanted| self.share(layer, (side, direction), wanted, DVec3::Z)).into()
     }
 
     /// Share of the light from `a` that leaves on a side, above the plane with the normal `up` in the frame of that side.

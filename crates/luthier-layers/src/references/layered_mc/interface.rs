@@ -89,12 +89,12 @@ impl Interface {
                 Some((Sided { direction: b, ..a }, PI * diffuse_brdf(albedo, sigma, a.direction, b)))
             }
             Kind::Rough(rough) => {
-                let a = self.turned(a);
+                let a = a.inside(self.rotation);
                 let scattered = match self.mode {
                     InterfaceMode::SmithWalk => walk::scatter(rough, stream, a).map(|(b, weight, _)| (b, weight)),
                     InterfaceMode::OneFacet => one_facet::scatter(rough, stream, a),
                 };
-                scattered.map(|(b, weight)| (self.turned_back(b), weight))
+                scattered.map(|(b, weight)| (b.outside(self.rotation), weight))
             }
         }
     }
@@ -105,7 +105,7 @@ impl Interface {
             Kind::Smooth(_) => 0.0,
             &Kind::Diffuse { albedo, sigma } => diffuse_brdf(albedo, sigma, a.direction, b.direction) * b.direction.z,
             Kind::Rough(rough) => {
-                let (a, b) = (self.turned(a), self.turned(b));
+                let [a, b] = [a, b].map(|d| d.inside(self.rotation));
                 match self.mode {
                     InterfaceMode::SmithWalk => walk::kernel(rough, stream, a, b),
                     InterfaceMode::OneFacet => one_facet::kernel(rough, a, b),
@@ -122,7 +122,7 @@ impl Interface {
             Kind::Smooth(_) => (1.0, 1.0),
             Kind::Diffuse { .. } => (b.direction.z / PI, a.direction.z / PI),
             Kind::Rough(rough) => {
-                let (a, b) = (self.turned(a), self.turned(b));
+                let [a, b] = [a, b].map(|d| d.inside(self.rotation));
                 let (forth, back) = rough.phases(a, b);
                 match self.mode {
                     InterfaceMode::SmithWalk => {
@@ -134,14 +134,17 @@ impl Interface {
         };
         (forth.max(f64::MIN_POSITIVE), back.max(f64::MIN_POSITIVE))
     }
+}
 
-    /// Turns a direction from the stack's frame to the interface's.
-    fn turned(&self, d: Sided) -> Sided {
-        self.rotation.map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, -sin), ..d })
+impl Sided {
+    /// The direction in the frame of an interface; `rotation` as of [`turn`].
+    pub(super) fn inside(self, rotation: Option<(f64, f64)>) -> Self {
+        rotation.map_or(self, |(cos, sin)| Self { direction: rotated(self.direction, cos, -sin), ..self })
     }
 
-    fn turned_back(&self, d: Sided) -> Sided {
-        self.rotation.map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, sin), ..d })
+    /// The direction back in the frame of the stack.
+    pub(super) fn outside(self, rotation: Option<(f64, f64)>) -> Self {
+        rotation.map_or(self, |(cos, sin)| Self { direction: rotated(self.direction, cos, sin), ..self })
     }
 }
 

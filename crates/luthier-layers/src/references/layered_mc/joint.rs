@@ -88,13 +88,8 @@ impl JointPaths {
         let stacks = [0, 1, 2].map(|c: usize| &stacks[if channels[c] { c } else { lead }]);
         let layers = 0..stacks[0].layers.len();
         let interfaces = layers.clone().map(|layer| JointInterface::new(stacks, layer)).collect::<Option<_>>()?;
-        let depth = |layer: usize| {
-            stacks.map(|stack| match stack.layers[layer].below {
-                MonochromeBelow::Dielectric { optical_depth, .. } => optical_depth,
-                MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. } => 0.0,
-            })
-        };
-        Some(Self { interfaces, optical_depths: layers.map(depth).collect(), channels })
+        let depths = layers.map(|layer| stacks.map(|stack| stack.layers[layer].below.optical_depth()));
+        Some(Self { interfaces, optical_depths: depths.collect(), channels })
     }
 
     /// The wavelengths of these paths; the others have no weight.
@@ -148,8 +143,7 @@ impl JointPaths {
         let Some(JointInterface { kind: Kind::Rough(rough), rotation }) = self.interfaces.first() else {
             return [0.0; 3];
         };
-        let turned = |d: DVec3| rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin));
-        let (wo, wi) = (turned(wo), turned(wi));
+        let [wo, wi] = [wo, wi].map(|d| rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin)));
         let wh = (wi + wo).normalize();
         let area = rough.facets.visible_area(wo);
         let density = rough.facets.density(wh) / (4.0 * area) * one_facet::masking(&rough.facets, wo, wi);
@@ -207,12 +201,8 @@ impl JointInterface {
                 Some((Sided { direction: b, ..a }, brdf.map(|brdf| PI * brdf), false))
             }
             Kind::Rough(rough) => {
-                let turned = |d: Sided, sign: f64| {
-                    self.rotation
-                        .map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, sign * sin), ..d })
-                };
-                let (b, kept, facets_before) = walk::scatter(rough, stream, turned(a, -1.0))?;
-                Some((turned(b, 1.0), kept, facets_before == 0))
+                let (b, kept, facets_before) = walk::scatter(rough, stream, a.inside(self.rotation))?;
+                Some((b.outside(self.rotation), kept, facets_before == 0))
             }
         }
     }

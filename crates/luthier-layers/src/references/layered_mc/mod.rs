@@ -119,27 +119,24 @@ impl LayeredMc {
 
 impl Model for LayeredMc {
     fn info(&self) -> ModelInfo {
-        let source = "Guo, Hasan and Zhao 2018 (position-free, bidirectional) over interfaces of Heitz et al. 2016";
-        match self.mode {
-            InterfaceMode::SmithWalk => ModelInfo {
-                name: "layered-mc",
-                kind: Kind::Reference,
-                claims: Claims::BOTH,
-                inputs: &[Input::Samples, Input::Seed],
-                source,
-                domain: "any stack; an estimate, with noise",
-                leaves_out: "light that meets smooth interfaces only; polarisation between interfaces",
-            },
-            InterfaceMode::OneFacet => ModelInfo {
-                name: "layered-mc-one-facet",
-                kind: Kind::Reference,
-                claims: Claims::BOTH,
-                inputs: &[Input::Samples, Input::Seed],
-                source,
-                domain: "any stack; an estimate, with noise",
-                leaves_out: "bounces between facets (what is blocked is lost); light that meets smooth interfaces \
-                             only; polarisation between interfaces",
-            },
+        let (name, leaves_out) = match self.mode {
+            InterfaceMode::SmithWalk => {
+                ("layered-mc", "light that meets smooth interfaces only; polarisation between interfaces")
+            }
+            InterfaceMode::OneFacet => (
+                "layered-mc-one-facet",
+                "bounces between facets (what is blocked is lost); light that meets smooth interfaces only; \
+                 polarisation between interfaces",
+            ),
+        };
+        ModelInfo {
+            name,
+            kind: Kind::Reference,
+            claims: Claims::BOTH,
+            inputs: &[Input::Samples, Input::Seed],
+            source: "Guo, Hasan and Zhao 2018 (position-free, bidirectional) over interfaces of Heitz et al. 2016",
+            domain: "any stack; an estimate, with noise",
+            leaves_out,
         }
     }
 

@@ -141,8 +141,9 @@ impl Optics {
 
     /// Whether light goes the ways that it goes at another interface.
     pub(crate) fn is_parallel(&self, other: &Self) -> bool {
-        let ways = |optics: &Self| (optics.above, optics.below, optics.is_transparent(), optics.is_absent());
-        ways(self) == ways(other)
+        let [own, others] =
+            [self, other].map(|optics| (optics.above, optics.below, optics.is_transparent(), optics.is_absent()));
+        own == others
     }
 
     /// Index of the medium on a side.
@@ -212,9 +213,8 @@ impl Optics {
     fn split_coated(&self, side: Side, cos: f64) -> Split {
         let Kind::Coated { films, below, opaque, absorbing } = &self.kind else { return Split::opaque(1.0, cos) };
         let above = Complex64::new(self.above, 0.0);
-        let from_above = |c: f64| coated(above, films, *below, c).unpolarised();
         if *opaque {
-            return Split::opaque(from_above(cos), cos);
+            return Split::opaque(coated(above, films, *below, cos).unpolarised(), cos);
         }
         let eta_it = self.eta_it(side);
         let cos_t = (1.0 - (1.0 - cos * cos) * (eta_it * eta_it)).clamp(0.0, 1.0).sqrt();
@@ -223,11 +223,11 @@ impl Optics {
             if cos_t <= 0.0 || cos == 0.0 {
                 return Split::opaque(1.0, cos);
             }
-            let reflectance = from_above(cos_above);
+            let reflectance = coated(above, films, *below, cos_above).unpolarised();
             return Split { reflectance, transmittance: 1.0 - reflectance, cos_theta: cos, cos_theta_t: cos_t };
         }
         let reflectance = match side {
-            Side::Above => from_above(cos),
+            Side::Above => coated(above, films, *below, cos).unpolarised(),
             Side::Below => {
                 let upward: Vec<FilmLayer> = films.iter().rev().copied().collect();
                 coated(Complex64::new(self.below, 0.0), &upward, above, cos).unpolarised()

@@ -83,8 +83,8 @@ impl Stream {
         loop {
             // Two numbers of 32 bits at the middles of their steps, from -1 to 1.
             let bits = self.next();
-            let side = |bits: u64| (bits as f64 + 0.5) * (1.0 / (1u64 << 31) as f64) - 1.0;
-            let p = DVec2::new(side(bits >> 32), side(bits & 0xffff_ffff));
+            let [x, y] = [bits >> 32, bits & 0xffff_ffff].map(|half| half as f64 + 0.5);
+            let p = DVec2::new(x, y) * (1.0 / (1u64 << 31) as f64) - 1.0;
             let r_sq = p.length_squared();
             if r_sq < 1.0 {
                 return (DVec2::new(p.x * p.x - p.y * p.y, 2.0 * p.x * p.y) / r_sq, r_sq);

@@ -180,9 +180,9 @@ pub(crate) fn scatter<O: Chance>(rough: &Rough<O>, stream: &mut Stream, a: Sided
 /// much, as with grazing light that goes from facet to facet. Either end starts half of the walks, and balanced weights (Veach 1997) give
 /// each path to the end that finds it more often. What meets one facet alone needs none.
 pub(crate) fn kernel(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
-    let reach = |d: Sided| rough.optics.index(d.side) * rough.optics.index(d.side) * d.direction.z;
+    let [reach_a, reach_b] = [a, b].map(|d| rough.optics.index(d.side) * rough.optics.index(d.side) * d.direction.z);
     // Reciprocity: the density from b to a over that from a to b.
-    let turned = reach(a) / reach(b);
+    let turned = reach_a / reach_b;
     if stream.uniform() < 0.5 {
         from_one_end(rough, stream, a, b, turned)
     } else {
