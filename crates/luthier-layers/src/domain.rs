@@ -32,24 +32,26 @@ const DIM: f64 = 1.0;
 /// Light that comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2
 /// e^(-2 depth) R`; R counts as 1 where the next layer is transparent.
 fn returned(stack: &Stack, layer: usize) -> f64 {
-    let mirrored = |layer, channel| {
-        let interface = Interface::of(stack, layer);
-        interface.map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM, channel).reflectance(1.0))
-    };
     let Some(Base::Dielectric { slab, .. }) = stack.layers.get(layer).map(|here| &here.base) else { return 0.0 };
-    let below = |channel| match stack.layers.get(layer + 1).map(|next| &next.base) {
-        Some(Base::Conductor { .. }) => mirrored(layer + 1, channel),
-        Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
-        Some(Base::Dielectric { .. }) => 1.0,
-        None => 0.0,
-    };
     let depth = slab.optical_depth().into_iter().fold(f64::INFINITY, f64::min);
-    let at = |channel| {
-        let crossed = 1.0 - mirrored(layer, channel);
-        crossed * crossed * libm::exp(-2.0 * depth) * below(channel)
-    };
-    // Channels of interfaces that have indices are alike.
-    (0..3).map(at).fold(0.0, f64::max)
+    let mut most = 0.0;
+    for channel in 0..3 {
+        let below = match stack.layers.get(layer + 1).map(|next| &next.base) {
+            Some(Base::Conductor { .. }) => mirrored(stack, layer + 1, channel),
+            Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
+            Some(Base::Dielectric { .. }) => 1.0,
+            None => 0.0,
+        };
+        let crossed = 1.0 - mirrored(stack, layer, channel);
+        most = f64::max(most, crossed * crossed * libm::exp(-2.0 * depth) * below);
+    }
+    most
+}
+
+/// Reflectance of the interface of a layer at normal incidence in a channel. Channels differ only if the interface has an F0: the wavelength is fixed.
+fn mirrored(stack: &Stack, layer: usize, channel: usize) -> f64 {
+    let interface = Interface::of(stack, layer);
+    interface.map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM, channel).reflectance(1.0))
 }
 
 /// Quantities of a stack outside the domain of a model. Slope parameters below [`crate::layers::ALPHA_MIN`] count as inside: all models raise
