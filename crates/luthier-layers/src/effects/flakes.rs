@@ -30,11 +30,10 @@ impl Flakes {
     /// The normal of the flake at a texture coordinate, unit: its slope angle is normal with deviation `spread`.
     pub fn flake(&self, uv: DVec2) -> DVec3 {
         let count = i64::from(self.count.max(1));
-        let at = |x: f64| {
-            let repeat = x * self.tiling;
-            hash::floor((repeat - repeat.floor()) * count as f64).clamp(0, count - 1)
-        };
-        let cell = hash::cell(self.seed, at(uv.x), at(uv.y));
+        let [x, y] = (uv * self.tiling)
+            .to_array()
+            .map(|repeat| hash::floor((repeat - repeat.floor()) * count as f64).clamp(0, count - 1));
+        let cell = hash::cell(self.seed, x, y);
         // Box and Muller.
         let radius = libm::sqrt(-2.0 * libm::log(1.0 - hash::unit(cell, 0)));
         let angle = (self.spread * radius * libm::cos(2.0 * PI * hash::unit(cell, 1))).clamp(-0.5 * PI, 0.5 * PI);

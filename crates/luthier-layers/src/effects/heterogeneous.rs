@@ -117,6 +117,9 @@ const PLACES: u32 = 20_000;
 /// Cells of the coarsest switch along each side of the square of these places: there are three cells for each place.
 const SIDE: f64 = 256.0;
 
+/// Steps of Roberts's sequence R2 (2018): 1/p and 1/p^2 of the plastic number p.
+const R2_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+
 /// How much of a surface each of some switches has, where the first that has a place is seen: by count over 20000 fixed places. A share of 0.001 is
 /// within 0.0005 at two standard errors.
 ///
@@ -130,13 +133,11 @@ const SIDE: f64 = 256.0;
 /// ```
 pub fn switch_shares(switches: &[Switch]) -> Vec<SwitchShare> {
     let coarsest = switches.iter().map(Switch::frequency).fold(f64::INFINITY, f64::min);
-    let mut shares: Vec<SwitchShare> =
-        switches.iter().map(|_| SwitchShare { own: 0.0, seen: 0.0, noise: None }).collect();
+    let mut shares = vec![SwitchShare { own: 0.0, seen: 0.0, noise: None }; switches.len()];
     let one = 1.0 / f64::from(PLACES);
     for n in 0..PLACES {
         // Roberts's sequence R2: far apart from each other, and not on the lattice.
-        let along = |step: f64| (f64::from(n) * step).fract() * SIDE / coarsest;
-        let uv = DVec2::new(along(0.754_877_666_246_692_8), along(0.569_840_290_998_053_2));
+        let uv = DVec2::from_array(R2_STEPS.map(|step| (f64::from(n) * step).fract() * SIDE / coarsest));
         let mut is_covered = false;
         for (switch, share) in switches.iter().zip(&mut shares) {
             if let Switch::Noise { noise, .. } = switch {

@@ -51,12 +51,12 @@ impl Patina {
             return 0.0;
         }
         let amount = self.amount(map);
-        let blend = |from: f64, to: f64| from + (to - from) * amount;
-        let tarnish = blend(1.0, self.tarnish);
+        let tarnish = 1.0 + (self.tarnish - 1.0) * amount;
         let mut grown = stack.clone();
-        if let (Some(layer), Some(alpha)) = (grown.layers.get_mut(1), self.base_alpha) {
-            layer.surface.alpha_x = blend(layer.surface.alpha_x, alpha);
-            layer.surface.alpha_y = blend(layer.surface.alpha_y, alpha);
+        if let (Some(layer), Some(base_alpha)) = (grown.layers.get_mut(1), self.base_alpha) {
+            for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+                *alpha += (base_alpha - *alpha) * amount;
+            }
         }
         let mut bare = grown.clone();
         if !bare.layers.is_empty() {

@@ -83,8 +83,7 @@ fn add(powers: Powers, layer: &MonochromeLayer, [cos_above, cos_below]: [f64; 2]
         down
     } else {
         let films: Vec<_> = layer.films.iter().rev().copied().collect();
-        let real = |n| Complex64::new(n, 0.0);
-        coated(real(ior), &films, real(layer.above), cos_below).unpolarised()
+        coated(Complex64::from(ior), &films, Complex64::from(layer.above), cos_below).unpolarised()
     };
     let transmitted = (1.0 - down).max(0.0);
     let echo = 1.0 - powers.below * down;
