@@ -6,15 +6,15 @@ use super::Shape;
 /// to the ellipse.
 pub(super) type Numbers = [f64; 4];
 
-/// Slopes, by one of the numbers, of the middle along both axes of the ellipse, of the logarithms of its widths, and of the logarithm's part off
-/// the diagonal there.
+/// Derivatives by one of the numbers, in the axes of the ellipse: of both coordinates of the middle, of the logarithms of both widths, and of the
+/// logarithm's entry off the diagonal.
 pub(super) type Slopes = [f64; 5];
 
 /// The frame of an ellipse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Plane {
-    /// The plane of an eye, by the sine of its angle. The axes are those of the ellipse: half the logarithm of the ratio of the widths is b times
-    /// the squared sine.
+    /// The plane of an eye, by the sine of its angle. The ellipse lies along this plane and across it: half the logarithm of the ratio of its widths
+    /// is b times the squared sine.
     OfEye(f64),
     /// Tangents, in which the eye has these coordinates along the surface.
     OfTangents([f64; 2]),

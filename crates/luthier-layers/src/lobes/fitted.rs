@@ -17,13 +17,13 @@ use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 /// Stacks whose lobes are kept.
 const KEPT: usize = 8;
 
-/// Real part of an index, at least: a perfect mirror of none reflects a hundred millionth less.
+/// Least real part of an index. A perfect mirror has none; with this one it reflects a hundred millionth less.
 const INDEX_MIN: f64 = 1e-9;
 
 /// A wavelength for indices that do not depend on it.
 const WAVELENGTH_NM: f64 = 550.0;
 
-/// The model `lobes`. It simulates a stack when it first meets it, for a second or so; the last eight stacks are kept.
+/// The model `lobes` for single wavelengths. It simulates a stack at the first value, for a second or so, and keeps the last eight stacks.
 pub struct Fitted {
     fit: Arc<Fit<'static>>,
     kept: Mutex<VecDeque<(Monochrome, Arc<Lobes>)>>,
@@ -49,7 +49,7 @@ impl Fitted {
 
     /// The lobes of a stack; `None` where an index is infinite or not a number.
     fn lobes(&self, stack: &Monochrome) -> Option<Arc<Lobes>> {
-        // Under the lock: others that ask for a stack wait for its lobes.
+        // Fits under the lock: other threads that ask for the stack wait, rather than fit it again.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, lobes)) = kept.iter().find(|(known, _)| known == stack) {
             return Some(lobes.clone());
@@ -75,7 +75,7 @@ impl Model for Fitted {
     }
 }
 
-/// The stack that is this one at every wavelength and in every channel; `None` where an index is infinite or not a number.
+/// A stack in colour that equals this one at every wavelength and in every channel; `None` if an index is infinite or not a number.
 fn in_all_colors(stack: &Monochrome) -> Option<Stack> {
     Some(Stack {
         exterior: constant(Complex64::from(stack.exterior), None)?,
@@ -101,7 +101,7 @@ fn layer_in_all_colors(layer: &MonochromeLayer) -> Option<Layer> {
     Some(Layer { films, surface: layer.surface, base })
 }
 
-/// An index that is the same at all wavelengths, with an F0 if the interface has one; `None` where it is infinite or not a number.
+/// An index for all wavelengths, with an F0 if the interface has one; `None` if it is infinite or not a number.
 fn constant(ior: Complex64, f0: Option<f64>) -> Option<Ior> {
     let constant = Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok()?;
     Some(if let Some(f0) = f0 { constant.with_f0([f0; 3]) } else { constant })

@@ -13,27 +13,29 @@ use super::solve::{Amounts, Column, Guess, Residuals};
 use super::tally::{Cells, Point, Tally, mean};
 use super::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
-/// Share of a shape above the horizon below which the fit is held back.
+/// Shapes with less than this share above the horizon are penalised: energies are divided by the share.
 const SHARE_WANTED: f64 = 0.35;
 
-/// Weight of what [`SHARE_WANTED`] lacks, of second differences between nodes, and of shifts and ratios of widths by themselves.
+/// Weight of a share's lack to [`SHARE_WANTED`].
 const SHARE_WEIGHT: f64 = 0.5;
+/// Weight of second differences between nodes.
 const RIPPLE_WEIGHT: f64 = 0.03;
+/// Weight of shifts and of ratios of widths, which are pulled to 0.
 const REST_WEIGHT: f64 = 0.003;
 
-/// Weight of the distance from the parameters of a neighbour.
+/// Weight of the distance to the parameters of a neighbour.
 const BESIDE_WEIGHT: f64 = 0.05;
 
-/// Energy that is added to that of a cell, over the mean, where residuals are weighed.
+/// Added to the energy of a cell before its residual is weighed, over the mean energy of cells: dark cells would weigh without bound.
 const WEIGHT_FLOOR: f64 = 0.05;
 
-/// Paths of a cell, on average, of which half of its weight is its own.
+/// Mean number of paths per cell at which half of a cell's weight comes from its own light, see [`expected`].
 const MANY_PATHS: f64 = 64.0;
 
-/// Rows above and below a view, in steps of the axis of the lobes, whose light weighs its residuals.
+/// The light of so many rows above and below a view weighs its residuals; in steps of the axis of the lobes.
 const WEIGHT_ROWS: usize = 2;
 
-/// Step of the differences that slopes of amounts are.
+/// Step of the difference quotients along profiles.
 const DIFFERENCE: f64 = 1e-5;
 
 /// The fit in one set of cells.
@@ -44,7 +46,7 @@ pub(super) struct Problem<'a> {
     pub(super) views: Vec<ViewProblem>,
 }
 
-/// One view of it.
+/// One view of a problem.
 pub(super) struct ViewProblem {
     axis: ViewAxis,
     basis: Basis,
@@ -55,7 +57,7 @@ pub(super) struct ViewProblem {
     /// Place among the nodes of shapes.
     place: f64,
     points: Vec<Point>,
-    /// Brightness of the cells: means of the channels, over that of all light of the view.
+    /// Brightness of the cells, see [`brightness`].
     found: Vec<f64>,
     total: f64,
     /// Weights of squared residuals, see [`expected`], and their roots.
@@ -63,24 +65,24 @@ pub(super) struct ViewProblem {
     roots: Vec<f64>,
 }
 
-/// A view with shapes: what every part sends to each cell, of a unit of its energy.
+/// Light that every part of given shapes sends to each cell of a view, of a unit of its energy.
 pub(super) struct Profiles {
     cells: Vec<Vec<f64>>,
     /// Shares of the shapes above the horizon, as the cells have them.
     shares: Vec<f64>,
 }
 
-/// A problem with a number of lobes. Its blocks are the views, the ripples, and last the distance from the parameters of a neighbour.
+/// A problem with a number of lobes. Its blocks are the views, the ripples, and last the distance to the parameters of a neighbour.
 pub(super) struct Lobed<'a> {
     pub(super) problem: &'a Problem<'a>,
     pub(super) lobes: usize,
-    /// Parameters of a neighbour, between which and those that are looked for rows are mixed: the shape of the remainder stays as it is, and lobes
-    /// keep their identity.
+    /// Parameters of a neighbouring node, if rows are to be mixed with its rows. The remainder keeps the neighbour's shape, and lobes stay near the
+    /// neighbour's, so that they keep their identity.
     pub(super) beside: Option<&'a [f64]>,
 }
 
 impl<'a> Lobed<'a> {
-    /// Beside no other.
+    /// The problem of a stack without neighbours.
     pub(super) fn new(problem: &'a Problem<'a>, lobes: usize) -> Self {
         Self { problem, lobes, beside: None }
     }
@@ -127,7 +129,8 @@ impl<'a> Problem<'a> {
         Self::of(simulation, set, |_, _| true)
     }
 
-    /// The problem of every other view, for an anisotropic stack: of the first azimuth, the middle ones and the last, and of every other row.
+    /// The problem of a few views of an anisotropic stack: every other row at the first azimuth, one or two in the middle, and the last. An
+    /// isotropic stack keeps all views.
     pub(super) fn coarse(simulation: &'a Simulation, set: usize) -> Self {
         let Some(axes) = simulation.axes else { return Self::new(simulation, set) };
         let kept: &[usize] = if axes.is_mirrored { &[0, 3, 7] } else { &[0, 2, 4, 5] };
@@ -175,9 +178,9 @@ impl<'a> Problem<'a> {
 
     /// Energies by view, part and channel.
     ///
-    /// Where parts look alike at a view, its light leaves open how much each of them has, and noise would decide: then between the rows the
-    /// energies of one part would be seen with the shape of another. So the energies of a view are pulled to those of the rows beside it. The light
-    /// of a Lambertian base is the remainder's: lobes that had some of it would keep its colour.
+    /// At views where parts look alike, light does not tell how much each of them has. Noise would decide, and between rows the energy of one part
+    /// would be seen with the shape of another. So the energies of a view are pulled to those of the views beside it. All light of a Lambertian
+    /// base goes to the remainder: a lobe with some of it would keep the base's colour.
     fn energies(&self, p: &[f64], count: usize) -> Vec<Vec<Rgb>> {
         let profiles: Vec<Vec<Vec<f64>>> = self.views.iter().map(|view| view.profiles(p, count).cells).collect();
         let amounts: Vec<Amounts<'_>> =
@@ -241,18 +244,18 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Brightness of the cells: means of the channels, over that of all light of the view.
+/// Brightness of the cells, a mean of the channels, over the brightness of all light of the view.
 fn brightness(tally: &Tally, set: usize) -> Vec<f64> {
     let all = [tally.total, tally.first_facet, tally.of_lambertian()].map(mean).iter().sum::<f64>();
     let all = all.max(f64::MIN_POSITIVE);
     tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect()
 }
 
-/// Brightness that the cells of a view are expected to have, by which residuals are weighed: what was found in them, or where paths are few
-/// the mean of other views around, and of the cells around each.
+/// Expected brightness of the cells of a view, by which residuals are weighed. With many paths it is the brightness found; with few it is the mean
+/// over views around, smoothed over the cells around each.
 ///
-/// By what is found alone, a cell that happens to have too little light weighs more than one that has too much. Where a cell has a few paths, the
-/// light of many such cells then comes out too dark (Baker and Cousins 1984, of Neyman's chi-square), and that of others too bright.
+/// With weights from the found brightness alone, a cell that happens to be too dark weighs more than one that is too bright. Cells of few paths
+/// would then come out too dark (Baker and Cousins 1984, of Neyman's chi-square), and others too bright.
 fn expected(cells: &Cells, found: &[f64], around: &[&[f64]], paths: f64) -> Vec<f64> {
     let means = (0..cells.count()).map(|cell| around.iter().map(|view| view[cell]).sum::<f64>() / around.len() as f64);
     let smooth = cells.smoothed(&means.collect::<Vec<_>>());
@@ -261,9 +264,9 @@ fn expected(cells: &Cells, found: &[f64], around: &[&[f64]], paths: f64) -> Vec<
     found.iter().zip(smooth).map(|(found, smooth)| found + share * (smooth - found)).collect()
 }
 
-/// The row of an azimuth, moved so that what is linear between azimuths errs as much there as half way between them.
+/// The row of an azimuth, moved so that chords between azimuths err as much at their ends as half way.
 ///
-/// Half way, a chord is off by an eighth of the second difference.
+/// Half way, a chord through unmoved rows is off by an eighth of the second difference.
 fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
     let here = &rows[numbers.number(azimuth, row)];
     let Some(axes) = numbers.axes else { return here.clone() };
@@ -271,10 +274,10 @@ fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
     let [before, after] = next.map(|next| &rows[numbers.number(next, row)]);
     let mut moved = here.between(&before.between(after, 0.5), -0.125);
     for (moved, own) in moved.lobes.iter_mut().zip(&here.lobes) {
-        // Light that has none half way is not below 0.
+        // The move takes no light below 0, unless noise has done so already.
         (0..3).for_each(|c| moved.strength[c] = moved.strength[c].max(own.strength[c].min(0.0)));
         moved.share = moved.share.min(1.0);
-        // Odd in both axes.
+        // Shears are odd: at an axis of mirror symmetry those on both sides cancel. Both neighbours here are the row on one side.
         if axes.is_mirrored && next[0] == next[1] {
             moved.shear = own.shear;
         }
@@ -283,16 +286,16 @@ fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
     moved
 }
 
-/// Shares above the horizon are no less than this, where energies are divided by them.
+/// Least share above the horizon by which an energy is divided.
 const SHARE_MIN: f64 = 1e-3;
 
-/// Weight with which the energies of a view are pulled to those of its neighbours, against squared residuals over energies.
+/// Weight of the squared distance to the energies of neighbours, against squared residuals over energies.
 const NEIGHBOUR_WEIGHT: f64 = 0.1;
 
 /// Rounds in which neighbours pull each other.
 const NEIGHBOUR_ROUNDS: u32 = 8;
 
-/// Amounts by view, each near the mean of its neighbours. `solve` has the amounts of a view for a guess.
+/// Amounts by view, each pulled to the mean of its neighbours. `solve` gives the amounts of a view for a guess.
 fn smoothed(beside: &[Vec<usize>], solve: impl Fn(usize, Option<Guess<'_>>) -> Vec<f64>) -> Vec<Vec<f64>> {
     let mut amounts: Vec<Vec<f64>> = (0..beside.len()).map(|view| solve(view, None)).collect();
     for _ in 0..NEIGHBOUR_ROUNDS {
@@ -376,7 +379,7 @@ impl<const N: usize> Sent<N> {
         self.slopes.iter_mut().zip(relative).for_each(|(slopes, relative)| slopes[cell] += value * relative);
     }
 
-    /// The slopes of a unit of the energy, and those of the share.
+    /// The slopes of the cells for a unit of energy, and the slope of the share.
     fn normalised(&self) -> [(Vec<f64>, f64); N] {
         let share = self.cells.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         self.slopes.each_ref().map(|slopes| {
@@ -422,7 +425,7 @@ impl ViewProblem {
         let [x, y, shear] = shape.sharpness();
         let shift = match self.plane {
             Plane::OfEye(sin) if sin > 0.0 => shape.middle[0] / sin,
-            // The last node of the shifts is that of the normal.
+            // Along the normal the sine is 0: the shift is the parameter of the last node.
             Plane::OfEye(_) => p[lobe * self.basis.per_lobe() + SHIFT * NODES + NODES - 1],
             Plane::OfTangents(_) => self.numbers(p, lobe)[SHIFT],
         };
@@ -489,7 +492,7 @@ impl ViewProblem {
         residuals.chain(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0))).collect()
     }
 
-    /// Differences of the residuals, which are `now`, along slopes of a part's profile and of its share.
+    /// Difference quotients of the residuals, which are `now`, along slopes of a part's cells and share.
     fn along(&self, profiles: &mut Profiles, part: usize, slopes: &(Vec<f64>, f64), now: &[f64]) -> Vec<f64> {
         let (before, share_before) = (profiles.cells[part].clone(), profiles.shares[part]);
         profiles.cells[part].iter_mut().zip(&slopes.0).for_each(|(cell, slope)| *cell += DIFFERENCE * slope);
@@ -499,7 +502,8 @@ impl ViewProblem {
         there.iter().zip(now).map(|(a, b)| (a - b) / DIFFERENCE).collect()
     }
 
-    /// Slopes of the residuals: those of profiles are analytic, those of the amounts that go with them are differences.
+    /// Slopes of the residuals, which are `now`. Slopes of profiles are analytic. Amounts follow from profiles, so residuals are differentiated
+    /// along profiles by difference quotients.
     fn slopes(&self, p: &[f64], lobes: usize, now: &[f64]) -> Vec<Column> {
         let mut profiles = self.profiles(p, lobes);
         let (first, t) = self.node();
@@ -538,7 +542,7 @@ impl ViewProblem {
     }
 }
 
-/// The sum of slopes with factors.
+/// The sum of slopes, each times its factor.
 fn mixed(sent: &[(Vec<f64>, f64); 6], factors: [f64; 5]) -> (Vec<f64>, f64) {
     let mut sum = (vec![0.0; sent[0].0.len()], 0.0);
     for ((slopes, share), factor) in sent.iter().zip(factors).filter(|(_, factor)| *factor != 0.0) {
@@ -548,7 +552,7 @@ fn mixed(sent: &[(Vec<f64>, f64); 6], factors: [f64; 5]) -> (Vec<f64>, f64) {
     sum
 }
 
-/// The view of a row at an azimuth, whose cosine and sine are given.
+/// The view of a row at the azimuth of a cosine and a sine.
 pub(super) fn seen_from(axis: ViewAxis, [cos, sin]: [f64; 2], row: usize) -> DVec3 {
     let DVec3 { x, z, .. } = direction(axis.cos_theta(row as f64));
     DVec3::new(cos * x, sin * x, z)

@@ -12,16 +12,17 @@ use super::Shape;
 use super::half_vector::{outside, refracted, slope};
 
 const RINGS: usize = 20;
-/// Sectors of half a turn, where halves count together, and of a turn.
+/// Sectors of half a turn, for isotropic stacks: both halves count together.
 const SECTORS: usize = 12;
+/// Sectors of a whole turn, for anisotropic stacks.
 const SECTORS_OF_TURN: usize = 16;
 /// Eighths of a turn.
 const EIGHTHS: usize = 8;
-/// Discs and rings inside the innermost ring.
+/// Rings of points in the innermost disc.
 const INNER: usize = 6;
 /// Points of a cell along either side.
 const POINTS: usize = 2;
-/// The greatest slope that counts: steeper ones are counted with it.
+/// Outer edge of the outermost ring, a slope; steeper light is counted in that ring.
 const STEEPEST: f64 = 12.0;
 
 /// Cells in the half vectors of a medium.
@@ -33,11 +34,11 @@ pub(super) struct Cells {
     least: f64,
     /// Logarithm of the ratio of two edges.
     step: f64,
-    /// Ellipse of slopes that is a circle of cells; none where both halves count together.
+    /// Ellipse of slopes that cells see as a circle; `None` for isotropic stacks, whose halves count together.
     stretch: Option<Shape>,
 }
 
-/// A point of a cell, and what it stands for.
+/// A point of a cell, with the area and the solid angle that it stands for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub(super) cell: usize,
@@ -72,7 +73,7 @@ impl Cells {
     pub(super) fn smoothed(&self, values: &[f64]) -> Vec<f64> {
         let sectors = self.sectors();
         let means = (0..values.len()).map(|cell| {
-            // The innermost disc has no neighbours that are like it.
+            // The innermost disc has no neighbours of its size.
             let Some(number) = cell.checked_sub(1) else { return values[0] };
             let (ring, sector) = (number / sectors, number % sectors);
             let around = match self.stretch {
@@ -91,7 +92,7 @@ impl Cells {
         if self.stretch.is_some() { SECTORS_OF_TURN } else { SECTORS }
     }
 
-    /// The number of a cell among those whose sectors are eighths of a turn.
+    /// The number of the wider cell that a cell is in; wider cells have eighths of a turn as sectors.
     pub(super) fn wider(&self, cell: usize) -> usize {
         let Some(number) = cell.checked_sub(1) else { return 0 };
         let sectors = self.sectors();
@@ -99,7 +100,7 @@ impl Cells {
         1 + number / sectors * eighths + number % sectors * eighths / sectors
     }
 
-    /// The cell of light from `wi` seen from `wo`. Where both halves count together, the plane of `wo` is that of x and z.
+    /// The cell of light from `wi` seen from `wo`. If both halves count together, `wo` has to be in the plane of x and z.
     pub(super) fn cell(&self, wi: DVec3, wo: DVec3) -> usize {
         let (at, _) = slope(wi, refracted(wi, self.index), refracted(wo, self.index), self.index);
         let ([x, y], least_angle, turn) = match &self.stretch {
@@ -142,7 +143,7 @@ impl Cells {
         points
     }
 
-    /// The middle of a part of a cell, between two radii and two angles; `None` where no light from there leaves the medium.
+    /// The middle of a part of a cell, between two radii and two angles; `None` if light from there does not leave the medium.
     fn point(&self, cell: usize, radius: [f64; 2], phi: [f64; 2], eye: DVec3) -> Option<Point> {
         let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
         // The mean of the squared radius over the area.
@@ -152,7 +153,7 @@ impl Cells {
         let mut at = [middle * cos, middle * sin];
         if let Some(shape) = &self.stretch {
             at = shape.unscaled(at);
-            // Half of what both halves have.
+            // The area above stands for both halves of an isotropic stack; here either half has its own points.
             area *= 0.5 * shape.width[0] * shape.width[1];
         }
         let wi = outside(at, eye, self.index)?;
@@ -166,10 +167,10 @@ pub(super) fn mean(rgb: Rgb) -> f64 {
     rgb.iter().sum::<f64>() / 3.0
 }
 
-/// Cosines of light among which that of a Lambertian base is counted.
+/// Bins of cosines in which the light of a Lambertian base is counted.
 pub(super) const COSINES: usize = 64;
 
-/// Light of one view: that of one facet of the first interface, that of a Lambertian base, and the rest in cells.
+/// Light of one view: light of one facet of the first interface, light of a Lambertian base, and the rest in cells.
 #[derive(Debug, Clone)]
 pub(super) struct Tally {
     /// Energy by cell and channel, for each set of cells.
@@ -178,24 +179,25 @@ pub(super) struct Tally {
     pub(super) total: Rgb,
     /// Energy of the light that met one facet alone, in closed form.
     pub(super) first_facet: Rgb,
-    /// Energy of the light that met the diffuse base, and of that which met it once.
+    /// Energy of the light that met the diffuse base.
     pub(super) base: Rgb,
+    /// Energy of the light that met the diffuse base exactly once.
     pub(super) base_once: Rgb,
-    /// Energy of a Lambertian base by the cosine of the light, the mean of the channels; none of another stack, whose base is in the cells.
+    /// Energy of a Lambertian base by the cosine of the light, the mean of the channels; `None` for another base, whose light is in the cells.
     pub(super) by_cosine: Option<[f64; COSINES]>,
     /// Sum of the squared energies of the paths in cells, means of the channels.
     squares: f64,
 }
 
 impl Tally {
-    /// Without light, of a stack with or without a Lambertian base.
+    /// A tally without light, for a stack with or without a Lambertian base.
     pub(super) fn new(sets: &[Cells], is_lambertian: bool) -> Self {
         let rest = sets.iter().map(|cells| vec![[0.0; 3]; cells.count()]).collect();
         let (none, by_cosine) = ([0.0; 3], is_lambertian.then_some([0.0; COSINES]));
         Self { rest, total: none, first_facet: none, base: none, base_once: none, by_cosine, squares: 0.0 }
     }
 
-    /// Counts light of the rest with a weight, that has met a diffuse base so often.
+    /// Counts light that has met more than one facet or interface. `base_visits` says how often it met a diffuse base.
     pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, base_visits: u32) {
         let mean = mean(weight);
         if base_visits > 0 {
@@ -221,7 +223,7 @@ impl Tally {
         if self.by_cosine.is_some() { self.base } else { [0.0; 3] }
     }
 
-    /// Number of paths in cells, as many alike ones as have the noise of their sum.
+    /// Effective number of paths in cells: so many equal paths would have the noise of their sum.
     pub(super) fn paths(&self) -> f64 {
         let total = mean(self.total);
         if self.squares > 0.0 { total * total / self.squares } else { 0.0 }
