@@ -14,12 +14,12 @@ pub struct Angles {
     pub phi_deg: f64,
 }
 
-/// Why a text is no direction.
+/// Error of a text that is no direction.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct AnglesError(String);
 
-/// Why a text is no list of directions: the line, counted from 1, if it is about one, and the reason.
+/// Error of a text that is no list of directions: the line, counted from 1, if the error has one, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {reason}", line.map(|line| format!(":{line}")).unwrap_or_default())]
 pub struct PairsError {

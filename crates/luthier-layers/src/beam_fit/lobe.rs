@@ -17,7 +17,7 @@ pub struct Sample {
     pub value: Rgb,
 }
 
-/// Why a text is no lobe: the line, counted from 1, if it is about one, and the reason.
+/// Error of a text that is no lobe: the line, counted from 1, if the error has one, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {reason}", line.map(|line| format!(":{line}")).unwrap_or_default())]
 pub struct LobeError {
@@ -27,11 +27,11 @@ pub struct LobeError {
     pub reason: String,
 }
 
-/// Columns that a lobe has, in any order; others are passed over.
+/// Columns of a lobe, in any order; others are ignored.
 const COLUMNS: [&str; 7] = ["theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b"];
 
-/// The samples of a CSV text, as `luthier eval` prints one: a line of names, `theta_i,phi_i,theta_o,phi_o,r,g,b`, then angles in degrees and
-/// f cos_theta_i in each. Other columns do not count. [`luthier_optics::rows`] has the separators.
+/// The samples of a CSV text as `luthier eval` prints it. A line of names, `theta_i,phi_i,theta_o,phi_o,r,g,b`, comes first; then each line has
+/// angles in degrees and f cos_theta_i in three channels. Other columns are ignored. [`luthier_optics::rows`] has the separators.
 ///
 /// ```
 /// let lobe = luthier_layers::beam_fit::samples("theta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,30,180,1,0.9,0.8\n").unwrap();

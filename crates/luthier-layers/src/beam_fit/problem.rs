@@ -1,4 +1,4 @@
-//! The least squares problem of a fit: numbers that are not bounded in place of those of the model, residuals, their derivatives by differences.
+//! The least squares problem of a fit: unbounded numbers in place of the model's, residuals, and their derivatives by differences.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -27,9 +27,9 @@ const AZIMUTHS: u32 = 12;
 /// Thicknesses of the starts.
 const THICKNESSES: u32 = 10;
 
-/// Limits of what files take.
+/// Largest exponent that material files accept.
 const EXPONENT_MAX: f64 = 1e6;
-/// Thicker than any lean that a file takes: 80 degrees.
+/// Largest slope of a lean, at 80 degrees: material files accept no more.
 const LEAN_MAX: f64 = 5.67;
 
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use luthier_optics::fresnel::{FilmLayer, Polarised};
 use num_complex::Complex64;
 
-/// Least wave number along the normal inside a film, over the vacuum's: off the critical angle, where the matrix is 0/0.
+/// Least wave number along the normal inside a film, over the vacuum's. At the film's critical angle it would be 0, and the matrix 0/0.
 const FILM_Q_MIN: f64 = 1e-8;
 
 /// Reflectance of an interface with any number of coherent films, listed from the top (Abeles 1950; Born and Wolf, section 1.6):
@@ -48,7 +48,7 @@ fn admittances(n: Complex64, q: Complex64) -> [Complex64; 2] {
     [q, q / (n * n)]
 }
 
-/// Wave number along the normal in a medium of index n, over the vacuum's; `q_above` is that of the exterior.
+/// Wave number along the normal in a medium of index n, over the vacuum's; `q_above` is the exterior's.
 ///
 /// `q^2 = n^2 - (n_above sin)^2`, so written that nothing cancels between nearly equal indices.
 fn wave_number(n: Complex64, above: f64, q_above: f64) -> Complex64 {

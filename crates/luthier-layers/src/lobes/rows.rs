@@ -198,15 +198,6 @@ pub struct Row {
 }
 
 /// The light of a diffuse base at a view. [`Self::more`] recolours the base without a new fit.
-///
-/// ```
-/// use luthier_layers::lobes::BaseLight;
-///
-/// let light = BaseLight { energy: [0.2; 3], internal: [0.5; 3], falloff: [0.0; 2] };
-/// // R / (1 - R / 2) is 2/3 for an albedo of 1/2, and 2 for a white base: three times as much light.
-/// let more = light.more([0.5; 3], [1.0; 3]);
-/// assert!((more[0] - 0.4).abs() < 1e-12);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BaseLight {

@@ -12,17 +12,17 @@ use super::hash;
 pub struct Octaves(Vec<noise::Perlin>);
 
 impl Octaves {
-    /// The octaves of a seed; each has a seed of its own, the next number.
+    /// The octaves of a seed. Each further octave has the next number as seed.
     pub fn new(seed: u32, count: u32) -> Self {
         Self((0..count).map(|octave| noise::Perlin::new(seed.wrapping_add(octave))).collect())
     }
 
-    /// Their sum at a place of the plane, in lattice cells of the first octave, which has amplitude 1.
+    /// The sum of the octaves at a place of the plane, in lattice cells of the first octave, which has amplitude 1.
     pub fn in_plane(&self, place: DVec2) -> f64 {
         self.sum(place.to_array())
     }
 
-    /// Their sum in four dimensions, where a plane that repeats is a torus.
+    /// The sum of the octaves in four dimensions, in which a plane that repeats is a torus.
     pub fn in_four_dimensions(&self, place: [f64; 4]) -> f64 {
         self.sum(place)
     }

@@ -1,9 +1,8 @@
 //! Paths in the colour of a material: three channels on one path.
 //!
-//! Of three wavelengths, those that go the same ways share their paths ([`JointPaths`]). In a spectrum a path has one wavelength, which
-//! decides where it goes; absorption and diffuse albedo, which a material states by channel, go with it as three weights. Wavelengths are
-//! drawn as often as they weigh in colour, so that the mean over the paths is the integral over the spectrum. Wavelengths at which all
-//! interfaces are alike count as one.
+//! Three wavelengths share paths if light goes the same ways at them ([`JointPaths`]). In a spectrum a path has one wavelength, which decides its
+//! directions. Absorption and diffuse albedo, which a material states by channel, go with the path as three weights. Wavelengths are drawn as often
+//! as they weigh in colour, so that the mean over the paths is the integral over the spectrum. Wavelengths with equal interfaces count as one.
 //!
 //! The first numbers of the paths fill their cube evenly ([`Stream::even`]). With 16,000 paths the albedos of nine stacks had two to ten times
 //! less noise than with independent numbers.

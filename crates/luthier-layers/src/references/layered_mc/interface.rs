@@ -1,8 +1,7 @@
 //! An interface, or a diffuse base, as the paths through a stack meet it.
 //!
-//! Kernels are densities of light per solid angle: `K(a, b)` is what becomes of a unit of light that comes in from
-//! `a` and leaves along `b`. With radiance, `K = f cos_theta_b`; reciprocity reads `n_a^2 cos_a K(a, b) = n_b^2 cos_b
-//! K(b, a)`.
+//! Kernels are densities of light per solid angle: of a unit of light that comes in from `a`, `K(a, b)` leaves along
+//! `b`. With radiance, `K = f cos_theta_b`; reciprocity reads `n_a^2 cos_a K(a, b) = n_b^2 cos_b K(b, a)`.
 
 use std::f64::consts::PI;
 
@@ -114,9 +113,8 @@ impl Interface {
         }
     }
 
-    /// About the density of `b` in what [`Self::scatter`] draws from `a`, and of `a` in what it draws from `b`:
-    /// positive wherever it is. Weights between strategies need no more. For a smooth interface, which is no
-    /// strategy, 1.
+    /// Approximate densities with which [`Self::scatter`] draws `b` from `a`, and `a` from `b`; positive wherever the exact
+    /// ones are. Weights between strategies need no more. A smooth interface, which is no strategy, has 1.
     pub(crate) fn densities(&self, a: Sided, b: Sided) -> (f64, f64) {
         let (forth, back) = match &self.kind {
             Kind::Smooth(_) => (1.0, 1.0),

@@ -25,7 +25,7 @@ impl Side {
     }
 }
 
-/// Shares of the light at a facet; what they leave of 1 is absorbed.
+/// Shares of the light at a facet; the rest to 1 is absorbed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Split {
     pub(crate) reflectance: f64,
@@ -52,7 +52,7 @@ const INDEX_MATCH: f64 = 1e-5;
 pub(crate) struct Optics {
     /// Real index above.
     pub(crate) above: f64,
-    /// Real index below; that of above where the medium is opaque.
+    /// Real index below; the index above if the medium is opaque.
     pub(crate) below: f64,
     below_over_above: f64,
     above_over_below: f64,
@@ -86,7 +86,7 @@ impl Optics {
         }
     }
 
-    /// An interface that reflects by Schlick's formula. From below, light is reflected as it is along the refracted ray.
+    /// An interface that reflects by Schlick's formula. Light from below is reflected as much as light from above along the refracted ray.
     fn of_schlick(layer: &MonochromeLayer, f0: f64) -> Self {
         let above = layer.above;
         match layer.below {
@@ -108,7 +108,7 @@ impl Optics {
         Self::between(above, above, kind)
     }
 
-    /// An interface to a medium that light enters. Absorption in it is a matter of the slab; here it counts for the
+    /// An interface to a medium that light enters. The slab has the medium's absorption; here it counts for the
     /// reflectance from above only.
     pub(crate) fn transparent(above: f64, films: &[FilmLayer], mut below: Complex64) -> Self {
         if films.is_empty() && below.im == 0.0 {
@@ -139,7 +139,7 @@ impl Optics {
         matches!(self.kind, Kind::Dielectric) && (self.below / self.above - 1.0).abs() < INDEX_MATCH
     }
 
-    /// Whether light goes the ways that it goes at another interface.
+    /// Whether light goes the same ways as at another interface.
     pub(crate) fn is_parallel(&self, other: &Self) -> bool {
         let [own, others] =
             [self, other].map(|optics| (optics.above, optics.below, optics.is_transparent(), optics.is_absent()));

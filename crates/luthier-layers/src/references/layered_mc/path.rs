@@ -15,7 +15,7 @@ use crate::monochrome::Monochrome;
 /// Event from which on a path survives by chance: late, because light that a lossless stack holds back would make noise.
 pub(super) const EVENTS_SURE: usize = 4096;
 
-/// Event from which on a path that is to be connected survives by chance: the cost grows with the square of its length.
+/// Event from which on a path survives by chance if it is to be connected: connecting costs the square of its length.
 const EVENTS_SURE_CONNECTED: usize = 64;
 
 /// Probability per event with which a path survives.
@@ -56,7 +56,7 @@ impl Interfaces {
         }
     }
 
-    /// Whether any interface sends light elsewhere than the smooth ones do.
+    /// Whether any interface sends light into more directions than a smooth one.
     pub(crate) fn scatter(&self) -> bool {
         self.interfaces.iter().any(|interface| !interface.is_smooth() && !interface.is_black())
     }
