@@ -14,12 +14,12 @@ pub struct Angles {
     pub phi_deg: f64,
 }
 
-/// Why a text is no direction.
+/// Error of a text that is no direction.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct AnglesError(String);
 
-/// Why a text is no list of directions: the line, counted from 1, if it is about one, and the reason.
+/// Error of a text that is no list of directions: the line, counted from 1, if the error has one, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {reason}", line.map(|line| format!(":{line}")).unwrap_or_default())]
 pub struct PairsError {
@@ -31,11 +31,7 @@ pub struct PairsError {
 
 impl Angles {
     fn new(theta: &str, phi: &str) -> Result<Self, AnglesError> {
-        let number = |name: &str, text: &str| match text.trim().parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(AnglesError(format!("{name} is `{}`, expected degrees", text.trim()))),
-        };
-        let (theta_deg, phi_deg) = (number("theta", theta)?, number("phi", phi)?);
+        let (theta_deg, phi_deg) = (degrees("theta", theta)?, degrees("phi", phi)?);
         if !(0.0..=90.0).contains(&theta_deg) {
             return Err(AnglesError(format!("theta is {theta_deg}, expected 0 to 90 degrees")));
         }
@@ -60,9 +56,18 @@ impl FromStr for Angles {
 
     /// `theta,phi`.
     fn from_str(text: &str) -> Result<Self, AnglesError> {
-        let expected = || AnglesError("expected theta,phi in degrees, such as 30,0".to_owned());
-        let (theta, phi) = text.split_once(',').ok_or_else(expected)?;
+        let (theta, phi) = text
+            .split_once(',')
+            .ok_or_else(|| AnglesError("expected theta,phi in degrees, such as 30,0".to_owned()))?;
         Self::new(theta, phi)
+    }
+}
+
+/// The finite number of one angle; `name` is for the error.
+fn degrees(name: &str, text: &str) -> Result<f64, AnglesError> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(AnglesError(format!("{name} is `{}`, expected degrees", text.trim()))),
     }
 }
 
@@ -79,11 +84,10 @@ impl FromStr for Angles {
 pub fn pairs(text: &str) -> Result<Vec<[Angles; 2]>, PairsError> {
     let mut pairs = Vec::new();
     for (count, row) in rows(text).enumerate() {
-        let wrong = |line: usize, reason: String| PairsError { line: Some(line), reason };
-        let row = row.map_err(|error| wrong(error.line, error.to_string()))?;
+        let row = row.map_err(|error| PairsError { line: Some(error.line), reason: error.to_string() })?;
         let is_header = count == 0 && row.cells.iter().map(|name| name.to_lowercase()).eq(COLUMNS);
         if !is_header {
-            pairs.push(pair(&row).map_err(|reason| wrong(row.line, reason))?);
+            pairs.push(pair(&row).map_err(|reason| PairsError { line: Some(row.line), reason })?);
         }
     }
     if pairs.is_empty() {

@@ -11,7 +11,7 @@ use crate::monochrome::Monochrome;
 /// Points along each half axis: the first rule, and the largest.
 const POINTS: [usize; 2] = [16, 128];
 
-/// A change on doubling with which the quadrature is content.
+/// The quadrature stops at a doubling of its points that changes no value by more than this.
 const CONTENT: f64 = 1e-4;
 
 /// A directional albedo and how far it may be off.
@@ -19,9 +19,9 @@ const CONTENT: f64 = 1e-4;
 pub struct DirectionalAlbedo {
     /// Share of the light that is reflected.
     pub value: f64,
-    /// Standard error of an estimate; of a quadrature the change on the last doubling of its points.
+    /// Standard error of an estimate; for a quadrature, the change at the last doubling of its points.
     pub error: f64,
-    /// Whether the model estimated it by itself; then light mirrored by smooth interfaces is in it.
+    /// Whether the model estimated the albedo itself. Such an albedo includes light mirrored by smooth interfaces.
     pub is_estimate: bool,
 }
 
@@ -40,11 +40,11 @@ pub fn directional_albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> D
     DirectionalAlbedo { value, error, is_estimate: false }
 }
 
-/// Integrals of some functions over the directions above the surface, and what the last doubling of the points has changed of each.
-/// `peak` (unit) is about where the functions are greatest.
+/// Integrals of some functions over the directions above the surface, and the change of each at the last doubling of the points. `peak` (unit) is
+/// about where the functions are greatest.
 ///
-/// Gauss-Legendre points along theta and phi, which crowd at the peak so that sharp lobes are resolved, are doubled until
-/// nothing changes by more than 1e-4.
+/// Gauss-Legendre points along theta and phi crowd at the peak, so that sharp lobes are resolved. They are doubled until no integral changes by more
+/// than 1e-4, or until there are 128 on each side of the peak.
 pub fn over_hemisphere<const C: usize>(peak: DVec3, f: impl Fn(DVec3) -> [f64; C]) -> ([f64; C], [f64; C]) {
     let [mut points, most] = POINTS;
     let mut value = integral(&f, peak, points);
@@ -59,7 +59,7 @@ pub fn over_hemisphere<const C: usize>(peak: DVec3, f: impl Fn(DVec3) -> [f64; C
     }
 }
 
-/// The integral over the hemisphere, with `points` on each side of the peak in theta and in phi, that crowd there.
+/// The integral over the hemisphere, with `points` on each side of the peak in theta and in phi, which crowd at the peak.
 pub fn integral<const C: usize>(f: &impl Fn(DVec3) -> [f64; C], peak: DVec3, points: usize) -> [f64; C] {
     let rule = gauss_legendre(points);
     let theta_peak = libm::atan2(libm::hypot(peak.x, peak.y), peak.z).min(FRAC_PI_2);

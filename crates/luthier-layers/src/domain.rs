@@ -24,32 +24,34 @@ impl Outside {
     }
 }
 
-/// Limit of the light that comes back through a coat from below it, times the ratio of indices. Below it the missing 1/n^2 is too faint to warn about.
-/// A larger limit would leave out coats that are too bright; a smaller one would warn of dim bases. The metal of the suite is off by 1.0, 1.24 and 1.35 at ratios of 2, 2.5 and 4, where this is 1.45, 1.53
-/// and 1.50.
+/// Limit of the light that comes back through a coat from below, times the ratio of indices. Below the limit the missing 1/n^2 is too faint to warn
+/// about. A larger limit would leave out coats that are too bright; a smaller one would warn of dim bases. The metal of the suite is off by 1.0, 1.24
+/// and 1.35 at ratios of 2, 2.5 and 4, at which this product is 1.45, 1.53 and 1.50.
 const DIM: f64 = 1.0;
 
-/// Light that comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2
-/// e^(-2 depth) R`; R counts as 1 where the next layer is transparent.
+/// Light that comes back once from below the dielectric of a layer, at normal incidence, in the channel that absorbs least: `(1 - F)^2 e^(-2 depth) R`.
+/// R counts as 1 if the next layer is transparent.
 fn returned(stack: &Stack, layer: usize) -> f64 {
-    let mirrored = |layer, channel| {
-        let interface = Interface::of(stack, layer);
-        interface.map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM, channel).reflectance(1.0))
-    };
     let Some(Base::Dielectric { slab, .. }) = stack.layers.get(layer).map(|here| &here.base) else { return 0.0 };
-    let below = |channel| match stack.layers.get(layer + 1).map(|next| &next.base) {
-        Some(Base::Conductor { .. }) => mirrored(layer + 1, channel),
-        Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
-        Some(Base::Dielectric { .. }) => 1.0,
-        None => 0.0,
-    };
     let depth = slab.optical_depth().into_iter().fold(f64::INFINITY, f64::min);
-    let at = |channel| {
-        let crossed = 1.0 - mirrored(layer, channel);
-        crossed * crossed * libm::exp(-2.0 * depth) * below(channel)
-    };
-    // Channels of interfaces that have indices are alike.
-    (0..3).map(at).fold(0.0, f64::max)
+    let mut most = 0.0;
+    for channel in 0..3 {
+        let below = match stack.layers.get(layer + 1).map(|next| &next.base) {
+            Some(Base::Conductor { .. }) => mirrored(stack, layer + 1, channel),
+            Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
+            Some(Base::Dielectric { .. }) => 1.0,
+            None => 0.0,
+        };
+        let crossed = 1.0 - mirrored(stack, layer, channel);
+        most = f64::max(most, crossed * crossed * libm::exp(-2.0 * depth) * below);
+    }
+    most
+}
+
+/// Reflectance of the interface of a layer at normal incidence in a channel. Channels differ only if the interface has an F0: the wavelength is fixed.
+fn mirrored(stack: &Stack, layer: usize, channel: usize) -> f64 {
+    let interface = Interface::of(stack, layer);
+    interface.map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM, channel).reflectance(1.0))
 }
 
 /// Quantities of a stack outside the domain of a model. Slope parameters below [`crate::layers::ALPHA_MIN`] count as inside: all models raise
@@ -85,7 +87,7 @@ pub fn outside(model: ShadingModel, stack: &Stack) -> Vec<Outside> {
             let limits = model.limits().filter(|limit| limit.quantity == quantity);
             for limit in limits.filter(|limit| !(limit.least..=limit.most).contains(&value)) {
                 let new = Outside { layer, limit: *limit, value };
-                // One word for a stack with too many layers, and for both slope parameters.
+                // One report for all layers that are too many, and one for both slope parameters of a layer.
                 if !out
                     .iter()
                     .any(|o: &Outside| o.limit == *limit && (quantity == Quantity::Layers || o.layer == layer))

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// The direction `w` in the frame whose +z is `normal`, both unit: the surface's frame turned the shortest way, so that
-/// tangents keep their sense. `normal.z > -1`; the identity for +z.
+/// The direction `w` in a frame with `normal` as +z, both unit. The frame is the surface's, turned the shortest way, so that tangents keep their
+/// sense. `normal.z > -1`; the identity for +z.
 pub fn local(normal: DVec3, w: DVec3) -> DVec3 {
     let n = normal;
     let a = 1.0 / (1.0 + n.z);
@@ -28,8 +28,8 @@ pub(crate) fn cos_theta_d(wi: DVec3, wo: DVec3) -> f64 {
     half_vector(wi, wo).map_or(0.0, |(_, cos_theta_d)| cos_theta_d)
 }
 
-/// Both directions in the frame of an interface's own normal, and the factor on the light that falls on it: the cosine of `wi` there over
-/// its cosine in the frame of the place. `None` where the interface turns away from either.
+/// Both directions in the frame of an interface's own normal, and the factor on its light: the cosine of `wi` there over its cosine in the frame of
+/// the place. `None` if the interface turns away from either direction.
 ///
 /// A tilted facet of a surface gets `L cos(wi, n)` and not `L cos(wi, z)`, and a pixel sees its radiance. Slabs keep the thickness along the
 /// place's normal that they have without bumps.

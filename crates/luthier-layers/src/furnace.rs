@@ -5,7 +5,7 @@
 //! - [`Monochrome::lossless`], for models of a whole stack;
 //! - [`Monochrome::lossless_interface`], for models of the first interface.
 //!
-//! What a model lacks to 1 is what it leaves out: bounces between facets or layers; what it has above 1, it makes up.
+//! A radiance below 1 shows the light that a model leaves out, such as bounces between facets or layers. A radiance above 1 is invented light.
 
 use glam::DVec3;
 

@@ -5,8 +5,8 @@ use luthier_optics::stack::{Base, Stack, Surface};
 use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
-/// Smallest slope parameter of models that have a shader. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
-/// below what one pixel or one light source resolves, and still safe in f32.
+/// Smallest slope parameter of models that have a shader; smoother surfaces are raised to it. Its lobe is 0.06 degrees wide, narrower than one pixel
+/// or one light source resolves. Smaller parameters would not be safe in f32.
 pub const ALPHA_MIN: f64 = 1e-3;
 
 /// A stack in `C` channels that share their directions: one wavelength, or three colours.
@@ -70,8 +70,8 @@ impl From<&Monochrome> for Layers<1> {
 }
 
 impl Layers {
-    /// The stack as shaders have it: one index bends the directions of all three channels, that of 589.3 nm, and slope
-    /// parameters are at least [`ALPHA_MIN`].
+    /// The stack as shaders have it. The index at 589.3 nm bends the directions of all three channels, and slope parameters are at least
+    /// [`ALPHA_MIN`].
     pub fn rgb(stack: &Stack) -> Self {
         let mut layers = Self::of(stack);
         for surface in layers.layers.iter_mut().map(|layer| &mut layer.surface) {

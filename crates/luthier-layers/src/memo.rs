@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 /// Values kept at most; then all are forgotten.
 const KEPT: usize = 4096;
 
-/// Values of a pure function by argument. Results do not depend on what is kept.
+/// Values of a pure function by argument. Results do not depend on which values are kept.
 #[derive(Debug)]
 pub(crate) struct Memo<K, V>(Mutex<BTreeMap<K, V>>);
 

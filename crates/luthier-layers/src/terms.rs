@@ -22,8 +22,8 @@ pub trait Terms<const C: usize = 3> {
         microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
     }
 
-    /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
-    /// and it is to be computed. Elek's model has no use for it.
+    /// `2 cos(2 Phi)` of the film of a layer in one colour channel, for the sum of the cosines in the film; `None` if no table holds it and it has to be
+    /// computed. Elek's model does not use it.
     fn interference(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
         None
     }

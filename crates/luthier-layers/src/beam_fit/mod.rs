@@ -1,15 +1,15 @@
-//! Fit of the numbers of Granier and Heidrich's model to a lobe that values give (section 8 of their paper names it as future work).
+//! Fit of the numbers of Granier and Heidrich's model to values of a lobe (section 8 of their paper names it as future work).
 //!
 //! The numbers are the index of the film in three channels, its thickness, both exponents, the weight of the specular part, the diffuse
-//! coefficients, and the lean of the inner boundary. The method of Levenberg and Marquardt finds a least sum of
+//! coefficients, and the lean of the inner boundary. The method of Levenberg and Marquardt minimises the sum of
 //!
 //! ```text
 //! ((model - value) / (mean of the value's channels + a tenth of the mean of all values))^2
 //! ```
 //!
-//! over samples and channels, from the best of a grid of starts, whose weight and diffuse coefficients are those of linear least squares. The sum
-//! has many minima: thicknesses repeat themselves, and beams of equal exponents that are not apart do not tell an index from a weight. Numbers
-//! that are found need not be those of the object; the error says how near the lobe is.
+//! over samples and channels, from the best of a grid of starts. Linear least squares gives each start its weight and diffuse coefficients. The sum
+//! has many minima: thicknesses repeat themselves, and two beams at one place with equal exponents do not tell an index from a weight. So the found
+//! numbers need not be those of the object; the error says how near the lobe is.
 
 mod lobe;
 mod problem;
@@ -33,7 +33,7 @@ pub struct Form {
     pub leans: bool,
 }
 
-/// Numbers that were found, and how near the lobe is.
+/// The numbers of a fit, and how near their lobe is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fitted {
     /// Index of the film or the layer in three channels.
@@ -48,13 +48,13 @@ pub struct Fitted {
     pub diffuse: Rgb,
     /// Lean of the inner boundary: slopes of its height along x and y, with the signs of its normal.
     pub lean: [f64; 2],
-    /// Mean square of the weighted differences, its root.
+    /// Root of the mean squared weighted difference.
     pub rms_err: f64,
     /// Sum of the absolute differences over the sum of the values.
     pub lobe_err: f64,
 }
 
-/// Starts that are taken to their minimum.
+/// Number of best starts that are followed to their minimum.
 const STARTS: usize = 8;
 
 /// The numbers whose lobe is nearest to the samples; `None` for fewer samples than numbers, or for values that are all 0.

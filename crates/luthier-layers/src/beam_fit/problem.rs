@@ -1,4 +1,4 @@
-//! The least squares problem of a fit: numbers that are not bounded in place of those of the model, residuals, their derivatives by differences.
+//! The least squares problem of a fit: unbounded numbers in place of the model's, residuals, and their derivatives by differences.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -27,9 +27,9 @@ const AZIMUTHS: u32 = 12;
 /// Thicknesses of the starts.
 const THICKNESSES: u32 = 10;
 
-/// Limits of what files take.
+/// Largest exponent that material files accept.
 const EXPONENT_MAX: f64 = 1e6;
-/// Thicker than any lean that a file takes: 80 degrees.
+/// Largest slope of a lean, at 80 degrees: material files accept no more.
 const LEAN_MAX: f64 = 5.67;
 
 #[derive(Debug, Clone)]
@@ -47,12 +47,12 @@ type Split = [f64; 2];
 impl<'s> Problem<'s> {
     pub(super) fn new(samples: &'s [Sample], form: &Form) -> Option<Self> {
         let count = COMMON + usize::from(form.thickness_nm.is_some()) + if form.leans { 2 } else { 0 };
-        let mean = |sample: &Sample| sample.value.iter().sum::<f64>() / 3.0;
-        let floor = 0.1 * samples.iter().map(mean).sum::<f64>() / samples.len().max(1) as f64;
+        let means: Vec<f64> = samples.iter().map(|sample| sample.value.iter().sum::<f64>() / 3.0).collect();
+        let floor = 0.1 * means.iter().sum::<f64>() / samples.len().max(1) as f64;
         if 3 * samples.len() < count || floor <= 0.0 {
             return None;
         }
-        let weights = samples.iter().map(|sample| 1.0 / (mean(sample) + floor)).collect();
+        let weights = means.iter().map(|mean| 1.0 / (mean + floor)).collect();
         Some(Self { samples, form: *form, weights, numbers: DVector::zeros(count) })
     }
 
@@ -66,11 +66,10 @@ impl<'s> Problem<'s> {
         };
         let mut leans = vec![[0.0; 2]];
         for slope in LEANS.into_iter().filter(|_| self.form.leans) {
-            let turned = |i: u32| {
+            leans.extend((0..AZIMUTHS).map(|i| {
                 let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(AZIMUTHS));
                 [slope * cos, slope * sin]
-            };
-            leans.extend((0..AZIMUTHS).map(turned));
+            }));
         }
         let mut starts = Vec::new();
         for thickness_nm in &thicknesses {
@@ -118,9 +117,8 @@ impl<'s> Problem<'s> {
                 dv[c] += d * v;
             }
         }
-        let sum = |f: &dyn Fn(usize) -> f64| (0..3).map(f).sum::<f64>();
-        let over = sum(&|c| sv[c] - sd[c] * dv[c] / dd[c].max(f64::MIN_POSITIVE));
-        let under = sum(&|c| ss[c] - sd[c] * sd[c] / dd[c].max(f64::MIN_POSITIVE));
+        let over: f64 = (0..3).map(|c| sv[c] - sd[c] * dv[c] / dd[c].max(f64::MIN_POSITIVE)).sum();
+        let under: f64 = (0..3).map(|c| ss[c] - sd[c] * sd[c] / dd[c].max(f64::MIN_POSITIVE)).sum();
         let specular_weight = if under > 0.0 { (over / under).max(1e-3) } else { 1.0 };
         let diffuse = [0, 1, 2]
             .map(|c: usize| if dd[c] > 0.0 { ((dv[c] - specular_weight * sd[c]) / dd[c]).max(1e-4) } else { 1e-4 });
@@ -145,14 +143,13 @@ impl<'s> Problem<'s> {
         let x = &self.numbers;
         let thickness_nm = self.form.thickness_nm.map(|[least, most]| libm::exp(x[COMMON]).clamp(least, most));
         let first = COMMON + usize::from(thickness_nm.is_some());
-        let lean = |i: usize| if self.form.leans { x[first + i].clamp(-LEAN_MAX, LEAN_MAX) } else { 0.0 };
         Fitted {
             index: [0, 1, 2].map(|i: usize| 1.0 + libm::exp(x[i].min(2.0))),
             thickness_nm,
             exponents: [3, 4].map(|i: usize| libm::exp(x[i]).min(EXPONENT_MAX)),
             specular_weight: libm::exp(x[5].min(20.0)),
             diffuse: [6, 7, 8].map(|i: usize| x[i] * x[i]),
-            lean: [0, 1].map(lean),
+            lean: [0, 1].map(|i: usize| if self.form.leans { x[first + i].clamp(-LEAN_MAX, LEAN_MAX) } else { 0.0 }),
             rms_err: 0.0,
             lobe_err: 0.0,
         }
@@ -169,20 +166,20 @@ impl<'s> Problem<'s> {
             exponents: fitted.exponents,
         });
         let diffuse = films.map(|film| film.diffuse());
-        let of = |sample: &Sample| {
+        let splits = self.samples.iter().map(|sample| {
             [0, 1, 2].map(|c: usize| {
                 [films[c].scaled_specular(sample.wi, sample.wo), diffuse[c] * FRAC_1_PI * sample.wi.z.max(0.0)]
             })
-        };
-        self.samples.iter().map(of).collect()
+        });
+        splits.collect()
     }
 
     /// Values of the model, RGB, for each sample.
     fn values(&self, fitted: &Fitted) -> Vec<Rgb> {
-        let value = |split: [Split; 3]| {
+        let values = self.splits(fitted).into_iter().map(|split| {
             [0, 1, 2].map(|c: usize| fitted.specular_weight * split[c][0] + fitted.diffuse[c] * split[c][1])
-        };
-        self.splits(fitted).into_iter().map(value).collect()
+        });
+        values.collect()
     }
 
     fn differences(&self) -> DVector<f64> {
@@ -202,9 +199,9 @@ impl<'s> Problem<'s> {
     pub(super) fn fitted(&self) -> Fitted {
         let fitted = self.model();
         let values = self.values(&fitted);
-        let pairs = || values.iter().zip(self.samples).flat_map(|(a, b)| [0, 1, 2].map(|c: usize| (a[c], b.value[c])));
-        let apart: f64 = pairs().map(|(a, b)| (a - b).abs()).sum();
-        let whole: f64 = pairs().map(|(_, b)| b).sum();
+        let pairs = values.iter().flatten().zip(self.samples.iter().flat_map(|sample| &sample.value));
+        let apart: f64 = pairs.clone().map(|(found, value)| (found - value).abs()).sum();
+        let whole: f64 = pairs.map(|(_, value)| value).sum();
         let rms_err = (self.sum_of_squares() / (3 * self.samples.len()) as f64).sqrt();
         Fitted { rms_err, lobe_err: apart / whole, ..fitted }
     }
@@ -231,13 +228,12 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let mut jacobian = DMatrix::zeros(3 * self.samples.len(), self.numbers.len());
         let mut here = self.clone();
         for i in 0..self.numbers.len() {
-            let mut at = |x: f64| {
-                here.numbers[i] = x;
+            let [more, less] = [STEP, -STEP].map(|step| {
+                here.numbers[i] = self.numbers[i] + step;
                 here.differences()
-            };
-            let slope = (at(self.numbers[i] + STEP) - at(self.numbers[i] - STEP)) / (2.0 * STEP);
+            });
             here.numbers[i] = self.numbers[i];
-            jacobian.set_column(i, &slope);
+            jacobian.set_column(i, &((more - less) / (2.0 * STEP)));
         }
         Some(jacobian)
     }

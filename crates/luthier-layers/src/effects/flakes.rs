@@ -1,4 +1,4 @@
-//! Metal flakes in a coat, each with a normal of its own.
+//! Metal flakes in a coat, each with its own normal.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,17 @@ use crate::models::elek::Elek;
 use crate::monochrome::Monochrome;
 use crate::noise::hash;
 
-/// Flakes below the first interface, one per cell of a grid, each with a normal of its own (Elek 2010, section 4.1).
+/// Flakes below the first interface, one per cell of a grid, each with its own normal (Elek 2010, section 4.1).
+///
+/// ```
+/// use luthier_layers::effects::flakes::FlakeMean;
+/// use luthier_layers::glam::{DVec2, DVec3};
+///
+/// let flakes = FlakeMean::default().flakes;
+/// let tilt = |distance: f64| flakes.normal(DVec2::new(0.3, 0.7), distance).dot(DVec3::Z).acos();
+/// // Flakes fade out with distance: the normal turns back to that of the surface.
+/// assert!(tilt(1.0) > 2.0 * tilt(9.0) && tilt(1e9) < 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flakes {
     /// Seed of the flakes.
@@ -30,11 +40,10 @@ impl Flakes {
     /// The normal of the flake at a texture coordinate, unit: its slope angle is normal with deviation `spread`.
     pub fn flake(&self, uv: DVec2) -> DVec3 {
         let count = i64::from(self.count.max(1));
-        let at = |x: f64| {
-            let repeat = x * self.tiling;
-            hash::floor((repeat - repeat.floor()) * count as f64).clamp(0, count - 1)
-        };
-        let cell = hash::cell(self.seed, at(uv.x), at(uv.y));
+        let [x, y] = (uv * self.tiling)
+            .to_array()
+            .map(|repeat| hash::floor((repeat - repeat.floor()) * count as f64).clamp(0, count - 1));
+        let cell = hash::cell(self.seed, x, y);
         // Box and Muller.
         let radius = libm::sqrt(-2.0 * libm::log(1.0 - hash::unit(cell, 0)));
         let angle = (self.spread * radius * libm::cos(2.0 * PI * hash::unit(cell, 1))).clamp(-0.5 * PI, 0.5 * PI);
@@ -46,13 +55,13 @@ impl Flakes {
     /// The normal that the layers below see from a distance: `normalize(z + max(distance / fade_start, 1) z + scale m)`, m the
     /// flake's. The flakes fade out with distance as more of them share a pixel.
     ///
-    /// The first z is the surface's normal, to which the paper's code adds the two others (`N += ...`), though its text speaks of
-    /// those two alone: at scale 1 a flake tilted by a small angle tilts the lobe below by a third of it, not by half.
+    /// The paper's code adds both further terms to the surface's normal z (`N += ...`); its text has these two terms alone. With the code, a flake of
+    /// scale 1 that is tilted by a small angle tilts the lobe below by a third of it; with the text it would be half.
     pub fn normal(&self, uv: DVec2, distance: f64) -> DVec3 {
         self.tilted(self.flake(uv), distance)
     }
 
-    /// [`Self::normal`] of a flake whose own normal is known.
+    /// [`Self::normal`] for a known normal of the flake.
     pub fn tilted(&self, flake: DVec3, distance: f64) -> DVec3 {
         let weight = 1.0 + (distance / self.fade_start).max(1.0);
         (DVec3::new(0.0, 0.0, weight) + self.scale * flake).normalize_or(DVec3::Z)
@@ -65,8 +74,8 @@ impl Flakes {
         DVec3::new(-along, -across, 1.0).normalize()
     }
 
-    /// `f cos_theta_i` of Elek's model with the flakes at a texture coordinate, seen from a distance. The flake tilts what lies
-    /// below the first interface and nothing else.
+    /// `f cos_theta_i` of Elek's model with the flakes at a texture coordinate, seen from a distance. The flake tilts the layers below the first
+    /// interface and nothing else.
     pub fn eval(&self, stack: &Monochrome, uv: DVec2, distance: f64, wi: DVec3, wo: DVec3) -> f64 {
         Elek::default().eval_tinted(stack, [1.0; 2], wi, wo, self.normal(uv, distance))
     }
@@ -83,7 +92,7 @@ pub struct FlakeMean {
     pub distance: f64,
 }
 
-/// One flake: what is seen at a place.
+/// The one flake at a place, as a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlakeAt {
     /// The flakes.

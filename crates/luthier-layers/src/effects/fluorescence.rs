@@ -1,8 +1,8 @@
 //! A fluorescent diffuse base under a rough coat.
 //!
 //! A. Wilkie, A. Weidlich, C. Larboulette and W. Purgathofer, "A Reflectance Model for Diffuse Fluorescent Surfaces", GRAPHITE
-//! 2006, as the course of 2009 uses it (sec. 5.2.2): the coat's facets reflect at the wavelength of the light; what enters meets a
-//! base that moves power between wavelengths by a re-radiation matrix.
+//! 2006, as the course of 2009 uses it (sec. 5.2.2): the coat's facets reflect at the wavelength of the light. Light that enters meets a base that
+//! moves power between wavelengths by a re-radiation matrix.
 //!
 //! The bounces between base and coat are summed here in matrix form, each wavelength with its own share held back by
 //! the coat. The coat transmits as if it were smooth.
@@ -59,7 +59,21 @@ pub enum FluorescenceError {
 /// Entries of a column may sum to this little above 1.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
-/// A coat over a fluorescent base, over wavelength bins.
+/// A coat over a fluorescent base, in wavelength bins.
+///
+/// ```
+/// use luthier_layers::effects::fluorescence::Fluorescent;
+/// use luthier_layers::glam::DVec3;
+/// use luthier_layers::luthier_optics::stack::Surface;
+/// use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+///
+/// let base = MonochromeBelow::Diffuse { albedo: 0.0, sigma: 0.0 };
+/// let coat = Monochrome::bare(&[MonochromeBelow::dielectric(1.5, 0.0), base].map(|below| (Surface::smooth(), below)));
+/// // Bin 0 re-radiates 70% of its power into bin 1, and nothing moves back.
+/// let surface = Fluorescent::new(vec![coat.clone(), coat], &[0.1, 0.0, 0.7, 0.2])?;
+/// assert!(surface.eval(DVec3::Z, 0, DVec3::Z, 1) > 0.1 && surface.eval(DVec3::Z, 1, DVec3::Z, 0) == 0.0);
+/// # Ok::<(), luthier_layers::effects::fluorescence::FluorescenceError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fluorescent {
     coats: Vec<Monochrome>,
@@ -68,9 +82,9 @@ pub struct Fluorescent {
 }
 
 impl Fluorescent {
-    /// The model of one stack per wavelength bin (a coat over a diffuse base, whose albedo the matrix replaces) and the re-radiation
-    /// matrix: entry `to * bins + from` is the share of the power that falls in at bin `from` and comes out, diffusely, at bin `to`; the
-    /// diagonal is ordinary reflection.
+    /// The model of one stack per wavelength bin and of a re-radiation matrix. A stack is a coat over a diffuse base, whose albedo the matrix
+    /// replaces. Entry `to * bins + from` is the share of the power of bin `from` that comes out, diffusely, in bin `to`. The diagonal is ordinary
+    /// reflection.
     ///
     /// # Errors
     ///
@@ -164,7 +178,7 @@ impl Model for Fluorescence {
     }
 }
 
-/// A fluorescent surface between two of its bins, as a model: whatever stack it is shown, it is the surface's own.
+/// A fluorescent surface between two of its bins, as a model. It evaluates the surface's own stacks and ignores the one that it is given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reradiated {
     /// The surface.
@@ -185,9 +199,9 @@ impl Model for Reradiated {
     }
 }
 
-/// `(1 - M H)^-1 M`, H diagonal: what the base sends up in all, when of that the share `held[k]` of bin k comes back each time.
-/// Gauss elimination without exchange of rows, for the diagonal dominates every column: those of M H sum to at most
-/// `held` < 1.
+/// `(1 - M H)^-1 M` with a diagonal H: all light that the base sends up, if the coat sends the share `held[k]` of bin k back each time.
+///
+/// Gauss elimination needs no exchange of rows: columns of M H sum to at most `held` < 1, so the diagonal dominates every column.
 fn with_bounces(matrix: &[f64], held: &[f64]) -> Vec<f64> {
     let n = held.len();
     let mut left: Vec<f64> =

@@ -80,7 +80,7 @@ pub enum Switch {
 }
 
 impl Switch {
-    /// Cells per unit of length, of noise those of its first octave.
+    /// Cells per unit of length; for noise, cells of the first octave.
     fn frequency(&self) -> f64 {
         match self {
             Self::Noise { noise, .. } => noise.frequency,
@@ -105,20 +105,23 @@ impl Switch {
 pub struct SwitchShare {
     /// Share of the surface that is inside, 0..=1.
     pub own: f64,
-    /// The part of it that is inside no switch before it.
+    /// Share of the surface that is inside this switch and inside no switch before it.
     pub seen: f64,
-    /// The least and the largest value that its noise was found to have; none for tiles.
+    /// The least and the largest value of its noise at the places; `None` for tiles.
     pub noise: Option<[f64; 2]>,
 }
 
 /// Places at which [`switch_shares`] looks.
 const PLACES: u32 = 20_000;
 
-/// Cells of the coarsest switch along each side of the square of these places: there are three cells for each place.
+/// Cells of the coarsest switch along each side of the square of these places: three cells for each place, so that few share a cell.
 const SIDE: f64 = 256.0;
 
-/// How much of a surface each of some switches has, where the first that has a place is seen: by count over 20000 fixed places. A share of 0.001 is
-/// within 0.0005 at two standard errors.
+/// Steps of Roberts's sequence R2 (2018): 1/p and 1/p^2 of the plastic number p.
+const R2_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+
+/// How much of a surface each of some switches has, counted over 20000 fixed places. At a place inside several switches the first one is seen. A share
+/// of 0.001 is within 0.0005 at two standard errors.
 ///
 /// ```
 /// use luthier_layers::effects::heterogeneous::{Switch, switch_shares};
@@ -130,13 +133,11 @@ const SIDE: f64 = 256.0;
 /// ```
 pub fn switch_shares(switches: &[Switch]) -> Vec<SwitchShare> {
     let coarsest = switches.iter().map(Switch::frequency).fold(f64::INFINITY, f64::min);
-    let mut shares: Vec<SwitchShare> =
-        switches.iter().map(|_| SwitchShare { own: 0.0, seen: 0.0, noise: None }).collect();
+    let mut shares = vec![SwitchShare { own: 0.0, seen: 0.0, noise: None }; switches.len()];
     let one = 1.0 / f64::from(PLACES);
     for n in 0..PLACES {
-        // Roberts's sequence R2: far apart from each other, and not on the lattice.
-        let along = |step: f64| (f64::from(n) * step).fract() * SIDE / coarsest;
-        let uv = DVec2::new(along(0.754_877_666_246_692_8), along(0.569_840_290_998_053_2));
+        // Places of Roberts's sequence are far apart from each other, and off the lattice of the noise.
+        let uv = DVec2::from_array(R2_STEPS.map(|step| (f64::from(n) * step).fract() * SIDE / coarsest));
         let mut is_covered = false;
         for (switch, share) in switches.iter().zip(&mut shares) {
             if let Switch::Noise { noise, .. } = switch {

@@ -20,7 +20,7 @@ pub struct LayerSample {
     pub tangent: DVec2,
     /// Factor on the thickness of the slab below it.
     pub slab_factor: f64,
-    /// F0 of its interface, one of Schlick's, in place of its own.
+    /// F0 in place of the interface's own, if that is one of Schlick's.
     pub f0: Option<Rgb>,
 }
 
@@ -29,8 +29,8 @@ impl LayerSample {
     pub const NONE: Self =
         Self { normal: DVec3::Z, alpha_factors: [1.0; 2], tangent: DVec2::X, slab_factor: 1.0, f0: None };
 
-    /// The direction of a tangent from a texel of two channels, `2 texel - 1 = (cos 2 theta, sin 2 theta)`: a tangent is a line without an
-    /// end, so that texels may be averaged across any turn. A texel without a direction turns nothing.
+    /// The direction of a tangent from a texel of two channels, `2 texel - 1 = (cos 2 theta, sin 2 theta)`. A tangent is a line without a head: with
+    /// doubled angles, texels may be averaged across any turn. A texel without a direction turns nothing.
     pub fn tangent_of(texel: [f64; 2]) -> DVec2 {
         let doubled = DVec2::new(2.0 * texel[0] - 1.0, 2.0 * texel[1] - 1.0);
         if doubled.length() < NO_DIRECTION {
@@ -40,7 +40,7 @@ impl LayerSample {
         DVec2::new(libm::cos(half), libm::sin(half))
     }
 
-    /// The factor on both slope parameters where a model has one: their geometric mean.
+    /// The factor for models with one slope parameter: the geometric mean of both.
     pub(crate) fn alpha_factor(&self) -> f64 {
         libm::sqrt(self.alpha_factors[0] * self.alpha_factors[1])
     }

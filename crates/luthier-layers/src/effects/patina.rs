@@ -18,21 +18,28 @@ pub struct Patina {
     pub extent: f64,
     /// Softness of its boundary, 0..=1.
     pub transition: f64,
-    /// Diffuse reflectance that stands for scattering in it. The paper multiplies it by what the absorption spectrum leaves over, in a
-    /// line of code that is lost; here the product is given.
+    /// Diffuse reflectance that stands for scattering in the patina. The paper multiplies it by a term of the absorption spectrum, in a line of code
+    /// that is lost; here the product is given.
     pub diffuse_albedo: f64,
-    /// Slope parameter of the layer below where it has grown; `None` leaves that layer as it is.
+    /// Slope parameter of the layer below grown patina; `None` leaves that layer unchanged.
     pub base_alpha: Option<f64>,
-    /// Factor on the reflection of the layer below where it has grown.
+    /// Factor on the reflection of the layer below grown patina.
     pub tarnish: f64,
 }
 
 impl Patina {
-    /// Amount of patina where the map has a value (0..=1; dark places come first):
+    /// Amount of patina at a value of the map (0..=1; dark places come first):
     /// `clamp(1/2 + (extent - map) / (2 transition), 0, 1)`, a step at transition 0.
     ///
-    /// The paper's line of code is lost; this form is none at extent -transition and full at 1 + transition, for every value,
-    /// as its text says.
+    /// The paper's line of code is lost. As its text demands, this form gives 0 at extent -transition and 1 at extent 1 + transition, for every
+    /// value of the map.
+    ///
+    /// ```
+    /// use luthier_layers::effects::patina::{Patina, PatinaAt};
+    ///
+    /// let patina = Patina { extent: 0.5, transition: 0.25, ..PatinaAt::default().patina };
+    /// assert_eq!([0.0, 0.25, 0.5, 0.625, 1.0].map(|map| patina.amount(map)), [1.0, 1.0, 0.5, 0.25, 0.0]);
+    /// ```
     pub fn amount(&self, map: f64) -> f64 {
         let ahead = self.extent - map;
         if self.transition > 0.0 {
@@ -44,19 +51,19 @@ impl Patina {
         }
     }
 
-    /// `f cos_theta_i` of Elek's model where the map has a value: with and without the first layer, blended by the amount, which
-    /// also blends roughness and tarnish of the layer below.
+    /// `f cos_theta_i` of Elek's model at a value of the map. The amount of patina blends the model with and without the first layer, and also the
+    /// roughness and the tarnish of the layer below.
     pub fn eval(&self, stack: &Monochrome, map: f64, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
         let amount = self.amount(map);
-        let blend = |from: f64, to: f64| from + (to - from) * amount;
-        let tarnish = blend(1.0, self.tarnish);
+        let tarnish = 1.0 + (self.tarnish - 1.0) * amount;
         let mut grown = stack.clone();
-        if let (Some(layer), Some(alpha)) = (grown.layers.get_mut(1), self.base_alpha) {
-            layer.surface.alpha_x = blend(layer.surface.alpha_x, alpha);
-            layer.surface.alpha_y = blend(layer.surface.alpha_y, alpha);
+        if let (Some(layer), Some(base_alpha)) = (grown.layers.get_mut(1), self.base_alpha) {
+            for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+                *alpha += (base_alpha - *alpha) * amount;
+            }
         }
         let mut bare = grown.clone();
         if !bare.layers.is_empty() {
@@ -79,7 +86,7 @@ impl Patina {
     }
 }
 
-/// Patina where its map has one value: the model without a texture.
+/// Patina at one value of its map: the model without a texture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatinaAt {
     /// The patina.

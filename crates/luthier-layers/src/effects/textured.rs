@@ -18,7 +18,7 @@ pub struct TextureSample {
     pub slab_factor: f64,
     /// Factor on the thickness of the films on the first interface.
     pub film_factor: f64,
-    /// Variance, along either axis, of the slopes of the normals that a pixel sees. Slope parameters have twice of it more, squared.
+    /// Variance, along either axis, of the slopes of a pixel's normals. Squared slope parameters grow by twice this variance.
     pub slope_variance: f64,
 }
 
@@ -32,7 +32,7 @@ impl TextureSample {
         if self.slope_variance > 0.0 { libm::sqrt(alpha * alpha + 2.0 * self.slope_variance) } else { alpha }
     }
 
-    /// The stack as it is at the place.
+    /// The stack with the factors of the place.
     pub fn apply(&self, stack: &Monochrome) -> Monochrome {
         let mut here = stack.clone();
         for layer in &mut here.layers {

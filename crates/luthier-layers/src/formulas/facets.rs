@@ -15,8 +15,8 @@ use luthier_optics::{microfacet, visible_normals};
 use crate::frame::half_vector;
 use crate::terms::Terms;
 
-/// Slope parameters below this one are evaluated as this one: a lobe 0.006 degrees wide. A model of finite lobes has no other
-/// way to show a mirror.
+/// Least slope parameter of facets, a lobe 0.006 degrees wide; smaller ones are raised to it. A model of finite lobes has no other way to show a
+/// mirror.
 pub const ALPHA_MIN: f64 = 1e-4;
 
 /// The lobe of facets of density D that reflect `wi` to `wo`; `None` unless both are above the horizon. `alpha` is the isotropic
@@ -96,7 +96,7 @@ impl Facets {
         scaled(alpha, wh.z, sin_sq) / (PI * area)
     }
 
-    /// Smith's Lambda of an upward direction; by quadrature, of the isotropic slope parameter, where the distribution has no closed form of it.
+    /// Smith's Lambda of an upward direction. Distributions without a closed form have it by quadrature, of the isotropic slope parameter.
     pub fn lambda(&self, w: DVec3) -> f64 {
         if !self.distribution.has_walks() {
             return microfacet::lambda(self.distribution, libm::sqrt(self.alpha_x * self.alpha_y), w.z.clamp(0.0, 1.0));
@@ -110,7 +110,7 @@ impl Facets {
         masked_lobe(masking, [wi, wo], alpha, |wh| self.density(wh), |w| self.lambda(w))
     }
 
-    /// [`Facets::lobe`] with the distribution that [`Terms`] have of a layer.
+    /// [`Facets::lobe`] with the distribution of a layer as [`Terms`] give it, from a table or not.
     pub fn lobe_of<const C: usize>(
         &self,
         terms: &dyn Terms<C>,
@@ -124,8 +124,8 @@ impl Facets {
         masked_lobe(masking, [wi, wo], alpha, |wh| self.density_by(wh, scaled), |w| self.lambda(w))
     }
 
-    /// The facets whose visible normals are drawn: its own, or GGX of its slope parameters in place of a distribution without visible normals
-    /// in closed form. Draws are weighed by the density that is drawn from, so that sums stay right.
+    /// The facets whose visible normals are drawn: GGX of the same slope parameters, if the distribution has no closed form of visible normals. Draws
+    /// are weighed by the density that they come from, so means stay right.
     fn drawn(&self) -> Self {
         Self { distribution: self.distribution.walked(), ..*self }
     }
@@ -139,14 +139,14 @@ impl Facets {
         DVec3::new(c * m.x - s * m.y, s * m.x + c * m.y, m.z)
     }
 
-    /// Density in solid angle of the reflection of `wo` at a sampled facet: `G1 D / (4 cos_theta_o)`. Zero below the horizon,
-    /// where reflections at sampled facets may go too; [`Facets::pdf_of_mirrored`] counts them.
+    /// Density in solid angle of the reflection of `wo` at a sampled facet: `G1 D / (4 cos_theta_o)`. Zero below the horizon, although reflections at
+    /// sampled facets may go there; [`Facets::pdf_of_mirrored`] counts those, too.
     pub fn pdf_solid_angle(&self, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 { 0.0 } else { self.pdf_of_mirrored(wi, wo) }
     }
 
-    /// [`Facets::pdf_solid_angle`] over the whole sphere, whose integral is 1: facets lean by less than 90 degrees, so that their
-    /// reflections reach down to `wi.z = -wo.z`.
+    /// [`Facets::pdf_solid_angle`] over the whole sphere; its integral is 1. Facets lean by less than 90 degrees, so their reflections reach down to
+    /// `wi.z = -wo.z`.
     pub fn pdf_of_mirrored(&self, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z + wo.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;

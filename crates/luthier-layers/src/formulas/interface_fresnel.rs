@@ -39,8 +39,8 @@ const ORDERS: u32 = 2;
 pub(crate) type LazanyiMemo = Memo<[u64; 3], Lazanyi>;
 
 impl Fresnel {
-    /// Reflectance of an interface for light from above; 0 for a diffuse base, which has none. An interface of Schlick's is that to all:
-    /// it has no index that they could differ by.
+    /// Reflectance of an interface for light from above; 0 for a diffuse base, which has no interface. All formulas agree on an interface with an F0:
+    /// it has Schlick's reflectance, and no index for which they could differ.
     pub(crate) fn reflectance(self, fits: &LazanyiMemo, layer: &MonochromeLayer, cos_theta_i: f64) -> f64 {
         let Some(below) = index_below(layer) else { return 0.0 };
         if layer.f0.is_some() {
@@ -75,8 +75,8 @@ impl Fresnel {
         }
     }
 
-    /// Reflectance of the first interface in spectral colour, where that is not the sum over wavelengths: each channel with the
-    /// indices of its wavelength.
+    /// Reflectance of the first interface in spectral colour, for the one formula whose colour is not a sum over wavelengths; `None` for others. Each
+    /// channel has the indices of its wavelength.
     pub(crate) fn rgb(self, channels: &[(f64, Monochrome); 3], cos_theta_i: f64) -> Option<Rgb> {
         if self != Self::BelcourBarla {
             return None;

@@ -1,4 +1,4 @@
-//! Formulas that models share: facets and what they reflect, refraction, diffuse bases, and plane stacks.
+//! Formulas that models share: facets and their reflectance, refraction, diffuse bases, and plane stacks.
 
 pub mod facets;
 pub mod interface_fresnel;

@@ -97,7 +97,7 @@ impl Normals {
         )
     }
 
-    /// The distribution that has parameters of its own, translated from alpha; `None` for one of slopes.
+    /// The distribution with its own parameters, translated from alpha; `None` for a distribution of slopes.
     fn isotropic(self, alpha: f64) -> Option<Isotropic> {
         match self {
             Self::Surface | Self::Slopes(_) => None,

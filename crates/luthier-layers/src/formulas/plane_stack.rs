@@ -35,8 +35,7 @@ const CLEAR: Powers = Powers { transmittance: 1.0, above: 0.0, below: 0.0 };
 /// The first `count` interfaces of a stack as if they were smooth, each with the slab below it, for the direction that makes
 /// `cos_theta` with the normal in the medium below them. Adding of powers (Stokes 1862) per interface.
 ///
-/// All reflected from below (`below` = 1, or what absorption leaves of it) when that direction is beyond a critical angle. Layers
-/// that let nothing through count as black.
+/// Beyond a critical angle all light from below is reflected: `below` is 1, less the absorption on the way. Opaque layers count as black.
 pub fn seen_from_below(stack: &Monochrome, count: usize, cos_theta: f64) -> Powers {
     // Upwards: the direction's cosine in each medium, to the first that it cannot enter.
     let layers = stack.layers.get(..count).unwrap_or(&stack.layers);
@@ -60,7 +59,7 @@ pub fn seen_from_below(stack: &Monochrome, count: usize, cos_theta: f64) -> Powe
 }
 
 /// Powers as of [`seen_from_below`], for the direction that makes `cos_theta` with the normal in the exterior; and the cosine below. `None`
-/// when it is totally reflected on the way.
+/// if the light is totally reflected on the way.
 pub fn seen_from_above(stack: &Monochrome, count: usize, cos_theta: f64) -> Option<(Powers, f64)> {
     let mut powers = CLEAR;
     let mut cos = cos_theta;
@@ -83,12 +82,11 @@ fn add(powers: Powers, layer: &MonochromeLayer, [cos_above, cos_below]: [f64; 2]
         down
     } else {
         let films: Vec<_> = layer.films.iter().rev().copied().collect();
-        let real = |n| Complex64::new(n, 0.0);
-        coated(real(ior), &films, real(layer.above), cos_below).unpolarised()
+        coated(Complex64::from(ior), &films, Complex64::from(layer.above), cos_below).unpolarised()
     };
     let transmitted = (1.0 - down).max(0.0);
     let echo = 1.0 - powers.below * down;
-    // Nothing enters where everything comes back.
+    // If everything comes back, nothing enters, and the sum of echoes is 0 times infinity.
     let gain = if echo > 0.0 { 1.0 / echo } else { 0.0 };
     let joined = Powers {
         transmittance: powers.transmittance * transmitted * gain,
@@ -98,7 +96,7 @@ fn add(powers: Powers, layer: &MonochromeLayer, [cos_above, cos_below]: [f64; 2]
     through_slab(joined, optical_depth, cos_below)
 }
 
-/// Absorption in the slab below: once on the way across, twice for what comes back.
+/// Powers with absorption in the slab below: light that crosses meets it once, light that returns twice.
 fn through_slab(powers: Powers, optical_depth: f64, cos: f64) -> Powers {
     if optical_depth == 0.0 {
         return powers;

@@ -17,8 +17,7 @@ pub(crate) fn refracted_cosine(cos_theta_i: f64, eta: f64) -> Option<f64> {
     (cos_sq > 0.0).then(|| libm::sqrt(cos_sq).min(1.0))
 }
 
-/// The direction in the medium below, turned to point up again, or `None` when it is totally reflected. The tangential part
-/// keeps its sign.
+/// The direction in the medium below, turned to point up again; `None` under total reflection. The tangential part keeps its sign.
 pub(crate) fn refract(w: DVec3, eta: f64) -> Option<DVec3> {
     let cos_sq = cos_theta_t_sq(w.z, eta);
     (cos_sq > 0.0).then(|| DVec3::new(w.x / eta, w.y / eta, cos_sq.sqrt()))

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use luthier_optics::fresnel::{FilmLayer, Polarised};
 use num_complex::Complex64;
 
-/// Least wave number along the normal inside a film, over the vacuum's: off the critical angle, where the matrix is 0/0.
+/// Least wave number along the normal inside a film, over the vacuum's. At the film's critical angle it would be 0, and the matrix 0/0.
 const FILM_Q_MIN: f64 = 1e-8;
 
 /// Reflectance of an interface with any number of coherent films, listed from the top (Abeles 1950; Born and Wolf, section 1.6):
@@ -17,30 +17,42 @@ const FILM_Q_MIN: f64 = 1e-8;
 /// Admittances are q for s and q/n^2 for p (fields exchanged), q the wave number along the normal over the vacuum's. Each matrix is
 /// scaled by the decay in its film, so that thick absorbing films do not overflow. Within 1e-12 of the recursion.
 pub fn transfer_matrix(above: f64, films: &[FilmLayer], below: Complex64, cos_theta_i: f64) -> Polarised {
-    let real = |x: f64| Complex64::new(x, 0.0);
     let q_above = above * cos_theta_i;
-    // q^2 = n^2 - (n_above sin)^2, so written that nothing cancels between nearly equal indices.
-    let normal = |n: Complex64| root((n - above) * (n + above) + q_above * q_above);
-    let power = |admittance: &dyn Fn(Complex64, Complex64) -> Complex64| {
-        let (mut first, mut second) = (Complex64::ONE, admittance(below, normal(below)));
-        for film in films.iter().rev() {
-            let q = normal(film.ior);
-            let q = if q.norm_sqr() < FILM_Q_MIN * FILM_Q_MIN { real(FILM_Q_MIN) } else { q };
-            let delta = q * (2.0 * PI * film.waves);
-            // e^{i delta} and e^{-i delta}, both times the decay.
-            let (sin, cos) = libm::sincos(delta.re);
-            let decayed = libm::exp(-2.0 * delta.im);
-            let (forth, back) = (Complex64::new(cos, sin) * decayed, Complex64::new(cos, -sin));
-            let (cosine, minus_i_sine) = (0.5 * (forth + back), 0.5 * (back - forth));
-            let y = admittance(film.ior, q);
-            (first, second) = (cosine * first + minus_i_sine / y * second, minus_i_sine * y * first + cosine * second);
+    let mut fields = admittances(below, wave_number(below, above, q_above)).map(|y| (Complex64::ONE, y));
+    for film in films.iter().rev() {
+        let q = wave_number(film.ior, above, q_above);
+        let q = if q.norm_sqr() < FILM_Q_MIN * FILM_Q_MIN { Complex64::from(FILM_Q_MIN) } else { q };
+        let delta = q * (2.0 * PI * film.waves);
+        // e^{i delta} and e^{-i delta}, both times the decay.
+        let (sin, cos) = libm::sincos(delta.re);
+        let decayed = libm::exp(-2.0 * delta.im);
+        let (forth, back) = (Complex64::new(cos, sin) * decayed, Complex64::new(cos, -sin));
+        let (cosine, minus_i_sine) = (0.5 * (forth + back), 0.5 * (back - forth));
+        for ((first, second), y) in fields.iter_mut().zip(admittances(film.ior, q)) {
+            let joined = cosine * *first + minus_i_sine / y * *second;
+            (*first, *second) = (joined, minus_i_sine * y * *first + cosine * *second);
         }
-        let top = admittance(real(above), real(q_above));
+    }
+    let tops = admittances(Complex64::from(above), Complex64::from(q_above));
+    let [refl_s, refl_p] = [0, 1].map(|i: usize| {
+        let (top, (first, second)) = (tops[i], fields[i]);
         let (down, up) = (top * first + second, top * first - second);
         // An index-matched interface at grazing incidence reflects nothing.
         if down == Complex64::ZERO { 0.0 } else { (up / down).norm_sqr().min(1.0) }
-    };
-    Polarised { refl_s: power(&|_, q| q), refl_p: power(&|n, q| q / (n * n)) }
+    });
+    Polarised { refl_s, refl_p }
+}
+
+/// Admittances for s and p of a medium of index n.
+fn admittances(n: Complex64, q: Complex64) -> [Complex64; 2] {
+    [q, q / (n * n)]
+}
+
+/// Wave number along the normal in a medium of index n, over the vacuum's; `q_above` is the exterior's.
+///
+/// `q^2 = n^2 - (n_above sin)^2`, so written that nothing cancels between nearly equal indices.
+fn wave_number(n: Complex64, above: f64, q_above: f64) -> Complex64 {
+    root((n - above) * (n + above) + q_above * q_above)
 }
 
 /// The root with real and imaginary parts not negative: the wave that decays downward.

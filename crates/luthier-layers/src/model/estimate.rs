@@ -1,30 +1,39 @@
 //! Monte Carlo mean with its standard error.
 
-/// Squares of smaller means are none.
+/// Squares of smaller means underflow.
 const TINY: f64 = 1e-150;
 
-/// Relative spread that rounding leaves where all samples are equal: of weights that are products of a few thousand.
+/// Relative spread that rounding leaves between equal samples: weights are products of up to a few thousand factors.
 const ROUNDING: f64 = 1e-12;
 
 /// Fewer samples than this do not carry a standard error: see [`Estimate::is_settled`].
 const SUPPORT_MIN: f64 = 8.0;
 
-/// Mean of independent samples.
+/// Mean of independent samples, with its standard error.
+///
+/// ```
+/// use luthier_layers::model::Estimate;
+///
+/// // The error of a sum of independent estimates: the root of 3^2 + 4^2.
+/// let sum = Estimate::sum([(1.0, Estimate::known(2.0, 3.0)), (2.0, Estimate::known(1.0, 2.0))]);
+/// assert_eq!((sum.mean, sum.std_err), (4.0, 5.0));
+/// assert!(sum.agrees_with(13.0, 2.0) && !sum.agrees_with(15.0, 2.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
-    /// Its standard error, from the spread of the samples; 0 for values that are exact. Infinite where the estimate has not settled:
-    /// then the spread that was seen says nothing of the error, see [`Estimate::is_settled`].
+    /// Standard error of the mean, from the spread of the samples; 0 for exact values. It is infinite if the estimate has not settled: the observed
+    /// spread then says nothing about the error, see [`Estimate::is_settled`].
     pub std_err: f64,
-    /// Variance of the mean, as it was seen.
+    /// Observed variance of the mean.
     variance: f64,
     /// Number of samples that the variance rests on.
     support: f64,
 }
 
 impl Estimate {
-    /// A value that is known.
+    /// An exact value.
     pub fn exact(mean: f64) -> Self {
         Self::known(mean, 0.0)
     }
@@ -46,15 +55,15 @@ impl Estimate {
 
     /// Whether the standard error can be believed.
     ///
-    /// A variance is a mean too, that of squared deviations. Where few samples make most of it, rare paths carry the light, more of them may
-    /// have been missed than were met, and the spread that was seen says nothing of the error. The samples that make it are counted as
-    /// `(sum of d^2)^2 / sum of d^4`, d being deviations from the mean: n where all are alike, n/3 for normal ones, 1 where one makes
-    /// everything. An estimate with less than 8 has not settled; more samples settle it.
+    /// A variance is itself a mean, of squared deviations. If a few samples make most of it, rare paths carry the light: more of them may have been
+    /// missed than met, and the observed spread says nothing about the error. With d the deviations from the mean, the samples that count are
+    /// `(sum of d^2)^2 / sum of d^4`: n if all deviations are alike, n/3 if they are normal, 1 if one sample makes everything. An estimate with less
+    /// than 8 has not settled; more samples settle it.
     pub fn is_settled(&self) -> bool {
         self.std_err.is_finite()
     }
 
-    /// Variance of the mean as it was seen, whether or not the estimate has settled: what more samples are to be added to.
+    /// Observed variance of the mean, whether or not the estimate has settled: further samples can be joined to it.
     pub fn variance(&self) -> f64 {
         self.variance
     }
@@ -88,7 +97,7 @@ impl Estimate {
         Self::new(mean, variance, support)
     }
 
-    /// The estimate with an error of another origin besides.
+    /// The estimate with a further, independent error.
     pub fn loosened(self, std_err: f64) -> Self {
         Self::sum([(1.0, self), (1.0, Self::known(0.0, std_err))])
     }
@@ -113,7 +122,7 @@ impl Estimate {
         }
         let n = count as f64;
         if mean.abs() < TINY {
-            // Nothing was met, or nothing whose square is a number: that is no measure of how much there is.
+            // Samples met no light, or light whose square underflows: their spread measures nothing.
             return Self { variance: 0.0, ..Self::unsettled(mean) };
         }
         if m2 <= n * (ROUNDING * mean) * (ROUNDING * mean) {

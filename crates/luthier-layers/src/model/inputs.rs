@@ -21,7 +21,7 @@ pub enum Input {
     Environment,
     /// A re-radiation matrix ([`fluorescence`](crate::effects::fluorescence)).
     Matrix,
-    /// The wavelength of the light, when it is not the one seen.
+    /// The wavelength of the light, if another one is seen.
     Excitation,
     /// [`Inputs::samples`].
     Samples,

@@ -32,7 +32,7 @@ pub struct ModelInfo {
 }
 
 impl ModelInfo {
-    /// The model of a shader, where this is its f64 twin.
+    /// The model of a shader, if this is its f64 twin.
     pub fn shading(&self) -> Option<ShadingModel> {
         ShadingModel::from_name(self.name)
     }
@@ -49,7 +49,7 @@ pub enum Kind {
     Place,
     /// The density of a sampling method in solid angle, in place of `f cos_theta_i`.
     Density,
-    /// Right by construction: what the others are judged by.
+    /// Right by construction: the judge of other models.
     Reference,
 }
 
@@ -98,8 +98,8 @@ pub trait Model: Sync {
     /// is at or below the horizon; finite for all unit directions.
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64;
 
-    /// The model's own colour, for one whose spectral colour is not the sum over the wavelengths: linear Rec.709, D65 white.
-    /// `channels` are wavelengths in nm taken as R, G and B, and the stack at each.
+    /// The model's own colour in linear Rec.709, D65 white; `None` if its spectral colour is the sum over wavelengths, as usual. `channels` are
+    /// wavelengths in nm taken as R, G and B, and the stack at each.
     fn eval_rgb(&self, _channels: &[(f64, Monochrome); 3], _wi: DVec3, _wo: DVec3) -> Option<Rgb> {
         None
     }
@@ -109,8 +109,8 @@ pub trait Model: Sync {
         None
     }
 
-    /// The model with other inputs in place of its own; `None` for one that takes none. Inputs that it does not take (see
-    /// [`ModelInfo::inputs`]) are of no consequence.
+    /// The model with other inputs in place of its own; `None` for a model that takes none. It ignores inputs that [`ModelInfo::inputs`] does not
+    /// list.
     fn with_inputs(&self, _inputs: &Inputs) -> Option<Box<dyn Model>> {
         None
     }

@@ -36,8 +36,8 @@ pub struct MonochromeLayer {
     pub films: Vec<FilmLayer>,
     /// Material below the interface.
     pub below: MonochromeBelow,
-    /// Reflectance at normal incidence, where Schlick's formula takes the place of Fresnel's; there are no films then, and no index below
-    /// is lower than that above.
+    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. The interface then has no films, and the index below is
+    /// not lower than the index above.
     pub f0: Option<f64>,
 }
 
@@ -68,9 +68,14 @@ pub enum MonochromeBelow {
 }
 
 impl MonochromeBelow {
-    /// A transparent medium whose index has no imaginary part.
+    /// A transparent medium of a real index.
     pub const fn dielectric(ior: f64, optical_depth: f64) -> Self {
         Self::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth }
+    }
+
+    /// Optical depth along the normal; 0 if the material is opaque.
+    pub(crate) fn optical_depth(self) -> f64 {
+        if let Self::Dielectric { optical_depth, .. } = self { optical_depth } else { 0.0 }
     }
 }
 
@@ -87,7 +92,7 @@ impl Monochrome {
         Self::joined(1.0, layers.collect())
     }
 
-    /// Layers under a medium of index `exterior`, from the top down; the index above each becomes that of the medium there.
+    /// Layers under a medium of index `exterior`, from the top down. Sets the index above each layer to that of the medium there.
     pub fn joined(exterior: f64, mut layers: Vec<MonochromeLayer>) -> Self {
         let mut above = exterior;
         for layer in &mut layers {
@@ -140,8 +145,8 @@ impl MonochromeLayer {
         }
     }
 
-    /// Reflectance of either polarisation by the indices; `None` for a diffuse base, which has no interface, and where Schlick's formula,
-    /// which knows no polarisation, takes their place.
+    /// Reflectance of either polarisation by the indices. `None` for a diffuse base, which has no interface, and for an interface with an F0: Schlick's
+    /// formula knows no polarisation.
     pub fn polarised(&self, cos_theta_i: f64) -> Option<Polarised> {
         let below = match self.below {
             MonochromeBelow::Dielectric { complex_ior, .. } => complex_ior,
@@ -177,7 +182,7 @@ pub fn in_color(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> 
 /// The values of some functions of the monochrome stack in colour.
 pub fn in_colors<const N: usize>(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> [f64; N]) -> [Rgb; N] {
     let mut colors = [[0.0; 3]; N];
-    // A stack without a spectrum has one value per channel.
+    // Without a spectrum a stack has one value per channel: evaluating it once is enough, though weights are still summed node by node.
     let is_gray = (0..stack.layers.len()).filter_map(|l| Interface::of(stack, l)).all(|i| i.is_achromatic());
     let mut known = [None; 3];
     for node in color.nodes() {

@@ -18,7 +18,7 @@ fn mix(x: u32) -> u32 {
     (word >> 22) ^ word
 }
 
-/// The lattice coordinate below `x`; saturates far out, 0 for what is not a number.
+/// The lattice coordinate below `x`; saturates far out, and is 0 for NaN.
 pub(crate) fn floor(x: f64) -> i64 {
     x.floor() as i64
 }

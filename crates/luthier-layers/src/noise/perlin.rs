@@ -12,17 +12,17 @@ use super::hash;
 pub struct Octaves(Vec<noise::Perlin>);
 
 impl Octaves {
-    /// The octaves of a seed; each has a seed of its own, the next number.
+    /// The octaves of a seed. Each further octave has the next number as seed.
     pub fn new(seed: u32, count: u32) -> Self {
         Self((0..count).map(|octave| noise::Perlin::new(seed.wrapping_add(octave))).collect())
     }
 
-    /// Their sum at a place of the plane, in lattice cells of the first octave, which has amplitude 1.
+    /// The sum of the octaves at a place of the plane, in lattice cells of the first octave, which has amplitude 1.
     pub fn in_plane(&self, place: DVec2) -> f64 {
         self.sum(place.to_array())
     }
 
-    /// Their sum in four dimensions, where a plane that repeats is a torus.
+    /// The sum of the octaves in four dimensions, in which a plane that repeats is a torus.
     pub fn in_four_dimensions(&self, place: [f64; 4]) -> f64 {
         self.sum(place)
     }
@@ -73,21 +73,21 @@ fn gradients(seed: u32, p: DVec2) -> f64 {
     let (x, y) = (hash::floor(p.x), hash::floor(p.y));
     let t = p - DVec2::new(x as f64, y as f64);
     let [s, r] = [t.x, t.y].map(|t| t * t * t * (t * (6.0 * t - 15.0) + 10.0));
-    let at = |i: i64, j: i64| {
+    let [near, beside, far, across] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j): (i64, i64)| {
         let word = hash::cell(seed, x.saturating_add(i), y.saturating_add(j));
         rise(word, t - DVec2::new(i as f64, j as f64))
-    };
-    let [near, far] = [0, 1].map(|j| at(0, j) + (at(1, j) - at(0, j)) * s);
+    });
+    let [near, far] = [near + (beside - near) * s, far + (across - far) * s];
     near + (far - near) * r
 }
 
 /// Rise from a lattice point to a place: its gradient is one of eight, 45 degrees apart and of length sqrt(2).
 fn rise(word: u32, offset: DVec2) -> f64 {
     let turn = (hash::unit(word, 0) * 8.0) as u32;
-    let sign = |bit: u32, x: f64| if turn & bit == 0 { -x } else { x };
+    let [along, across] = [2, 4].map(|bit| if turn & bit == 0 { -1.0 } else { 1.0 });
     match turn & 1 {
-        0 => sign(2, offset.x) + sign(4, offset.y),
-        _ => SQRT_2 * sign(4, if turn & 2 == 0 { offset.x } else { offset.y }),
+        0 => along * offset.x + across * offset.y,
+        _ => SQRT_2 * (across * if turn & 2 == 0 { offset.x } else { offset.y }),
     }
 }
 

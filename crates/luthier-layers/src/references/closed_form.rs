@@ -15,17 +15,17 @@ use crate::monochrome::{Monochrome, MonochromeBelow};
 /// f = T(wi) T(wo) rho / (pi n^2 (1 - rho R))
 /// ```
 ///
-/// T being the power that the coats pass, R what they return of diffuse light below, n the index on the base over that of the exterior.
+/// T is the power that the coats pass, R the share of diffuse light below that they return, n the index on the base over the exterior's.
 /// Roughness is ignored. Light mirrored by the interfaces is no function of two directions: it counts in the albedo alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ClosedForm;
 
-/// Cosines and weights, on both sides of the one from which all azimuths are above the plane with the normal `up`.
+/// Cosines and weights for integrals of [`share_above`], which has a kink: from one cosine up all azimuths are above the plane with the normal `up`. The
+/// rule is laid on both sides of the kink.
 fn nodes(up: DVec3) -> impl Iterator<Item = (f64, f64)> {
     let kink = libm::hypot(up.x, up.y).min(1.0);
-    let pieces = [(0.0, kink), (kink, 1.0 - kink)];
-    let piece = move |(from, length)| rule().iter().map(move |&(x, w)| (from + length * x, length * w));
-    pieces.into_iter().filter(|(_, length)| *length > 0.0).flat_map(piece)
+    let pieces = [(0.0, kink), (kink, 1.0 - kink)].into_iter().filter(|(_, length)| *length > 0.0);
+    pieces.flat_map(|(from, length)| rule().iter().map(move |&(x, w)| (from + length * x, length * w)))
 }
 
 /// The share of the azimuths at a cosine that is above the plane with the normal `up`.
@@ -53,7 +53,7 @@ impl<'a> Parts<'a> {
             return Some(Self { stack, coats, diffuse: 0.0 });
         };
         let returned = albedo * diffuse_return(stack, coats);
-        // Nothing comes out where everything is held back.
+        // If the coats hold everything back, nothing comes out.
         Some(Self { stack, coats, diffuse: if returned < 1.0 { albedo / (1.0 - returned) } else { 0.0 } })
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model",
 //! anisotropic, for conductors and for dielectrics from both sides, films included. Below the interface there is
-//! nothing: what goes through is gone.
+//! nothing: light that goes through is gone.
 
 use glam::DVec3;
 
@@ -40,11 +40,10 @@ impl RandomWalk {
         Estimate::of(self.samples, |i| interface.kernel(&mut Stream::new(self.seed, i), a, b))
     }
 
-    /// Shares of the light from a side that leave on the same side and on the other, over all directions: what they
-    /// lack to 1 is absorbed.
+    /// Shares of the light from a side that leave on this side and on the other, in all directions. The rest to 1 is
+    /// absorbed.
     pub fn albedo(&self, layer: &MonochromeLayer, side: Side, direction: DVec3) -> (Estimate, Estimate) {
-        let share = |wanted| self.share(layer, (side, direction), wanted, DVec3::Z);
-        (share(side), share(side.other()))
+        [side, side.other()].map(|wanted| self.share(layer, (side, direction), wanted, DVec3::Z)).into()
     }
 
     /// Share of the light from `a` that leaves on a side, above the plane with the normal `up` in the frame of that side.

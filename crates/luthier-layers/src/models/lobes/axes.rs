@@ -1,4 +1,4 @@
-//! Azimuths of the eye at which rows of an anisotropic stack are.
+//! Azimuths of the eye at which an anisotropic stack has rows.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,10 +7,10 @@ use luthier_optics::stack::Stack;
 
 use super::Row;
 
-/// Tangents in which the lobes of an anisotropic stack are, and the azimuths of its rows.
+/// The tangents in which an anisotropic stack has its lobes, and the azimuths of its rows.
 ///
-/// Turned by half a circle, every stack is itself. One whose anisotropic interfaces have the same axes is its own mirror image in both, besides:
-/// a quarter of a circle is all of it.
+/// Half a turn takes every stack to itself, so rows cover half a circle. If all anisotropic interfaces have the same axes, the stack is also its own
+/// mirror image in both of them, and a quarter of a circle is enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Axes {
@@ -20,17 +20,17 @@ pub struct Axes {
     pub is_mirrored: bool,
 }
 
-/// Angles between axes up to which they are the same, radians.
+/// Axes whose angles differ by no more than this count as the same, radians.
 const ANGLE_MIN: f64 = 1e-6;
 
-/// Slope at the diagonal of the place over the tangent of the angle from it, in eighths of a circle.
+/// A in the formula of [`Axes::place`]: the slope of the place at the diagonal, over the tangent of the angle from it.
 const BEND: f64 = 1.241;
 
-/// Steps by which that is inverted.
+/// Newton steps by which [`Axes::azimuth`] inverts that formula.
 const NEWTON_STEPS: u32 = 6;
 
 impl Axes {
-    /// Number of tiles over the azimuth. Of a stack that is no mirror image the last is the first.
+    /// Number of tiles over the azimuth. Without mirror symmetry they span half a turn, so the last tile repeats the first.
     pub const TILES: usize = 8;
 
     /// The axes of the lowest anisotropic interface, whose lobes are the narrowest; `None` for an isotropic stack.
@@ -38,12 +38,12 @@ impl Axes {
         let anisotropic = stack.layers.iter().filter(|layer| layer.is_anisotropic());
         let rotations: Vec<f64> = anisotropic.map(|layer| layer.surface.rotation).collect();
         let last = *rotations.last()?;
-        let off = |rotation: &f64| {
+        let is_mirrored = rotations.iter().all(|rotation| {
             let quarters = (rotation - last) / FRAC_PI_2;
-            (quarters - libm::round(quarters)).abs() * FRAC_PI_2
-        };
+            (quarters - libm::round(quarters)).abs() * FRAC_PI_2 <= ANGLE_MIN
+        });
         let (sin, cos) = libm::sincos(last);
-        Some(Self { turn: [cos, sin], is_mirrored: rotations.iter().all(|rotation| off(rotation) <= ANGLE_MIN) })
+        Some(Self { turn: [cos, sin], is_mirrored })
     }
 
     /// Number of azimuths at which rows differ.
@@ -63,10 +63,10 @@ impl Axes {
         DVec3::new(cos * w.x - sin * w.y, sin * w.x + cos * w.y, w.z)
     }
 
-    /// Fractional number of the tile of a direction in the axes: nearly in proportion to the angle, which it is within .3 degrees of.
+    /// Fractional number of the tile of a direction in the axes: in proportion to its azimuth, within .3 degrees.
     ///
-    /// `v = (|y| - |x|) / (|y| + |x|)` is the tangent of the angle from the diagonal, and `v (A + (1 - A) v^2)` about that angle over an eighth of a
-    /// circle.
+    /// `v = (|y| - |x|) / (|y| + |x|)` is the tangent of the angle from the diagonal. `v (A + (1 - A) v^2)` is about that angle over an eighth of a
+    /// circle, and shaders compute it without an arc tangent.
     pub fn place(self, x: f64, y: f64) -> f64 {
         let length = x.abs() + y.abs();
         if length == 0.0 {
@@ -105,7 +105,7 @@ impl Axes {
         [x / length, (1.0 + v) / length]
     }
 
-    /// The sign of what is odd in both axes, as seen from a direction in them whose rows are those of its mirror image.
+    /// Sign of a shear as seen from a direction in the axes. Quadrants share rows if the stack is a mirror image; a shear is odd in both axes.
     pub(super) fn sign(self, x: f64, y: f64) -> f64 {
         if self.is_mirrored && x * y < 0.0 { -1.0 } else { 1.0 }
     }

@@ -11,7 +11,7 @@ use super::{Frame, Lobe, Row, Shape};
 /// Least cosine of a normal against that of the surface.
 const UP_MIN: f64 = 1e-3;
 
-/// Lobes and wide remainder at a view: what a renderer computes once for all lights.
+/// Lobes and wide remainder at a view. A renderer computes them once for all lights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Below {
     frame: Frame,
@@ -37,8 +37,8 @@ impl Below {
             Some(axes) => {
                 let at = axes.inside(wo);
                 let sign = axes.sign(at.x, at.y);
-                let shape = |lobe: &Lobe| Lobe { shear: sign * lobe.shear, ..*lobe }.in_axes([at.x, at.y]);
-                (axes.turn, at, row.lobes.iter().map(shape).collect())
+                let lobes = row.lobes.iter().map(|lobe| Lobe { shear: sign * lobe.shear, ..*lobe });
+                (axes.turn, at, lobes.map(|lobe| lobe.in_axes([at.x, at.y])).collect())
             }
         };
         let eye = refracted(at, frame.index);
@@ -48,13 +48,13 @@ impl Below {
         Self { frame, row, turn, eye, shapes, tilt: [0.0; 2] }
     }
 
-    /// The light where all that lies below a slab of relative index `index` is turned to a normal (unit, in the frame of the view): lobes are
-    /// shifted by the slope of the normal, as half vectors in that slab are. Energies and the wide remainder stay.
+    /// The light after the layers below a slab of relative index `index` are turned to a normal (unit, in the frame of the view). Lobes shift by the
+    /// slope of the normal, as half vectors in that slab do. Energies and the wide remainder stay.
     ///
-    /// Facets of slope s below a normal of slope t have the slope s + t, but for terms of second order. Where lobes are in half vectors of
-    /// another medium, the shift is that of the middle of a lobe in the mirror direction: times the ratio of the cosines inside, each times
-    /// its index. Against walks over a tilted metal under a smooth coat of index 1.5, tilts of 5 and 10 degrees add .004 to .05 to the lobe
-    /// error, one of 20 degrees .09 to .46 (`tilt_tests.rs`).
+    /// Facets of slope s below a normal of slope t have the slope s + t, up to terms of second order. If lobes are in half vectors of another
+    /// medium, the slope is scaled by the ratio of the cosines inside, each times its index: the middle of a lobe in the mirror direction shifts by
+    /// as much. Against walks over a tilted metal under a smooth coat of index 1.5, tilts of 5 and 10 degrees add .004 to .05 to the lobe error,
+    /// and a tilt of 20 degrees adds .09 to .46 (`tilt_tests.rs`).
     #[must_use]
     pub fn tilted(mut self, normal: DVec3, index: f64) -> Self {
         let [cos, sin] = self.turn;
@@ -66,9 +66,8 @@ impl Below {
         self
     }
 
-    /// The light where the normals that a pixel sees have slopes of a variance, along either axis: the squared widths of lobes have twice as
-    /// much more. A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside, `cos /
-    /// (n cos_inside)`. Energies stay.
+    /// The light of a pixel whose normals have slopes of a variance along either axis. Squared widths of lobes grow by twice that variance, times
+    /// the square of `cos / (n cos_inside)`: half vectors inside shift by this share of the slope of a normal. Energies stay.
     #[must_use]
     pub fn widened(mut self, wo: DVec3, slope_variance: f64) -> Self {
         let leaning = wo.z / (self.frame.index * self.eye.z);
@@ -79,7 +78,7 @@ impl Below {
         self
     }
 
-    /// The light over a diffuse base of another albedo, RGB; the light itself where there is no such base.
+    /// The light over a diffuse base of another albedo, RGB; unchanged if the stack has no such base.
     #[must_use]
     pub fn over_base(mut self, albedo: Rgb) -> Self {
         let Some((base, simulated)) = self.row.base.zip(self.frame.base) else { return self };
@@ -98,14 +97,14 @@ impl Below {
 
     /// `f cos_theta_i` by channel, without the first facet; `wi` is above the horizon.
     pub fn eval(&self, wi: DVec3) -> Rgb {
-        let mut sum = [0.0; 3];
-        let mut add = |rgb: Rgb, value: f64| (0..3).for_each(|c| sum[c] += rgb[c] * value);
         let (at, factor) = self.slope(wi);
-        for (shape, lobe) in self.shapes.iter().zip(&self.row.lobes) {
-            add(lobe.strength, shape.density(at) * factor);
-        }
+        let shapes = self.shapes.iter().zip(&self.row.lobes);
+        let lobes = shapes.map(|(shape, lobe)| (lobe.strength, shape.density(at) * factor));
         let wide = &self.frame.wide;
-        add(self.row.wide, wide.value(wi.z) * wi.z / (PI * wide.integral()));
+        let mut sum = [0.0; 3];
+        for (rgb, value) in lobes.chain([(self.row.wide, wide.value(wi.z) * wi.z / (PI * wide.integral()))]) {
+            (0..3).for_each(|c| sum[c] += rgb[c] * value);
+        }
         sum
     }
 

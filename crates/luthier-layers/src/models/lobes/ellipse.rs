@@ -6,15 +6,15 @@ use super::Shape;
 /// to the ellipse.
 pub(super) type Numbers = [f64; 4];
 
-/// Slopes, by one of the numbers, of the middle along both axes of the ellipse, of the logarithms of its widths, and of the logarithm's part off
-/// the diagonal there.
+/// Derivatives by one of the numbers, in the axes of the ellipse: of both coordinates of the middle, of the logarithms of both widths, and of the
+/// logarithm's entry off the diagonal.
 pub(super) type Slopes = [f64; 5];
 
 /// The frame of an ellipse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Plane {
-    /// The plane of an eye, by the sine of its angle. The axes are those of the ellipse: half the logarithm of the ratio of the widths is b times
-    /// the squared sine.
+    /// The plane of an eye, by the sine of its angle. The ellipse lies along this plane and across it: half the logarithm of the ratio of its widths
+    /// is b times the squared sine.
     OfEye(f64),
     /// Tangents, in which the eye has these coordinates along the surface.
     OfTangents([f64; 2]),
@@ -49,18 +49,18 @@ impl Plane {
             }
             Self::OfTangents(eye) => {
                 let (_, turn) = principal(b, c);
-                let along = |[x, y]: [f64; 2], log: [f64; 3]| {
-                    let [m0, m1] = [turn[0] * x + turn[1] * y, turn[0] * y - turn[1] * x];
-                    [m0, m1, log[0], log[1], log[2]]
-                };
                 let [cos, sin] = [turn[0] * turn[0] - turn[1] * turn[1], 2.0 * turn[0] * turn[1]];
                 let [by_b, by_c] = pulled_slopes(b, c, eye).map(|slope| slope.map(|x| shift * x));
                 [
-                    along(pulled(b, c, eye), [0.0; 3]),
-                    along([0.0; 2], [1.0, 1.0, 0.0]),
-                    along(by_b, [cos, -cos, -sin]),
-                    along(by_c, [sin, -sin, cos]),
+                    (pulled(b, c, eye), [0.0; 3]),
+                    ([0.0; 2], [1.0, 1.0, 0.0]),
+                    (by_b, [cos, -cos, -sin]),
+                    (by_c, [sin, -sin, cos]),
                 ]
+                .map(|([x, y], log)| {
+                    let [m0, m1] = [turn[0] * x + turn[1] * y, turn[0] * y - turn[1] * x];
+                    [m0, m1, log[0], log[1], log[2]]
+                })
             }
         }
     }
@@ -86,10 +86,8 @@ fn pulled_slopes(b: f64, c: f64, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
     // The slope of sinhc over the radius.
     let bend = if radius < 1e-2 { 8.0 / 3.0 } else { (2.0 * libm::cosh(2.0 * radius) - sinhc) / (radius * radius) };
     let turned = [b * x + c * y, c * x - b * y];
-    let slope = |part: f64, own: [f64; 2]| {
-        [0, 1].map(|i: usize| part * (2.0 * sinhc * [x, y][i] + bend * turned[i]) + sinhc * own[i])
-    };
-    [slope(b, [x, -y]), slope(c, [y, x])]
+    [(b, [x, -y]), (c, [y, x])]
+        .map(|(part, own)| [0, 1].map(|i: usize| part * (2.0 * sinhc * [x, y][i] + bend * turned[i]) + sinhc * own[i]))
 }
 
 /// `sinh(2 r) / r`.
@@ -103,8 +101,8 @@ pub(super) fn logarithm([xx, yy, xy]: [f64; 3], [least, most]: [f64; 2]) -> Numb
         return [0.0, libm::log(xx.sqrt().clamp(least, most)), 0.0, 0.0];
     }
     let (mean, radius) = (0.5 * (xx + yy), libm::hypot(0.5 * (xx - yy), xy));
-    let width = |square: f64| libm::log(square.max(0.0).sqrt().clamp(least, most));
-    let [major, minor] = [width(mean + radius), width(mean - radius)];
+    let [major, minor] =
+        [mean + radius, mean - radius].map(|square| libm::log(square.max(0.0).sqrt().clamp(least, most)));
     let half = 0.5 * (major - minor);
     [0.0, 0.5 * (major + minor), half * 0.5 * (xx - yy) / radius, half * xy / radius]
 }

@@ -1,9 +1,9 @@
 //! The fit of lobes to simulated light.
 //!
-//! The unknowns are, for each lobe, shift and logarithms of widths at a few nodes over the view, and the tail; and the two numbers of the
-//! wide remainder. Energies are none: at every view they are the best for the shapes, with the sum of the simulation (variable
-//! projection, Golub and Pereyra 1973). Residuals are those of cells, `(e - r) / sqrt(r + c)`, all views together, so that lobes keep their
-//! identity from view to view. An anisotropic stack is seen from several azimuths, all of them in one fit ([`Basis`]).
+//! Each lobe has as unknowns its shift and the logarithms of its widths at a few nodes over the view, and its tail. The wide remainder has two
+//! more. Energies are no unknowns: every view takes the energies that suit the shapes best, with the sum of the simulation (variable
+//! projection, Golub and Pereyra 1973). Cells have residuals `(e - r) / sqrt(r + c)`. One fit has all views, so that lobes keep their identity
+//! from view to view; with an anisotropic stack it has all azimuths, too ([`Basis`]).
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -11,7 +11,7 @@ use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
-use super::problem::{Lobed, Problem, ViewProblem, seen_from};
+use super::problem::{Lobed, Problem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
@@ -23,14 +23,14 @@ use crate::references::layered_mc::ColorPaths;
 pub struct FitSettings {
     /// Rows over the view.
     pub rows: usize,
-    /// Paths for each row: half of them for each view where there are two; a third at each azimuth of an anisotropic stack.
+    /// Paths for each row. A row with two views gives half of them to each; an anisotropic stack traces a third of them at each azimuth.
     pub paths: u64,
     /// Family of random numbers.
     pub seed: u64,
 }
 
 impl FitSettings {
-    /// Rows by default: the 18 steps between them are divided by 2, 3 and 6.
+    /// Rows by default. There are 18 steps between them, which 2, 3 and 6 divide: bakes try every second, third and sixth row.
     pub const DEFAULT_ROWS: usize = 19;
 }
 
@@ -41,13 +41,13 @@ impl Default for FitSettings {
     }
 }
 
-/// Angles whose squared sines are the tails with which a fit starts: .09 and .79.
+/// A fit starts with tails of .09 and .79: the squared sines of these angles.
 const TAIL_STARTS: [f64; 2] = [0.3, 1.1];
 
 /// Indices of media closer than this are one.
 const INDEX_STEP: f64 = 0.05;
 
-/// Width over which the axis of the rows turns at a critical angle, over that over which the facets of the interfaces blur it.
+/// Width over which the axis of the rows bends at a critical angle, over the width to which facets blur that angle.
 const BLUR: f64 = 0.5;
 
 const SEARCH: LeastSquares = LeastSquares { longest: 0.7, gain: 1e-4 };
@@ -59,10 +59,10 @@ const LAST_STEPS: u32 = 20;
 /// Places that are followed to the end.
 const FOLLOWED: usize = 2;
 
-/// Paths of a row over those at each azimuth.
+/// A row of an anisotropic stack traces one in so many of its paths at each azimuth.
 const AZIMUTH_SHARE: u64 = 3;
 
-/// Paths of a row over those of each of its two views.
+/// A row with two views traces one in so many of its paths for each.
 const VIEW_SHARE: u64 = 2;
 
 /// Steps of an anisotropic fit with all views.
@@ -93,7 +93,7 @@ pub struct Simulation {
     pub(super) base_falloff: Option<[f64; 2]>,
 }
 
-/// Numbers of views: rows of them from grazing views up, one azimuth after the other, without that along the normal; and last that.
+/// Numbers of views: from grazing views up, one azimuth after the other. All azimuths share the view along the normal, which comes last.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Views {
     pub(super) rows: usize,
@@ -123,7 +123,7 @@ impl Views {
         self.axes.map_or([1.0, 0.0], |axes| axes.azimuth(number as f64))
     }
 
-    /// The azimuths before and after one; beyond an axis of a mirror image the one on this side.
+    /// The azimuths before and after one. At an axis of mirror symmetry both are the azimuth on this side, the mirror image of the one beyond.
     pub(super) fn next_azimuths(self, azimuth: usize) -> [usize; 2] {
         let count = self.azimuths();
         match self.axes {
@@ -134,7 +134,7 @@ impl Views {
         }
     }
 
-    /// Views around one, without itself: of so many rows above and below, and of the next azimuths.
+    /// Views around one, without itself: up to `rows` rows above and below, and both next azimuths.
     pub(super) fn around(self, azimuth: usize, row: usize, rows: usize) -> Vec<usize> {
         let along = (row.saturating_sub(rows)..(row + rows + 1).min(self.rows)).map(|row| self.number(azimuth, row));
         let across = self.next_azimuths(azimuth).map(|azimuth| self.number(azimuth, row));
@@ -144,7 +144,7 @@ impl Views {
     /// Views beside each: of the next rows, and of the next azimuths.
     pub(super) fn beside(self) -> Vec<Vec<usize>> {
         let (azimuths, last) = (self.azimuths(), self.rows - 1);
-        let of = |(azimuth, row): (usize, usize)| {
+        let views = self.all().map(|(azimuth, row)| {
             if row == last {
                 return (0..azimuths).map(|azimuth| self.number(azimuth, last - 1)).collect();
             }
@@ -157,8 +157,8 @@ impl Views {
                 beside.extend(self.next_azimuths(azimuth).map(|azimuth| self.number(azimuth, row)));
             }
             beside
-        };
-        self.all().map(of).collect()
+        });
+        views.collect()
     }
 }
 
@@ -175,8 +175,8 @@ impl Simulation {
         Self::along(ViewAxis::of(stack, settings.rows), stack, color, settings)
     }
 
-    /// [`Self::new`] with rows over an axis. With a critical angle, where rows are far apart, the stack is seen half way between them, too, so that
-    /// what is linear can err as much at them as there. Elsewhere that would be no gain over the noise.
+    /// [`Self::new`] with rows over an axis. If the axis has a critical angle, the stack is seen half way between rows, too: rows then lie so that
+    /// lines between them err no more half way than at the rows ([`ViewAxis::nearest`]). Without a critical angle the noise hides that gain.
     pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
         Self::within(&indices(stack), axis, stack, color, settings)
     }
@@ -200,7 +200,7 @@ impl Simulation {
         let views = Views { rows: seen.size(), axes };
         let base = base_below(stack)
             .map(|Diffuse { albedo, sigma }| Painted { albedo, is_lambertian: sigma == 0.0 && albedo != [0.0; 3] });
-        let view = |(number, (azimuth, row)): (usize, (usize, usize))| {
+        let tallies = views.all().enumerate().map(|(number, (azimuth, row))| {
             let wo = seen_from(seen, views.azimuth(azimuth), row);
             // The light is traced in the tangents of the stack.
             let outside = axes.map_or(wo, |axes| axes.outside(wo));
@@ -211,7 +211,7 @@ impl Simulation {
                 Some(_) => count,
             };
             let mut tally = Tally::new(&cells, base.is_some_and(|base| base.is_lambertian));
-            // A family of its own for every view.
+            // Every view has its own family of random numbers.
             let seed =
                 settings.seed.wrapping_mul(views.azimuths() as u64 * seen.size() as u64).wrapping_add(number as u64);
             paths.trace(seed, count, outside, |path| {
@@ -225,8 +225,8 @@ impl Simulation {
                 tally.first_facet = first.energy(outside);
             }
             tally
-        };
-        let tallies: Vec<Tally> = views.all().enumerate().map(view).collect();
+        });
+        let tallies: Vec<Tally> = tallies.collect();
         let base_falloff = Wide::falloff_of(axis, &tallies);
         Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff }
     }
@@ -251,18 +251,18 @@ impl Simulation {
         Views { rows: self.seen.size(), axes: self.axes }
     }
 
-    /// The lobes, so many, that are nearest to the light that was traced.
+    /// The `count` lobes that are nearest to the traced light.
     pub fn fit(&self, count: usize) -> Lobes {
         let problems = self.problems();
         let mut fits = self.fits(&problems, count);
         self.lobes(&self.polished(fits.pop().unwrap_or_else(|| unreachable!("there is a fit without lobes"))))
     }
 
-    /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best, at any view. The best have
-    /// the least error at their worst view.
+    /// The fewest lobes, up to `most`, that at no view are farther from the light than the best fit by more than `excess`. The best fit has the
+    /// least error at its worst view.
     ///
-    /// The error of a fit holds the noise of the paths, which all fits have alike: they are compared by the differences of their squared
-    /// residuals. Residuals are over the roots of energies, so that half the root of a difference bounds what the lobe error gains.
+    /// Fits are compared by differences of squared residuals, because all of them have the noise of the paths in their errors. Residuals are
+    /// divided by the roots of energies, so half the root of a difference bounds the difference of the lobe errors.
     pub fn fit_fewest(&self, most: usize, excess: f64) -> Lobes {
         self.lobes(&self.fewest(most, excess))
     }
@@ -274,12 +274,11 @@ impl Simulation {
         let costs: Vec<Vec<f64>> = fits.iter().map(|found| found.costs(&problems)).collect();
         let worst: Vec<f64> = costs.iter().map(|costs| costs.iter().copied().fold(0.0, f64::max)).collect();
         let best = (0..fits.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or(0);
-        let error = |cost: &Vec<f64>| {
+        let fewest = costs.iter().position(|cost| {
             let gains = cost.iter().zip(&costs[best]).map(|(own, best)| 0.5 * (own - best).max(0.0).sqrt());
-            gains.fold(0.0, f64::max)
-        };
-        let fewest = costs.iter().position(|cost| error(cost) <= excess).unwrap_or(best);
-        self.polished(fits.swap_remove(fewest))
+            gains.fold(0.0, f64::max) <= excess
+        });
+        self.polished(fits.swap_remove(fewest.unwrap_or(best)))
     }
 
     /// The place that a search with all views comes to.
@@ -293,8 +292,8 @@ impl Simulation {
         Found { set, place: SEARCH.descend(place, &lobed, POLISH_STEPS) }
     }
 
-    /// The place that a search comes to from that of a stack much like this one, whose lobes are narrower or wider by a factor. Its shape of the
-    /// remainder is kept, unless this stack has a Lambertian base.
+    /// The place that a search finds from the place of a similar stack; the lobes of this stack are wider by `factor`. The remainder keeps its shape,
+    /// unless this stack has a Lambertian base.
     pub(super) fn follow(&self, from: &Found, factor: f64) -> Found {
         self.beside(from, factor, self.base_falloff.unwrap_or(from.wide_falloff()))
     }
@@ -323,15 +322,14 @@ impl Simulation {
 
     /// Share of the light from a diffuse base that the layers send back to it.
     ///
-    /// Light that has met a Lambertian base does not remember from where: of what leaves it, the layers send back the same share, whatever the view and
-    /// however often it came back. So that share is one less the light that met the base once over all that met it, over the albedo.
+    /// Light forgets at a Lambertian base where it came from, so the layers send back the same share of it after every visit. Each further visit
+    /// scales the light by albedo times share: this product is the part of the base's light that met the base more than once.
     pub(super) fn internal(&self) -> Option<Rgb> {
         let albedo = self.base?.albedo;
-        let sum = |of: fn(&Tally) -> Rgb, c: usize| self.views.iter().map(|tally| of(tally)[c]).sum::<f64>();
-        let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
         Some([0, 1, 2].map(|c: usize| {
-            let (once, all) = (sum(|tally| tally.base_once, c), sum(|tally| tally.base, c));
-            over(over(all - once, all), albedo[c]).clamp(0.0, 1.0)
+            let once: f64 = self.views.iter().map(|tally| tally.base_once[c]).sum();
+            let all: f64 = self.views.iter().map(|tally| tally.base[c]).sum();
+            ratio(ratio(all - once, all), albedo[c]).clamp(0.0, 1.0)
         }))
     }
 
@@ -339,34 +337,33 @@ impl Simulation {
         (0..self.cells.len()).map(|set| Problem::coarse(self, set)).collect()
     }
 
-    /// Fits of no lobe, of one, and so on; those that gain nothing by another are the last.
+    /// Fits without a lobe, with one, and so on, until another lobe gains nothing.
     fn fits(&self, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
         let (basis, falloff) = (self.basis(), self.base_falloff.unwrap_or(REMAINDER_START));
-        let alone = |set: usize| {
-            let start =
-                move |&shape: &Numbers| TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff));
-            self.starts.iter().flat_map(start)
-        };
-        let one = (most > 0).then(|| nearest(problems, (0..problems.len()).flat_map(alone).collect()));
-        // In the cells of the others, so that residuals compare.
+        let mut alone = Vec::new();
+        for (set, &shape) in (0..problems.len()).flat_map(|set| self.starts.iter().map(move |shape| (set, shape))) {
+            alone.extend(TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff)));
+        }
+        let one = (most > 0).then(|| nearest(problems, alone));
+        // The fit without lobes uses the cells of the others, so that residuals compare.
         let set = one.as_ref().map_or(0, |one| one.set);
         let mut fits = vec![nearest(problems, vec![(set, Vec::new(), falloff)])];
         fits.extend(one);
-        // One lobe more at a time, beside those found, wider or narrower.
+        // Each round adds a lobe to the last fit: its last lobe made wider or narrower, or an interface's.
         for count in 1..most {
             let fewer = &fits[count];
             let (lobes, wide) = (fewer.starts(basis), fewer.wide_falloff());
             let last = &lobes[lobes.len() - 1];
             let scaled = [2.5, 0.4].map(|factor| last.scaled(factor));
             let of_interfaces = self.widths.iter().map(|&shape| Start::new(basis, shape, 0.0));
-            let beside = |another: Start| {
+            let starts = scaled.into_iter().chain(of_interfaces).flat_map(|another| {
                 TAIL_STARTS.map(|tail| {
                     let mut starts = lobes.clone();
                     starts.push(Start { tail, ..another.clone() });
                     (fewer.set, starts, wide)
                 })
-            };
-            let more = nearest(problems, scaled.into_iter().chain(of_interfaces).flat_map(beside).collect());
+            });
+            let more = nearest(problems, starts.collect());
             if more.place.cost >= fewer.place.cost {
                 break;
             }
@@ -376,24 +373,28 @@ impl Simulation {
     }
 }
 
+/// `a / b`; 0 unless b is positive.
+fn ratio(a: f64, b: f64) -> f64 {
+    if b > 0.0 { a / b } else { 0.0 }
+}
+
 /// Coefficients of the remainder with which a fit starts.
 const REMAINDER_START: [f64; 2] = [0.3, 0.0];
 
-/// The best place that searches from some starts come to: in a set of cells, with lobes and falloff of the remainder.
+/// The best place of searches from some starts. A start has the number of a set of cells, lobes, and the falloff of the remainder.
 fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>) -> Found {
-    let first = |(set, lobes, wide): (usize, Vec<Start>, [f64; 2])| {
+    let first = starts.into_iter().map(|(set, lobes, wide)| {
         let problem = Lobed::new(&problems[set], lobes.len());
         let place = Place::new(parameters(lobes, wide), &problem);
         Found { set, place: SEARCH.descend(place, &problem, FIRST_STEPS) }
-    };
-    let mut found: Vec<Found> = starts.into_iter().map(first).collect();
-    found.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
-    found.truncate(FOLLOWED);
-    let last = |Found { set, place }: Found| {
+    });
+    let mut first: Vec<Found> = first.collect();
+    first.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
+    let last = first.into_iter().take(FOLLOWED).map(|Found { set, place }| {
         let problem = Lobed::new(&problems[set], place.parameters.len() / problems[set].basis.per_lobe());
         Found { set, place: SEARCH.descend(place, &problem, LAST_STEPS) }
-    };
-    let best = found.into_iter().map(last).min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
+    });
+    let best = last.min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
     best.unwrap_or_else(|| unreachable!("there is a start"))
 }
 
@@ -424,7 +425,7 @@ fn alpha([xx, yy, xy]: &Covariance) -> f64 {
     (xx * yy - xy * xy).max(0.0).sqrt().sqrt()
 }
 
-/// Ellipses of lobes that interfaces below the first may send, each blurred by those above, without those that are nearly another.
+/// Ellipses of lobes that interfaces below the first may send, each blurred by the interfaces above. Nearly equal ones count once.
 fn widths(surfaces: &[Covariance]) -> Vec<Numbers> {
     let mut joined = [0.0; 3];
     let mut widths: Vec<(f64, Numbers)> = Vec::new();
@@ -438,13 +439,13 @@ fn widths(surfaces: &[Covariance]) -> Vec<Numbers> {
     widths.into_iter().map(|(_, shape)| shape).collect()
 }
 
-/// Ratio of widths from which on they are two.
+/// Ratio of widths from which on two ellipses differ.
 const WIDTH_STEP: f64 = 1.6;
 
-/// Share of the covariance of the first interface, at least, by which the lobe of the next is blurred: that of an index of 1.5 along the normal.
+/// Least share of the first interface's covariance in the lobe of the next interface: refraction by an index of 1.5, along the normal.
 const BLURRED: f64 = 1.0 / 16.0;
 
-/// Greatest half logarithm of the ratio by which cells are stretched: that of 8. Wide light is seen in the same cells.
+/// Greatest stretch of cells: half the logarithm of the ratio of widths, which is 8. There is a limit because wide light is seen in the same cells.
 const STRETCH: f64 = 1.04;
 
 /// Cells in the half vectors of a medium. Those of an anisotropic stack are stretched as the narrowest lobe from below.
@@ -454,7 +455,7 @@ pub(super) fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> 
     }
     let narrowest = match surfaces {
         [first, second, ..] => plus(*second, first, BLURRED),
-        // Light from a diffuse base, or from several facets: wide.
+        // One interface: light comes from a diffuse base or from several facets, and is wide.
         rest => {
             rest.first().map_or([1.0, 1.0, 0.0], |only| [alpha(only) * alpha(only), alpha(only) * alpha(only), 0.0])
         }
@@ -464,10 +465,10 @@ pub(super) fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> 
     Cells::stretched(index, Plane::OfTangents([0.0; 2]).shape([0.0, mean, share * b, share * c], 0.0))
 }
 
-/// The relative indices in whose half vectors lobes may be: next to 1, that of the first medium, and that of the last.
+/// The relative indices in whose half vectors lobes may be: one next to 1, the index of the first medium, and the index of the last.
 ///
-/// Half vectors outside are those of index 1, but flat light would be as bright there as any. Facets mask it: along their horizon, the light that one of
-/// slope parameter alpha sends is in proportion to `2 cos / alpha` (Smith's G1 of GGX). The index that makes lobes fall as `cos / sqrt(n^2 - 1)` does it.
+/// Half vectors outside have index 1, but lobes in them do not fall towards the horizon. Facets of slope parameter alpha mask flat light, in
+/// proportion to `2 cos / alpha` (Smith's G1 of GGX). Lobes of index n fall as `cos / sqrt(n^2 - 1)`, so `n^2 = 1 + alpha^2 / 4` masks alike.
 pub(super) fn indices(stack: &Stack) -> Vec<f64> {
     let exterior = stack.exterior.at(REFERENCE_NM).re;
     let media = stack.layers.iter().filter_map(|layer| match &layer.base {
@@ -486,8 +487,8 @@ pub(super) fn indices(stack: &Stack) -> Vec<f64> {
     indices
 }
 
-/// The critical angle of the view for the medium of the least index, blurred by the interfaces above that medium. A sharp kink of a medium
-/// above it counts before a blurred one.
+/// The critical angle of the view for the medium of the least index, blurred by the interfaces above that medium. A sharp kink of a medium above is
+/// preferred to a blurred one.
 fn critical(stack: &Stack, rows: usize) -> Critical {
     let exterior = stack.exterior.at(REFERENCE_NM).re;
     let mut found = (1.0, 0.0);
@@ -508,7 +509,7 @@ fn critical(stack: &Stack, rows: usize) -> Critical {
     Critical::new(index, width, rows)
 }
 
-/// Blur of a kink over that of another from which on it does not need the rows.
+/// A kink yields the rows to another if its blur is at least so many times as wide.
 const SHARPEST: f64 = 2.0;
 
 /// The wavelength at which directions are refracted: the sodium D line.
@@ -526,18 +527,18 @@ impl Found {
     fn costs(&self, problems: &[Problem<'_>]) -> Vec<f64> {
         let (p, problem) = (&self.place.parameters, &problems[self.set]);
         let count = p.len() / problem.basis.per_lobe();
-        let cost = |view: &ViewProblem| view.residuals(&view.profiles(p, count)).iter().map(|x| x * x).sum();
-        problem.views.iter().map(cost).collect()
+        let residuals = problem.views.iter().map(|view| view.residuals(&view.profiles(p, count)));
+        residuals.map(|residuals| residuals.iter().map(|x| x * x).sum()).collect()
     }
 
     /// The lobes found.
     pub(super) fn starts(&self, basis: Basis) -> Vec<Start> {
-        let of = |p: &[f64]| {
-            let rows = p.chunks_exact(NODES).map(<[f64]>::to_vec).collect();
-            Start { rows, tail: p[p.len() - 1] }
-        };
         let p = &self.place.parameters;
-        p[..p.len() - 2].chunks(basis.per_lobe()).map(of).collect()
+        let lobes = p[..p.len() - 2].chunks(basis.per_lobe()).map(|lobe| Start {
+            rows: lobe.chunks_exact(NODES).map(<[f64]>::to_vec).collect(),
+            tail: lobe[lobe.len() - 1],
+        });
+        lobes.collect()
     }
 
     fn wide_falloff(&self) -> [f64; 2] {

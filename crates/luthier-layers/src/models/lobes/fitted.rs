@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use luthier_optics::color::Color;
-use luthier_optics::fresnel::FilmLayer;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
 use num_complex::Complex64;
@@ -18,13 +17,13 @@ use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 /// Stacks whose lobes are kept.
 const KEPT: usize = 8;
 
-/// Real part of an index, at least: a perfect mirror of none reflects a hundred millionth less.
+/// Least real part of an index. A perfect mirror has none; with this one it reflects a hundred millionth less.
 const INDEX_MIN: f64 = 1e-9;
 
 /// A wavelength for indices that do not depend on it.
 const WAVELENGTH_NM: f64 = 550.0;
 
-/// The model `lobes`. It simulates a stack when it first meets it, for a second or so; the last eight stacks are kept.
+/// The model `lobes` for single wavelengths. It simulates a stack at the first value, for a second or so, and keeps the last eight stacks.
 pub struct Fitted {
     fit: Arc<Fit<'static>>,
     kept: Mutex<VecDeque<(Monochrome, Arc<Lobes>)>>,
@@ -50,7 +49,7 @@ impl Fitted {
 
     /// The lobes of a stack; `None` where an index is infinite or not a number.
     fn lobes(&self, stack: &Monochrome) -> Option<Arc<Lobes>> {
-        // Under the lock: others that ask for a stack wait for its lobes.
+        // Fits under the lock: other threads that ask for the stack wait, rather than fit it again.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, lobes)) = kept.iter().find(|(known, _)| known == stack) {
             return Some(lobes.clone());
@@ -76,37 +75,41 @@ impl Model for Fitted {
     }
 }
 
-/// The stack that is this one at every wavelength and in every channel; `None` where an index is infinite or not a number.
+/// A stack in colour that equals this one at every wavelength and in every channel; `None` if an index is infinite or not a number.
 fn in_all_colors(stack: &Monochrome) -> Option<Stack> {
-    let constant = |ior: Complex64| Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok();
-    let layer = |layer: &MonochromeLayer| {
-        let film = |film: &FilmLayer| {
-            let thickness_nm = film.waves * WAVELENGTH_NM;
-            let thickness = FilmThickness { min_nm: thickness_nm, max_nm: thickness_nm };
-            Some(Film { ior: constant(film.ior)?, thickness })
-        };
-        let of = |ior: Complex64| {
-            let ior = constant(ior)?;
-            Some(layer.f0.map_or_else(|| ior.clone(), |f0| ior.clone().with_f0([f0; 3])))
-        };
-        let base = match layer.below {
-            MonochromeBelow::Dielectric { complex_ior, optical_depth, .. } => {
-                let slab = Slab { thickness_um: 1.0, absorption_per_um: [optical_depth; 3] };
-                Base::Dielectric { ior: of(complex_ior)?, slab }
-            }
-            MonochromeBelow::Conductor { ior } => Base::Conductor { ior: of(ior)? },
-            MonochromeBelow::Diffuse { albedo, sigma } => Base::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
-        };
-        Some(Layer { films: layer.films.iter().map(film).collect::<Option<_>>()?, surface: layer.surface, base })
-    };
     Some(Stack {
-        exterior: constant(Complex64::new(stack.exterior, 0.0))?,
-        layers: stack.layers.iter().map(layer).collect::<Option<_>>()?,
+        exterior: constant(Complex64::from(stack.exterior), None)?,
+        layers: stack.layers.iter().map(layer_in_all_colors).collect::<Option<_>>()?,
     })
+}
+
+fn layer_in_all_colors(layer: &MonochromeLayer) -> Option<Layer> {
+    let films = layer.films.iter().map(|film| {
+        let thickness_nm = film.waves * WAVELENGTH_NM;
+        let thickness = FilmThickness { min_nm: thickness_nm, max_nm: thickness_nm };
+        Some(Film { ior: constant(film.ior, None)?, thickness })
+    });
+    let films = films.collect::<Option<_>>()?;
+    let base = match layer.below {
+        MonochromeBelow::Dielectric { complex_ior, optical_depth, .. } => {
+            let slab = Slab { thickness_um: 1.0, absorption_per_um: [optical_depth; 3] };
+            Base::Dielectric { ior: constant(complex_ior, layer.f0)?, slab }
+        }
+        MonochromeBelow::Conductor { ior } => Base::Conductor { ior: constant(ior, layer.f0)? },
+        MonochromeBelow::Diffuse { albedo, sigma } => Base::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
+    };
+    Some(Layer { films, surface: layer.surface, base })
+}
+
+/// An index for all wavelengths, with an F0 if the interface has one; `None` if it is infinite or not a number.
+fn constant(ior: Complex64, f0: Option<f64>) -> Option<Ior> {
+    let constant = Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok()?;
+    Some(if let Some(f0) = f0 { constant.with_f0([f0; 3]) } else { constant })
 }
 
 #[cfg(test)]
 mod tests {
+    use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::{Distribution, Surface};
 
     use super::*;

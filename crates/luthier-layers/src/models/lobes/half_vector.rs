@@ -5,11 +5,12 @@
 
 use glam::DVec3;
 
-/// Least cosine of a direction inside: single precision has all products of such cosines.
+/// Least cosine of a direction inside. Products of several such cosines are still numbers of single precision, which shaders have.
 const COS_MIN: f64 = 1e-6;
 
-/// A direction outside, refracted into a medium of relative index `index >= 1` by the plane of the surface. Both point away from it. For an
-/// index of 1 the cosine is that of the direction, whatever rounding has done to its length; it is [`COS_MIN`] at least.
+/// A direction outside, refracted at the plane of the surface into a medium of relative index `index >= 1`. Both point away from the surface. The
+/// cosine comes from the cosine outside, not from the sine: an index of 1 keeps it even if rounding has changed the direction's length. It is at
+/// least [`COS_MIN`].
 pub(super) fn refracted(outside: DVec3, index: f64) -> DVec3 {
     let cos_sq = outside.z * outside.z + (index - 1.0) * (index + 1.0);
     let cos = (cos_sq.sqrt() / index).max(COS_MIN);

@@ -17,19 +17,19 @@ use crate::references::layered_mc::ColorPaths;
 const VIEWS: usize = 5;
 const PATHS: u64 = 65_536;
 
-/// Flatter views than that after this row are not judged: those beyond 86 degrees, but for a critical angle.
+/// Views are judged from half a step above this row. Without a critical angle, flatter views are beyond 86 degrees.
 const FIRST_ROW: usize = 2;
 
-/// Families of random numbers of a judge begin here, so that they are none of a fit.
+/// Families of random numbers of a judge begin here, so that no fit has them.
 const SEEDS: u64 = 1 << 40;
 
-/// Errors of lobes against the simulated stack, the largest of a few views half way between rows, and between nodes of a factor or azimuths. The
-/// noise of the judge's paths is in them.
+/// Errors of lobes against the simulated stack: the largest of a few views, which lie half way between rows, and between nodes of a factor or
+/// azimuths. They include the noise of the judge's paths.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitError {
-    /// Lobe error, the largest channel: half the sum of the differences of energies in cells, over the albedo. Cells are rings and eighths of a turn
-    /// around the mirror direction.
+    /// Lobe error of the worst channel: half the sum of the absolute differences between energies in cells, over the albedo. Cells are rings and
+    /// eighths of a turn around the mirror direction.
     pub lobe: f64,
     /// The lobe error that noise alone makes on average.
     pub lobe_noise: f64,
@@ -66,7 +66,7 @@ struct View {
     /// The factor on what varies.
     factor: f64,
     wo: DVec3,
-    /// Energy by cell and channel, without that of one facet of the first interface.
+    /// Energy by cell and channel, without the light of one facet of the first interface.
     energies: Vec<Rgb>,
     /// Sum of the squared energies of the paths by cell, means of the channels.
     squares: Vec<f64>,
@@ -81,20 +81,19 @@ impl Judge {
         let index = indices(&stack).last().copied().unwrap_or(1.0);
         let cells = cells(index, &covariances(&stack, axes), axes);
         let axis = ViewAxis::of(&stack, FitSettings::default().rows);
-        let view = |number: usize| {
+        let views = (0..VIEWS).map(|number| {
             let share = number as f64 / (VIEWS - 1) as f64;
-            let between =
-                |first: usize, steps: usize| first as f64 + libm::floor(share * (steps - 1 - first) as f64) + 0.5;
-            let theta = libm::acos(axis.cos_theta(between(FIRST_ROW, axis.size() - 1)));
-            let wo = {
-                let (sin, cos) = libm::sincos(theta);
-                let azimuth = axes.map_or([1.0, 0.0], |axes| axes.azimuth(between(0, Axes::TILES - 1)));
-                let inside = DVec3::new(sin * azimuth[0], sin * azimuth[1], cos);
-                axes.map_or(inside, |axes| axes.outside(inside))
-            };
-            // Another order than that of the views.
+            // Half way between two rows, and between two azimuths.
+            let [row, azimuth] = [(FIRST_ROW, axis.size() - 1), (0, Axes::TILES - 1)]
+                .map(|(first, steps)| first as f64 + libm::floor(share * (steps - 1 - first) as f64) + 0.5);
+            let (sin, cos) = libm::sincos(libm::acos(axis.cos_theta(row)));
+            let azimuth = axes.map_or([1.0, 0.0], |axes| axes.azimuth(azimuth));
+            let inside = DVec3::new(sin * azimuth[0], sin * azimuth[1], cos);
+            let wo = axes.map_or(inside, |axes| axes.outside(inside));
+            // Factors go in another order than views, so that neither follows the other.
             let factor = varying.map_or(1.0, |varying| {
-                // Light is linear between the ends of a patina, of which the grown one has scattering that no path shows. Diffuse bases are closed forms.
+                // Light is linear between the ends of a patina, so ends alone are judged: all layers without the patina's scattering, which no path
+                // shows, and the bare layers, unless they are a diffuse base, which has a closed form.
                 if matches!(varying, Varying::Patina(_)) {
                     let has_lobes = FirstInterface::of(&patina::bare(&stack), color).is_some();
                     let last = (varying.nodes() - 1) as f64;
@@ -105,8 +104,8 @@ impl Judge {
             });
             let here = varying.map_or_else(|| stack.clone(), |varying| varying.apply(&stack, factor));
             View::new(&here, color, SEEDS + number as u64, (factor, wo), &cells, axes)
-        };
-        Self { cells, axes, views: (0..VIEWS).map(view).collect() }
+        });
+        Self { cells, axes, views: views.collect() }
     }
 
     /// The errors of lobes of the stack, over the same factor.
@@ -131,14 +130,13 @@ impl Judge {
             (0..3).for_each(|c| cell[c] += value[c] * point.solid_angle);
         }
         let stated = below.row().albedo_dir;
-        let of = |c: usize| {
+        let channels = [0, 1, 2].map(|c: usize| {
             let albedo = view.first_facet[c] + view.energies.iter().map(|rgb| rgb[c]).sum::<f64>();
             let differences = found.iter().zip(&view.energies).map(|(found, energy)| (found[c] - energy[c]).abs());
             (0.5 * differences.sum::<f64>() / albedo.max(f64::MIN_POSITIVE), (stated[c] - albedo).abs(), albedo)
-        };
-        let channels = [0, 1, 2].map(of);
+        });
         let mean = channels.iter().map(|(_, _, albedo)| albedo).sum::<f64>() / 3.0;
-        // The mean of the absolute value of a normal number is sqrt(2 / pi) of its deviation.
+        // A normal number of deviation d has a mean absolute value of sqrt(2 / pi) d.
         let deviations: f64 = view.squares.iter().map(|squares| (FRAC_2_PI * squares).sqrt()).sum();
         let rest = mean - view.first_facet.iter().sum::<f64>() / 3.0;
         let variance = view.squares.iter().sum::<f64>() - rest * rest / PATHS as f64;

@@ -5,11 +5,11 @@ use super::ellipse::Numbers;
 /// Nodes of shapes over the view.
 pub(super) const NODES: usize = 6;
 
-/// The unknowns of one lobe. They are rows over the nodes, and the angle whose squared sine is the tail.
+/// The unknowns of one lobe: rows over the nodes, and an angle whose squared sine is the tail.
 ///
-/// The first three rows are the [`Numbers`] of an ellipse but for c, at all azimuths of the eye. Further ones are theirs and c's with a wave of
-/// the second order over the azimuth: turned by half a circle, a stack is itself. But for the shift these waves have the squared sine of the view
-/// besides: along the normal there is no azimuth.
+/// The first three rows are the [`Numbers`] of an ellipse without c, for all azimuths of the eye. Further rows add waves of the second order over
+/// the azimuth to these numbers and to c: half a turn takes a stack to itself. All waves but those of the shift are scaled by the squared sine of
+/// the view, because the normal has no azimuth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Basis {
     /// Ellipses in the plane of the eye, alike at all azimuths.
@@ -47,7 +47,7 @@ impl Basis {
         self.rows() * NODES + 1
     }
 
-    /// Whether a row is one that is to be small: not the widths along the normal.
+    /// Whether a fit pulls a row to 0: all but the rows of the widths along the normal.
     pub(super) fn is_small(self, row: usize) -> bool {
         match self {
             Self::Isotropic => row != MEAN,

@@ -6,6 +6,7 @@ use glam::DVec3;
 use luthier_model::Masking;
 use luthier_optics::Rgb;
 
+use super::tally::mean;
 use super::{Below, Lobes};
 
 /// The model as seen from a direction.
@@ -35,10 +36,8 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(lobes: &'a Lobes, wo: DVec3) -> Option<Self> {
         let below = lobes.below(wo)?;
         let row = below.row();
-        let mean = |rgb: Rgb| (rgb.iter().sum::<f64>() / 3.0).max(0.0);
-        let mut chances = vec![mean(row.first_facet())];
-        chances.extend(row.lobes.iter().map(|lobe| mean(lobe.strength)));
-        chances.push(mean(row.wide));
+        let parts = std::iter::once(row.first_facet()).chain(row.lobes.iter().map(|lobe| lobe.strength));
+        let mut chances: Vec<f64> = parts.chain([row.wide]).map(|rgb| mean(rgb).max(0.0)).collect();
         let total: f64 = chances.iter().sum();
         if total > 0.0 {
             chances.iter_mut().for_each(|chance| *chance /= total);

@@ -10,30 +10,32 @@ use super::fit::{Found, Simulation, Views};
 use super::half_vector::{outside, refracted};
 use super::parameters::{Basis, NODES, SHIFT, Term};
 use super::solve::{Amounts, Column, Guess, Residuals};
-use super::tally::{Cells, Point, Tally};
+use super::tally::{Cells, Point, Tally, mean};
 use super::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
-/// Share of a shape above the horizon below which the fit is held back.
+/// Shapes with less than this share above the horizon are penalised: energies are divided by the share.
 const SHARE_WANTED: f64 = 0.35;
 
-/// Weight of what [`SHARE_WANTED`] lacks, of second differences between nodes, and of shifts and ratios of widths by themselves.
+/// Weight of a share's lack to [`SHARE_WANTED`].
 const SHARE_WEIGHT: f64 = 0.5;
+/// Weight of second differences between nodes.
 const RIPPLE_WEIGHT: f64 = 0.03;
+/// Weight of shifts and of ratios of widths, which are pulled to 0.
 const REST_WEIGHT: f64 = 0.003;
 
-/// Weight of the distance from the parameters of a neighbour.
+/// Weight of the distance to the parameters of a neighbour.
 const BESIDE_WEIGHT: f64 = 0.05;
 
-/// Energy that is added to that of a cell, over the mean, where residuals are weighed.
+/// Added to the energy of a cell before its residual is weighed, over the mean energy of cells: dark cells would weigh without bound.
 const WEIGHT_FLOOR: f64 = 0.05;
 
-/// Paths of a cell, on average, of which half of its weight is its own.
+/// Mean number of paths per cell at which half of a cell's weight comes from its own light, see [`expected`].
 const MANY_PATHS: f64 = 64.0;
 
-/// Rows above and below a view, in steps of the axis of the lobes, whose light weighs its residuals.
+/// The light of so many rows above and below a view weighs its residuals; in steps of the axis of the lobes.
 const WEIGHT_ROWS: usize = 2;
 
-/// Step of the differences that slopes of amounts are.
+/// Step of the difference quotients along profiles.
 const DIFFERENCE: f64 = 1e-5;
 
 /// The fit in one set of cells.
@@ -44,7 +46,7 @@ pub(super) struct Problem<'a> {
     pub(super) views: Vec<ViewProblem>,
 }
 
-/// One view of it.
+/// One view of a problem.
 pub(super) struct ViewProblem {
     axis: ViewAxis,
     basis: Basis,
@@ -55,7 +57,7 @@ pub(super) struct ViewProblem {
     /// Place among the nodes of shapes.
     place: f64,
     points: Vec<Point>,
-    /// Brightness of the cells: means of the channels, over that of all light of the view.
+    /// Brightness of the cells, see [`brightness`].
     found: Vec<f64>,
     total: f64,
     /// Weights of squared residuals, see [`expected`], and their roots.
@@ -63,24 +65,24 @@ pub(super) struct ViewProblem {
     roots: Vec<f64>,
 }
 
-/// A view with shapes: what every part sends to each cell, of a unit of its energy.
+/// Light that every part of given shapes sends to each cell of a view, of a unit of its energy.
 pub(super) struct Profiles {
     cells: Vec<Vec<f64>>,
     /// Shares of the shapes above the horizon, as the cells have them.
     shares: Vec<f64>,
 }
 
-/// A problem with a number of lobes. Its blocks are the views, the ripples, and last the distance from the parameters of a neighbour.
+/// A problem with a number of lobes. Its blocks are the views, the ripples, and last the distance to the parameters of a neighbour.
 pub(super) struct Lobed<'a> {
     pub(super) problem: &'a Problem<'a>,
     pub(super) lobes: usize,
-    /// Parameters of a neighbour, between which and those that are looked for rows are mixed: the shape of the remainder stays as it is, and lobes
-    /// keep their identity.
+    /// Parameters of a neighbouring node, if rows are to be mixed with its rows. The remainder keeps the neighbour's shape, and lobes stay near the
+    /// neighbour's, so that they keep their identity.
     pub(super) beside: Option<&'a [f64]>,
 }
 
 impl<'a> Lobed<'a> {
-    /// Beside no other.
+    /// The problem of a stack without neighbours.
     pub(super) fn new(problem: &'a Problem<'a>, lobes: usize) -> Self {
         Self { problem, lobes, beside: None }
     }
@@ -113,8 +115,9 @@ impl Residuals for Lobed<'_> {
             }
             None if block > self.problem.views.len() => {
                 let count = self.lobes * self.problem.basis.per_lobe();
-                let column = |j: usize| (j, (0..count).map(|i| if i == j { BESIDE_WEIGHT } else { 0.0 }).collect());
-                (0..count).map(column).collect()
+                let mut columns: Vec<Column> = (0..count).map(|j| (j, vec![0.0; count])).collect();
+                columns.iter_mut().for_each(|(j, slopes)| slopes[*j] = BESIDE_WEIGHT);
+                columns
             }
             None => ripple_slopes(p, self.lobes, self.problem.basis),
         }
@@ -126,7 +129,8 @@ impl<'a> Problem<'a> {
         Self::of(simulation, set, |_, _| true)
     }
 
-    /// The problem of every other view, for an anisotropic stack: of the first azimuth, the middle ones and the last, and of every other row.
+    /// The problem of a few views of an anisotropic stack: every other row at the first azimuth, one or two in the middle, and the last. An
+    /// isotropic stack keeps all views.
     pub(super) fn coarse(simulation: &'a Simulation, set: usize) -> Self {
         let Some(axes) = simulation.axes else { return Self::new(simulation, set) };
         let kept: &[usize] = if axes.is_mirrored { &[0, 3, 7] } else { &[0, 2, 4, 5] };
@@ -139,7 +143,7 @@ impl<'a> Problem<'a> {
         let found: Vec<Vec<f64>> = simulation.views.iter().map(|tally| brightness(tally, set)).collect();
         let nodes = ViewAxis::new(NODES, axis.critical());
         let cells = &simulation.cells[set];
-        let view = |(azimuth, row): (usize, usize)| {
+        let views = numbers.all().filter(|(azimuth, row)| keep(*azimuth, *row)).map(|(azimuth, row)| {
             let [cos, sin] = numbers.azimuth(azimuth);
             let wo = seen_from(axis, [cos, sin], row);
             let sin_theta = direction(wo.z).x;
@@ -151,7 +155,6 @@ impl<'a> Problem<'a> {
             let weights: Vec<f64> = expected.iter().map(|energy| 1.0 / (energy + floor)).collect();
             let found = found[number].clone();
             let terms = basis.terms(sin_theta * sin_theta, [(cos - sin) * (cos + sin), 2.0 * cos * sin]);
-            let of_number = |number| terms.iter().copied().filter(|term| term.number == number).collect();
             ViewProblem {
                 axis,
                 basis,
@@ -161,7 +164,7 @@ impl<'a> Problem<'a> {
                 } else {
                     Plane::OfEye(sin_theta)
                 },
-                terms: [0, 1, 2, 3].map(of_number),
+                terms: [0, 1, 2, 3].map(|number| terms.iter().copied().filter(|t| t.number == number).collect()),
                 place: nodes.place(wo.z),
                 points: cells.points(wo),
                 total: found.iter().sum(),
@@ -169,16 +172,15 @@ impl<'a> Problem<'a> {
                 roots: weights.iter().map(|weight| weight.sqrt()).collect(),
                 weights,
             }
-        };
-        let views = numbers.all().filter(|(azimuth, row)| keep(*azimuth, *row));
-        Self { simulation, set, basis, views: views.map(view).collect() }
+        });
+        Self { simulation, set, basis, views: views.collect() }
     }
 
     /// Energies by view, part and channel.
     ///
-    /// Where parts look alike at a view, its light leaves open how much each of them has, and noise would decide: then between the rows the
-    /// energies of one part would be seen with the shape of another. So the energies of a view are pulled to those of the rows beside it. The light
-    /// of a Lambertian base is the remainder's: lobes that had some of it would keep its colour.
+    /// At views where parts look alike, light does not tell how much each of them has. Noise would decide, and between rows the energy of one part
+    /// would be seen with the shape of another. So the energies of a view are pulled to those of the views beside it. All light of a Lambertian
+    /// base goes to the remainder: a lobe with some of it would keep the base's colour.
     fn energies(&self, p: &[f64], count: usize) -> Vec<Vec<Rgb>> {
         let profiles: Vec<Vec<Vec<f64>>> = self.views.iter().map(|view| view.profiles(p, count).cells).collect();
         let amounts: Vec<Amounts<'_>> =
@@ -195,11 +197,14 @@ impl<'a> Problem<'a> {
                 amounts[view].among(&brightness[view], &cells, tally.total[c], guess)
             })
         });
-        let rgb = |view: usize, part: usize| {
-            let of_base = if part == count { tallies[view].of_lambertian() } else { [0.0; 3] };
-            [0, 1, 2].map(|c: usize| channels[c][view][part] + of_base[c])
-        };
-        (0..amounts.len()).map(|view| (0..=count).map(|part| rgb(view, part)).collect()).collect()
+        let energies = (0..amounts.len()).map(|view| {
+            let parts = (0..=count).map(|part| {
+                let of_base = if part == count { tallies[view].of_lambertian() } else { [0.0; 3] };
+                [0, 1, 2].map(|c: usize| channels[c][view][part] + of_base[c])
+            });
+            parts.collect()
+        });
+        energies.collect()
     }
 
     /// The lobes of the parameters found, with energies by channel.
@@ -209,38 +214,22 @@ impl<'a> Problem<'a> {
         let energies = self.energies(p, count);
         let Simulation { first, axis, seen, axes, cells, .. } = self.simulation;
         let (index, internal, wide) = (cells[self.set].index, self.simulation.internal(), wide_of(p, *axis));
-        let row = |((view, tally), energies): ((&ViewProblem, &Tally), &Vec<Rgb>)| {
-            let lobe = |lobe: usize| {
-                let shape = view.shape(p, lobe);
-                let share = share_above(&shape, view.wo, index);
-                let [x, y, shear] = shape.sharpness();
-                let shift = match view.plane {
-                    Plane::OfEye(sin) if sin > 0.0 => shape.middle[0] / sin,
-                    // The last node of the shifts is that of the normal.
-                    Plane::OfEye(_) => p[lobe * self.basis.per_lobe() + SHIFT * NODES + NODES - 1],
-                    Plane::OfTangents(_) => view.numbers(p, lobe)[SHIFT],
-                };
-                let strength = energies[lobe].map(|energy| energy / share.max(SHARE_MIN));
-                Lobe { strength, share, shift, sharpness: [x, y], shear, tail: shape.tail }
-            };
-            let sum = |c: usize| tally.first_facet[c] + energies.iter().map(|energy| energy[c]).sum::<f64>();
-            Row {
-                albedo_dir: [0, 1, 2].map(sum),
-                lobes: (0..count).map(lobe).collect(),
-                wide: energies[count],
-                base: internal.map(|internal| BaseLight {
-                    energy: tally.base,
-                    internal,
-                    falloff: self.simulation.base_falloff.map_or([0.0; 2], |_| wide.falloff()),
-                }),
-            }
-        };
-        let rows: Vec<Row> = self.views.iter().zip(&self.simulation.views).zip(&energies).map(row).collect();
+        let views = self.views.iter().zip(&self.simulation.views).zip(&energies);
+        let rows = views.map(|((view, tally), energies)| Row {
+            albedo_dir: [0, 1, 2].map(|c: usize| tally.first_facet[c] + energies.iter().map(|rgb| rgb[c]).sum::<f64>()),
+            lobes: (0..count).map(|lobe| view.lobe(p, lobe, index, energies[lobe])).collect(),
+            wide: energies[count],
+            base: internal.map(|internal| BaseLight {
+                energy: tally.base,
+                internal,
+                falloff: self.simulation.base_falloff.map_or([0.0; 2], |_| wide.falloff()),
+            }),
+        });
+        let rows: Vec<Row> = rows.collect();
         let numbers = self.simulation.numbers();
-        let tiles = axes.map_or(1, |_| Axes::TILES);
-        let of_tile = |tile: usize| (0..axis.size()).map(move |row| (tile % numbers.azimuths(), row));
         let rows = if seen == axis {
-            let views = (0..tiles).flat_map(of_tile);
+            let azimuths = (0..axes.map_or(1, |_| Axes::TILES)).map(|tile| tile % numbers.azimuths());
+            let views = azimuths.flat_map(|azimuth| (0..axis.size()).map(move |row| (azimuth, row)));
             views.map(|(azimuth, row)| balanced(&rows, numbers, azimuth, row)).collect()
         } else {
             let cosines: Vec<f64> = self.views.iter().map(|view| view.wo.z).collect();
@@ -255,30 +244,29 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Brightness of the cells: means of the channels, over that of all light of the view.
+/// Brightness of the cells, a mean of the channels, over the brightness of all light of the view.
 fn brightness(tally: &Tally, set: usize) -> Vec<f64> {
-    let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
     let all = [tally.total, tally.first_facet, tally.of_lambertian()].map(mean).iter().sum::<f64>();
     let all = all.max(f64::MIN_POSITIVE);
     tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect()
 }
 
-/// Brightness that the cells of a view are expected to have, by which residuals are weighed: what was found in them, or where paths are few
-/// the mean of other views around, and of the cells around each.
+/// Expected brightness of the cells of a view, by which residuals are weighed. With many paths it is the brightness found; with few it is the mean
+/// over views around, smoothed over the cells around each.
 ///
-/// By what is found alone, a cell that happens to have too little light weighs more than one that has too much. Where a cell has a few paths, the
-/// light of many such cells then comes out too dark (Baker and Cousins 1984, of Neyman's chi-square), and that of others too bright.
+/// With weights from the found brightness alone, a cell that happens to be too dark weighs more than one that is too bright. Cells of few paths
+/// would then come out too dark (Baker and Cousins 1984, of Neyman's chi-square), and others too bright.
 fn expected(cells: &Cells, found: &[f64], around: &[&[f64]], paths: f64) -> Vec<f64> {
-    let mean = |cell: usize| around.iter().map(|view| view[cell]).sum::<f64>() / around.len() as f64;
-    let smooth = cells.smoothed(&(0..cells.count()).map(mean).collect::<Vec<_>>());
+    let means = (0..cells.count()).map(|cell| around.iter().map(|view| view[cell]).sum::<f64>() / around.len() as f64);
+    let smooth = cells.smoothed(&means.collect::<Vec<_>>());
     let many = paths / (MANY_PATHS * cells.count() as f64);
     let share = 1.0 / (1.0 + many * many);
     found.iter().zip(smooth).map(|(found, smooth)| found + share * (smooth - found)).collect()
 }
 
-/// The row of an azimuth, moved so that what is linear between azimuths errs as much there as half way between them.
+/// The row of an azimuth, moved so that chords between azimuths err as much at their ends as half way.
 ///
-/// Half way, a chord is off by an eighth of the second difference.
+/// Half way, a chord through unmoved rows is off by an eighth of the second difference.
 fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
     let here = &rows[numbers.number(azimuth, row)];
     let Some(axes) = numbers.axes else { return here.clone() };
@@ -286,10 +274,10 @@ fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
     let [before, after] = next.map(|next| &rows[numbers.number(next, row)]);
     let mut moved = here.between(&before.between(after, 0.5), -0.125);
     for (moved, own) in moved.lobes.iter_mut().zip(&here.lobes) {
-        // Light that has none half way is not below 0.
+        // The move takes no light below 0, unless noise has done so already.
         (0..3).for_each(|c| moved.strength[c] = moved.strength[c].max(own.strength[c].min(0.0)));
         moved.share = moved.share.min(1.0);
-        // Odd in both axes.
+        // Shears are odd: at an axis of mirror symmetry those on both sides cancel. Both neighbours here are the row on one side.
         if axes.is_mirrored && next[0] == next[1] {
             moved.shear = own.shear;
         }
@@ -298,23 +286,24 @@ fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
     moved
 }
 
-/// Shares above the horizon are no less than this, where energies are divided by them.
+/// Least share above the horizon by which an energy is divided.
 const SHARE_MIN: f64 = 1e-3;
 
-/// Weight with which the energies of a view are pulled to those of its neighbours, against squared residuals over energies.
+/// Weight of the squared distance to the energies of neighbours, against squared residuals over energies.
 const NEIGHBOUR_WEIGHT: f64 = 0.1;
 
 /// Rounds in which neighbours pull each other.
 const NEIGHBOUR_ROUNDS: u32 = 8;
 
-/// Amounts by view, each near the mean of its neighbours. `solve` has the amounts of a view for a guess.
+/// Amounts by view, each pulled to the mean of its neighbours. `solve` gives the amounts of a view for a guess.
 fn smoothed(beside: &[Vec<usize>], solve: impl Fn(usize, Option<Guess<'_>>) -> Vec<f64>) -> Vec<Vec<f64>> {
     let mut amounts: Vec<Vec<f64>> = (0..beside.len()).map(|view| solve(view, None)).collect();
     for _ in 0..NEIGHBOUR_ROUNDS {
         for (view, beside) in beside.iter().enumerate() {
             let share = 1.0 / beside.len() as f64;
-            let guess = |part: usize| share * beside.iter().map(|other| amounts[*other][part]).sum::<f64>();
-            let guess: Vec<f64> = (0..amounts[view].len()).map(guess).collect();
+            let means = (0..amounts[view].len())
+                .map(|part| share * beside.iter().map(|other| amounts[*other][part]).sum::<f64>());
+            let guess: Vec<f64> = means.collect();
             amounts[view] = solve(view, Some(Guess { amounts: &guess, weight: NEIGHBOUR_WEIGHT }));
         }
     }
@@ -329,14 +318,14 @@ const SHARE_POINTS: u32 = 4096;
 fn share_above(shape: &Shape, wo: DVec3, index: f64) -> f64 {
     const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
     let eye = refracted(wo, index);
-    let is_above = |i: &u32| {
+    let above = (0..SHARE_POINTS).filter(|i| {
         let u = STEP.map(|step| {
             let place = 0.5 + step * f64::from(*i);
             place - libm::floor(place)
         });
         outside(shape.sample(u), eye, index).is_some()
-    };
-    (0..SHARE_POINTS).filter(is_above).count() as f64 / f64::from(SHARE_POINTS)
+    });
+    above.count() as f64 / f64::from(SHARE_POINTS)
 }
 
 fn tail_of(angle: f64) -> f64 {
@@ -364,13 +353,13 @@ fn ripple(p: &[f64], lobes: usize, basis: Basis) -> Vec<f64> {
 
 /// Slopes of [`ripple`], which is linear.
 fn ripple_slopes(p: &[f64], lobes: usize, basis: Basis) -> Vec<Column> {
-    let unit = |j: usize| {
+    let per_lobe = basis.per_lobe();
+    let columns = (0..lobes * per_lobe).filter(|j| j % per_lobe + 1 < per_lobe).map(|j| {
         let mut unit = vec![0.0; p.len()];
         unit[j] = 1.0;
         (j, ripple(&unit, lobes, basis))
-    };
-    let per_lobe = basis.per_lobe();
-    (0..lobes * per_lobe).filter(|j| j % per_lobe + 1 < per_lobe).map(unit).collect()
+    });
+    columns.collect()
 }
 
 /// Light that a shape or the remainder sends to each cell, and its slopes by a few numbers.
@@ -390,13 +379,13 @@ impl<const N: usize> Sent<N> {
         self.slopes.iter_mut().zip(relative).for_each(|(slopes, relative)| slopes[cell] += value * relative);
     }
 
-    /// The slopes of a unit of the energy, and those of the share.
+    /// The slopes of the cells for a unit of energy, and the slope of the share.
     fn normalised(&self) -> [(Vec<f64>, f64); N] {
         let share = self.cells.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         self.slopes.each_ref().map(|slopes| {
             let slope: f64 = slopes.iter().sum();
-            let of_unit = |(slopes, cell): (&f64, &f64)| (slopes - cell / share * slope) / share;
-            (slopes.iter().zip(&self.cells).map(of_unit).collect(), slope)
+            let of_unit = slopes.iter().zip(&self.cells).map(|(slopes, cell)| (slopes - cell / share * slope) / share);
+            (of_unit.collect(), slope)
         })
     }
 }
@@ -411,11 +400,13 @@ impl ViewProblem {
     fn numbers(&self, p: &[f64], lobe: usize) -> Numbers {
         let own = &p[lobe * self.basis.per_lobe()..];
         let (first, t) = self.node();
-        let value = |term: &Term| {
-            let row = &own[term.row * NODES..];
-            term.factor * (row[first] + t * (row[first + 1] - row[first]))
-        };
-        self.terms.each_ref().map(|terms| terms.iter().map(value).sum())
+        self.terms.each_ref().map(|terms| {
+            let values = terms.iter().map(|term| {
+                let row = &own[term.row * NODES..];
+                term.factor * (row[first] + t * (row[first + 1] - row[first]))
+            });
+            values.sum()
+        })
     }
 
     /// The angle of the tail of a lobe.
@@ -425,6 +416,21 @@ impl ViewProblem {
 
     fn shape(&self, p: &[f64], lobe: usize) -> Shape {
         self.plane.shape(self.numbers(p, lobe), tail_of(self.tail_angle(p, lobe)))
+    }
+
+    /// A lobe with its energy by channel, in the half vectors of a medium of relative index `index`.
+    fn lobe(&self, p: &[f64], lobe: usize, index: f64, energy: Rgb) -> Lobe {
+        let shape = self.shape(p, lobe);
+        let share = share_above(&shape, self.wo, index);
+        let [x, y, shear] = shape.sharpness();
+        let shift = match self.plane {
+            Plane::OfEye(sin) if sin > 0.0 => shape.middle[0] / sin,
+            // Along the normal the sine is 0: the shift is the parameter of the last node.
+            Plane::OfEye(_) => p[lobe * self.basis.per_lobe() + SHIFT * NODES + NODES - 1],
+            Plane::OfTangents(_) => self.numbers(p, lobe)[SHIFT],
+        };
+        let strength = energy.map(|energy| energy / share.max(SHARE_MIN));
+        Lobe { strength, share, shift, sharpness: [x, y], shear, tail: shape.tail }
     }
 
     /// Light of a shape by cell, with slopes by the middle and by the logarithms of the widths as [`super::ellipse::Slopes`] has them, and by the
@@ -478,27 +484,28 @@ impl ViewProblem {
     pub(super) fn residuals(&self, profiles: &Profiles) -> Vec<f64> {
         let Profiles { cells, shares } = profiles;
         let energies = Amounts::new(cells, &self.weights).positive(&self.found, self.total, None);
-        let residual = |cell: usize| {
+        let residuals = (0..self.found.len()).map(|cell| {
             let sent: f64 = cells.iter().zip(&energies).map(|(profile, energy)| profile[cell] * energy).sum();
             self.roots[cell] * (self.found[cell] - sent)
-        };
-        let mut out: Vec<f64> = (0..self.found.len()).map(residual).collect();
+        });
         let lobes = shares.len() - 1;
-        out.extend(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0)));
-        out
+        residuals.chain(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0))).collect()
     }
 
-    /// Slopes of the residuals: those of profiles are analytic, those of the amounts that go with them are differences.
+    /// Difference quotients of the residuals, which are `now`, along slopes of a part's cells and share.
+    fn along(&self, profiles: &mut Profiles, part: usize, slopes: &(Vec<f64>, f64), now: &[f64]) -> Vec<f64> {
+        let (before, share_before) = (profiles.cells[part].clone(), profiles.shares[part]);
+        profiles.cells[part].iter_mut().zip(&slopes.0).for_each(|(cell, slope)| *cell += DIFFERENCE * slope);
+        profiles.shares[part] += DIFFERENCE * slopes.1;
+        let there = self.residuals(profiles);
+        (profiles.cells[part], profiles.shares[part]) = (before, share_before);
+        there.iter().zip(now).map(|(a, b)| (a - b) / DIFFERENCE).collect()
+    }
+
+    /// Slopes of the residuals, which are `now`. Slopes of profiles are analytic. Amounts follow from profiles, so residuals are differentiated
+    /// along profiles by difference quotients.
     fn slopes(&self, p: &[f64], lobes: usize, now: &[f64]) -> Vec<Column> {
         let mut profiles = self.profiles(p, lobes);
-        let mut along = |part: usize, (slopes, share): &(Vec<f64>, f64)| -> Vec<f64> {
-            let (before, share_before) = (profiles.cells[part].clone(), profiles.shares[part]);
-            profiles.cells[part].iter_mut().zip(slopes).for_each(|(cell, slope)| *cell += DIFFERENCE * slope);
-            profiles.shares[part] += DIFFERENCE * share;
-            let there = self.residuals(&profiles);
-            (profiles.cells[part], profiles.shares[part]) = (before, share_before);
-            there.iter().zip(now).map(|(a, b)| (a - b) / DIFFERENCE).collect()
-        };
         let (first, t) = self.node();
         let mut columns = Vec::new();
         for lobe in 0..lobes {
@@ -508,7 +515,7 @@ impl ViewProblem {
                 if terms.is_empty() {
                     continue;
                 }
-                let column = along(lobe, &mixed(&sent, slopes));
+                let column = self.along(&mut profiles, lobe, &mixed(&sent, slopes), now);
                 for term in terms.iter().filter(|term| term.factor != 0.0) {
                     for (node, share) in [(first, 1.0 - t), (first + 1, t)] {
                         let number = of_lobe + term.row * NODES + node;
@@ -517,7 +524,7 @@ impl ViewProblem {
                 }
             }
             let [.., tail] = &sent;
-            columns.push((of_lobe + self.basis.per_lobe() - 1, along(lobe, tail)));
+            columns.push((of_lobe + self.basis.per_lobe() - 1, self.along(&mut profiles, lobe, tail, now)));
         }
         let wide = wide_of(p, self.axis);
         let mut sent = Sent::<2>::new(self.found.len());
@@ -529,13 +536,13 @@ impl ViewProblem {
             }
         }
         for (number, slopes) in (p.len() - 2..).zip(&sent.normalised()) {
-            columns.push((number, along(lobes, slopes)));
+            columns.push((number, self.along(&mut profiles, lobes, slopes, now)));
         }
         columns
     }
 }
 
-/// The sum of slopes with factors.
+/// The sum of slopes, each times its factor.
 fn mixed(sent: &[(Vec<f64>, f64); 6], factors: [f64; 5]) -> (Vec<f64>, f64) {
     let mut sum = (vec![0.0; sent[0].0.len()], 0.0);
     for ((slopes, share), factor) in sent.iter().zip(factors).filter(|(_, factor)| *factor != 0.0) {
@@ -545,7 +552,7 @@ fn mixed(sent: &[(Vec<f64>, f64); 6], factors: [f64; 5]) -> (Vec<f64>, f64) {
     sum
 }
 
-/// The view of a row at an azimuth, whose cosine and sine are given.
+/// The view of a row at the azimuth of a cosine and a sine.
 pub(super) fn seen_from(axis: ViewAxis, [cos, sin]: [f64; 2], row: usize) -> DVec3 {
     let DVec3 { x, z, .. } = direction(axis.cos_theta(row as f64));
     DVec3::new(cos * x, sin * x, z)

@@ -5,26 +5,26 @@ use luthier_optics::Rgb;
 use super::shape::{Shape, TAIL_MIN};
 use super::solve::solve;
 
-/// Cosine of the view that stands for all that are flatter, where rows are traced: at 89.9 degrees.
+/// Cosine at which the row of the horizon is traced, at 89.9 degrees.
 const FLATTEST: f64 = 0.001_745;
 
 /// A critical angle of the view, beyond which a medium that is optically thinner than the exterior lets nothing through.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Critical {
-    /// Squared cotangent k of the angle; 0 where there is none.
+    /// Squared cotangent k of the angle; 0 if the stack has no such angle.
     pub cot_sq: f64,
     /// Half the width w over which rough interfaces blur the kink, in squared cosines.
     pub width: f64,
-    /// Share of the view's own part in the cosine of the axis; the rest is the cosine inside.
+    /// Share of the view's own cosine in the cosine of the axis; the rest is the cosine inside.
     pub plain_share: f64,
 }
 
-/// Share of the view's own part, about.
+/// Share of the view's own cosine, before [`Critical::new`] moves a node to the kink.
 const PLAIN_SHARE: f64 = 0.25;
 
-/// The view's own part of the axis: `(1 + b) c / (b + c)` of its cosine c. Reflectances are steepest at the horizon, where it is five times as
-/// steep as c.
+/// The view's own part of the axis: `(1 + b) c / (b + c)` of its cosine c. At the horizon, where reflectances are steepest, it is five times as steep
+/// as c.
 fn plain(cos_theta: f64) -> f64 {
     cos_theta * ((1.0 + PLAIN_BEND) / (cos_theta + PLAIN_BEND))
 }
@@ -33,7 +33,7 @@ fn plain(cos_theta: f64) -> f64 {
 const PLAIN_BEND: f64 = 0.25;
 
 impl Critical {
-    /// The critical angle of a medium of relative index below 1; none for another. A node of the rows is at the kink.
+    /// The critical angle of a medium of relative index below 1, and none otherwise. The share is chosen so that a node lies at the kink.
     pub fn new(index: f64, width: f64, rows: usize) -> Self {
         if index >= 1.0 {
             return Self::default();
@@ -45,7 +45,7 @@ impl Critical {
         let (inside, last) = (axis.inside(outside), (axis.size - 1) as f64);
         let u = libm::round(axis.place(outside)).max(1.0) / last;
         let share = (u / (2.0 - u) - inside) / (plain(outside) - inside);
-        // Where the kink is beside an end of the axis, no node can be.
+        // A kink next to an end of the axis gets no node: the share would be far from the usual one.
         if share > 0.5 * PLAIN_SHARE && share < 2.0 * PLAIN_SHARE {
             Self { plain_share: share, ..critical }
         } else {
@@ -56,20 +56,29 @@ impl Critical {
 
 /// The axis of rows over the view: nodes at equal distances in `2c / (1 + c)`, up to the normal.
 ///
-/// c is the cosine of the view. Where a medium reflects flat light totally, everything from below has a kink at the critical angle. There
-/// c is a mean of the cosine inside ([`Self::inside`]), whose slope is steep at the kink, and of `5 cos / (1 + 4 cos)` of the view, which
-/// tells flatter views apart.
+/// Usually c is the cosine of the view. If a medium reflects flat light totally, all light from below has a kink at the critical angle. Then c
+/// is a mean of two cosines: the cosine inside ([`Self::inside`]) is steep at the kink, and `5 cos / (1 + 4 cos)` of the view tells flatter views
+/// apart.
+///
+/// ```
+/// use luthier_layers::lobes::{Critical, ViewAxis};
+///
+/// let axis = ViewAxis::new(4, Critical::default());
+/// // 2c / (1 + c) of c = 1/2 is two thirds of the way along three steps.
+/// assert!((axis.place(0.5) - 2.0).abs() < 1e-12);
+/// assert!((axis.cos_theta(2.0) - 0.5).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ViewAxis {
     size: usize,
     critical: Critical,
-    /// Root at the horizon, and what there is from it to that at the normal.
+    /// The rounded root at the horizon, and its range from there to the normal.
     roots: [f64; 2],
 }
 
 impl ViewAxis {
-    /// An axis of so many nodes, at least two.
+    /// An axis of `size` nodes, at least two.
     pub fn new(size: usize, critical: Critical) -> Self {
         let [horizon, normal] = [-critical.cot_sq, 1.0].map(|x| root(x, critical.width));
         Self { size: size.max(2), critical, roots: [horizon, normal - horizon] }
@@ -80,7 +89,7 @@ impl ViewAxis {
         self.size
     }
 
-    /// The axis of as many nodes less, every so many of these: the first, the last and those between.
+    /// The axis of every `step`-th node, with the first and the last.
     pub(super) fn thinned(self, step: usize) -> Self {
         Self::new((self.size - 1) / step + 1, self.critical)
     }
@@ -90,9 +99,9 @@ impl ViewAxis {
         self.critical
     }
 
-    /// The cosine inside: with `x = cos^2 - k sin^2`, the squared cosine of the refracted direction, the root of x rounded off,
-    /// `sqrt((x + sqrt(x^2 + 4 w^2)) / 2)`, in proportion from 0 at the horizon to 1 at the normal. Without a critical angle it is the
-    /// cosine.
+    /// The cosine inside, from 0 at the horizon to 1 at the normal. The squared cosine of the refracted direction is in proportion to
+    /// `x = cos^2 - k sin^2`; its root is rounded off to `sqrt((x + sqrt(x^2 + 4 w^2)) / 2)`, because rough interfaces blur the kink. Without a
+    /// critical angle the result is the cosine itself.
     pub fn inside(self, cos_theta: f64) -> f64 {
         let sin_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
         let [horizon, range] = self.roots;
@@ -100,7 +109,7 @@ impl ViewAxis {
         ((root(x, self.critical.width) - horizon) / range).clamp(0.0, 1.0)
     }
 
-    /// The cosine c of a direction.
+    /// The cosine c of a view.
     pub fn cosine(self, cos_theta: f64) -> f64 {
         if self.critical.cot_sq > 0.0 {
             let inside = self.inside(cos_theta);
@@ -120,7 +129,7 @@ impl ViewAxis {
         2.0 * c / (1.0 + c) * (self.size - 1) as f64
     }
 
-    /// The view of a fractional number, not quite at the horizon.
+    /// The cosine of the view at a fractional number of a node, at least that of 89.9 degrees.
     pub fn cos_theta(self, place: f64) -> f64 {
         let u = place / (self.size - 1) as f64;
         let c = (u / (2.0 - u)).clamp(0.0, 1.0);
@@ -135,16 +144,11 @@ impl ViewAxis {
         f64::max(0.5 * (low + high), FLATTEST)
     }
 
-    /// Rows at the nodes for those of more views, given by their cosines: what is linear between them is as near as it can be, by least squares.
-    /// A curve errs half as much between nodes as between rows that lie on it, and as much at them.
+    /// Rows at the nodes, given rows at more views: lines between the nodes are nearest to the given rows by least squares. `cosines` are those of
+    /// the views. On a curve, such lines err half as much as chords do, and as much at the nodes as between them.
     pub(super) fn nearest(self, rows: &[Row], cosines: &[f64]) -> Vec<Row> {
-        let ends = |cos_theta: f64| {
-            let place = self.place(cos_theta);
-            let first = (place as usize).min(self.size - 2);
-            [(first, 1.0 - (place - first as f64)), (first + 1, place - first as f64)]
-        };
         let mut matrix = vec![vec![0.0; self.size]; self.size];
-        for ends in cosines.iter().map(|cos_theta| ends(*cos_theta)) {
+        for ends in cosines.iter().map(|cos_theta| self.ends(*cos_theta)) {
             ends.iter().for_each(|(i, x)| ends.iter().for_each(|(j, y)| matrix[*i][*j] += x * y));
         }
         let (given, has_base): (Vec<Vec<[f64; 4]>>, _) =
@@ -153,21 +157,28 @@ impl ViewAxis {
         for (part, c) in (0..given[0].len()).flat_map(|part| [0, 1, 2, 3].map(|c: usize| (part, c))) {
             let mut right = vec![0.0; self.size];
             for (row, cos_theta) in given.iter().zip(cosines) {
-                ends(*cos_theta).iter().for_each(|(i, x)| right[*i] += x * row[part][c]);
+                self.ends(*cos_theta).iter().for_each(|(i, x)| right[*i] += x * row[part][c]);
             }
             parts.iter_mut().zip(solve(matrix.clone(), right)).for_each(|(parts, x)| parts[part][c] = x);
         }
         parts.iter().map(|parts| Row::of_parts(parts, has_base)).collect()
     }
+
+    /// The nodes on both sides of a view, each with its weight in the line between them.
+    fn ends(self, cos_theta: f64) -> [(usize, f64); 2] {
+        let place = self.place(cos_theta);
+        let first = (place as usize).min(self.size - 2);
+        [(first, 1.0 - (place - first as f64)), (first + 1, place - first as f64)]
+    }
 }
 
-/// Halvings of the interval in which a view is looked for.
+/// Halvings of the interval in which [`ViewAxis::cos_theta`] looks for a view: down to the digits of a double.
 const BISECTIONS: u32 = 50;
 
 /// The root of x, rounded off over a width: `sqrt((x + sqrt(x^2 + 4 w^2)) / 2)`.
 fn root(x: f64, width: f64) -> f64 {
     let far = (x * x + 4.0 * width * width).sqrt();
-    // Without cancellation.
+    // For negative x the sum would cancel.
     let sum = if x < 0.0 { 4.0 * width * width / (far - x) } else { x + far };
     (0.5 * sum).sqrt()
 }
@@ -182,31 +193,30 @@ pub struct Row {
     pub lobes: Vec<Lobe>,
     /// Energy of the wide remainder.
     pub wide: Rgb,
-    /// The light of a diffuse base below interfaces in the remainder; none of another stack.
+    /// The light of a diffuse base below interfaces, which the remainder includes; `None` for a stack without one.
     pub base: Option<BaseLight>,
 }
 
-/// The light of a diffuse base at a view.
+/// The light of a diffuse base at a view. [`Self::more`] recolours the base without a new fit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BaseLight {
-    /// Its energy in the wide remainder.
+    /// Energy in the wide remainder.
     pub energy: Rgb,
     /// Share of the light from the base that the layers send back to it.
     pub internal: Rgb,
-    /// Coefficients of the remainder's shape, which is that of the light of a Lambertian base; 0 above another base.
+    /// Coefficients of the shape of a Lambertian base's light, which the remainder takes; 0 above another base.
     pub falloff: [f64; 2],
 }
 
 impl BaseLight {
-    /// Light by which a base of an albedo R is brighter than one of the albedo with which the stack was simulated: its light is in proportion to `R / (1 - r R)`,
-    /// r being what the layers send back.
+    /// Energy that a base of another albedo sends beyond the energy of the simulated one. The light of an albedo R is in proportion to `R / (1 - r R)`,
+    /// with r the share that the layers send back.
     pub fn more(&self, simulated: Rgb, albedo: Rgb) -> Rgb {
         [0, 1, 2].map(|c: usize| {
-            let light = |albedo: f64| albedo / (1.0 - self.internal[c] * albedo).max(1e-3);
-            let own = light(simulated[c]);
-            // A black base leaves no light to scale.
-            if own > 0.0 { self.energy[c] * (light(albedo[c]) / own - 1.0) } else { 0.0 }
+            let [own, other] = [simulated[c], albedo[c]].map(|r| r / (1.0 - self.internal[c] * r).max(1e-3));
+            // A base that was simulated black leaves no light to scale.
+            if own > 0.0 { self.energy[c] * (other / own - 1.0) } else { 0.0 }
         })
     }
 }
@@ -215,15 +225,15 @@ impl BaseLight {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lobe {
-    /// Energy over the share of the shape above the horizon.
+    /// Energy divided by [`Self::share`].
     pub strength: Rgb,
     /// Share of the shape above the horizon.
     pub share: f64,
     /// Shift of the middle over the sine of the view.
     pub shift: f64,
-    /// Reciprocal widths in the plane of the eye and across it. In axes: those of a symmetric matrix S, along both.
+    /// Reciprocal widths in the plane of the eye and across it. In axes: the diagonal of a symmetric matrix S.
     pub sharpness: [f64; 2],
-    /// The number of S between the axes; 0 in the plane of the eye.
+    /// The entry of S off the diagonal; 0 in the plane of the eye.
     pub shear: f64,
     /// Tail of the shape.
     pub tail: f64,
@@ -238,11 +248,11 @@ impl Lobe {
 
     /// The shape in axes in which the eye has coordinates along the surface.
     ///
-    /// The middle is `shift det(S) S^-2 eye`: of S times the slope from it, the middle's part is `shift adj(S) eye`.
+    /// The middle is `shift det(S) S^-2 eye`, so that S times the middle is `shift adj(S) eye`.
     pub(super) fn in_axes(&self, eye: [f64; 2]) -> Shape {
         let [x, y] = self.sharpness;
         let (mean, half) = (0.5 * (x + y), 0.5 * (x - y));
-        // Rounding may leave no ellipse.
+        // Rounding may leave no ellipse: the lesser sharpness would not be positive.
         let radius = libm::hypot(half, self.shear).min(mean * (1.0 - SHARPNESS_MIN));
         let (sin, cos) = libm::sincos(0.5 * libm::atan2(self.shear, half));
         let sharpness = [mean + radius, mean - radius];
@@ -262,10 +272,10 @@ impl Lobe {
 const SHARPNESS_MIN: f64 = 1e-4;
 
 impl Row {
-    /// Parts of the light of a diffuse base.
+    /// Number of parts of the light of a diffuse base.
     pub const BASE_PARTS: usize = 2;
 
-    /// Number of parts of a row of so many lobes, without those of the light of a diffuse base.
+    /// Number of parts of a row with `lobes` lobes, without the parts of a diffuse base.
     pub const fn parts(lobes: usize) -> usize {
         2 + 2 * lobes
     }
@@ -274,43 +284,41 @@ impl Row {
     ///
     /// | part | x, y, z, w |
     /// |---|---|
-    /// | -2 | share of the light from a diffuse base that the layers send back to it RGB, b of the remainder; not there without such a base |
-    /// | -1 | energy of the light of that base in the remainder RGB, a of the remainder; likewise |
+    /// | -2, with a diffuse base only | share of the base's light that the layers send back to it RGB, b of the remainder |
+    /// | -1, with a diffuse base only | energy of the base's light in the remainder RGB, a of the remainder |
     /// | 0 | wide remainder RGB, shear of the first lobe |
     /// | 1 + 2k | strength of lobe k RGB, shift |
     /// | 2 + 2k | of lobe k the sharpness along the plane of the eye, and across it; 1 over the tail; share |
     /// | last | directional albedo RGB, shear of the second lobe |
     ///
-    /// Sharpness x and y and shear k are times the root of the tail: with it the shape is `(x y - k^2) z / pi (1 + q)^-(1 + z)`.
+    /// Sharpness x and y and shear k are multiplied by the root of the tail. With z, 1 over the tail, the shape is then
+    /// `(x y - k^2) z / pi (1 + q)^-(1 + z)`: a shader has no tail to multiply.
     pub fn to_parts(&self) -> Vec<[f64; 4]> {
-        let rgb = |[r, g, b]: Rgb, w: f64| [r, g, b, w];
-        let shear = |lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt());
-        let of_base = |BaseLight { energy, internal, falloff: [a, b] }| [rgb(internal, b), rgb(energy, a)];
-        let mut parts: Vec<[f64; 4]> = self.base.map(of_base).into_iter().flatten().collect();
-        parts.push(rgb(self.wide, shear(0)));
+        let [shear_first, shear_second] = [0, 1]
+            .map(|lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt()));
+        let mut parts = Vec::new();
+        if let Some(BaseLight { energy, internal, falloff: [a, b] }) = self.base {
+            parts.extend([part(internal, b), part(energy, a)]);
+        }
+        parts.push(part(self.wide, shear_first));
         for lobe in &self.lobes {
-            parts.push(rgb(lobe.strength, lobe.shift));
+            parts.push(part(lobe.strength, lobe.shift));
             let tail = lobe.tail.max(TAIL_MIN);
             let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
             parts.push([x, y, 1.0 / tail, lobe.share]);
         }
-        parts.push(rgb(self.albedo_dir, shear(1)));
+        parts.push(part(self.albedo_dir, shear_second));
         parts
     }
 
-    /// The row of parts, of which the first two are those of a diffuse base if there are such.
+    /// The row of parts. With `has_base`, the first two belong to a diffuse base.
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
-        let rgb = |part: Option<&[f64; 4]>| part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b]);
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
         let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
-        let shear = |lobe: usize| match lobe {
-            0 => parts.first(),
-            1 => parts.last(),
-            _ => None,
-        };
-        let lobe = |(number, pair): (usize, &[[f64; 4]])| {
+        let shears = [parts.first(), parts.last()].into_iter().chain(std::iter::repeat(None));
+        let lobes = inner.chunks_exact(2).zip(shears).filter_map(|(pair, shear)| {
             let &[strength, [x, y, inverse_tail, share]] = pair else { return None };
             let inverse_tail = inverse_tail.max(1.0);
             let sharpness = [x, y].map(|x| x * inverse_tail.sqrt());
@@ -319,19 +327,19 @@ impl Row {
                 share,
                 shift: strength[3],
                 sharpness,
-                shear: shear(number).map_or(0.0, |part| part[3] * inverse_tail.sqrt()),
+                shear: shear.map_or(0.0, |part| part[3] * inverse_tail.sqrt()),
                 tail: 1.0 / inverse_tail,
             })
-        };
+        });
         Self {
             albedo_dir: rgb(parts.last()),
-            lobes: inner.chunks_exact(2).enumerate().filter_map(lobe).collect(),
+            lobes: lobes.collect(),
             wide: rgb(parts.first()),
             base: has_base.then_some(base),
         }
     }
 
-    /// The row with lobes without light behind its own, so many in all.
+    /// The row with `lobes` lobes in all: those beyond its own have no light.
     #[must_use]
     pub fn filled(mut self, lobes: usize) -> Self {
         let none = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
@@ -339,7 +347,7 @@ impl Row {
         self
     }
 
-    /// The row with slopes that are so many times as steep: lobes are as much wider, and shifted as much farther.
+    /// The row with all slopes scaled by a factor: lobes are wider by it, and shifted farther.
     #[must_use]
     pub fn spread(mut self, factor: f64) -> Self {
         for lobe in &mut self.lobes {
@@ -350,7 +358,7 @@ impl Row {
         self
     }
 
-    /// Energies: the albedo, that of the wide remainder, that of a diffuse base, which the remainder has in it, and those of the lobes.
+    /// Energies of all light, of the wide remainder, of a diffuse base (part of the remainder), and of each lobe.
     pub fn energies(&self) -> Vec<Rgb> {
         let of_base = self.base.map_or([0.0; 3], |base| base.energy);
         let lobes = self.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));
@@ -360,18 +368,20 @@ impl Row {
     /// Energy of one facet of the first interface: the albedo without lobes and remainder.
     pub fn first_facet(&self) -> Rgb {
         let energies = self.energies();
-        let below = |c: usize| energies[1..2].iter().chain(&energies[3..]).map(|energy| energy[c]).sum::<f64>();
-        [0, 1, 2].map(|c: usize| (self.albedo_dir[c] - below(c)).max(0.0))
+        [0, 1, 2].map(|c: usize| {
+            let below: f64 = energies[1..2].iter().chain(&energies[3..]).map(|energy| energy[c]).sum();
+            (self.albedo_dir[c] - below).max(0.0)
+        })
     }
 
-    /// The row without light below 0, shares above 1, and more light than falls in, as noise and least squares may leave: of what comes from below
-    /// is so much less.
+    /// The row with energies from 0 up, shares within 0..=1, and an albedo of at most 1. Noise and least squares may break all three. If the albedo
+    /// exceeds 1, the light from below is scaled down.
     pub(super) fn bounded(mut self) -> Self {
-        let positive = |rgb: Rgb| rgb.map(|x| x.max(0.0));
-        (self.wide, self.albedo_dir) = (positive(self.wide), positive(self.albedo_dir));
-        self.base.iter_mut().for_each(|base| base.energy = positive(base.energy));
-        for lobe in &mut self.lobes {
-            (lobe.strength, lobe.share) = (positive(lobe.strength), lobe.share.clamp(0.0, 1.0));
+        self.lobes.iter_mut().for_each(|lobe| lobe.share = lobe.share.clamp(0.0, 1.0));
+        let strengths = self.lobes.iter_mut().map(|lobe| &mut lobe.strength);
+        let of_base = self.base.iter_mut().map(|base| &mut base.energy);
+        for energy in strengths.chain(of_base).chain([&mut self.wide, &mut self.albedo_dir]) {
+            *energy = energy.map(|x| x.max(0.0));
         }
         let first = self.first_facet();
         for (c, facet) in first.into_iter().enumerate() {
@@ -390,10 +400,20 @@ impl Row {
     /// The row between two others.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
-        let mix = |a: &[f64; 4], b: &[f64; 4]| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]));
-        let parts: Vec<[f64; 4]> = self.to_parts().iter().zip(&other.to_parts()).map(|(a, b)| mix(a, b)).collect();
-        Self::of_parts(&parts, self.base.is_some())
+        let (own, other) = (self.to_parts(), other.to_parts());
+        let parts = own.iter().zip(&other).map(|(a, b)| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i])));
+        Self::of_parts(&parts.collect::<Vec<_>>(), self.base.is_some())
     }
+}
+
+/// A part of a row.
+fn part([r, g, b]: Rgb, w: f64) -> [f64; 4] {
+    [r, g, b, w]
+}
+
+/// The colour of a part; black where there is none.
+fn rgb(part: Option<&[f64; 4]>) -> Rgb {
+    part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b])
 }
 
 #[cfg(test)]

@@ -9,12 +9,20 @@ use super::tally::{COSINES, Tally};
 /// Points of a bin of cosines.
 const STEPS: usize = 8;
 
-/// A density of slopes: elliptic.
+/// An elliptic density of slopes, Student's in two dimensions. It integrates to 1 over all slopes.
 ///
-/// `p(s) = (1 + t q)^-(1 + 1/t) / (pi w_0 w_1)`, `q = (u_0 / w_0)^2 + (u_1 / w_1)^2`, u the slope from the middle along the axes of the ellipse:
-/// Student's in two dimensions. Its tail t is 0 for
-/// a Gaussian (Beckmann's distribution), and 1 for the distribution of Trowbridge and Reitz (GGX). It counts as [`TAIL_MIN`] at least: at q = 7,
-/// where a Gaussian is a thousandth of its peak, that is 2.4 % more. The density integrates to 1 over all slopes.
+/// `p(s) = (1 + t q)^-(1 + 1/t) / (pi w_0 w_1)`, `q = (u_0 / w_0)^2 + (u_1 / w_1)^2`; u is the slope from the middle along the axes of the ellipse.
+/// A tail t of 0 gives a Gaussian (Beckmann's distribution), a tail of 1 the distribution of Trowbridge and Reitz (GGX). Tails below [`TAIL_MIN`]
+/// count as it: at q = 7, where a Gaussian is a thousandth of its peak, the density is then 2.4 % too large.
+///
+/// ```
+/// use luthier_layers::lobes::Shape;
+///
+/// let ggx = Shape { middle: [0.1, 0.0], width: [0.3, 0.2], turn: [1.0, 0.0], tail: 1.0 };
+/// assert!((ggx.density([0.1, 0.0]) * std::f64::consts::PI * 0.3 * 0.2 - 1.0).abs() < 1e-12);
+/// // One width from the middle, (1 + 1)^-2 of the peak is left.
+/// assert!((ggx.density([0.4, 0.0]) / ggx.density([0.1, 0.0]) - 0.25).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// The middle: in the plane of the eye and across it, or in tangents.
@@ -27,7 +35,7 @@ pub struct Shape {
     pub tail: f64,
 }
 
-/// The least tail.
+/// The least tail: formulas divide by it.
 pub const TAIL_MIN: f64 = 1.0 / 1024.0;
 
 impl Shape {
@@ -38,23 +46,23 @@ impl Shape {
         libm::exp(-(1.0 + 1.0 / tail) * libm::log1p(tail * q)) / (PI * self.width[0] * self.width[1])
     }
 
-    /// The slope from the middle along the axes, over the widths.
+    /// A slope from the middle, in the axes of the ellipse and over its widths.
     pub(super) fn scaled(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([x, y], [cos, sin]) = ([x - self.middle[0], y - self.middle[1]], self.turn);
         [(cos * x + sin * y) / self.width[0], (cos * y - sin * x) / self.width[1]]
     }
 
-    /// The slope of [`Self::scaled`].
+    /// The inverse of [`Self::scaled`].
     pub(super) fn unscaled(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([x, y], [cos, sin]) = ([self.width[0] * x, self.width[1] * y], self.turn);
         [self.middle[0] + (cos * x - sin * y), self.middle[1] + (sin * x + cos * y)]
     }
 
-    /// Reciprocal widths as a symmetric matrix: along x, along y, and between them.
+    /// Reciprocal widths as a symmetric matrix: both entries of its diagonal, and the one off it.
     pub(super) fn sharpness(&self) -> [f64; 3] {
         let ([cos, sin], [first, second]) = (self.turn, self.width.map(|width| 1.0 / width));
         let (cos_sq, sin_sq) = (cos * cos, sin * sin);
-        // No negative zero.
+        // Adding 0 turns a negative zero into 0.
         let shear = cos * sin * (first - second) + 0.0;
         [cos_sq * first + sin_sq * second, sin_sq * first + cos_sq * second, shear]
     }
@@ -71,10 +79,19 @@ impl Shape {
     }
 }
 
-/// The shape of what is left over the cosine of the light: `S(mu) = 1 - a (1 - c)^5 - b (1 - c)^2`, not below 0; c is mu, or the cosine of
-/// [`ViewAxis::cosine`].
+/// The shape of the wide remainder over the cosine mu of the light: `S(mu) = 1 - a (1 - c)^5 - b (1 - c)^2`, not below 0. c is mu, or the cosine
+/// inside ([`ViewAxis::inside`]) if there is a critical angle.
 ///
 /// The fifth power is Schlick's, for light that crosses an interface; the square is for whatever else darkens grazing light.
+///
+/// ```
+/// use luthier_layers::lobes::{Critical, ViewAxis, Wide};
+///
+/// let wide = Wide::new([0.7, 0.2], ViewAxis::new(2, Critical::default()));
+/// assert!((wide.value(0.5) - (1.0 - 0.7 / 32.0 - 0.2 / 4.0)).abs() < 1e-12);
+/// // 2 int mu S = 1 - a / 21 - b / 6.
+/// assert!((wide.integral() - (1.0 - 0.7 / 21.0 - 0.2 / 6.0)).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Wide {
@@ -89,14 +106,14 @@ impl Wide {
         self.falloff
     }
 
-    /// S.
+    /// S at a cosine of the light.
     pub fn value(&self, cos_theta: f64) -> f64 {
         let rest = 1.0 - self.axis.inside(cos_theta);
         let square = rest * rest;
         (1.0 - self.falloff[0] * (square * square * rest) - self.falloff[1] * square).max(0.0)
     }
 
-    /// Slopes of S by a and by b where it is not 0.
+    /// Slopes of S by a and by b, wherever S is above 0.
     pub(super) fn slopes(&self, cos_theta: f64) -> [f64; 2] {
         let rest = 1.0 - self.axis.inside(cos_theta);
         let square = rest * rest;
@@ -110,7 +127,8 @@ impl Wide {
         wide
     }
 
-    /// The shape of coefficients that leave it above 0 everywhere, over the same axis; its integral is linear in them.
+    /// The shape of other coefficients over the same axis. They have to leave S above 0 everywhere: its integral is then linear in them, which saves
+    /// the quadrature.
     #[must_use]
     pub fn of_base(self, falloff: [f64; 2]) -> Self {
         let [fifth, square] = self.moments();
@@ -125,12 +143,12 @@ impl Wide {
     /// The mean of a function over the squared cosine, by the midpoint rule.
     fn mean(&self, of: impl Fn(&Self, f64) -> f64) -> f64 {
         const POINTS: u32 = 256;
-        let value = |i: u32| of(self, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
-        (0..POINTS).map(value).sum::<f64>() / f64::from(POINTS)
+        let sum: f64 = (0..POINTS).map(|i| of(self, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt())).sum();
+        sum / f64::from(POINTS)
     }
 
-    /// Coefficients of the shape that is the nearest to the light of a Lambertian base, by least squares over the cosine of that light: it is the
-    /// same at all views. `None` without such light.
+    /// Coefficients of the shape nearest to the light of a Lambertian base, by least squares over the cosine of that light; `None` without such light.
+    /// Its shape does not depend on the view, so all views are added up.
     pub(super) fn falloff_of(axis: ViewAxis, views: &[Tally]) -> Option<[f64; 2]> {
         let mut light = [0.0; COSINES];
         for by_cosine in views.iter().filter_map(|view| view.by_cosine.as_ref()) {
@@ -140,14 +158,9 @@ impl Wide {
         let shape = Self { falloff: [0.0; 2], axis, integral: 1.0 };
         let (mut matrix, mut right) = (vec![vec![0.0; 3]; 3], vec![0.0; 3]);
         for (bin, light) in light.iter().enumerate() {
-            // The integral of a function of the cosine over a bin.
-            let integral = |of: &dyn Fn(f64) -> f64| -> f64 {
-                let point = |i: usize| (bin as f64 + (i as f64 + 0.5) / STEPS as f64) / COSINES as f64;
-                (0..STEPS).map(point).map(|mu| 2.0 * mu * of(mu)).sum::<f64>() / (STEPS * COSINES) as f64
-            };
-            let of_cosine = integral(&|_| 1.0);
-            let slope = |power: usize| integral(&|mu| shape.slopes(mu)[power]);
-            let terms = [of_cosine, slope(0), slope(1)];
+            let of_cosine = over_bin(bin, |_| 1.0);
+            let [fifth, square] = [0, 1].map(|power: usize| over_bin(bin, |mu| shape.slopes(mu)[power]));
+            let terms = [of_cosine, fifth, square];
             for i in 0..3 {
                 right[i] += terms[i] * light / total / of_cosine;
                 (0..3).for_each(|j| matrix[i][j] += terms[i] * terms[j] / of_cosine);
@@ -161,6 +174,12 @@ impl Wide {
     pub fn integral(&self) -> f64 {
         self.integral
     }
+}
+
+/// The integral of a function of the cosine mu over a bin of cosines, with weight 2 mu.
+fn over_bin(bin: usize, of: impl Fn(f64) -> f64) -> f64 {
+    let points = (0..STEPS).map(|i| (bin as f64 + (i as f64 + 0.5) / STEPS as f64) / COSINES as f64);
+    points.map(|mu| 2.0 * mu * of(mu)).sum::<f64>() / (STEPS * COSINES) as f64
 }
 
 #[cfg(test)]

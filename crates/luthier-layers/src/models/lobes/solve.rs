@@ -1,8 +1,8 @@
-//! Small dense systems of least squares, in a fixed order of operations: bytes of fitted lobes depend on them. So `levenberg-marquardt` and
-//! `nalgebra`, which fit beams, have no place here: products of nalgebra are fused on some machines.
+//! Small dense systems of least squares, in a fixed order of operations, because bytes of tables depend on them. `levenberg-marquardt` and
+//! `nalgebra`, which fit beams, are not used here: nalgebra fuses products on some machines.
 
-/// The solution of `a x = b` for a symmetric positive matrix, by Gaussian elimination with pivots on the diagonal alone. Unknowns without
-/// a pivot are 0.
+/// The solution of `a x = b` for a symmetric positive matrix, by Gaussian elimination with pivots on the diagonal alone. An unknown without a
+/// pivot is left open by the system, and becomes 0.
 pub(super) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for i in 0..n {
@@ -26,17 +26,17 @@ pub(super) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// Weight of the squared difference between the sum of the amounts and `total` against squared residuals.
+/// Weight of the squared difference between the sum of the amounts and the total energy, against squared residuals: in effect a constraint.
 const TOTAL_WEIGHT: f64 = 1e4;
 
-/// Amounts of some profiles: normal equations, and the guess that the amounts are pulled to.
+/// The normal equations for amounts of some profiles.
 pub(super) struct Amounts<'a> {
     profiles: &'a [Vec<f64>],
     weights: &'a [f64],
     matrix: Vec<Vec<f64>>,
 }
 
-/// A guess at the amounts, and its weight against squared residuals.
+/// A guess to which amounts are pulled, and its weight against squared residuals.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Guess<'a> {
     pub(super) amounts: &'a [f64],
@@ -44,29 +44,26 @@ pub(super) struct Guess<'a> {
 }
 
 impl<'a> Amounts<'a> {
-    /// For profiles by cell and weights of the squared residuals.
+    /// The equations of profiles by cell, with weights of the squared residuals.
     pub(super) fn new(profiles: &'a [Vec<f64>], weights: &'a [f64]) -> Self {
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter().zip(b).zip(weights).map(|((a, b), w)| a * b * w).sum::<f64>() + TOTAL_WEIGHT
-        };
-        let matrix = profiles.iter().map(|a| profiles.iter().map(|b| product(a, b)).collect()).collect();
-        Self { profiles, weights, matrix }
+        let rows = profiles.iter().map(|a| profiles.iter().map(|b| weighted(a, b, weights) + TOTAL_WEIGHT).collect());
+        Self { profiles, weights, matrix: rows.collect() }
     }
 
     fn right(&self, found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
-        let product = |(part, profile): (usize, &Vec<f64>)| -> f64 {
-            let data: f64 = profile.iter().zip(found).zip(self.weights).map(|((a, f), w)| a * f * w).sum();
+        let products = self.profiles.iter().enumerate().map(|(part, profile)| {
+            let data = weighted(profile, found, self.weights);
             data + TOTAL_WEIGHT * total + guess.map_or(0.0, |guess| guess.weight * guess.amounts[part])
-        };
-        self.profiles.iter().enumerate().map(product).collect()
+        });
+        products.collect()
     }
 
-    /// The amounts, not negative, that leave the least residuals, by trying every set of profiles that count.
+    /// The non-negative amounts with the least residuals. Every set of profiles is tried: there are few.
     pub(super) fn positive(&self, found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
         self.best(found, total, guess, (1 << self.profiles.len()) - 1)
     }
 
-    /// As [`Self::positive`], of the profiles alone that have an amount in `others`.
+    /// [`Self::positive`] among the profiles that have an amount in `others`.
     pub(super) fn among(&self, others: &[f64], found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
         let counted = others.iter().enumerate().filter(|(_, amount)| **amount > 0.0).map(|(i, _)| 1 << i).sum();
         self.best(found, total, guess, counted)
@@ -77,7 +74,7 @@ impl<'a> Amounts<'a> {
         let mut best = (0.0, vec![0.0; right.len()]);
         for set in (1..=counted).filter(|set| set & !counted == 0) {
             let amounts = self.of(set, &right, guess);
-            // What the squared residuals lose against amounts of 0, at the minimum within the set.
+            // Gain in squared residuals over amounts of 0, at the minimum within the set.
             let gain: f64 = amounts.iter().zip(&right).map(|(x, r)| x * r).sum();
             if amounts.iter().all(|x| *x >= 0.0) && gain > best.0 {
                 best = (gain, amounts);
@@ -88,14 +85,20 @@ impl<'a> Amounts<'a> {
 
     fn of(&self, set: usize, right: &[f64], guess: Option<Guess<'_>>) -> Vec<f64> {
         let members: Vec<usize> = (0..right.len()).filter(|i| set >> i & 1 == 1).collect();
+        let mut matrix: Vec<Vec<f64>> =
+            members.iter().map(|&i| members.iter().map(|&j| self.matrix[i][j]).collect()).collect();
         let pull = guess.map_or(0.0, |guess| guess.weight);
-        let element = |i: usize, j: usize| self.matrix[i][j] + if i == j { pull } else { 0.0 };
-        let matrix = members.iter().map(|&i| members.iter().map(|&j| element(i, j)).collect()).collect();
+        (0..members.len()).for_each(|i| matrix[i][i] += pull);
         let solved = solve(matrix, members.iter().map(|&i| right[i]).collect());
         let mut amounts = vec![0.0; right.len()];
         members.iter().zip(solved).for_each(|(&i, x)| amounts[i] = x);
         amounts
     }
+}
+
+/// The sum of products with weights.
+fn weighted(a: &[f64], b: &[f64], weights: &[f64]) -> f64 {
+    a.iter().zip(b).zip(weights).map(|((a, b), w)| a * b * w).sum()
 }
 
 /// Least squares by Levenberg's and Marquardt's damping.
@@ -117,7 +120,7 @@ pub(super) trait Residuals {
     /// The residuals of a block.
     fn block(&self, parameters: &[f64], block: usize) -> Vec<f64>;
 
-    /// The slopes of a block whose residuals are `now`, by parameter; those that change nothing there may be left out.
+    /// The slopes of a block whose residuals are `now`, by parameter. Parameters that do not change the block may be left out.
     fn slopes(&self, parameters: &[f64], block: usize, now: &[f64]) -> Vec<Column>;
 }
 
@@ -149,7 +152,7 @@ fn sum(residuals: &[Vec<f64>]) -> f64 {
 }
 
 impl LeastSquares {
-    /// So many steps from a place towards the least residuals, or fewer if there is nothing left to gain.
+    /// Takes up to `steps` steps from a place towards the least residuals, and stops if there is nothing left to gain.
     pub(super) fn descend(&self, mut place: Place, residuals: &impl Residuals, steps: u32) -> Place {
         let mut now = all(residuals, &place.parameters);
         for _ in 0..steps {
@@ -179,9 +182,12 @@ impl LeastSquares {
     }
 }
 
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
 /// The normal matrix and the gradient.
 fn normal(n: usize, residuals: &impl Residuals, parameters: &[f64], now: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
     let (mut matrix, mut gradient) = (vec![vec![0.0; n]; n], vec![0.0; n]);
     for (block, now) in now.iter().enumerate() {
         let columns = residuals.slopes(parameters, block, now);

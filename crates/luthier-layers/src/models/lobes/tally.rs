@@ -12,16 +12,17 @@ use super::Shape;
 use super::half_vector::{outside, refracted, slope};
 
 const RINGS: usize = 20;
-/// Sectors of half a turn, where halves count together, and of a turn.
+/// Sectors of half a turn, for isotropic stacks: both halves count together.
 const SECTORS: usize = 12;
+/// Sectors of a whole turn, for anisotropic stacks.
 const SECTORS_OF_TURN: usize = 16;
 /// Eighths of a turn.
 const EIGHTHS: usize = 8;
-/// Discs and rings inside the innermost ring.
+/// Rings of points in the innermost disc.
 const INNER: usize = 6;
 /// Points of a cell along either side.
 const POINTS: usize = 2;
-/// The greatest slope that counts: steeper ones are counted with it.
+/// Outer edge of the outermost ring, a slope; steeper light is counted in that ring.
 const STEEPEST: f64 = 12.0;
 
 /// Cells in the half vectors of a medium.
@@ -33,11 +34,11 @@ pub(super) struct Cells {
     least: f64,
     /// Logarithm of the ratio of two edges.
     step: f64,
-    /// Ellipse of slopes that is a circle of cells; none where both halves count together.
+    /// Ellipse of slopes that cells see as a circle; `None` for isotropic stacks, whose halves count together.
     stretch: Option<Shape>,
 }
 
-/// A point of a cell, and what it stands for.
+/// A point of a cell, with the area and the solid angle that it stands for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub(super) cell: usize,
@@ -71,27 +72,27 @@ impl Cells {
     /// Means of values over the rings and sectors around each cell.
     pub(super) fn smoothed(&self, values: &[f64]) -> Vec<f64> {
         let sectors = self.sectors();
-        let around = |sector: usize| match self.stretch {
-            None => [sector.saturating_sub(1), sector, (sector + 1).min(sectors - 1)],
-            Some(_) => [(sector + sectors - 1) % sectors, sector, (sector + 1) % sectors],
-        };
-        let mean = |cell: usize| {
-            // The innermost disc has no neighbours that are like it.
+        let means = (0..values.len()).map(|cell| {
+            // The innermost disc has no neighbours of its size.
             let Some(number) = cell.checked_sub(1) else { return values[0] };
-            let ring = number / sectors;
+            let (ring, sector) = (number / sectors, number % sectors);
+            let around = match self.stretch {
+                None => [sector.saturating_sub(1), sector, (sector + 1).min(sectors - 1)],
+                Some(_) => [(sector + sectors - 1) % sectors, sector, (sector + 1) % sectors],
+            };
             let rings = ring.saturating_sub(1)..(ring + 2).min(RINGS);
             let count = 3 * rings.len();
-            let sum = |ring: usize| around(number % sectors).map(|sector| values[1 + ring * sectors + sector]);
-            rings.flat_map(sum).sum::<f64>() / count as f64
-        };
-        (0..values.len()).map(mean).collect()
+            let sum: f64 = rings.flat_map(|ring| around.map(|sector| values[1 + ring * sectors + sector])).sum();
+            sum / count as f64
+        });
+        means.collect()
     }
 
     fn sectors(&self) -> usize {
         if self.stretch.is_some() { SECTORS_OF_TURN } else { SECTORS }
     }
 
-    /// The number of a cell among those whose sectors are eighths of a turn.
+    /// The number of the wider cell that a cell is in; wider cells have eighths of a turn as sectors.
     pub(super) fn wider(&self, cell: usize) -> usize {
         let Some(number) = cell.checked_sub(1) else { return 0 };
         let sectors = self.sectors();
@@ -99,7 +100,7 @@ impl Cells {
         1 + number / sectors * eighths + number % sectors * eighths / sectors
     }
 
-    /// The cell of light from `wi` seen from `wo`. Where both halves count together, the plane of `wo` is that of x and z.
+    /// The cell of light from `wi` seen from `wo`. If both halves count together, `wo` has to be in the plane of x and z.
     pub(super) fn cell(&self, wi: DVec3, wo: DVec3) -> usize {
         let (at, _) = slope(wi, refracted(wi, self.index), refracted(wo, self.index), self.index);
         let ([x, y], least_angle, turn) = match &self.stretch {
@@ -120,47 +121,56 @@ impl Cells {
     pub(super) fn points(&self, wo: DVec3) -> Vec<Point> {
         let eye = refracted(wo, self.index);
         let mut points = Vec::new();
-        let (turn, least_angle) = if self.stretch.is_some() { (TAU, PI) } else { (PI, 0.0) };
-        let mut add = |cell: usize, radius: [f64; 2], phi: [f64; 2]| {
-            let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
-            // The mean of the squared radius over the area.
-            let middle = (0.5 * (radius[0] * radius[0] + radius[1] * radius[1])).sqrt();
-            let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]) - least_angle);
-            let mut at = [middle * cos, middle * sin];
-            if let Some(shape) = &self.stretch {
-                at = shape.unscaled(at);
-                // Half of what both halves have.
-                area *= 0.5 * shape.width[0] * shape.width[1];
-            }
-            let Some(wi) = outside(at, eye, self.index) else { return };
-            let (_, factor) = slope(wi, refracted(wi, self.index), eye, self.index);
-            points.push(Point { cell, slope: at, area, cos_theta: wi.z, solid_angle: area / factor });
-        };
+        let turn = if self.stretch.is_some() { TAU } else { PI };
         let sectors = self.sectors();
         for sector in 0..sectors {
             let phi = [sector, sector + 1].map(|i| i as f64 * turn / sectors as f64);
             for i in 0..INNER {
-                add(0, [i, i + 1].map(|i| self.least * i as f64 / INNER as f64), phi);
+                points.extend(self.point(0, [i, i + 1].map(|i| self.least * i as f64 / INNER as f64), phi, eye));
             }
             for ring in 0..RINGS {
                 let cell = 1 + ring * sectors + sector;
-                let edge = |i: usize| self.least * libm::exp(self.step * (ring as f64 + i as f64 / POINTS as f64));
-                let turn = |j: usize| phi[0] + (phi[1] - phi[0]) * j as f64 / POINTS as f64;
                 for i in 0..POINTS {
+                    let radius = [i, i + 1]
+                        .map(|i| self.least * libm::exp(self.step * (ring as f64 + i as f64 / POINTS as f64)));
                     for j in 0..POINTS {
-                        add(cell, [edge(i), edge(i + 1)], [turn(j), turn(j + 1)]);
+                        let phi = [j, j + 1].map(|j| phi[0] + (phi[1] - phi[0]) * j as f64 / POINTS as f64);
+                        points.extend(self.point(cell, radius, phi, eye));
                     }
                 }
             }
         }
         points
     }
+
+    /// The middle of a part of a cell, between two radii and two angles; `None` if light from there does not leave the medium.
+    fn point(&self, cell: usize, radius: [f64; 2], phi: [f64; 2], eye: DVec3) -> Option<Point> {
+        let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
+        // The mean of the squared radius over the area.
+        let middle = (0.5 * (radius[0] * radius[0] + radius[1] * radius[1])).sqrt();
+        let least_angle = if self.stretch.is_some() { PI } else { 0.0 };
+        let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]) - least_angle);
+        let mut at = [middle * cos, middle * sin];
+        if let Some(shape) = &self.stretch {
+            at = shape.unscaled(at);
+            // The area above stands for both halves of an isotropic stack; here either half has its own points.
+            area *= 0.5 * shape.width[0] * shape.width[1];
+        }
+        let wi = outside(at, eye, self.index)?;
+        let (_, factor) = slope(wi, refracted(wi, self.index), eye, self.index);
+        Some(Point { cell, slope: at, area, cos_theta: wi.z, solid_angle: area / factor })
+    }
 }
 
-/// Cosines of light among which that of a Lambertian base is counted.
+/// Mean of the channels.
+pub(super) fn mean(rgb: Rgb) -> f64 {
+    rgb.iter().sum::<f64>() / 3.0
+}
+
+/// Bins of cosines in which the light of a Lambertian base is counted.
 pub(super) const COSINES: usize = 64;
 
-/// Light of one view: that of one facet of the first interface, that of a Lambertian base, and the rest in cells.
+/// Light of one view: light of one facet of the first interface, light of a Lambertian base, and the rest in cells.
 #[derive(Debug, Clone)]
 pub(super) struct Tally {
     /// Energy by cell and channel, for each set of cells.
@@ -169,41 +179,42 @@ pub(super) struct Tally {
     pub(super) total: Rgb,
     /// Energy of the light that met one facet alone, in closed form.
     pub(super) first_facet: Rgb,
-    /// Energy of the light that met the diffuse base, and of that which met it once.
+    /// Energy of the light that met the diffuse base.
     pub(super) base: Rgb,
+    /// Energy of the light that met the diffuse base exactly once.
     pub(super) base_once: Rgb,
-    /// Energy of a Lambertian base by the cosine of the light, the mean of the channels; none of another stack, whose base is in the cells.
+    /// Energy of a Lambertian base by the cosine of the light, the mean of the channels; `None` for another base, whose light is in the cells.
     pub(super) by_cosine: Option<[f64; COSINES]>,
     /// Sum of the squared energies of the paths in cells, means of the channels.
     squares: f64,
 }
 
 impl Tally {
-    /// Without light, of a stack with or without a Lambertian base.
+    /// A tally without light, for a stack with or without a Lambertian base.
     pub(super) fn new(sets: &[Cells], is_lambertian: bool) -> Self {
         let rest = sets.iter().map(|cells| vec![[0.0; 3]; cells.count()]).collect();
         let (none, by_cosine) = ([0.0; 3], is_lambertian.then_some([0.0; COSINES]));
         Self { rest, total: none, first_facet: none, base: none, base_once: none, by_cosine, squares: 0.0 }
     }
 
-    /// Counts light of the rest with a weight, that has met a diffuse base so often.
+    /// Counts light that has met more than one facet or interface. `base_visits` says how often it met a diffuse base.
     pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, base_visits: u32) {
-        let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
-        let mean = weight.iter().sum::<f64>() / 3.0;
+        let mean = mean(weight);
         if base_visits > 0 {
-            plus(&mut self.base);
+            self.base = plus(self.base, weight);
         }
         if base_visits == 1 {
-            plus(&mut self.base_once);
+            self.base_once = plus(self.base_once, weight);
         }
         if let Some(by_cosine) = self.by_cosine.as_mut().filter(|_| base_visits > 0) {
             by_cosine[((wi.z * COSINES as f64) as usize).min(COSINES - 1)] += mean;
             return;
         }
-        plus(&mut self.total);
+        self.total = plus(self.total, weight);
         self.squares += mean * mean;
         for (cells, rest) in cells.iter().zip(&mut self.rest) {
-            plus(&mut rest[cells.cell(wi, wo)]);
+            let cell = &mut rest[cells.cell(wi, wo)];
+            *cell = plus(*cell, weight);
         }
     }
 
@@ -212,11 +223,15 @@ impl Tally {
         if self.by_cosine.is_some() { self.base } else { [0.0; 3] }
     }
 
-    /// Number of paths in cells, as many alike ones as have the noise of their sum.
+    /// Effective number of paths in cells: so many equal paths would have the noise of their sum.
     pub(super) fn paths(&self) -> f64 {
-        let total = self.total.iter().sum::<f64>() / 3.0;
+        let total = mean(self.total);
         if self.squares > 0.0 { total * total / self.squares } else { 0.0 }
     }
+}
+
+fn plus(a: Rgb, b: Rgb) -> Rgb {
+    [0, 1, 2].map(|c: usize| a[c] + b[c])
 }
 
 #[cfg(test)]

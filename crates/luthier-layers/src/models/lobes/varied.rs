@@ -1,10 +1,11 @@
-//! Lobes of a stack of which a texture scales or covers something: nodes over its factor, or over the amount of a patina.
+//! Lobes of a stack that varies with a texture: nodes over the factor of the texture, or over the amount of a patina.
 
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
 use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
+use super::tally::mean;
 use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, Lobes, Row, ViewAxis, most_lobes, patina, shown};
 use crate::layers::ALPHA_MIN;
 
@@ -16,10 +17,10 @@ pub enum Varying {
     Alpha,
     /// The thickness of the slab below the first interface.
     Slab,
-    /// The thickness of the top film of the first interface, between the factors on its nominal thickness that are given: the greatest and the least.
+    /// The thickness of the top film of the first interface. The numbers are the greatest and the least factor on its nominal thickness.
     Film([f64; 2]),
-    /// The amount of the first layer, a patina. A factor is the amount of patina in 0..=1. Node 0 (all layers, no patina parameters) lies one step above 1, or
-    /// at 1 if the patina has no parameters.
+    /// The amount of the first layer, a patina. The factor is this amount in 0..=1. Node 0 (all layers, no patina parameters) lies one step above 1,
+    /// or at 1 if the patina has no parameters.
     Patina(Cover),
 }
 
@@ -35,15 +36,16 @@ impl Varying {
     pub fn nodes(self) -> usize {
         match self {
             Self::Alpha => 8,
-            // Near no thickness the light of a base is a Gaussian of the root: with an optical depth of 4, chords of fifteen nodes are within .012.
+            // Towards thickness 0 the light of a base is a Gaussian of the root of the factor. With an optical depth of 4, chords between fifteen
+            // nodes err by up to .012.
             Self::Slab => 15,
-            // Interference has a period of half a wavelength or so. The number is odd: the nominal thickness is in the middle.
+            // Interference has a period of about half a wavelength. The number is odd so that the nominal thickness is in the middle.
             Self::Film(_) => 15,
             Self::Patina(cover) => cover.nodes(),
         }
     }
 
-    /// Paths of a fit over those of a node beside the nominal one: where there are many nodes, they see nearly the same.
+    /// The nominal node traces all paths, and others one in so many. Neighbours among many nodes see nearly the same light, so fewer paths do.
     fn path_share(self) -> u64 {
         match self {
             Self::Alpha | Self::Patina(_) => 1,
@@ -51,7 +53,7 @@ impl Varying {
         }
     }
 
-    /// The node of the stack as it is given: of the factor 1, or of all layers.
+    /// The node of the stack itself: at factor 1, or with all layers.
     pub fn nominal(self) -> usize {
         match self {
             Self::Alpha | Self::Slab | Self::Patina(_) => 0,
@@ -59,8 +61,8 @@ impl Varying {
         }
     }
 
-    /// The factor at the fractional number of a node. Roots of factors on slope parameters end one step before 0: from there on lobes grow narrower,
-    /// and their energies hardly change.
+    /// The factor at the fractional number of a node. For slope parameters the last node is one root's step before 0: below it lobes only grow
+    /// narrower, and their energies hardly change.
     pub fn factor(self, place: f64) -> f64 {
         let share = place / self.steps();
         match self {
@@ -88,7 +90,7 @@ impl Varying {
         (share * self.steps()).min((self.nodes() - 1) as f64)
     }
 
-    /// The stack at a factor; of a patina, without its numbers, all layers or the bare ones.
+    /// The stack at a factor. With a patina these are all layers, without the patina's parameters, or the bare layers at 0.
     pub fn apply(self, stack: &Stack, factor: f64) -> Stack {
         let mut here = stack.clone();
         let first = here.layers.first_mut();
@@ -114,15 +116,14 @@ impl Varying {
     }
 }
 
-/// Lobes at factors, the greatest first. Between two nodes, rows are linear in the root of the factor, and over films in the factor.
+/// Lobes at factors, the greatest first. Between two nodes, rows are linear in the root of the factor, and in the factor itself over films.
 ///
-/// Factors on slope parameters make lobes narrower by about as much. So rows are mixed after their slopes were divided by that factor, and are
-/// multiplied by it again.
+/// A factor on slope parameters makes lobes narrower by about as much. So rows are divided by it before they are mixed, and multiplied again
+/// afterwards.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Varied {
-    /// The lobes of each node; one where nothing varies. They have the axis, the medium and the shape of the remainder in common, and the number
-    /// of lobes.
+    /// The lobes of each node; one node if nothing varies. All nodes share axis, medium, shape of the remainder, and number of lobes.
     pub nodes: Vec<Lobes>,
     varying: Option<Over>,
 }
@@ -132,7 +133,7 @@ pub struct Varied {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Over {
     varying: Varying,
-    /// The factor by which slopes are divided at least.
+    /// Least factor by which slopes are divided: models raise slope parameters that are smaller.
     least: f64,
     stack: Stack,
     color: Color,
@@ -146,9 +147,14 @@ impl Over {
             Varying::Slab | Varying::Film(_) | Varying::Patina(_) => 1.0,
         }
     }
+
+    /// The factor on slopes at a node.
+    fn spread_at(&self, node: usize) -> f64 {
+        self.spread(self.varying.factor(node as f64))
+    }
 }
 
-/// A function that fits lobes as [`Varied::of`] does; it may have kept what it found before.
+/// A function that fits lobes as [`Varied::of`] does. It may return lobes that it has kept from before.
 pub type Fit<'a> = dyn Fn(&Stack, &Color, Option<Varying>) -> Varied + Send + Sync + 'a;
 
 impl Varied {
@@ -162,7 +168,7 @@ impl Varied {
         Traced::new(stack, color, varying, settings).fit(most_lobes(stack), EXCESS)
     }
 
-    /// Every so many of the rows, a divisor of the steps between them.
+    /// Every `step`-th row. `step` has to divide the number of steps between rows.
     #[must_use]
     pub fn thinned(mut self, step: usize) -> Self {
         for lobes in &mut self.nodes {
@@ -174,7 +180,7 @@ impl Varied {
         self
     }
 
-    /// Number of the tiles of a stack: over what varies, or over the azimuth.
+    /// Number of tiles of a stack: over the azimuth if it is anisotropic, and else over the nodes.
     pub fn tiles_of(stack: &Stack, varying: Option<Varying>) -> usize {
         if Axes::of(stack).is_some() { Axes::TILES } else { varying.map_or(1, Varying::nodes) }
     }
@@ -189,44 +195,42 @@ impl Varied {
         self.varying.as_ref().map(|over| over.varying)
     }
 
-    /// The least factor on slopes that rows are divided by; 1 where slopes do not vary.
+    /// The least factor by which slopes of rows are divided; 1 if slopes do not vary.
     pub fn least_spread(&self) -> f64 {
         self.varying.as_ref().map_or(1.0, |over| over.spread(0.0))
     }
 
-    /// A row of a tile, as tables have it: with slopes divided by the factor on them.
+    /// A row of a tile as tables store it: slopes are divided by their factor.
     pub fn stored(&self, tile: usize, row: usize) -> Row {
-        let spread = self.varying.as_ref().map_or(1.0, |over| over.spread(over.varying.factor(tile as f64)));
+        let spread = self.varying.as_ref().map_or(1.0, |over| over.spread_at(tile));
         let (lobes, tile) = self.tile(tile);
         lobes.tile(tile)[row].clone().spread(1.0 / spread)
     }
 
-    /// Energy of the facets of the layer below a patina in a row of a tile, the mean of the channels: that of one facet where the layer is bare, and 0
-    /// elsewhere. Shaders draw directions by it.
+    /// Energy of one facet of the layer below a patina, a mean of the channels. It is 0 in all tiles but the one of the bare layers. Shaders draw
+    /// directions by it.
     pub fn bare_facets(&self, tile: usize, row: usize) -> f64 {
         let is_bare = matches!(self.varying(), Some(Varying::Patina(_))) && tile + 1 == self.nodes.len();
-        let facets =
-            |lobes: &Lobes| lobes.first.is_some().then(|| lobes.rows[row].first_facet().iter().sum::<f64>() / 3.0);
-        is_bare.then(|| facets(&self.nodes[tile])).flatten().unwrap_or(0.0)
+        if is_bare && self.nodes[tile].first.is_some() { mean(self.nodes[tile].rows[row].first_facet()) } else { 0.0 }
     }
 
-    /// The lobes of the stack as it is given.
+    /// The lobes of the stack itself, without a texture.
     pub fn nominal(mut self) -> Lobes {
         let node = self.varying().map_or(0, Varying::nominal);
         self.nodes.swap_remove(node)
     }
 
-    /// The lobes at a factor. Their first interface is that of a patina where any of it has grown.
+    /// The lobes at a factor. If any patina has grown, it is their first interface.
     pub fn at(&self, factor: f64) -> Lobes {
         let mut lobes = self.nodes[0].clone();
         let Some(over) = &self.varying else { return lobes };
         let place = over.varying.place(factor);
         let first = (place as usize).min(self.nodes.len() - 2);
-        let row = |row: usize| {
+        let rows = (0..lobes.rows.len()).map(|row| {
             let ends = [first, first + 1].map(|node| self.stored(node, row));
             ends[0].between(&ends[1], place - first as f64).spread(over.spread(factor))
-        };
-        lobes.rows = (0..lobes.rows.len()).map(row).collect();
+        });
+        lobes.rows = rows.collect();
         lobes.first = FirstInterface::of(&over.varying.apply(&over.stack, factor), &over.color);
         lobes
     }
@@ -256,17 +260,17 @@ impl Traced {
             return Self { simulations, varying: Some(Over { varying, least: 1.0, stack, color: *color }) };
         }
         let indices = indices(&stack);
-        let simulate = |node: usize| {
+        let simulations = (0..varying.nodes()).map(|node| {
             let here = varying.apply(&stack, varying.factor(node as f64));
             let share = if node == varying.nominal() { 1 } else { varying.path_share() };
-            // All nodes have the media of the first.
+            // All nodes use the media of the stack itself, so that their lobes can be mixed.
             Simulation::within(&indices, axis, &here, color, FitSettings { paths: settings.paths / share, ..settings })
-        };
-        let simulations = (0..varying.nodes()).map(simulate).collect();
+        });
+        let simulations = simulations.collect();
         Self { simulations, varying: Some(Over { varying, least, stack, color: *color }) }
     }
 
-    /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best: see [`Simulation::fit_fewest`].
+    /// The fewest lobes, up to `most`, that are no farther from the light than the best by more than `excess`, see [`Simulation::fit_fewest`].
     pub fn fit(&self, most: usize, excess: f64) -> Varied {
         let Some(over) = &self.varying else {
             return Varied { nodes: vec![self.simulations[0].fit_fewest(most, excess)], varying: None };
@@ -276,37 +280,37 @@ impl Traced {
             return Varied { nodes, varying: self.varying.clone() };
         }
         let (count, nominal) = (self.simulations.len(), over.varying.nominal());
-        let spread = |node: usize| over.spread(over.varying.factor(node as f64));
-        let best = |node: usize| (node, self.simulations[node].fewest(most, excess));
-        let lobes = |found: &Found| found.starts(Basis::Isotropic).len();
-        // Where the lobes are farther apart, more of them may be seen.
-        let (here, middle) = (best(nominal), best(count / 2));
-        let (seed, start) = if lobes(&middle.1) > lobes(&here.1) { middle } else { here };
+        let [here, middle] = [nominal, count / 2].map(|node| (node, self.simulations[node].fewest(most, excess)));
+        // Lobes may be farther apart at the middle node, and more of them seen there: the node with more lobes starts.
+        let [lobes, lobes_middle] = [&here, &middle].map(|(_, found)| found.starts(Basis::Isotropic).len());
+        let (seed, start) = if lobes_middle > lobes { middle } else { here };
         let mut found: Vec<Option<Found>> = (0..count).map(|_| None).collect();
         found[seed] = Some(start);
         let pairs = (seed + 1..count).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
         for (node, beside) in pairs {
             let from = found[beside].as_ref();
-            found[node] = from.map(|from| self.simulations[node].follow(from, spread(node) / spread(beside)));
+            let factor = over.spread_at(node) / over.spread_at(beside);
+            found[node] = from.map(|from| self.simulations[node].follow(from, factor));
         }
-        let lobes = |(simulation, found): (&Simulation, &Option<Found>)| Some(simulation.lobes(found.as_ref()?));
-        let nodes = self.simulations.iter().zip(&found).filter_map(lobes).collect();
+        let pairs = self.simulations.iter().zip(&found);
+        let nodes = pairs.filter_map(|(simulation, found)| Some(simulation.lobes(found.as_ref()?))).collect();
         Varied { nodes, varying: self.varying.clone() }
     }
 }
 
-/// The factor that rows are over: that of an isotropic stack.
+/// The varying part of an isotropic stack. Rows of an anisotropic one are over the azimuth instead.
 fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
     varying.filter(|_| Axes::of(stack).is_none())
 }
 
-/// A surface with a factor on its slope parameters: those of layer records.
+/// A surface with a factor on its slope parameters, within the range of layer records before and after.
 fn scaled_surface(surface: Surface, factor: f64) -> Surface {
     if factor == 1.0 {
         return surface;
     }
-    let scaled = |alpha: f64| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0);
-    Surface { alpha_x: scaled(surface.alpha_x), alpha_y: scaled(surface.alpha_y), ..surface }
+    let [alpha_x, alpha_y] =
+        [surface.alpha_x, surface.alpha_y].map(|alpha| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0));
+    Surface { alpha_x, alpha_y, ..surface }
 }
 
 #[cfg(test)]

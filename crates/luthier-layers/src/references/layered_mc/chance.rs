@@ -13,10 +13,10 @@ pub(crate) trait Share: Copy {
     /// Share of this share.
     fn times(self, other: Self) -> Self;
 
-    /// So many times as much.
+    /// The share times a factor.
     fn scaled(self, factor: f64) -> Self;
 
-    /// Divided by a probability.
+    /// The share divided by a probability.
     fn over(self, probability: f64) -> Self;
 
     /// The greatest of all wavelengths, which decides survival.
@@ -108,17 +108,17 @@ impl Chance for Optics {
     }
 }
 
-/// One interface at three wavelengths whose directions are the same: real indices are, reflectances need not be.
+/// One interface at three wavelengths with equal directions: real indices are equal, reflectances need not be.
 ///
 /// Chance goes by the means of reflectance and transmittance. So no wavelength has more than three times the weight of the mean.
 #[derive(Debug, Clone)]
 pub(crate) struct JointOptics {
-    /// The optics; one for three where they are alike.
+    /// The optics: one entry for all three wavelengths if they are equal.
     optics: Vec<Optics>,
 }
 
 impl JointOptics {
-    /// `None` where light has other directions at one wavelength than at another.
+    /// `None` if light has other directions at one wavelength than at another.
     pub(crate) fn new(optics: [Optics; 3]) -> Option<Self> {
         let [first, others @ ..] = &optics;
         if !others.iter().all(|other| first.is_parallel(other)) {

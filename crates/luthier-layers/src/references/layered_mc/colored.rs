@@ -1,9 +1,8 @@
 //! Paths in the colour of a material: three channels on one path.
 //!
-//! Of three wavelengths, those that go the same ways share their paths ([`JointPaths`]). In a spectrum a path has one wavelength, which
-//! decides where it goes; absorption and diffuse albedo, which a material states by channel, go with it as three weights. Wavelengths are
-//! drawn as often as they weigh in colour, so that the mean over the paths is the integral over the spectrum. Wavelengths at which all
-//! interfaces are alike count as one.
+//! Three wavelengths share paths if light goes the same ways at them ([`JointPaths`]). In a spectrum a path has one wavelength, which decides its
+//! directions. Absorption and diffuse albedo, which a material states by channel, go with the path as three weights. Wavelengths are drawn as often
+//! as they weigh in colour, so that the mean over the paths is the integral over the spectrum. Wavelengths with equal interfaces count as one.
 //!
 //! The first numbers of the paths fill their cube evenly ([`Stream::even`]). With 16,000 paths the albedos of nine stacks had two to ten times
 //! less noise than with independent numbers.
@@ -40,11 +39,11 @@ impl ColorPaths {
         let leads: Vec<(f64, Rgb, JointPaths)> = match color {
             Color::ThreeWavelengths(nm) => {
                 let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(stack, nm[c], c));
-                let part = |paths: JointPaths| {
+                let sets = JointPaths::new(&stacks).into_iter().map(|paths| {
                     let weight = paths.channels().map(|is_its| if is_its { 1.0 } else { 0.0 });
                     (weight.iter().sum(), weight, paths)
-                };
-                JointPaths::new(&stacks).into_iter().map(part).collect()
+                });
+                sets.collect()
             }
             Color::Spectral => spectral(stack, color),
         };
@@ -87,12 +86,13 @@ fn spectral(stack: &Stack, color: &Color) -> Vec<(f64, Rgb, JointPaths)> {
             None => leads.push((lead, node.wavelength_nm, node.weight)),
         }
     }
-    let joined = |(_, nm, weight): (Monochrome, f64, Rgb)| {
+    let mut joined = Vec::new();
+    for (_, nm, weight) in leads {
         let channels = [0, 1, 2].map(|c: usize| Monochrome::new(stack, nm, c));
         let strength = weight.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
-        JointPaths::new(&channels).into_iter().map(move |paths| (strength, weight, paths))
-    };
-    leads.into_iter().flat_map(joined).collect()
+        joined.extend(JointPaths::new(&channels).into_iter().map(|paths| (strength, weight, paths)));
+    }
+    joined
 }
 
 #[cfg(test)]

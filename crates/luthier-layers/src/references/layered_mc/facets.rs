@@ -34,7 +34,7 @@ pub(crate) struct View {
 }
 
 impl Facets {
-    /// `None` where both slopes are too small to make a micro-surface. One slope that is, is raised to the least.
+    /// `None` if both slopes are too small to make a micro-surface. If only one is too small, it is raised to the least.
     pub(crate) fn new(surface: &Surface) -> Option<Self> {
         if surface.alpha_x < ALPHA_MIN && surface.alpha_y < ALPHA_MIN {
             return None;
@@ -48,7 +48,7 @@ impl Facets {
         })
     }
 
-    /// Product of the slopes: the scale of what bounces more than once.
+    /// Product of the slopes: the scale of light that bounces more than once.
     pub(crate) fn alpha_sq(&self) -> f64 {
         self.alpha_x * self.alpha_y
     }

@@ -1,8 +1,7 @@
 //! An interface, or a diffuse base, as the paths through a stack meet it.
 //!
-//! Kernels are densities of light per solid angle: `K(a, b)` is what becomes of a unit of light that comes in from
-//! `a` and leaves along `b`. With radiance, `K = f cos_theta_b`; reciprocity reads `n_a^2 cos_a K(a, b) = n_b^2 cos_b
-//! K(b, a)`.
+//! Kernels are densities of light per solid angle: of a unit of light that comes in from `a`, `K(a, b)` leaves along
+//! `b`. With radiance, `K = f cos_theta_b`; reciprocity reads `n_a^2 cos_a K(a, b) = n_b^2 cos_b K(b, a)`.
 
 use std::f64::consts::PI;
 
@@ -89,12 +88,12 @@ impl Interface {
                 Some((Sided { direction: b, ..a }, PI * diffuse_brdf(albedo, sigma, a.direction, b)))
             }
             Kind::Rough(rough) => {
-                let a = self.turned(a);
+                let a = a.inside(self.rotation);
                 let scattered = match self.mode {
                     InterfaceMode::SmithWalk => walk::scatter(rough, stream, a).map(|(b, weight, _)| (b, weight)),
                     InterfaceMode::OneFacet => one_facet::scatter(rough, stream, a),
                 };
-                scattered.map(|(b, weight)| (self.turned_back(b), weight))
+                scattered.map(|(b, weight)| (b.outside(self.rotation), weight))
             }
         }
     }
@@ -105,7 +104,7 @@ impl Interface {
             Kind::Smooth(_) => 0.0,
             &Kind::Diffuse { albedo, sigma } => diffuse_brdf(albedo, sigma, a.direction, b.direction) * b.direction.z,
             Kind::Rough(rough) => {
-                let (a, b) = (self.turned(a), self.turned(b));
+                let [a, b] = [a, b].map(|d| d.inside(self.rotation));
                 match self.mode {
                     InterfaceMode::SmithWalk => walk::kernel(rough, stream, a, b),
                     InterfaceMode::OneFacet => one_facet::kernel(rough, a, b),
@@ -114,15 +113,14 @@ impl Interface {
         }
     }
 
-    /// About the density of `b` in what [`Self::scatter`] draws from `a`, and of `a` in what it draws from `b`:
-    /// positive wherever it is. Weights between strategies need no more. For a smooth interface, which is no
-    /// strategy, 1.
+    /// Approximate densities with which [`Self::scatter`] draws `b` from `a`, and `a` from `b`; positive wherever the exact
+    /// ones are. Weights between strategies need no more. A smooth interface, which is no strategy, has 1.
     pub(crate) fn densities(&self, a: Sided, b: Sided) -> (f64, f64) {
         let (forth, back) = match &self.kind {
             Kind::Smooth(_) => (1.0, 1.0),
             Kind::Diffuse { .. } => (b.direction.z / PI, a.direction.z / PI),
             Kind::Rough(rough) => {
-                let (a, b) = (self.turned(a), self.turned(b));
+                let [a, b] = [a, b].map(|d| d.inside(self.rotation));
                 let (forth, back) = rough.phases(a, b);
                 match self.mode {
                     InterfaceMode::SmithWalk => {
@@ -134,14 +132,17 @@ impl Interface {
         };
         (forth.max(f64::MIN_POSITIVE), back.max(f64::MIN_POSITIVE))
     }
+}
 
-    /// Turns a direction from the stack's frame to the interface's.
-    fn turned(&self, d: Sided) -> Sided {
-        self.rotation.map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, -sin), ..d })
+impl Sided {
+    /// The direction in the frame of an interface; `rotation` as of [`turn`].
+    pub(super) fn inside(self, rotation: Option<(f64, f64)>) -> Self {
+        rotation.map_or(self, |(cos, sin)| Self { direction: rotated(self.direction, cos, -sin), ..self })
     }
 
-    fn turned_back(&self, d: Sided) -> Sided {
-        self.rotation.map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, sin), ..d })
+    /// The direction back in the frame of the stack.
+    pub(super) fn outside(self, rotation: Option<(f64, f64)>) -> Self {
+        rotation.map_or(self, |(cos, sin)| Self { direction: rotated(self.direction, cos, sin), ..self })
     }
 }
 

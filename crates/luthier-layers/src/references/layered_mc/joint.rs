@@ -1,11 +1,11 @@
 //! Paths of a stack at three wavelengths at once: each goes one way and has a weight for every wavelength.
 //!
-//! Slopes of facets and refracted directions hang on real indices alone. Where these are the same at some wavelengths, a path is a path at
-//! all of them: reflectances, absorption and albedos go with it as weights. Reflection or refraction is drawn by the means over the
-//! wavelengths ([`JointOptics`]). Wavelengths with other indices have paths of their own.
+//! Refracted directions depend on real indices alone. Wavelengths with equal indices share a path: reflectances, absorption and albedos go with it
+//! as weights. Reflection or refraction is drawn by the means over the wavelengths ([`JointOptics`]). Wavelengths with other indices have their own
+//! paths.
 //!
-//! Light that meets one facet of the first interface and nothing else has a closed form, [`JointPaths::first_facet`]. Paths say whether they
-//! are such light, so that means over paths need not hold it.
+//! Light that meets one facet of the first interface and nothing else has a closed form, [`JointPaths::first_facet`]. Paths say whether they are
+//! such light, so that a mean over paths can leave it out.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -63,7 +63,7 @@ enum Kind {
 }
 
 impl JointPaths {
-    /// The paths of a stack, given at each of three wavelengths: one set for the wavelengths that go the same ways, up to three in all.
+    /// The paths of a stack that is given at each of three wavelengths: one set for each group of wavelengths with the same ways.
     pub fn new(stacks: &[Monochrome; 3]) -> Vec<Self> {
         let mut left = [true; 3];
         let mut all = Vec::new();
@@ -83,18 +83,13 @@ impl JointPaths {
         all
     }
 
-    /// The paths of some channels; `None` where they do not go the same ways. The others have the numbers of `lead`, and no weight.
+    /// The paths of some channels; `None` if they do not go the same ways. Other channels get the numbers of `lead`, and no weight.
     fn of(stacks: &[Monochrome; 3], lead: usize, channels: [bool; 3]) -> Option<Self> {
         let stacks = [0, 1, 2].map(|c: usize| &stacks[if channels[c] { c } else { lead }]);
         let layers = 0..stacks[0].layers.len();
         let interfaces = layers.clone().map(|layer| JointInterface::new(stacks, layer)).collect::<Option<_>>()?;
-        let depth = |layer: usize| {
-            stacks.map(|stack| match stack.layers[layer].below {
-                MonochromeBelow::Dielectric { optical_depth, .. } => optical_depth,
-                MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. } => 0.0,
-            })
-        };
-        Some(Self { interfaces, optical_depths: layers.map(depth).collect(), channels })
+        let depths = layers.map(|layer| stacks.map(|stack| stack.layers[layer].below.optical_depth()));
+        Some(Self { interfaces, optical_depths: depths.collect(), channels })
     }
 
     /// The wavelengths of these paths; the others have no weight.
@@ -148,8 +143,7 @@ impl JointPaths {
         let Some(JointInterface { kind: Kind::Rough(rough), rotation }) = self.interfaces.first() else {
             return [0.0; 3];
         };
-        let turned = |d: DVec3| rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin));
-        let (wo, wi) = (turned(wo), turned(wi));
+        let [wo, wi] = [wo, wi].map(|d| rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin)));
         let wh = (wi + wo).normalize();
         let area = rough.facets.visible_area(wo);
         let density = rough.facets.density(wh) / (4.0 * area) * one_facet::masking(&rough.facets, wo, wi);
@@ -207,12 +201,8 @@ impl JointInterface {
                 Some((Sided { direction: b, ..a }, brdf.map(|brdf| PI * brdf), false))
             }
             Kind::Rough(rough) => {
-                let turned = |d: Sided, sign: f64| {
-                    self.rotation
-                        .map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, sign * sin), ..d })
-                };
-                let (b, kept, facets_before) = walk::scatter(rough, stream, turned(a, -1.0))?;
-                Some((turned(b, 1.0), kept, facets_before == 0))
+                let (b, kept, facets_before) = walk::scatter(rough, stream, a.inside(self.rotation))?;
+                Some((b.outside(self.rotation), kept, facets_before == 0))
             }
         }
     }

@@ -1,4 +1,4 @@
-//! A rough interface with one facet per event: what the facets' shadows catch is lost.
+//! A rough interface with one facet per event: light in the facets' shadows is lost.
 //!
 //! Reflection and refraction have the height-correlated masking `G2 = 1 / (1 + Lambda_i + Lambda_o)`, the form that
 //! fast models use for both (for refraction Smith's model itself has a Beta function, Heitz et al. 2016, eq. 46).

@@ -25,7 +25,7 @@ impl Side {
     }
 }
 
-/// Shares of the light at a facet; what they leave of 1 is absorbed.
+/// Shares of the light at a facet; the rest to 1 is absorbed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Split {
     pub(crate) reflectance: f64,
@@ -52,7 +52,7 @@ const INDEX_MATCH: f64 = 1e-5;
 pub(crate) struct Optics {
     /// Real index above.
     pub(crate) above: f64,
-    /// Real index below; that of above where the medium is opaque.
+    /// Real index below; the index above if the medium is opaque.
     pub(crate) below: f64,
     below_over_above: f64,
     above_over_below: f64,
@@ -86,7 +86,7 @@ impl Optics {
         }
     }
 
-    /// An interface that reflects by Schlick's formula. From below, light is reflected as it is along the refracted ray.
+    /// An interface that reflects by Schlick's formula. Light from below is reflected as much as light from above along the refracted ray.
     fn of_schlick(layer: &MonochromeLayer, f0: f64) -> Self {
         let above = layer.above;
         match layer.below {
@@ -108,7 +108,7 @@ impl Optics {
         Self::between(above, above, kind)
     }
 
-    /// An interface to a medium that light enters. Absorption in it is a matter of the slab; here it counts for the
+    /// An interface to a medium that light enters. The slab has the medium's absorption; here it counts for the
     /// reflectance from above only.
     pub(crate) fn transparent(above: f64, films: &[FilmLayer], mut below: Complex64) -> Self {
         if films.is_empty() && below.im == 0.0 {
@@ -139,10 +139,11 @@ impl Optics {
         matches!(self.kind, Kind::Dielectric) && (self.below / self.above - 1.0).abs() < INDEX_MATCH
     }
 
-    /// Whether light goes the ways that it goes at another interface.
+    /// Whether light goes the same ways as at another interface.
     pub(crate) fn is_parallel(&self, other: &Self) -> bool {
-        let ways = |optics: &Self| (optics.above, optics.below, optics.is_transparent(), optics.is_absent());
-        ways(self) == ways(other)
+        let [own, others] =
+            [self, other].map(|optics| (optics.above, optics.below, optics.is_transparent(), optics.is_absent()));
+        own == others
     }
 
     /// Index of the medium on a side.
@@ -212,9 +213,8 @@ impl Optics {
     fn split_coated(&self, side: Side, cos: f64) -> Split {
         let Kind::Coated { films, below, opaque, absorbing } = &self.kind else { return Split::opaque(1.0, cos) };
         let above = Complex64::new(self.above, 0.0);
-        let from_above = |c: f64| coated(above, films, *below, c).unpolarised();
         if *opaque {
-            return Split::opaque(from_above(cos), cos);
+            return Split::opaque(coated(above, films, *below, cos).unpolarised(), cos);
         }
         let eta_it = self.eta_it(side);
         let cos_t = (1.0 - (1.0 - cos * cos) * (eta_it * eta_it)).clamp(0.0, 1.0).sqrt();
@@ -223,11 +223,11 @@ impl Optics {
             if cos_t <= 0.0 || cos == 0.0 {
                 return Split::opaque(1.0, cos);
             }
-            let reflectance = from_above(cos_above);
+            let reflectance = coated(above, films, *below, cos_above).unpolarised();
             return Split { reflectance, transmittance: 1.0 - reflectance, cos_theta: cos, cos_theta_t: cos_t };
         }
         let reflectance = match side {
-            Side::Above => from_above(cos),
+            Side::Above => coated(above, films, *below, cos).unpolarised(),
             Side::Below => {
                 let upward: Vec<FilmLayer> = films.iter().rev().copied().collect();
                 coated(Complex64::new(self.below, 0.0), &upward, above, cos).unpolarised()

@@ -10,12 +10,12 @@ use super::interface::Interface;
 use super::optics::Side;
 use super::random::Stream;
 use super::rough::Sided;
-use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::monochrome::Monochrome;
 
 /// Event from which on a path survives by chance: late, because light that a lossless stack holds back would make noise.
 pub(super) const EVENTS_SURE: usize = 4096;
 
-/// Event from which on a path that is to be connected survives by chance: the cost grows with the square of its length.
+/// Event from which on a path survives by chance if it is to be connected: connecting costs the square of its length.
 const EVENTS_SURE_CONNECTED: usize = 64;
 
 /// Probability per event with which a path survives.
@@ -49,18 +49,14 @@ pub(crate) struct Arrival {
 
 impl Interfaces {
     pub(crate) fn new(stack: &Monochrome, mode: InterfaceMode) -> Self {
-        let depth = |below: MonochromeBelow| match below {
-            MonochromeBelow::Dielectric { optical_depth, .. } => optical_depth,
-            MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. } => 0.0,
-        };
         Self {
             interfaces: stack.layers.iter().map(|layer| Interface::new(layer, mode)).collect(),
-            optical_depths: stack.layers.iter().map(|layer| depth(layer.below)).collect(),
+            optical_depths: stack.layers.iter().map(|layer| layer.below.optical_depth()).collect(),
             exterior: stack.exterior,
         }
     }
 
-    /// Whether any interface sends light elsewhere than the smooth ones do.
+    /// Whether any interface sends light into more directions than a smooth one.
     pub(crate) fn scatter(&self) -> bool {
         self.interfaces.iter().any(|interface| !interface.is_smooth() && !interface.is_black())
     }
@@ -77,9 +73,8 @@ impl Interfaces {
     /// Index of the medium on a side of an interface.
     pub(crate) fn index(&self, interface: usize, side: Side) -> f64 {
         let own = self.interfaces[interface].index(side);
-        // A diffuse base has none of its own: the medium is that below the interface before.
-        let above = || interface.checked_sub(1).and_then(|i| self.interfaces[i].index(Side::Below));
-        own.or_else(above).unwrap_or(self.exterior)
+        // A diffuse base has no index: the medium is the one below the interface before.
+        own.or_else(|| self.interfaces[interface.checked_sub(1)?].index(Side::Below)).unwrap_or(self.exterior)
     }
 
     /// Follows light from `start` (above the stack, away from it) until it leaves: upward, with the direction and

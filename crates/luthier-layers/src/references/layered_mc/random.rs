@@ -3,20 +3,20 @@
 use glam::DVec2;
 use luthier_optics::sampling::split_mix::{GOLDEN, mix};
 
-/// The numbers of one path: the k-th is a hash of (seed, path, k), whatever other paths do. The first numbers of an even stream are those of a
+/// The random numbers of one path. The k-th is a hash of (seed, path, k), whatever other paths do. An even stream takes its first numbers from a
 /// sequence instead.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream {
     counter: u64,
     /// Number of the path in the sequence.
     place: u64,
-    /// The next of [`STEPS`] that counts.
+    /// Index of the next of [`STEPS`]; beyond the last one numbers are hashes.
     dimension: usize,
     seed: u64,
 }
 
-/// Fractions of the square roots of primes, times 2^64 (Richtmyer 1951): multiples of each fill the unit interval evenly, and those of all
-/// together the unit cube.
+/// Fractions of the square roots of primes, times 2^64 (Richtmyer 1951). Multiples of one fill the unit interval evenly, and multiples of all
+/// together fill the unit cube.
 const STEPS: [u64; 16] = [
     0x6a09_e667_f3bc_c908,
     0xbb67_ae85_84ca_a73b,
@@ -43,7 +43,7 @@ impl Stream {
         Self { counter, place: 0, dimension: STEPS.len(), seed: 0 }
     }
 
-    /// The stream of a path whose first numbers are those of a sequence, which a seed shifts: means over many paths have less noise.
+    /// The stream of a path whose first numbers come from a sequence, shifted by the seed: means over many paths have less noise.
     pub(crate) fn even(seed: u64, path: u64) -> Self {
         Self { place: path + 1, dimension: 0, seed: mix(seed.wrapping_add(GOLDEN)), ..Self::new(seed, path) }
     }
@@ -83,8 +83,8 @@ impl Stream {
         loop {
             // Two numbers of 32 bits at the middles of their steps, from -1 to 1.
             let bits = self.next();
-            let side = |bits: u64| (bits as f64 + 0.5) * (1.0 / (1u64 << 31) as f64) - 1.0;
-            let p = DVec2::new(side(bits >> 32), side(bits & 0xffff_ffff));
+            let [x, y] = [bits >> 32, bits & 0xffff_ffff].map(|half| half as f64 + 0.5);
+            let p = DVec2::new(x, y) * (1.0 / (1u64 << 31) as f64) - 1.0;
             let r_sq = p.length_squared();
             if r_sq < 1.0 {
                 return (DVec2::new(p.x * p.x - p.y * p.y, 2.0 * p.x * p.y) / r_sq, r_sq);

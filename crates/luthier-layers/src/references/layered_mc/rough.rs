@@ -14,8 +14,8 @@ pub(crate) struct Rough<O = Optics> {
     pub(crate) facets: Facets,
 }
 
-/// A direction at an interface: a side, and a unit vector in the frame of that side, whose z axis is the normal that
-/// points into it. Frames of both sides share x and y.
+/// A direction at an interface: a side, and a unit vector in the frame of that side. Its z axis is the normal that points
+/// into the side; frames of both sides share x and y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sided {
     pub(crate) side: Side,

@@ -20,8 +20,8 @@ const SURVIVAL: f64 = 0.8;
 /// Light fainter than this survives by chance too.
 const FAINT: f64 = 0.1;
 
-/// Probability with which a ray of [`kernel`] meets another facet, at least: what few rays bring comes in smaller parts from more of
-/// them.
+/// Least probability with which a ray of [`kernel`] meets another facet. Light that few rays would carry then comes in smaller parts from more of
+/// them, with less noise.
 const MEETS_MIN: f64 = 1.0 / 16.0;
 
 /// Depth of a facet below the top, as its side counts it.
@@ -101,8 +101,8 @@ impl<S: Share> Walker<S> {
         Self { side: a.side, depth: Depth::Drawn { u: 1.0 - stream.uniform(), rate }, view, weight: S::WHOLE }
     }
 
-    /// Leaves the facet for the next, or for good. `MORE` says whether it goes to the next at least as often as [`MEETS_MIN`], with the
-    /// weight that makes up for it; what leaves then has no weight that could be used.
+    /// Leaves the facet for the next, or for good. With `MORE` the walker goes to the next facet at least as often as [`MEETS_MIN`], with a weight that
+    /// makes up for it; a walker that leaves then has no valid weight.
     #[inline(always)]
     fn scatter<const MORE: bool>(
         &mut self,
@@ -172,17 +172,17 @@ pub(crate) fn scatter<O: Chance>(rough: &Rough<O>, stream: &mut Stream, a: Sided
     }
 }
 
-/// An unbiased estimate of the density per solid angle of the light from `a` that leaves along `b`: a walk whose
-/// every facet adds what it sends straight to `b`.
+/// An unbiased estimate of the density per solid angle of the light from `a` that leaves along `b`. Every facet of a walk adds the light that it
+/// sends straight to `b`.
 ///
-/// The walk may as well come from `b`, against the light. A path over several facets is drawn from either end but for the facet next to
-/// the other, which is evaluated: where that facet mirrors most of what it gets just there, few walks find it and each is worth
-/// much, as with grazing light that goes from facet to facet. Either end starts half of the walks, and balanced weights (Veach 1997) give
-/// each path to the end that finds it more often. What meets one facet alone needs none.
+/// A walk may also start at `b`, against the light. It draws all facets of a path but the last, which is evaluated. If that facet mirrors most of
+/// its light towards the other end, few walks find it and each is worth much, as with grazing light that goes from facet to facet. So either end
+/// starts half of the walks, and balanced weights (Veach 1997) give each path to the end that finds it more often. Light that meets one facet alone
+/// needs no weights.
 pub(crate) fn kernel(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
-    let reach = |d: Sided| rough.optics.index(d.side) * rough.optics.index(d.side) * d.direction.z;
+    let [reach_a, reach_b] = [a, b].map(|d| rough.optics.index(d.side) * rough.optics.index(d.side) * d.direction.z);
     // Reciprocity: the density from b to a over that from a to b.
-    let turned = reach(a) / reach(b);
+    let turned = reach_a / reach_b;
     if stream.uniform() < 0.5 {
         from_one_end(rough, stream, a, b, turned)
     } else {
@@ -198,7 +198,7 @@ fn from_one_end(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided, turned: 
     let mut value = sent(rough, &walker, b, lambda);
     let mut next = walker.scatter::<true>(rough, stream, 0);
     let Next::Facet = next else { return value };
-    // What a walk from b would find at the facet that is the first here and its last.
+    // The density that a walk from b would find at this first facet, which is its last.
     let back = Sided { side: walker.side, direction: -walker.view.direction };
     let depth_of_a = libm::exp(-rough.facets.lambda(a.direction) * entered.value());
     let found_from_b = rough.phase(back.side, &rough.facets.view(back.direction), a) * depth_of_a;
@@ -236,8 +236,8 @@ fn sent(rough: &Rough, walker: &Walker, b: Sided, lambda: f64) -> f64 {
     if phase > 0.0 { phase * walker.depth.leaving(lambda, walker.side != b.side) } else { 0.0 }
 }
 
-/// A guess at the density along `b` of what meets more than one facet, for weights between strategies only:
-/// cosine-distributed, and about as strong as alpha squared.
+/// A guess at the density along `b` of light that meets more than one facet: cosine-distributed, and about as strong as
+/// alpha squared. Only weights between strategies use it.
 pub(crate) fn later_density(rough: &Rough, b: Sided) -> f64 {
     0.1 * rough.facets.alpha_sq() * b.direction.z
 }

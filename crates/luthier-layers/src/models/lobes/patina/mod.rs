@@ -1,7 +1,7 @@
-//! Lobes of a stack whose first layer is a patina, which has grown over the others in places.
+//! Lobes of a stack whose first layer is a patina that has grown over the others in places.
 //!
-//! A place where patina has half grown is grown on half of its area, and bare on the other: light is linear in the amount. Both ends are simulated.
-//! Lobes of the two have places of their own in rows, and their shapes stay the same over the amount; so that what is linear in rows is linear in light.
+//! Half-grown patina covers half of a place's area, and the other half is bare. So light is linear in the amount, and both ends are simulated. Each
+//! end has its own lobes in a row; both ends share the shapes of all lobes and differ in energies. Lines between rows are then lines of light.
 
 #[cfg(test)]
 mod tests;
@@ -15,30 +15,30 @@ use super::solve::solve;
 use super::{FirstInterface, FitSettings, Lobe, Lobes, Row, ViewAxis, Wide};
 use crate::layers::ALPHA_MIN;
 
-/// A patina where it has grown whole.
+/// A patina that has grown fully.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cover {
-    /// Share of the light that enters it which scattering in it sends back, as wide light.
+    /// Share of the entering light that scattering in the patina sends back, as wide light.
     pub diffuse_albedo: Rgb,
-    /// Slope parameter of the layer below it; `None` leaves that layer as it is.
+    /// Slope parameter of the layer below the patina; `None` leaves that layer unchanged.
     pub base_alpha: Option<f64>,
-    /// Factor on the light from the layers below it.
+    /// Factor on the light from the layers below the patina.
     pub tarnish: Rgb,
 }
 
 impl Cover {
-    /// Whether a stack under it is as it is without its numbers.
+    /// Whether all three parameters change nothing.
     fn is_plain(&self) -> bool {
         self.diffuse_albedo == [0.0; 3] && self.base_alpha.is_none() && self.tarnish == [1.0; 3]
     }
 
-    /// Number of nodes: all layers there, without its numbers; grown, where that is something else; bare.
+    /// Number of nodes: all layers without these parameters, all layers with them if they change anything, and the bare layers.
     pub fn nodes(&self) -> usize {
         if self.is_plain() { 2 } else { 3 }
     }
 
-    /// The stack below it and itself.
+    /// The stack with the slope parameter below the fully grown patina.
     pub(super) fn grown(&self, stack: &Stack) -> Stack {
         let mut grown = stack.clone();
         let base = grown.layers.get_mut(1).filter(|layer| !matches!(layer.base, Base::Diffuse(_)));
@@ -48,8 +48,8 @@ impl Cover {
         grown
     }
 
-    /// Coefficients of the remainder of lobes under it: those that were fitted, and those of what its interface lets through, each for the energy that it
-    /// is the shape of. Scattered light is brighter than the remainder of many a stack, whose shape may be odd.
+    /// Coefficients of the remainder of a grown patina: a mean of the fitted ones and of those of light scattered in the patina, weighed by energies.
+    /// Scattered light often outshines the fitted remainder, whose shape may then be odd.
     fn falloff(&self, lobes: &Lobes) -> [f64; 2] {
         let own = lobes.frame.wide.falloff();
         let Some(first) = &lobes.first else { return own };
@@ -61,8 +61,8 @@ impl Cover {
         [0, 1].map(|k: usize| own[k] + share * (passed[k] - own[k]))
     }
 
-    /// A row of the stack with the light that it scatters: of what enters so much comes back wide, and the rest sees what is below. The sum is no
-    /// more than what falls in, where that of the row is not.
+    /// A row with the light that the patina scatters. A share of the entering light comes back wide, and the rest reaches the layers below. The albedo
+    /// stays at or below 1 if the row's own does.
     fn dimmed(&self, mut row: Row) -> Row {
         let first = row.first_facet();
         let dull = [0, 1, 2].map(|c: usize| self.tarnish[c] * (1.0 - self.diffuse_albedo[c]));
@@ -77,15 +77,15 @@ impl Cover {
     }
 }
 
-/// Coefficients of the remainder that are nearest to what an interface lets through, in the units of a cosine.
+/// Coefficients of the remainder nearest to the light that an interface lets through, over the cosine.
 fn of_transmitted(first: &FirstInterface, axis: ViewAxis) -> [f64; 2] {
-    let passed = |cos_theta: f64| 3.0 - first.reflectance.rgb(cos_theta).iter().sum::<f64>();
+    let straight = passed(first, 1.0);
     let shape = Wide::new([0.0; 2], axis);
     let (mut matrix, mut right) = (vec![vec![0.0; 2]; 2], vec![0.0; 2]);
     for i in 0..COSINES {
         let cos_theta = (f64::from(i) + 0.5) / f64::from(COSINES);
         let slopes = shape.slopes(cos_theta);
-        let lack = passed(cos_theta) / passed(1.0) - 1.0;
+        let lack = passed(first, cos_theta) / straight - 1.0;
         for j in 0..2 {
             right[j] += cos_theta * slopes[j] * lack;
             (0..2).for_each(|k| matrix[j][k] += cos_theta * slopes[j] * slopes[k]);
@@ -95,16 +95,21 @@ fn of_transmitted(first: &FirstInterface, axis: ViewAxis) -> [f64; 2] {
     [found[0], found[1]]
 }
 
-/// Cosines at which that is compared, all weighed by themselves.
+/// Transmittance of an interface, summed over the channels.
+fn passed(first: &FirstInterface, cos_theta: f64) -> f64 {
+    3.0 - first.reflectance.rgb(cos_theta).iter().sum::<f64>()
+}
+
+/// Cosines at which [`of_transmitted`] compares, each with its cosine as weight.
 const COSINES: u32 = 64;
 
-/// The layers below the first of a stack, where no patina has grown.
+/// The stack without its first layer: places without patina.
 pub fn bare(stack: &Stack) -> Stack {
     Stack { layers: stack.layers.iter().skip(1).cloned().collect(), ..stack.clone() }
 }
 
-/// The light of a stack under a patina: that of all layers; where the base under it has other slopes, that, too; and last that of the bare layers, in the same
-/// cells.
+/// Simulations of a stack with a patina, all in the same cells: all layers, all layers with the slopes below a grown patina if these differ, and last
+/// the bare layers.
 pub(super) fn simulations(
     cover: &Cover,
     axis: ViewAxis,
@@ -118,9 +123,14 @@ pub(super) fn simulations(
     simulations
 }
 
-/// The lobes of each node, from all layers to the bare ones, so many at most. They have axis, medium and shape of the remainder in common.
+/// The lobes of a row, without light.
+fn unlit(row: &Row) -> impl Iterator<Item = Lobe> + '_ {
+    row.lobes.iter().map(|lobe| Lobe { strength: [0.0; 3], ..*lobe })
+}
+
+/// The lobes of each node, from all layers to the bare ones, up to `most` in all. They share axis, medium and shape of the remainder.
 ///
-/// Patina and bare layers have one lobe each; above a diffuse base, which has none, patina has all of them.
+/// Patina and bare layers have one lobe each. Above a bare diffuse base, which has none, the patina has all of them.
 pub(super) fn nodes(cover: &Cover, simulations: &[Simulation], most: usize, excess: f64) -> Vec<Lobes> {
     let [simulation, between @ .., without] = simulations else { return Vec::new() };
     let of_cover = if without.first.is_none() { most } else { most.min(1) };
@@ -134,28 +144,22 @@ pub(super) fn nodes(cover: &Cover, simulations: &[Simulation], most: usize, exce
     let of_bare = without.fewest(most - of_cover, excess);
     let bare = without.lobes(&without.with_falloff(&of_bare, falloff));
 
-    let unlit =
-        |row: &Row| -> Vec<Lobe> { row.lobes.iter().map(|lobe| Lobe { strength: [0.0; 3], ..*lobe }).collect() };
-    let covered = |lobes: &Lobes, of_row: &dyn Fn(&Row) -> Row| {
-        let row = |(row, bare): (&Row, &Row)| {
-            let mut row = of_row(row);
-            row.lobes.extend(unlit(bare));
-            row
-        };
-        Lobes { rows: lobes.rows.iter().zip(&bare.rows).map(row).collect(), ..lobes.clone() }
-    };
-    let mut nodes = vec![covered(&whole, &Row::clone)];
+    let mut nodes = vec![whole.clone()];
     if !cover.is_plain() {
-        nodes.push(covered(&grown, &|row| cover.dimmed(row.clone())));
+        let rows = grown.rows.iter().map(|row| cover.dimmed(row.clone())).collect();
+        nodes.push(Lobes { rows, ..grown.clone() });
     }
-    let row = |(grown, row): (&Row, &Row)| {
-        let mut lobes = unlit(grown);
-        lobes.extend(row.lobes.iter().copied());
-        Row { lobes, ..row.clone() }
-    };
-    let rows = grown.rows.iter().zip(&bare.rows).map(row).collect();
+    for (row, bare) in nodes.iter_mut().flat_map(|node| node.rows.iter_mut().zip(&bare.rows)) {
+        row.lobes.extend(unlit(bare));
+    }
+    let rows = grown
+        .rows
+        .iter()
+        .zip(&bare.rows)
+        .map(|(grown, bare)| Row { lobes: unlit(grown).chain(bare.lobes.iter().copied()).collect(), ..bare.clone() });
+    let rows = rows.collect();
     nodes.push(Lobes { first: bare.first, frame: whole.frame, axis: whole.axis, rows });
-    // What a base of another colour would change is not known of both ends.
+    // Rows cannot recolour a diffuse base: its light is not known for both ends.
     for node in &mut nodes {
         node.frame.base = None;
         node.rows.iter_mut().for_each(|row| row.base = None);
