@@ -29,7 +29,8 @@ FACTS = ("luthier-model", "luthier-lab")
 
 
 def is_test(path):
-    return path.name in ("tests.rs", "fixtures.rs") or path.stem.endswith("_tests") or path.stem.startswith("tests_")
+    is_named = path.name in ("tests.rs", "fixtures.rs") or path.stem.endswith("_tests") or path.stem.startswith("tests_")
+    return is_named or "tests" in path.parts[path.parts.index("src"):]
 
 
 def code(path):
@@ -38,7 +39,8 @@ def code(path):
     if path.suffix == ".rs":
         if is_test(path):
             return []
-        text = text.split("#[cfg(test)]\nmod ", 1)[0]
+        # Files of tests that a module declares are no test code of its own.
+        text = re.split(r"#\[cfg\(test\)\]\nmod \w+ \{", text, maxsplit=1)[0]
     lines = (line.strip() for line in text.splitlines())
     return [line for line in lines if line and (line.startswith("//?") or not line.startswith("//"))]
 

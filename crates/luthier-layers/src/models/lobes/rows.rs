@@ -61,7 +61,7 @@ impl Critical {
 /// apart.
 ///
 /// ```
-/// use luthier_layers::lobes::{Critical, ViewAxis};
+/// use luthier_layers::models::lobes::{Critical, ViewAxis};
 ///
 /// let axis = ViewAxis::new(4, Critical::default());
 /// // 2c / (1 + c) of c = 1/2 is two thirds of the way along three steps.

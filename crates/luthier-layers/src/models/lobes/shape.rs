@@ -16,7 +16,7 @@ const STEPS: usize = 8;
 /// count as it: at q = 7, where a Gaussian is a thousandth of its peak, the density is then 2.4 % too large.
 ///
 /// ```
-/// use luthier_layers::lobes::Shape;
+/// use luthier_layers::models::lobes::Shape;
 ///
 /// let ggx = Shape { middle: [0.1, 0.0], width: [0.3, 0.2], turn: [1.0, 0.0], tail: 1.0 };
 /// assert!((ggx.density([0.1, 0.0]) * std::f64::consts::PI * 0.3 * 0.2 - 1.0).abs() < 1e-12);
@@ -85,7 +85,7 @@ impl Shape {
 /// The fifth power is Schlick's, for light that crosses an interface; the square is for whatever else darkens grazing light.
 ///
 /// ```
-/// use luthier_layers::lobes::{Critical, ViewAxis, Wide};
+/// use luthier_layers::models::lobes::{Critical, ViewAxis, Wide};
 ///
 /// let wide = Wide::new([0.7, 0.2], ViewAxis::new(2, Critical::default()));
 /// assert!((wide.value(0.5) - (1.0 - 0.7 / 32.0 - 0.2 / 4.0)).abs() < 1e-12);
