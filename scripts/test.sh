@@ -4,10 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/steps.sh
-# Everything is computed: no results of earlier runs.
-export LUTHIER_CACHE=
-
 work=$(mktemp -d)
+# Everything is computed, once: no results of earlier runs, and one store for the tests of this one.
+export LUTHIER_CACHE= LUTHIER_TEST_STORE=$work/store
 trap 'rm -rf "$work"' EXIT
 
 tests=(cargo test --workspace --locked --features luthier-cli/view)
