@@ -52,13 +52,11 @@ impl ReflectanceCurves {
     /// Tabulates `count` curves: `f(k, cos_theta)` is the k-th.
     pub fn new(count: usize, f: impl Fn(usize, f64) -> f64) -> Self {
         let last = (WALK_NODES - 1) as f64;
-        let node = |i: usize| (0..count).map(move |k| (k, i as f64 / last));
-        let mut curves =
-            Self { count, values: (0..WALK_NODES).flat_map(node).map(|(k, cos)| f(k, cos)).collect(), means: None };
+        let nodes = (0..WALK_NODES).flat_map(|i| (0..count).map(move |k| (k, i as f64 / last)));
+        let values = nodes.clone().map(|(k, cos)| f(k, cos)).collect();
+        let mut curves = Self { count, values, means: None };
         if !curves.cubics_follow() {
-            let means =
-                (0..WALK_NODES).flat_map(node).map(|(k, cos)| tent_mean(|c| f(k, c), cos, 1.0 / last)).collect();
-            curves.means = Some(means);
+            curves.means = Some(nodes.map(|(k, cos)| tent_mean(|c| f(k, c), cos, 1.0 / last)).collect());
         }
         curves
     }
@@ -190,18 +188,17 @@ impl FacetStatistics {
     /// Albedo of the first bounce alone, per curve.
     pub fn single_scattering(&self, f: &ReflectanceCurves) -> Vec<f64> {
         let mut sums = vec![0.0; f.count];
-        let mut add = |weight: f64, values: &[f64]| {
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += weight * value;
-            }
-        };
         match &f.means {
-            None => self.first.iter().enumerate().for_each(|(i, weight)| add(*weight, f.at_first_node(i))),
-            Some(means) => self
-                .first_fine
-                .iter()
-                .zip(means.chunks_exact(f.count))
-                .for_each(|(w, values)| add(f64::from(*w), values)),
+            None => {
+                for (i, weight) in self.first.iter().enumerate() {
+                    add_weighted(&mut sums, *weight, f.at_first_node(i));
+                }
+            }
+            Some(means) => {
+                for (weight, values) in self.first_fine.iter().zip(means.chunks_exact(f.count)) {
+                    add_weighted(&mut sums, f64::from(*weight), values);
+                }
+            }
         }
         sums
     }
@@ -255,6 +252,12 @@ pub fn crossed_albedo(
     let returned =
         (0..walks).map(|index| crossed_and_returned(distribution, alpha, facets, cos_theta_i, Walk { seed, index }));
     returned.sum::<f64>() / f64::from(walks)
+}
+
+fn add_weighted(sums: &mut [f64], weight: f64, values: &[f64]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += weight * value;
+    }
 }
 
 /// Spreads a weight over four neighbouring nodes so that cubics integrate exactly.
@@ -359,7 +362,7 @@ impl Microsurface {
                 let (fraction, stretch) = (x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x));
                 let (r, density) = radius(distribution, from + (to - from) * fraction);
                 let slope = alpha * r;
-                let azimuth = |cos: f64| if cos >= 1.0 { 0.0 } else { libm::acos(cos.max(-1.0)) };
+
                 let horizon_azimuth = azimuth(cos_i * (1.0 - slope * slope) / (2.0 * slope * sin_i));
                 let (phi_from, phi_to) = match horizon {
                     Horizon::Above => (horizon_azimuth, PI),
@@ -389,6 +392,11 @@ impl Microsurface {
             }
         }
     }
+}
+
+/// The azimuth of a cosine, which may lie outside -1..=1 where a horizon does not cut a circle.
+fn azimuth(cos: f64) -> f64 {
+    if cos >= 1.0 { 0.0 } else { libm::acos(cos.max(-1.0)) }
 }
 
 /// Radius at which Gaussian slopes end.

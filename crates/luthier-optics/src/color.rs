@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::Rgb;
+use crate::rows::rows;
 
 /// Red, green and blue wavelengths of Granier and Heidrich 2003, the default of the three-wavelength mode.
 pub const GRANIER_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -84,8 +85,8 @@ impl Color {
 
 /// Fraction of the way from node `a` to node `b` at which node `i` lies.
 fn between(nodes: &[WavelengthNode], i: usize, a: usize, b: usize) -> f64 {
-    let nm = |i: usize| nodes[i].wavelength_nm;
-    (nm(i) - nm(a)) / (nm(b) - nm(a))
+    let [i, a, b] = [i, a, b].map(|node| nodes[node].wavelength_nm);
+    (i - a) / (b - a)
 }
 
 /// The kept nodes, with the weights of the others shared out linearly.
@@ -115,17 +116,9 @@ pub fn luminance(rgb: Rgb) -> f64 {
 fn cie_1931_d65() -> &'static [WavelengthNode] {
     static NODES: OnceLock<Vec<WavelengthNode>> = OnceLock::new();
     NODES.get_or_init(|| {
-        let rows: Vec<[f64; 5]> = include_str!("../data/cie_1931_d65.csv")
-            .lines()
-            .filter(|line| !line.starts_with('#'))
-            .map(|line| {
-                let mut row = [f64::NAN; 5];
-                for (value, field) in row.iter_mut().zip(line.split(',')) {
-                    *value = field.parse().unwrap_or(f64::NAN);
-                }
-                row
-            })
-            .collect();
+        let rows = rows(include_str!("../data/cie_1931_d65.csv")).map_while(Result::ok);
+        let rows = rows.map(|row| std::array::from_fn(|cell| row.number(cell).unwrap_or(f64::NAN)));
+        let rows: Vec<[f64; 5]> = rows.collect();
         let mut white = [0.0; 3];
         for [_, x, y, z, power] in &rows {
             for (sum, bar) in white.iter_mut().zip([x, y, z]) {
@@ -160,12 +153,14 @@ pub(crate) fn xyz_to_rec709(white: [f64; 3]) -> Matrix {
 }
 
 fn inverse(m: &Matrix) -> Matrix {
-    let cofactor = |r: usize, c: usize| {
-        let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
-        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
-    };
-    let determinant = (0..3).map(|c| m[0][c] * cofactor(0, c)).sum::<f64>();
-    [0, 1, 2].map(|r: usize| [0, 1, 2].map(|c: usize| cofactor(c, r) / determinant))
+    let determinant = (0..3).map(|c| m[0][c] * cofactor(m, 0, c)).sum::<f64>();
+    [0, 1, 2].map(|r: usize| [0, 1, 2].map(|c: usize| cofactor(m, c, r) / determinant))
+}
+
+/// The determinant without a row and a column, with its sign: rows and columns behind them wrap around.
+fn cofactor(m: &Matrix, r: usize, c: usize) -> f64 {
+    let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+    m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
 }
 
 #[cfg(test)]

@@ -83,29 +83,27 @@ impl BelcourBarla {
             let later = if round < 1.0 { through * through * refl_23 / (1.0 - round) } else { 0.0 };
             let echo = r23 * -r12.re;
             let (rho, phi) = (libm::sqrt(round), libm::atan2(echo.im, echo.re));
-            let mut add = |weight: f64, order: f64| {
+            let (mut weight, mut power) = (refl_12 + later, later - through);
+            for order in (0..=self.orders).map(f64::from) {
                 for (s, r) in sum.iter_mut().zip(response(path_nm, order, order * phi)) {
                     *s += 0.5 * weight * r;
                 }
-            };
-            add(refl_12 + later, 0.0);
-            let mut weight = later - through;
-            for order in 1..=self.orders {
-                weight *= rho;
-                add(2.0 * weight, f64::from(order));
+                power *= rho;
+                weight = 2.0 * power;
             }
         }
         sum
     }
 }
 
-/// Gaussians in wave number that fit the matching functions x, y, z: weight (m^2, scaled), centre (1/m), variance (1/m^2).
-/// The authors' shader, 2017.
-const GAUSSIANS: [[f64; 3]; 3] =
-    [[5.4856e-13, 1.6810e6, 4.3278e9], [4.4201e-13, 1.7953e6, 9.3046e9], [5.2481e-13, 2.2084e6, 6.6121e9]];
-
-/// Second lobe of x.
-const SECOND_X: [f64; 3] = [9.7470e-14, 2.2399e6, 4.5282e9];
+/// Gaussians in wave number that fit the matching functions: those of x, y and z, then the second of x. Weight (m^2, scaled), centre (1/m),
+/// variance (1/m^2). The authors' shader, 2017.
+const GAUSSIANS: [[f64; 3]; 4] = [
+    [5.4856e-13, 1.6810e6, 4.3278e9],
+    [4.4201e-13, 1.7953e6, 9.3046e9],
+    [5.2481e-13, 2.2084e6, 6.6121e9],
+    [9.7470e-14, 2.2399e6, 4.5282e9],
+];
 
 /// Divisor of the authors, by which y integrates to 1.
 const NORM: f64 = 1.0685e-7;
@@ -113,11 +111,10 @@ const NORM: f64 = 1.0685e-7;
 /// XYZ of cos(2 pi path/wavelength + shift) under equal energy.
 fn sensitivity(path_nm: f64, shift: f64) -> [f64; 3] {
     let p = 2.0 * PI * path_nm * 1e-9;
-    let lobe = |[value, centre, variance]: [f64; 3]| {
+    let [x, y, z, second_x] = GAUSSIANS.map(|[value, centre, variance]| {
         value * libm::sqrt(2.0 * PI * variance) * libm::cos(centre * p + shift) * libm::exp(-variance * p * p) / NORM
-    };
-    let [x, y, z] = GAUSSIANS.map(lobe);
-    [x + lobe(SECOND_X), y, z]
+    });
+    [x + second_x, y, z]
 }
 
 /// XYZ to Rec.709 for D65 (chromaticity 0.3127, 0.3290).

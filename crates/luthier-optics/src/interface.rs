@@ -53,9 +53,9 @@ impl Interface {
     pub fn has_kink(&self, color: &Color) -> bool {
         let sampled = self.sampled(color);
         // Schlick's formula has none.
-        let clear = || sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.f0.is_none() && at.below.im <= NO_KINK);
-        let etas = || clear().map(|at| at.below.re / at.above.re);
-        let (least, most) = etas().fold((f64::INFINITY, 0.0), |(a, b), eta| (f64::min(a, eta), f64::max(b, eta)));
+        let clear = sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.f0.is_none() && at.below.im <= NO_KINK);
+        let etas = clear.map(|at| at.below.re / at.above.re);
+        let (least, most) = etas.fold((f64::INFINITY, 0.0), |(a, b), eta| (f64::min(a, eta), f64::max(b, eta)));
         least < 1.0 && (least < most || sampled.critical_cot_sq() == 0.0)
     }
 
@@ -71,20 +71,17 @@ impl Interface {
 
     /// The interface at given wavelength nodes; a single node when it is achromatic.
     pub fn at_nodes(&self, nodes: &[WavelengthNode]) -> Sampled {
-        let is_achromatic = self.is_achromatic();
-        match self.below.f0() {
-            // Each channel by itself, of one wavelength or of all.
-            Some([r, g, b]) if r != g || g != b => {
-                let channels = |weight: Rgb, nm: f64| (0..3).map(move |c| (channel_of(weight, c), self.at(nm, c)));
-                let nodes = match is_achromatic {
-                    true => channels([1.0; 3], 550.0).collect(),
-                    false => nodes.iter().flat_map(|n| channels(n.weight, n.wavelength_nm)).collect(),
-                };
-                Sampled { nodes }
-            }
-            _ if is_achromatic => Sampled { nodes: vec![([1.0; 3], self.at(550.0, 0))] },
-            _ => Sampled { nodes: nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect() },
-        }
+        let single = [WavelengthNode { wavelength_nm: 550.0, weight: [1.0; 3] }];
+        let nodes = if self.is_achromatic() { &single } else { nodes };
+        let nodes = match self.below.f0() {
+            // Each channel by itself.
+            Some([r, g, b]) if r != g || g != b => nodes
+                .iter()
+                .flat_map(|n| (0..3).map(|c| (channel_of(n.weight, c), self.at(n.wavelength_nm, c))))
+                .collect(),
+            _ => nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect(),
+        };
+        Sampled { nodes }
     }
 }
 
@@ -169,12 +166,12 @@ impl Sampled {
     /// flatter than that is totally reflected. 0 where some wavelength never is, where films or the medium below absorb, and for interfaces
     /// of Schlick's, which media of no lower index lie below.
     pub fn critical_cot_sq(&self) -> f64 {
-        let is_clear = |index: Complex64| index.im <= TRACE_OF_ABSORPTION;
-        let is_total =
-            |at: &Monochrome| at.f0.is_none() && is_clear(at.below) && at.films.iter().all(|film| is_clear(film.ior));
-        let interfaces = || self.nodes.iter().map(|(_, at)| at);
-        let eta = interfaces().map(|at| at.below.re / at.above.re).fold(0.0, f64::max);
-        if eta > 0.0 && eta < 1.0 && interfaces().all(is_total) { 1.0 / (eta * eta) - 1.0 } else { 0.0 }
+        let eta = self.nodes.iter().map(|(_, at)| at.below.re / at.above.re).fold(0.0, f64::max);
+        let is_clear = self.nodes.iter().all(|(_, at)| {
+            let mut indices = at.films.iter().map(|film| film.ior).chain([at.below]);
+            at.f0.is_none() && indices.all(|index| index.im <= TRACE_OF_ABSORPTION)
+        });
+        if eta > 0.0 && eta < 1.0 && is_clear { 1.0 / (eta * eta) - 1.0 } else { 0.0 }
     }
 
     /// Unpolarised reflectance per channel.

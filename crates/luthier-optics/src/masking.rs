@@ -65,7 +65,11 @@ pub fn schlick_smith_g1(alpha: f64, cos_theta: f64) -> f64 {
     if cos_theta <= 0.0 {
         return 0.0;
     }
-    let k = alpha * libm::sqrt(2.0 / PI);
+    rational_g1(alpha * libm::sqrt(2.0 / PI), cos_theta)
+}
+
+/// Schlick's fit for any k: cos/(cos (1 - k) + k).
+pub(crate) fn rational_g1(k: f64, cos_theta: f64) -> f64 {
     cos_theta / (cos_theta * (1.0 - k) + k)
 }
 

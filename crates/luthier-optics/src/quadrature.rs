@@ -48,20 +48,20 @@ impl GradedRules {
     pub fn new(first: f64, per_fold: f64) -> Self {
         // Neighbours often have as many nodes.
         let mut even = Vec::new();
-        let rule = |index: u64| {
+        let rules = (0..LAST_EXPONENT << RULE_BITS).map(|index| {
             let squared = f64::from_bits(1.0f64.to_bits() + (index << (52 - RULE_BITS)));
             let length = libm::asinh(REACH_WITHIN * libm::sqrt(squared));
             let end = libm::sinh(length);
-            let graded = |&(u, weight): &(f64, f64)| {
-                (libm::sinh(length * u) / end, weight * length * libm::cosh(length * u) / end)
-            };
             let nodes = libm::ceil(first + per_fold * length) as usize;
             if even.len() != nodes {
                 even = gauss_legendre(nodes);
             }
-            even.iter().map(graded).collect()
-        };
-        Self { rules: (0..LAST_EXPONENT << RULE_BITS).map(rule).collect() }
+            let graded = even
+                .iter()
+                .map(|&(u, weight)| (libm::sinh(length * u) / end, weight * length * libm::cosh(length * u) / end));
+            graded.collect()
+        });
+        Self { rules: rules.collect() }
     }
 
     /// Nodes and weights for an interval of which the integrand changes fastest within the part `1 / reach` at its start.
@@ -73,10 +73,10 @@ impl GradedRules {
 
     /// Rules with every node and weight changed, and more nodes behind.
     pub fn map(self, change: impl Fn(f64, f64) -> (f64, f64), behind: &[(f64, f64)]) -> Self {
-        let changed = |rule: Vec<(f64, f64)>| {
+        let rules = self.rules.into_iter().map(|rule| {
             rule.into_iter().map(|(node, weight)| change(node, weight)).chain(behind.iter().copied()).collect()
-        };
-        Self { rules: self.rules.into_iter().map(changed).collect() }
+        });
+        Self { rules: rules.collect() }
     }
 }
 

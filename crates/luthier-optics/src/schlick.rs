@@ -94,9 +94,9 @@ impl Lazanyi {
     /// The least-squares correction for an interface: for each exponent the weight in closed form, over equal steps of the
     /// cosine; the best exponent to an eighth.
     pub fn fit(above: f64, below: Complex64) -> Self {
-        let exact = |cos: f64| fresnel::interface(Complex64::new(above, 0.0), below, cos).unpolarised();
-        let angles: Vec<f64> = Self::cosines().map(exact).collect();
-        Self::through(f0(above, below), &angles)
+        let index = Complex64::new(above, 0.0);
+        let exact = Self::cosines().map(|cos| fresnel::interface(index, below, cos).unpolarised());
+        Self::through(f0(above, below), &exact.collect::<Vec<_>>())
     }
 
     /// The cosines that a fit looks at.
@@ -106,8 +106,8 @@ impl Lazanyi {
 
     /// [`Lazanyi::fit`] to any reflectance, from its values at normal incidence and at [`Lazanyi::cosines`].
     pub fn through(f0: f64, values: &[f64]) -> Self {
-        let excess = |(cos, exact): (f64, &f64)| (cos, schlick(f0, cos) - exact);
-        let angles: Vec<(f64, f64)> = Self::cosines().zip(values).map(excess).collect();
+        let angles = Self::cosines().zip(values).map(|(cos, exact)| (cos, schlick(f0, cos) - exact));
+        let angles: Vec<(f64, f64)> = angles.collect();
         let mut best = (f64::INFINITY, Self { f0, a: 0.0, exponent: 1.0 });
         for exponent in FIT_EXPONENTS.map(|e| f64::from(e) / 8.0) {
             let (mut cross, mut square) = (0.0, 0.0);
@@ -162,9 +162,9 @@ impl F82 {
     /// The reflectance, not below 0.
     pub fn eval(&self, cos_theta: f64) -> f64 {
         let there = schlick(self.f0, F82_COS_THETA);
-        let sixth = |cos: f64| cos * (1.0 - cos) * fifth(1.0 - cos);
-        let weight = there * (1.0 - self.tint) / sixth(F82_COS_THETA);
-        (schlick(self.f0, cos_theta) - weight * sixth(cos_theta)).max(0.0)
+        let [dip, deepest] = [cos_theta, F82_COS_THETA].map(|cos| cos * (1.0 - cos) * fifth(1.0 - cos));
+        let weight = there * (1.0 - self.tint) / deepest;
+        (schlick(self.f0, cos_theta) - weight * dip).max(0.0)
     }
 }
 

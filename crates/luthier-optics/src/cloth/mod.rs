@@ -48,16 +48,16 @@ impl ClothVisibility {
     }
 
     fn of_lambda(self, cos_view: f64, lambda_view: f64, cos_light: f64, alpha: f64) -> f64 {
-        let smith = |lambda_light: f64| 0.25 / (cos_view * cos_light * (1.0 + lambda_view + lambda_light));
-        match self {
-            Self::Neubelt => 0.25 / (cos_view + cos_light - cos_view * cos_light),
-            Self::EstevezKulla => smith(charlie_lambda(alpha, cos_light)),
+        let lambda_light = match self {
+            Self::Neubelt => return 0.25 / (cos_view + cos_light - cos_view * cos_light),
+            Self::EstevezKulla => charlie_lambda(alpha, cos_light),
             Self::EstevezKullaSoftened => {
                 let from_horizon = (1.0 - cos_light) * (1.0 - cos_light);
                 let to_fourth = from_horizon * from_horizon;
-                smith(libm::pow(charlie_lambda(alpha, cos_light), 1.0 + 2.0 * to_fourth * to_fourth))
+                libm::pow(charlie_lambda(alpha, cos_light), 1.0 + 2.0 * to_fourth * to_fourth)
             }
-        }
+        };
+        0.25 / (cos_view * cos_light * (1.0 + lambda_view + lambda_light))
     }
 }
 
@@ -105,10 +105,12 @@ struct Rules {
 
 impl Rules {
     fn new(horizon: [f64; 2], mirror: [f64; 2], azimuth: [[f64; 2]; 2]) -> Self {
-        let graded = |[first, per_fold]: [f64; 2]| GradedRules::new(first, per_fold);
+        let [front, back] = azimuth;
+        let [horizon, mirror, front, back] =
+            [horizon, mirror, front, back].map(|[first, per_fold]| GradedRules::new(first, per_fold));
         // The square t^2 of the tangent in place of the tangent; weights are of the azimuth.
-        let of_azimuth = |rule: [f64; 2]| graded(rule).map(|t, weight| (t * t, 2.0 * weight / (1.0 + t * t)), &[]);
-        Self { horizon: graded(horizon), mirror: graded(mirror), azimuth: azimuth.map(of_azimuth) }
+        let azimuth = [front, back].map(|rules| rules.map(|t, weight| (t * t, 2.0 * weight / (1.0 + t * t)), &[]));
+        Self { horizon, mirror, azimuth }
     }
 }
 
@@ -158,38 +160,37 @@ fn over_largest<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alph
         ln_reference: ln_largest_sine_sq(cos_v),
     };
     let lambda_v = charlie_lambda(alpha, cos_v);
-    let mut sums = [0.0; N];
-    let mut add = |cos_l: f64, weight: f64| {
-        let around = weight * cos_l * ring.around(rules, cos_l);
-        for (sum, term) in sums.iter_mut().zip(terms) {
-            *sum += around * term.of_lambda(cos_v, lambda_v, cos_l, alpha);
-        }
-    };
     // At the horizon: the scale of the visibility, and that on which sin^(1/alpha) falls with the cosine of the half vector.
     let from_horizon = cos_v.min(libm::sqrt(alpha)).min(alpha / cos_v);
     let mirror_reach = if ring.power > SMOOTH_POWER { 10.0 } else { MIRROR_REACH };
     let is_fitted = terms.iter().any(|&term| term != ClothVisibility::Neubelt);
     let at_horizon = if is_fitted { FIT_SCALE * from_horizon } else { from_horizon };
-    let mut even = |start: f64, end: f64, scale: f64, rules: &GradedRules| {
-        let length = end - start;
-        let reach = length / scale;
-        for &(part, weight) in rules.for_reach_squared(reach * reach) {
-            add(start + length * part, weight * length.abs());
-        }
-    };
-    let mut panel = |start: f64, end: f64, scale: f64, rules: &GradedRules| {
-        if is_fitted && (start - FIT_JOINT) * (end - FIT_JOINT) < 0.0 {
-            even(start, FIT_JOINT, scale, rules);
-            even(FIT_JOINT, end, scale + (FIT_JOINT - start).abs(), rules);
-        } else {
-            even(start, end, scale, rules);
-        }
-    };
     let (below, above) = (0.5 * cos_v, (2.0 * cos_v).min(0.5 * (1.0 + cos_v)));
-    panel(0.0, below, at_horizon, &rules.horizon);
-    panel(cos_v, below, below / mirror_reach, &rules.mirror);
-    panel(cos_v, above, (above - cos_v) / mirror_reach, &rules.mirror);
-    panel(above, 1.0, from_horizon.max(cos_v), &rules.horizon);
+    let panels = [
+        (0.0, below, at_horizon, &rules.horizon),
+        (cos_v, below, below / mirror_reach, &rules.mirror),
+        (cos_v, above, (above - cos_v) / mirror_reach, &rules.mirror),
+        (above, 1.0, from_horizon.max(cos_v), &rules.horizon),
+    ];
+    let mut sums = [0.0; N];
+    for (start, end, scale, graded) in panels {
+        let parts = if is_fitted && (start - FIT_JOINT) * (end - FIT_JOINT) < 0.0 {
+            &[(start, FIT_JOINT, scale), (FIT_JOINT, end, scale + (FIT_JOINT - start).abs())][..]
+        } else {
+            &[(start, end, scale)][..]
+        };
+        for &(start, end, scale) in parts {
+            let length: f64 = end - start;
+            let reach = length / scale;
+            for &(part, weight) in graded.for_reach_squared(reach * reach) {
+                let cos_l = start + length * part;
+                let around = weight * length.abs() * cos_l * ring.around(rules, cos_l);
+                for (sum, term) in sums.iter_mut().zip(terms) {
+                    *sum += around * term.of_lambda(cos_v, lambda_v, cos_l, alpha);
+                }
+            }
+        }
+    }
     sums
 }
 

@@ -107,14 +107,13 @@ fn with_rules(
     cos_theta_i: f64,
 ) -> InterfaceAlbedo {
     let cos_i = cos_theta_i.clamp(COS_THETA_MIN, 1.0);
-    let fresnel = |cos: f64| fresnel_dielectric(eta_ti, cos);
     if alpha < ALPHA_MIN {
-        let reflected = fresnel(cos_i);
+        let reflected = fresnel_dielectric(eta_ti, cos_i);
         return InterfaceAlbedo { reflected, transmitted: 1.0 - reflected };
     }
     let facets = Facets::new(rules, distribution, masking, alpha, cos_i);
-    let reflected = facets.reflected(fresnel_feature(eta_ti), fresnel);
-    let transmitted = facets.transmitted(eta_ti, fresnel);
+    let reflected = facets.reflected(fresnel_feature(eta_ti), |cos| fresnel_dielectric(eta_ti, cos));
+    let transmitted = facets.transmitted(eta_ti, |cos| fresnel_dielectric(eta_ti, cos));
     InterfaceAlbedo { reflected, transmitted }
 }
 

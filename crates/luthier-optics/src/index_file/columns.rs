@@ -58,12 +58,10 @@ impl Columns {
             names[at] = format!("{} {unit}", names[at]);
         }
         let roles: Vec<Role> = names.iter().map(|name| role(name)).collect();
-        let first = |is: &dyn Fn(&Role) -> bool| roles.iter().position(is);
-        let header = |lacks| Reason::Header { found: clipped(&names.join(",")), lacks }.at(row.line);
-        let Some(wavelength) = first(&|role| matches!(role, Role::Wavelength(_) | Role::Unit(_))) else {
-            return Err(match first(&|role| *role == Role::Energy) {
+        let Some(wavelength) = roles.iter().position(|role| matches!(role, Role::Wavelength(_) | Role::Unit(_))) else {
+            return Err(match roles.iter().position(|role| *role == Role::Energy) {
                 Some(at) => Reason::Energy(clipped(&names[at])).in_column(row.line, at + 1),
-                None => header("wavelengths"),
+                None => lacking("wavelengths", &names).at(row.line),
             });
         };
         let unit = match roles[wavelength] {
@@ -71,14 +69,25 @@ impl Columns {
             Role::Unit(unit) => Some(unit),
             _ => None,
         };
-        let (n, k) = (first(&|role| *role == Role::N), first(&|role| *role == Role::K));
+        let [n, k] = [Role::N, Role::K].map(|wanted| roles.iter().position(|role| *role == wanted));
         if n.is_none() && k.is_none() {
-            return Err(header("n or k"));
+            return Err(lacking("n or k", &names).at(row.line));
         }
-        let is_used = |at: &usize| [Some(wavelength), n, k].contains(&Some(*at));
-        let others = (0..names.len()).filter(|at| !is_used(at)).map(|at| clipped(&names[at])).collect();
+        let others = (0..names.len()).filter(|&at| ![Some(wavelength), n, k].contains(&Some(at)));
+        let others = others.map(|at| clipped(&names[at])).collect();
         Ok(Self { wavelength, unit, n, k, count: names.len(), others })
     }
+}
+
+/// The fault of a header that names no column of a quantity.
+fn lacking(lacks: &'static str, names: &[String]) -> Reason {
+    Reason::Header { found: clipped(&names.join(",")), lacks }
+}
+
+/// The number of a cell, or a fault with its text and its place.
+pub(super) fn number(row: &Row, cell: usize) -> Result<f64, IndexFileError> {
+    let text = row.cells.get(cell).map_or("", String::as_str);
+    row.number(cell).ok_or_else(|| Reason::Number(clipped(text)).in_column(row.line, cell + 1))
 }
 
 /// Characters of a text of the file in messages.

@@ -1,6 +1,6 @@
 //! Tables of indices in CSV.
 
-use super::columns::{Columns, NM, UM, clipped};
+use super::columns::{Columns, NM, UM, number};
 use super::curves::{Point, joined};
 use super::error::plain;
 use super::{IndexFile, IndexFileError, ROWS_MAX, Reason};
@@ -64,11 +64,7 @@ pub fn csv(text: &str) -> Result<IndexFile, IndexFileError> {
         if row.cells.len() != columns.count {
             return Err(Reason::Columns { found: row.cells.len(), expected: columns.count }.at(row.line));
         }
-        let number = |cell: usize| {
-            let text = || clipped(row.cells.get(cell).map_or("", String::as_str));
-            row.number(cell).ok_or_else(|| Reason::Number(text()).in_column(row.line, cell + 1))
-        };
-        let wavelength = number(columns.wavelength)?;
+        let wavelength = number(&row, columns.wavelength)?;
         if wavelength <= 0.0 {
             return Err(Reason::Wavelength(wavelength).in_column(row.line, columns.wavelength + 1));
         }
@@ -79,7 +75,7 @@ pub fn csv(text: &str) -> Result<IndexFile, IndexFileError> {
         }
         for (curve, cell) in [(&mut n, columns.n), (&mut k, columns.k)] {
             let Some(cell) = cell else { continue };
-            let value = number(cell)?;
+            let value = number(&row, cell)?;
             curve.push(Point {
                 nm: wavelength,
                 unit: columns.unit,

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use super::Matrix;
 use crate::Rgb;
 use crate::color::Color;
+use crate::rows::rows;
 
 /// Half a step of the wavelengths of [`Color::Spectral`], nm.
 const HALF_STEP_NM: f64 = 2.5;
@@ -35,17 +36,16 @@ struct Light {
 pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
     let nm = &matrix.wavelengths_nm;
     let count = nm.len();
-    let middle = |i: usize| 0.5 * (nm[i] + nm[i + 1]);
-    let edges = |i: usize| match count {
-        1 => [0.0, f64::MAX],
-        _ if i == 0 => [2.0 * nm[0] - middle(0), middle(0)],
-        _ if i + 1 == count => [middle(i - 1), 2.0 * nm[i] - middle(i - 1)],
-        _ => [middle(i - 1), middle(i)],
-    };
+    let middles: Vec<f64> = nm.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     // Of each bin: power of D65, that of the primaries, weights of the channels.
     let bins: Vec<(f64, Rgb, Rgb)> = (0..count)
         .map(|i| {
-            let [from, to] = edges(i);
+            let [from, to] = match count {
+                1 => [0.0, f64::MAX],
+                _ if i == 0 => [2.0 * nm[0] - middles[0], middles[0]],
+                _ if i + 1 == count => [middles[i - 1], 2.0 * nm[i] - middles[i - 1]],
+                _ => [middles[i - 1], middles[i]],
+            };
             let mut bin = (0.0, [0.0; 3], [0.0; 3]);
             for light in d65() {
                 let [low, high] = [light.wavelength_nm - HALF_STEP_NM, light.wavelength_nm + HALF_STEP_NM];
@@ -62,8 +62,8 @@ pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
     let mut out = [[0.0; 3]; 3];
     for (to, (power, _, weight)) in bins.iter().enumerate().filter(|(_, bin)| bin.0 > 0.0) {
         let row = &matrix.shares[to * count..][..count];
-        let emitted = |j: usize| row.iter().zip(&bins).map(|(share, (_, lights, _))| share * lights[j]).sum::<f64>();
-        let emitted = [0, 1, 2].map(emitted);
+        let emitted = [0, 1, 2]
+            .map(|j: usize| row.iter().zip(&bins).map(|(share, (_, lights, _))| share * lights[j]).sum::<f64>());
         for (sums, weight) in out.iter_mut().zip(weight) {
             for (sum, emitted) in sums.iter_mut().zip(emitted) {
                 *sum += weight * emitted / power;
@@ -77,20 +77,17 @@ pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
 fn d65() -> &'static [Light] {
     static LIGHTS: OnceLock<Vec<Light>> = OnceLock::new();
     LIGHTS.get_or_init(|| {
-        let rows = |text: &'static str| text.lines().filter(|line| !line.starts_with('#'));
-        let field = |line: &str, i: usize| line.split(',').nth(i).and_then(|f| f.parse().ok()).unwrap_or(f64::NAN);
-        let powers = rows(include_str!("../../data/cie_1931_d65.csv")).map(|line| field(line, 4));
-        let primaries = rows(include_str!("../../data/rec709_primaries.csv")).map(|line| {
-            let [red, green] = [field(line, 1), field(line, 2)];
-            [red, green, 1.0 - red - green]
-        });
-        let nodes = Color::Spectral.nodes();
-        (nodes.iter().zip(powers).zip(primaries))
-            .map(|((node, power), primaries)| Light {
-                wavelength_nm: node.wavelength_nm,
-                power,
-                primaries,
-                weight: node.weight,
+        let powers = rows(include_str!("../../data/cie_1931_d65.csv")).map_while(Result::ok);
+        let primaries = rows(include_str!("../../data/rec709_primaries.csv")).map_while(Result::ok);
+        (Color::Spectral.nodes().iter().zip(powers).zip(primaries))
+            .map(|((node, power), primaries)| {
+                let [red, green] = [1, 2].map(|cell| primaries.number(cell).unwrap_or(f64::NAN));
+                Light {
+                    wavelength_nm: node.wavelength_nm,
+                    power: power.number(4).unwrap_or(f64::NAN),
+                    primaries: [red, green, 1.0 - red - green],
+                    weight: node.weight,
+                }
             })
             .collect()
     })

@@ -26,8 +26,8 @@ pub struct SplitSumSurface {
 impl SplitSumSurface {
     /// Interpolates 784 split sums.
     pub fn new(distribution: Distribution, masking: Masking) -> Self {
-        let row = |x: f64| over_cosines(distribution, masking, libm::exp(libm::log(LOWEST) * 0.5 * (1.0 - x)));
-        let rows: [[[f64; 2]; NODES]; NODES] = nodes().map(row);
+        let alphas = nodes().map(|x| libm::exp(libm::log(LOWEST) * 0.5 * (1.0 - x)));
+        let rows: [[[f64; 2]; NODES]; NODES] = alphas.map(|alpha| over_cosines(distribution, masking, alpha));
         let mut over_both = vec![[[0.0; 2]; NODES]; NODES];
         for degree in 0..NODES {
             let down: [_; NODES] = coefficients(&std::array::from_fn(|j| rows[j][degree]));
