@@ -58,23 +58,20 @@ impl SchlickBase {
 
     /// The coefficients as texels, one after the other.
     pub fn texels(&self) -> [[f32; 4]; 3] {
-        let texel = |rgb: [f64; 3], a: f64| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, a as f32];
-        [
-            texel(self.f0.map(|f| f / Self::F0_MAX), self.f90),
-            texel(self.edge.map(|e| (e + Self::EDGE_MAX) / (2.0 * Self::EDGE_MAX)), 1.0),
-            texel(self.scale, 1.0),
-        ]
+        let f0 = self.f0.map(|f| f / Self::F0_MAX);
+        let edge = self.edge.map(|e| (e + Self::EDGE_MAX) / (2.0 * Self::EDGE_MAX));
+        [(f0, self.f90), (edge, 1.0), (self.scale, 1.0)].map(|([r, g, b], a)| [r, g, b, a].map(|value| value as f32))
     }
 
     /// The coefficients that texels hold; `first` is the texel of f0.
     pub fn read(image: &Image, first: [u32; 2]) -> Self {
-        let texel = |k: u32| image.texel(first[0] + k, first[1]);
-        let rgb = |k: u32| [0, 1, 2].map(|c: usize| f64::from(texel(k)[c]));
+        let [f0, edge, scale] = [0, 1, 2].map(|k| image.texel(first[0] + k, first[1]));
+        let [f0_rgb, edge, scale] = [f0, edge, scale].map(|texel| [0, 1, 2].map(|c: usize| f64::from(texel[c])));
         Self {
-            f0: rgb(0).map(|t| Self::F0_MAX * t),
-            f90: f64::from(texel(0)[3]),
-            edge: rgb(1).map(|t| 2.0 * Self::EDGE_MAX * t - Self::EDGE_MAX),
-            scale: rgb(2),
+            f0: f0_rgb.map(|t| Self::F0_MAX * t),
+            f90: f64::from(f0[3]),
+            edge: edge.map(|t| 2.0 * Self::EDGE_MAX * t - Self::EDGE_MAX),
+            scale,
         }
     }
 

@@ -31,11 +31,11 @@ impl Encoding {
         match self {
             Self::Plain => values.clone(),
             Self::SplitSixteenthRoot => {
-                let root = |value: &f32| {
+                let roots = values.data.iter().map(|value| {
                     let fourth_root = libm::sqrt(libm::sqrt(f64::from(*value).max(0.0)));
                     libm::sqrt(libm::sqrt(fourth_root)) as f32
-                };
-                Image { data: values.data.iter().map(root).collect(), ..*values }
+                });
+                Image { data: roots.collect(), ..*values }
             }
         }
     }
@@ -45,12 +45,12 @@ impl Encoding {
         match self {
             Self::Plain => roots.clone(),
             Self::SplitSixteenthRoot => {
-                let split = |texel: &[f32]| {
+                let halves = roots.texels().flat_map(|texel| {
                     let root = f64::from(texel[0]);
                     let coarse = half::f16::from_f64(root);
                     [coarse.to_f32(), ((root - coarse.to_f64()) * SPLIT) as f32]
-                };
-                Image { channels: 2, data: roots.texels().flat_map(split).collect(), ..*roots }
+                });
+                Image { channels: 2, data: halves.collect(), ..*roots }
             }
         }
     }

@@ -90,11 +90,10 @@ impl Scan {
     /// The whole table: its nodes, and `per_cell[k]` points in each of `cells[k]` intervals between them; a one-axis table has
     /// `cells[1] == 0`.
     pub fn whole(cells: [u32; 2], per_cell: [u32; 2]) -> Self {
-        let has = |k: usize| cells[k] > 0;
         Self {
             points: [0, 1].map(|k: usize| (cells[k] * per_cell[k]).max(1)),
-            from: [0, 1].map(|k: usize| if has(k) { 0.0 } else { 0.5 }),
-            to: [0, 1].map(|k: usize| if has(k) { 1.0 } else { 0.5 }),
+            from: cells.map(|cells| if cells > 0 { 0.0 } else { 0.5 }),
+            to: cells.map(|cells| if cells > 0 { 1.0 } else { 0.5 }),
             nodes: cells,
             refinements: Self::REFINEMENTS,
         }
@@ -173,8 +172,7 @@ pub fn measure_scan(
 pub fn measure_at(points: impl IntoIterator<Item = (Vec<f64>, Comparison)>) -> ErrorStats {
     let mut errors = Errors::default();
     let points: Vec<(Vec<f64>, Comparison)> = points.into_iter().collect();
-    let candidate = |i: usize| Candidate::at([i as f64, 0.0], &points[i].1);
-    (0..points.len()).for_each(|i| errors.add(candidate(i)));
+    points.iter().enumerate().for_each(|(i, (_, there))| errors.add(Candidate::at([i as f64, 0.0], there)));
     let worst = errors.worst.first().copied().unwrap_or(NOWHERE);
     let nothing = (Vec::new(), Comparison { expected: [0.0; 4], sampled: [0.0; 4] });
     let (at, there) = points.into_iter().nth(worst.u[0] as usize).unwrap_or(nothing);

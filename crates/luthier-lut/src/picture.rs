@@ -84,16 +84,18 @@ impl Picture {
     fn at(&self, texel: usize) -> [f32; 4] {
         let channels = self.channels as usize;
         let first = texel * channels;
-        let color = |channel: usize| match &self.samples {
-            PictureSamples::Bits8(values) if self.is_srgb => CURVE[usize::from(values[first + channel])],
-            _ if self.is_srgb => srgb::linear(self.stored(first + channel)),
-            _ => self.stored(first + channel),
-        };
-        match channels {
-            1 => [color(0), color(0), color(0), 1.0],
-            2 => [color(0), color(0), color(0), self.stored(first + 1)],
-            3 => [color(0), color(1), color(2), 1.0],
-            _ => [color(0), color(1), color(2), self.stored(first + 3)],
+        let colors = if channels < 3 { [0; 3] } else { [0, 1, 2] };
+        let [r, g, b] = colors.map(|channel| self.color(first + channel));
+        let alpha = if channels % 2 == 0 { self.stored(first + channels - 1) } else { 1.0 };
+        [r, g, b, alpha]
+    }
+
+    /// The linear value of a sample of a colour.
+    fn color(&self, index: usize) -> f32 {
+        match &self.samples {
+            PictureSamples::Bits8(values) if self.is_srgb => CURVE[usize::from(values[index])],
+            _ if self.is_srgb => srgb::linear(self.stored(index)),
+            _ => self.stored(index),
         }
     }
 }

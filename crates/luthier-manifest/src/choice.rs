@@ -6,6 +6,7 @@ use luthier_model::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::color::ColorMode;
+use crate::search::over_limit;
 
 /// Limits on the error of a model against the reference under the light of a scene; what is absent is unlimited.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -68,16 +69,16 @@ impl SceneBudget {
     /// All limits times a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let scaled = |limit: Option<f64>| limit.map(|limit| factor * limit);
-        Self { max_abs: scaled(self.max_abs), max_rel: scaled(self.max_rel), delta_e: scaled(self.delta_e) }
+        let limits = [self.max_abs, self.max_rel, self.delta_e];
+        let [max_abs, max_rel, delta_e] = limits.map(|limit| limit.map(|limit| factor * limit));
+        Self { max_abs, max_rel, delta_e }
     }
 
     /// Error over limit, the largest of those limited: a budget holds where this is at most 1.
     pub fn excess(&self, error: &SceneError) -> f64 {
-        let ratio = |limit: Option<f64>, error: Option<f64>| limit.zip(error).map_or(0.0, |(limit, e)| e / limit);
-        ratio(self.max_abs, Some(error.max_abs))
-            .max(ratio(self.max_rel, Some(error.max_rel)))
-            .max(ratio(self.delta_e, error.delta_e))
+        over_limit(self.max_abs, Some(error.max_abs))
+            .max(over_limit(self.max_rel, Some(error.max_rel)))
+            .max(over_limit(self.delta_e, error.delta_e))
     }
 }
 

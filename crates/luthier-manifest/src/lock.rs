@@ -4,7 +4,7 @@ use luthier_lut::TableKind;
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::Manifest;
-use crate::search::{Candidate, Search};
+use crate::search::Candidate;
 
 /// The decision of a search for one kind of table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,14 +30,14 @@ impl Lock {
 
     /// The decisions of the searches of a bake.
     pub fn of(manifest: &Manifest) -> Self {
-        let decision = |search: &Search| {
+        let decisions = manifest.searches.iter().filter_map(|search| {
             let mut candidate = search.front.get(search.chosen)?.clone();
             // A search leaves out tiles that no candidate serves; a lock takes them as they are.
             let tiles = manifest.table(search.kind).map_or(&[][..], |table| &table.tiles);
             candidate.error.max_abs = tiles.iter().map(|t| t.error.max_abs_err).fold(candidate.error.max_abs, f64::max);
             Some(Decision { kind: search.kind, candidate })
-        };
-        let mut decisions: Vec<Decision> = manifest.searches.iter().filter_map(decision).collect();
+        });
+        let mut decisions: Vec<Decision> = decisions.collect();
         decisions.sort_by_key(|decision| decision.kind);
         Self { schema: Self::SCHEMA, decisions }
     }
@@ -66,17 +66,15 @@ impl Lock {
 
     /// Whether the decisions are those of another lock, whatever errors were measured when they were taken.
     pub fn decides_as(&self, other: &Self) -> bool {
-        let forms = |lock: &Self| -> Vec<_> {
-            lock.decisions.iter().map(|decision| (decision.kind, decision.candidate.form.clone())).collect()
-        };
-        forms(self) == forms(other)
+        let [ours, theirs] = [self, other].map(|lock| lock.decisions.iter().map(|d| (d.kind, &d.candidate.form)));
+        ours.eq(theirs)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, CandidateForm, MeasuredError};
+    use crate::{Budget, CandidateForm, MeasuredError, Search};
 
     #[test]
     fn a_lock_reads_what_it_wrote() {

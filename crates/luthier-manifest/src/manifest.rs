@@ -106,9 +106,8 @@ impl TableEntry {
         let stated = self.layout.checked_size().ok_or(ManifestError::Layout(self.kind))?;
         let texels = u128::from(stated[0]) * u128::from(stated[1]);
         let texel_bytes = texels * u128::from(self.format.texel_bytes());
-        let describe = |size: [u32; 2], format, bytes| format!("{} x {} {format}, {bytes} bytes", size[0], size[1]);
-        let found = describe(size, format, bytes as u128);
-        let expected = describe(stated, self.format, texel_bytes);
+        let [found, expected] = [(size, format, bytes as u128), (stated, self.format, texel_bytes)]
+            .map(|([width, height], format, bytes)| format!("{width} x {height} {format}, {bytes} bytes"));
         if found == expected { Ok(()) } else { Err(ManifestError::TableMismatch { kind: self.kind, found, expected }) }
     }
 }

@@ -70,19 +70,14 @@ impl MaterialEntry {
     /// The material with slopes widened by a light of this angular radius, in radians, which gives a highlight of a smooth surface a size: the squares
     /// of slope parameters grow by the square of half the radius, because the half vector turns by half of what the light does.
     pub fn widened(&self, angular_radius: f64) -> Self {
-        let wider = |alpha: f64| {
-            let spread = 0.5 * angular_radius;
-            libm::sqrt(alpha * alpha + spread * spread).min(1.0)
-        };
-        let widened = |layer: &LayerRecord| LayerRecord {
-            alpha: wider(layer.alpha),
-            alpha_xy: layer.alpha_xy.map(wider),
-            ..layer.clone()
-        };
-        let mut entry = Self { layers: self.layers.iter().map(widened).collect(), ..self.clone() };
-        if let Some(patina) = &mut entry.constants.patina {
-            patina.bare = widened(&patina.bare);
-            patina.base_alpha = patina.base_alpha.map(wider);
+        let mut entry = self.clone();
+        let MaterialEntry { layers, constants: MaterialConstants { patina, .. }, .. } = &mut entry;
+        for layer in layers.iter_mut().chain(patina.as_mut().map(|patina| &mut patina.bare)) {
+            layer.alpha = wider(layer.alpha, angular_radius);
+            layer.alpha_xy = layer.alpha_xy.map(|alpha| wider(alpha, angular_radius));
+        }
+        if let Some(patina) = patina {
+            patina.base_alpha = patina.base_alpha.map(|alpha| wider(alpha, angular_radius));
         }
         entry
     }
@@ -105,4 +100,10 @@ impl MaterialEntry {
             is_shown.then_some((layer, map.slot))
         })
     }
+}
+
+/// A slope parameter under a light of an angular radius: see [`MaterialEntry::widened`].
+fn wider(alpha: f64, angular_radius: f64) -> f64 {
+    let spread = 0.5 * angular_radius;
+    libm::sqrt(alpha * alpha + spread * spread).min(1.0)
 }

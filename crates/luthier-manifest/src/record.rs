@@ -167,8 +167,7 @@ impl LayerRecord {
             Distribution::Abc(_) => 3.0,
             Distribution::Sgd(_) => 4.0,
         };
-        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-        let sharpness = inverse(self.alpha * self.alpha);
+        let sharpness = reciprocal(self.alpha * self.alpha);
         let unit = match self.distribution {
             Distribution::Beckmann => LOG2_E,
             Distribution::Ggx | Distribution::Blinn => 1.0,
@@ -176,34 +175,28 @@ impl LayerRecord {
         };
         let [tangent, bitangent] = match self.distribution {
             Distribution::Abc(shape) => shape.parameters(),
-            Distribution::Sgd(shape) => [inverse(shape.parameters()[0]), shape.parameters()[1]],
+            Distribution::Sgd(shape) => [reciprocal(shape.parameters()[0]), shape.parameters()[1]],
             _ => self.alpha_xy,
         };
         let grazing_cos_sq = (self.eta - 1.0) * (self.eta + 1.0) / (self.eta * self.eta).max(f64::MIN_POSITIVE);
-        let rgbw = |rgb: [f64; 3], w: f32| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, w];
         let numbers = [
-            [
-                (sharpness * unit) as f32,
-                (sharpness * 0.25 * FRAC_1_PI) as f32,
-                inverse(self.eta) as f32,
-                grazing_cos_sq as f32,
-            ],
+            vec4([sharpness * unit, sharpness * 0.25 * FRAC_1_PI, reciprocal(self.eta)], grazing_cos_sq),
             [0.0; 4],
-            rgbw(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
-            rgbw(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
-            rgbw(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm as f32),
-            rgbw(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm as f32),
-            rgbw(first, 0.0),
-            rgbw(second, self.critical_cot_sq as f32),
-            rgbw(third, 0.0),
-            [tangent as f32, bitangent as f32, libm::cos(self.rotation) as f32, libm::sin(self.rotation) as f32],
+            vec4(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
+            vec4(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
+            vec4(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm),
+            vec4(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm),
+            vec4(first, 0.0),
+            vec4(second, self.critical_cot_sq),
+            vec4(third, 0.0),
+            vec4([tangent, bitangent, libm::cos(self.rotation)], libm::sin(self.rotation)),
             [whole(kind + parts as usize), self.alpha as f32, self.eta as f32, self.sigma as f32],
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
         words[..numbers.len()].copy_from_slice(&numbers);
         if let Some(rows) = self.reradiation {
             for (word, row) in words[4..7].iter_mut().zip(rows) {
-                *word = rgbw(row.map(|share| share * FRAC_1_PI), word[3]);
+                *word = vec4(row.map(|share| share * FRAC_1_PI), f64::from(word[3]));
             }
             words[8][0] = 1.0;
         }
@@ -214,6 +207,16 @@ impl LayerRecord {
         }
         words
     }
+}
+
+/// 1 / value, and 0 for values that are not positive.
+fn reciprocal(value: f64) -> f64 {
+    if value > 0.0 { 1.0 / value } else { 0.0 }
+}
+
+/// A word of the material buffer.
+pub(crate) fn vec4([x, y, z]: [f64; 3], w: f64) -> [f32; 4] {
+    [x, y, z, w].map(|value| value as f32)
 }
 
 /// A whole number below 2^23 as the material buffer has it.

@@ -47,9 +47,9 @@ impl IndexMut<TableKind> for Tiles {
 
 impl Serialize for Tiles {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let is_written = |kind: &TableKind| kind.facts().slot.is_some() || self[*kind].is_some();
-        let mut map = serializer.serialize_map(Some(TableKind::ALL.iter().filter(|kind| is_written(kind)).count()))?;
-        for kind in TableKind::ALL.into_iter().filter(is_written) {
+        let written = TableKind::ALL.into_iter().filter(|&kind| kind.facts().slot.is_some() || self[kind].is_some());
+        let mut map = serializer.serialize_map(Some(written.clone().count()))?;
+        for kind in written {
             map.serialize_entry(&format!("{}_tile", kind.name()), &self[kind])?;
         }
         map.end()

@@ -317,9 +317,8 @@ fn check_text(name: &str, form: TextForm, text: &str, span: std::ops::Range<usiz
             sink.error(span, message, Some(format!("at most {NAME_MAX} are allowed")));
         }
         TextForm::Name => {
-            let plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
-            if text.is_empty() || text.starts_with('-') || !text.chars().all(plain) {
-                let fixed: String = text.chars().map(|c| if plain(c) { c } else { '-' }).collect();
+            let fixed = text.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+            if text.is_empty() || text.starts_with('-') || fixed != text {
                 let fixed = fixed.trim_matches('-');
                 let hint = (!fixed.is_empty()).then(|| format!("write `{name} = \"{fixed}\"`"));
                 sink.error(span, format!("`{name}` is made of letters, digits and hyphens"), hint);

@@ -68,21 +68,22 @@ impl Material {
     /// whose slopes only closed forms have count as none: other models refuse them.
     fn covers_mirror(&self) -> bool {
         let layers = &self.stack.layers;
-        let is_free =
-            |layer: &Layer| !matches!(layer.base, Base::Diffuse(_)) && !layer.surface.distribution.has_walks();
+        let have_walks =
+            layers.iter().all(|layer| matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks());
         let mut above = None;
-        let mut is_mirror = |(number, layer): (usize, &Layer)| match &layer.base {
+        let mut mirrors = layers.iter().zip(&self.layers).map(|(layer, extras)| match &layer.base {
             Base::Conductor { .. } => true,
             Base::Diffuse(_) => false,
             Base::Dielectric { ior, .. } => {
                 let n = ior.at(SODIUM_D_NM).re;
                 let is_thinner = above.replace(n).is_some_and(|above| n < above);
                 let is_bright = ior.f0().is_some_and(|f0| f0.into_iter().any(|f0| f0 > MIRROR_F0));
-                is_thinner || is_bright || self.layers[number].metallic.is_some()
+                is_thinner || is_bright || extras.metallic.is_some()
             }
-        };
-        let mirrors: Vec<bool> = layers.iter().enumerate().map(&mut is_mirror).collect();
-        mirrors.iter().skip(1).any(|mirror| *mirror) && !layers.iter().any(is_free)
+        });
+        // The first interface counts as the medium above the second.
+        mirrors.next();
+        have_walks && mirrors.any(|is_mirror| is_mirror)
     }
 
     /// The first model that shows the most of it.
@@ -92,8 +93,10 @@ impl Material {
 
     /// The things that a shader with tables does not show of it.
     fn lacks(&self, model: ShadingModel) -> Vec<LeftOut> {
-        let counts = |part: &LeftOut| !(model.is_statistical() && part.feature == Feature::Beckmann);
-        left_out(self, model).into_iter().filter(|part| part.forms.contains(&Form::Baked) && counts(part)).collect()
+        let mut parts = left_out(self, model);
+        parts.retain(|part| part.forms.contains(&Form::Baked));
+        parts.retain(|part| !(model.is_statistical() && part.feature == Feature::Beckmann));
+        parts
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range as Span;
 
 use luthier_optics::color::VISIBLE_NM;
 use luthier_optics::ior::Ior;
-use luthier_optics::stack::{Base, Layer, Slab, Stack};
+use luthier_optics::stack::{Base, Film, Layer, Slab, Stack};
 
 use luthier_lut::Served;
 use luthier_manifest::{ColorMode, ShadingModel};
@@ -130,18 +130,19 @@ fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut 
         return;
     }
     let at = places.span("bake.tables");
-    let has = |is: fn(&Layer) -> bool| stack.layers.iter().any(is);
     for kind in &bake.tables {
+        let mut layers = stack.layers.iter();
         let (is_some, reason) = match kind.facts().served {
-            Served::Interfaces => (has(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface"),
-            Served::Transparent => {
-                (has(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
+            Served::Interfaces => {
+                (layers.any(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface")
             }
-            Served::Films => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
-            Served::VaryingFilms => (
-                has(|layer| layer.films.iter().any(|film| film.thickness.max_nm > film.thickness.min_nm)),
-                "no film varies in thickness",
-            ),
+            Served::Transparent => {
+                (layers.any(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
+            }
+            Served::Films => (layers.any(|layer| !layer.films.is_empty()), "no layer has a film"),
+            Served::VaryingFilms => {
+                (layers.any(|layer| layer.films.iter().any(Film::varies)), "no film varies in thickness")
+            }
         };
         if !is_some {
             let name = kind.name();
@@ -192,8 +193,9 @@ fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, at: &At<'_>, sink: &mut Sin
         }
     }
     // By Schlick's formula an interface reflects whatever its index.
-    let same = |nm: f64| ior.f0().is_none() && (ior.at(nm) - above.at(nm)).norm_sqr() < SAME_INDEX * SAME_INDEX;
-    if layer.films.is_empty() && [450.0, 550.0, 650.0].into_iter().all(same) {
+    let differences = [450.0, 550.0, 650.0].map(|nm| (ior.at(nm) - above.at(nm)).norm_sqr());
+    let is_same = ior.f0().is_none() && differences.into_iter().all(|squared| squared < SAME_INDEX * SAME_INDEX);
+    if layer.films.is_empty() && is_same {
         let hint = "the index is relative to nothing: give it as tables do, against vacuum".to_owned();
         sink.warn(
             at.span("ior"),

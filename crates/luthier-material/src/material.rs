@@ -127,28 +127,27 @@ impl Material {
     /// The images that it names: of layers from the top down, then of effects.
     pub fn images(&self) -> Vec<NamedImage<'_>> {
         let mut found = Vec::new();
-        let mut add = |key: String, texels, picture| found.push(NamedImage { key, picture, texels });
         for (i, LayerExtras { film_variation, maps, .. }) in self.layers.iter().enumerate() {
             for map in maps.named() {
-                add(format!("layer.{i}.maps.{}", map.key), map.texels(), map.picture);
+                found.push((format!("layer.{i}.maps.{}", map.key), map.texels(), map.picture));
             }
             if let Some(picture) = film_variation.as_ref().and_then(|variation| variation.source.image()) {
-                add(format!("layer.{i}.film.0.thickness_nm.map.image"), TexelUse::Number, picture);
+                found.push((format!("layer.{i}.film.0.thickness_nm.map.image"), TexelUse::Number, picture));
             }
         }
         match self.effects.flakes.as_ref().map(|flakes| &flakes.source) {
             Some(FlakeSource::NormalMap(picture)) => {
-                add("effects.flakes.normal_map".to_owned(), TexelUse::Normal, picture);
+                found.push(("effects.flakes.normal_map".to_owned(), TexelUse::Normal, picture));
             }
             Some(FlakeSource::HeightMap { picture, .. }) => {
-                add("effects.flakes.height_map.image".to_owned(), TexelUse::Number, picture);
+                found.push(("effects.flakes.height_map.image".to_owned(), TexelUse::Number, picture));
             }
             Some(FlakeSource::Cells { .. }) | None => {}
         }
         if let Some(picture) = self.effects.patina.as_ref().and_then(|patina| patina.map.image()) {
-            add("effects.patina.map.image".to_owned(), TexelUse::Number, picture);
+            found.push(("effects.patina.map.image".to_owned(), TexelUse::Number, picture));
         }
-        found
+        found.into_iter().map(|(key, texels, picture)| NamedImage { key, picture, texels }).collect()
     }
 }
 

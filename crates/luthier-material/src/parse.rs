@@ -44,13 +44,12 @@ impl FileKind {
     /// ```
     pub fn of(text: &str) -> Self {
         let (document, _) = DeTable::parse_recoverable(text);
-        let table = document.get_ref();
-        let has = |key: &str| table.get(key).is_some();
-        if has("scene") || has("light") && !has("layer") {
+        let file = Section::document(&document);
+        if file.has("scene") || file.has("light") && !file.has("layer") {
             Self::Scene
-        } else if !has("schema") && (has("surface") || has("cells") && !has("layer")) {
+        } else if !file.has("schema") && (file.has("surface") || file.has("cells") && !file.has("layer")) {
             Self::Surface
-        } else if has("schema") || has("layer") {
+        } else if file.has("schema") || file.has("layer") {
             Self::Material
         } else {
             Self::Other

@@ -98,6 +98,14 @@ impl<'t> Section<'t> {
         value.as_array()?.iter().map(|v| number(v.get_ref())).collect::<Option<Vec<f64>>>().map(Numbers::Many)
     }
 
+    /// Two numbers.
+    pub(crate) fn two_numbers(&self, key: &str) -> Option<[f64; 2]> {
+        match self.numbers(key)? {
+            Numbers::Many(pair) => pair.try_into().ok(),
+            Numbers::One(_) => None,
+        }
+    }
+
     /// A triple of numbers; one number stands for three.
     pub(crate) fn rgb(&self, key: &str) -> Option<[f64; 3]> {
         match self.numbers(key)? {

@@ -7,7 +7,7 @@ use luthier_manifest::SwitchBy;
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::grammar::SURFACE;
-use crate::section::{Numbers, Section, parse_toml};
+use crate::section::{Section, parse_toml};
 
 /// A validated surface: grains of several materials, others at some places, and particles on top of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,10 +161,7 @@ fn check_range(noise: &Section<'_>, sink: &mut Sink<'_>) {
 }
 
 fn range_of(noise: &Section<'_>) -> Option<[f64; 2]> {
-    match noise.numbers("between")? {
-        Numbers::Many(ends) => ends.try_into().ok(),
-        Numbers::One(_) => None,
-    }
+    noise.two_numbers("between")
 }
 
 fn switch_of(at: &Section<'_>) -> Option<SurfaceSwitch> {

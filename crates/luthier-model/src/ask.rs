@@ -15,8 +15,8 @@ impl ShadingModel {
 
     /// The heading of a model in f64: that of the shader's model that it is a form of, or that it stands beside.
     pub fn heading_of(name: &str) -> Option<&'static str> {
-        let is_kin = |model: &&Self| name.starts_with(model.name()) || model.facts().beside.contains(&name);
-        Self::ALL.iter().find(is_kin).map(|model| model.facts().heading)
+        let kin = Self::ALL.iter().find(|kin| name.starts_with(kin.name()) || kin.facts().beside.contains(&name));
+        kin.map(|model| model.facts().heading)
     }
 
     /// Name and source, for headers and reports.
@@ -71,10 +71,10 @@ impl ShadingModel {
 impl DefaultFor {
     /// The models to choose among, the first choice first.
     pub fn models(self) -> impl Iterator<Item = ShadingModel> {
-        let rank = move |model: &ShadingModel| {
-            model.facts().default_for.iter().find(|(of, _)| *of == self).map(|(_, rank)| (*rank, *model))
-        };
-        let mut ranked: Vec<(u8, ShadingModel)> = ShadingModel::ALL.iter().filter_map(rank).collect();
+        let ranked = ShadingModel::ALL.into_iter().filter_map(|model| {
+            model.facts().default_for.iter().find(|(of, _)| *of == self).map(|(_, rank)| (*rank, model))
+        });
+        let mut ranked: Vec<(u8, ShadingModel)> = ranked.collect();
         ranked.sort_unstable();
         ranked.into_iter().map(|(_, model)| model)
     }

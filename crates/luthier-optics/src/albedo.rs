@@ -362,7 +362,6 @@ impl Microsurface {
                 let (fraction, stretch) = (x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x));
                 let (r, density) = radius(distribution, from + (to - from) * fraction);
                 let slope = alpha * r;
-
                 let horizon_azimuth = azimuth(cos_i * (1.0 - slope * slope) / (2.0 * slope * sin_i));
                 let (phi_from, phi_to) = match horizon {
                     Horizon::Above => (horizon_azimuth, PI),

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_1_PI;
 use serde::{Deserialize, Serialize};
 
 pub use self::beams::BeamsRecord;
-use crate::record::LayerRecord;
+use crate::record::{LayerRecord, vec4};
 
 /// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -182,8 +182,8 @@ impl LobesRecord {
         let scale = 1.0 + self.critical_cot_sq;
         let (cos_sq, width) = (self.critical_cot_sq / scale, self.critical_width / scale);
         let four_width_sq = 4.0 * width * width;
-        let root = |x: f64| (x + (x * x + four_width_sq).sqrt()).max(0.0).sqrt();
-        let [horizon, normal] = [root(-cos_sq), root(1.0 - cos_sq)];
+        let [horizon, normal] =
+            [-cos_sq, 1.0 - cos_sq].map(|x: f64| (x + (x * x + four_width_sq).sqrt()).max(0.0).sqrt());
         [cos_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
     }
 }
@@ -257,37 +257,37 @@ impl MaterialConstants {
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
-        let with = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
         let mut words = [[0.0; 4]; Self::WORDS];
-        words[0] = with(self.phong_diffuse, self.phong_exponent);
-        words[1] = with(self.phong_specular, 0.0);
-        words[2] = with(self.internal_reflectance, self.upward_loss);
+        words[0] = vec4(self.phong_diffuse, self.phong_exponent);
+        words[1] = vec4(self.phong_specular, 0.0);
+        words[2] = vec4(self.internal_reflectance, self.upward_loss);
         if let Some(lobes) = self.lobes {
             let LobesRecord { index, falloff: [a, b], integral, .. } = lobes;
-            words[0] = with(lobes.varying(), lobes.critical_plain_share);
+            words[0] = vec4(lobes.varying(), lobes.critical_plain_share);
             words[1] = lobes.inside().map(|x| x as f32);
-            words[2] = with([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
+            words[2] = vec4([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
         }
         if let Some(beams) = &self.beams {
             words[..2].copy_from_slice(&beams.words());
         }
-        let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
-            words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
-            words[4] = with([f.spread, f.scale, f.fade_start], 0.0);
+            let [low, high] = [f.seed & 0xffff, f.seed >> 16].map(|bits| bits as f32);
+            words[3] = [low, high, f.count as f32, f.tiling as f32];
+            words[4] = vec4([f.spread, f.scale, f.fade_start], 0.0);
         }
         if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), &self.patina) {
             let [fifth, square] = base.moments.unwrap_or_default();
-            words[5] = with(base.albedo, if base.moments.is_some() { -1.0 } else { 0.0 });
-            words[6] = with([fifth, square, 0.0], 0.0);
+            words[5] = vec4(base.albedo, if base.moments.is_some() { -1.0 } else { 0.0 });
+            words[6] = vec4([fifth, square, 0.0], 0.0);
         }
         if let Some(p) = &self.patina {
-            words[5] = with([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
-            words[6] = with(p.diffuse_albedo, 0.0);
-            words[7] = with(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
+            words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
+            words[6] = vec4(p.diffuse_albedo, 0.0);
+            words[7] = vec4(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
         }
         if let Some(g) = &self.glitter {
-            words[8] = [half(g.seed), half(g.seed >> 16), g.frequency as f32, g.filled as f32];
+            let [low, high] = [g.seed & 0xffff, g.seed >> 16].map(|bits| bits as f32);
+            words[8] = [low, high, g.frequency as f32, g.filled as f32];
             words[9][0] = (1.0 - libm::cos(g.tilt)) as f32;
         }
         let [y, z, w] = self.lobes.map_or([0.0; 3], |lobes| lobes.sheet()).map(|x| x as f32);

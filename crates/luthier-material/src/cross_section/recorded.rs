@@ -73,20 +73,20 @@ fn film(layer: usize, record: &LayerRecord, outline: Vec<[f64; 2]>) -> Part {
 }
 
 fn medium(layer: usize, record: &LayerRecord, is_last: bool, surface: &Surface, outline: Vec<[f64; 2]>) -> Part {
-    let below = || match record.f0 {
+    let below = match record.f0 {
         Some(f0) => vec![number_of("F0", rgb(f0))],
         None => indices(record, record.ior_n, record.ior_k),
     };
     let (kind, label, mut numbers, color, height) = match record.kind {
         LayerKind::Dielectric if !is_last => {
-            let mut numbers = below();
+            let mut numbers = below;
             if record.optical_depth != [0.0; 3] {
                 numbers.push(number_of("optical depth", rgb(record.optical_depth)));
             }
             (PartKind::Slab, "dielectric", numbers, record.optical_depth.map(|depth| libm::exp(-depth)), SLAB)
         }
-        LayerKind::Dielectric => (PartKind::HalfSpace, "dielectric", below(), reflected(record, false), BASE),
-        LayerKind::Conductor => (PartKind::Conductor, "conductor", below(), reflected(record, false), BASE),
+        LayerKind::Dielectric => (PartKind::HalfSpace, "dielectric", below, reflected(record, false), BASE),
+        LayerKind::Conductor => (PartKind::Conductor, "conductor", below, reflected(record, false), BASE),
         LayerKind::Diffuse => {
             let mut numbers = vec![number_of("albedo", rgb(record.albedo))];
             if record.sigma > 0.0 {
@@ -124,11 +124,11 @@ fn reflected(record: &LayerRecord, has_film: bool) -> Rgb {
         return f0;
     }
     [0, 1, 2].map(|c| {
-        let index = |n: Rgb, k: Rgb| Complex64::new(n[c], k[c]);
-        let film =
-            FilmLayer { ior: index(record.film_ior_n, record.film_ior_k), waves: record.film_thickness_waves[c] };
+        let [film, below] = [(record.film_ior_n, record.film_ior_k), (record.ior_n, record.ior_k)]
+            .map(|(n, k)| Complex64::new(n[c], k[c]));
+        let film = FilmLayer { ior: film, waves: record.film_thickness_waves[c] };
         let films = if has_film { &[film][..] } else { &[] };
-        coated(Complex64::ONE, films, index(record.ior_n, record.ior_k), 1.0).unpolarised()
+        coated(Complex64::ONE, films, below, 1.0).unpolarised()
     })
 }
 

@@ -142,11 +142,11 @@ fn as_many(
 
 /// The text of a file that the material names.
 pub(super) fn named_text(name: &str, span: &Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<String> {
-    let told = |error| {
+    let text = read(name).map_err(|error| {
         let hint = "the path is relative to the material file".to_owned();
         sink.error(span.clone(), format!("cannot read `{name}`: {error}"), Some(hint));
-    };
-    read(name).map_err(told).ok()
+    });
+    text.ok()
 }
 
 /// A file, or a built-in data set.
@@ -194,11 +194,11 @@ fn reader(name: &str) -> Option<Reader> {
 /// The data set that a name probably means: by id, or by what people call it.
 fn nearest_dataset(name: &str) -> Option<(&'static str, &'static str)> {
     let lower = name.to_lowercase();
-    let called = |set: &str| {
-        set.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| word.len() > 2 && word == lower)
-    };
-    if let Some(set) = datasets().iter().find(|d| d.id == lower).or_else(|| datasets().iter().find(|d| called(d.name)))
-    {
+    let called = datasets().iter().filter(|set| {
+        let name = set.name.to_lowercase();
+        name.split(|c: char| !c.is_alphanumeric()).any(|word| word.len() > 2 && word == lower)
+    });
+    if let Some(set) = datasets().iter().filter(|set| set.id == lower).chain(called).next() {
         return Some((set.id, set.name));
     }
     let words = datasets().iter().flat_map(|d| {

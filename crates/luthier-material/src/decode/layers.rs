@@ -39,9 +39,6 @@ pub(super) fn decode(
             let hint = format!("move it to the end, or remove {layers} below it");
             sink.error(at.value_span("type"), message, Some(hint));
         }
-        let index = |sink: &mut Sink<'_>, sources: &mut Sources| {
-            ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum)
-        };
         let above = match layers.last() {
             Some(Layer { base: Base::Dielectric { ior, .. }, .. }) => ior,
             _ => exterior,
@@ -50,16 +47,16 @@ pub(super) fn decode(
         let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
             "dielectric" if at.has("f0") => {
-                let ior = at.has("ior").then(|| index(sink, sources));
+                let ior = at.has("ior").then(|| index(at, read, sink, sources));
                 Base::Dielectric { ior: schlick::dielectric(at, ior, above, sink), slab: slab(at) }
             }
             "dielectric" => {
-                let ior = index(sink, sources);
+                let ior = index(at, read, sink, sources);
                 ior::check_clear(&ior, at, "ior", sink);
                 Base::Dielectric { ior, slab: slab(at) }
             }
             "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at) },
-            "conductor" => Base::Conductor { ior: index(sink, sources) },
+            "conductor" => Base::Conductor { ior: index(at, read, sink, sources) },
             "metallic-roughness" => {
                 let (interface, diffuse) = schlick::metallic_roughness(at, above, sink);
                 below = diffuse;
@@ -112,6 +109,11 @@ pub(super) fn decode(
         sink.error(last.span.clone(), "a thin film coats the next layer, but none follows", Some(hint));
     }
     (layers, extras)
+}
+
+/// The index of a layer. Vacuum stands in for a wrong one, which has been reported.
+fn index(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sources: &mut Sources) -> Ior {
+    ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum)
 }
 
 fn slab(at: &Section<'_>) -> Slab {

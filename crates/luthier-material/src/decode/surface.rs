@@ -4,14 +4,11 @@ use luthier_optics::ndf::{NdfError, Shape};
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::diagnostic::Sink;
-use crate::section::{Numbers, Section};
+use crate::section::Section;
 
 /// Exponents of the lobes of the outer boundary and of the inner one, for the model `granier-heidrich`.
 pub(super) fn exponents(at: &Section<'_>) -> Option<[f64; 2]> {
-    match at.numbers("exponents")? {
-        Numbers::Many(list) => <[f64; 2]>::try_from(list).ok(),
-        Numbers::One(_) => None,
-    }
+    at.two_numbers("exponents")
 }
 
 /// The micro-surface of a layer, in whichever way the file gives it.

@@ -18,20 +18,21 @@ use crate::material::Material;
 /// # Errors
 /// A diagnostic about the key that has no place for a number.
 pub fn rewritten(original: &Material, edited: &Material) -> Result<String, Diagnostic> {
-    let refused = |key: &str, message: &str| {
-        let hint = "leave this number as it is in the file, or change the layer there".to_owned();
-        original.diagnostic(Severity::Error, key, message, Some(hint))
-    };
-    let mut document: DocumentMut = original.text.parse().map_err(|_| refused("", "the file is not TOML"))?;
+    let mut document: DocumentMut = original.text.parse().map_err(|_| refused(original, "", "the file is not TOML"))?;
     let mut file = File { document: &mut document, original, edited };
     // From the bottom up: a layer that becomes two leaves the numbers of those above it alone.
     for number in (0..original.stack.layers.len()).rev() {
-        file.layer(number).map_err(|(key, message)| refused(&format!("layer.{number}.{key}"), message))?;
+        file.layer(number).map_err(|(key, message)| refused(original, &format!("layer.{number}.{key}"), message))?;
     }
     if let Some(effects) = document.get_mut("effects").and_then(Item::as_table_like_mut) {
         write_effects(effects, original, edited);
     }
     Ok(document.to_string())
+}
+
+fn refused(original: &Material, key: &str, message: &str) -> Diagnostic {
+    let hint = "leave this number as it is in the file, or change the layer there".to_owned();
+    original.diagnostic(Severity::Error, key, message, Some(hint))
 }
 
 /// A key of a layer, and why it has no place for a number.
@@ -95,11 +96,9 @@ impl File<'_> {
 
     /// Whether the index of the medium above a layer was edited: a dielectric with an F0 alone has its own index from that.
     fn index_above_differs(&self, number: usize) -> bool {
-        let above = |material: &Material| match material.stack.layers.get(number.checked_sub(1)?).map(|l| &l.base) {
-            Some(Base::Dielectric { ior, .. }) => Some(ior.clone()),
-            _ => None,
-        };
-        above(self.original) != above(self.edited)
+        let Some(above) = number.checked_sub(1) else { return false };
+        let [before, after] = [self.original, self.edited].map(|material| Some(dielectric(material, above)?.0));
+        before != after
     }
 
     /// The diffuse base of a metallic-roughness layer: what light it scatters is of the layer's `base_color`.
@@ -153,6 +152,14 @@ impl File<'_> {
             _ => return Err(("type", "this layer is not in the file")),
         }
         Ok(())
+    }
+}
+
+/// The index and the slab of a layer of a material, if it is a dielectric.
+fn dielectric(material: &Material, number: usize) -> Option<(&Ior, &Slab)> {
+    match &material.stack.layers.get(number)?.base {
+        Base::Dielectric { ior, slab } => Some((ior, slab)),
+        _ => None,
     }
 }
 
@@ -302,14 +309,11 @@ fn write_effects(table: &mut dyn TableLike, original: &Material, edited: &Materi
         }
     }
     // A reflectance that followed from the absorption of the first layer stays as it was.
-    let slab = |material: &Material| match material.stack.layers.first().map(|first| &first.base) {
-        Some(Base::Dielectric { slab, .. }) => Some(*slab),
-        _ => None,
-    };
+    let [slab_before, slab_after] = [original, edited].map(|material| Some(dielectric(material, 0)?.1));
     let patina = table.get_mut("patina").and_then(Item::as_table_like_mut);
     if let (Some(table), Some(patina)) = (patina, &after.patina)
         && table.contains_key("diffuse_remainder")
-        && slab(original) != slab(edited)
+        && slab_before != slab_after
     {
         rename(table, "diffuse_remainder", "diffuse_albedo", rgb(patina.diffuse_albedo));
     }
