@@ -12,6 +12,16 @@ pub const GRANIER_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 pub const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
 
 /// Rule by which a function of wavelength becomes three numbers.
+///
+/// ```
+/// use luthier_optics::color::Color;
+///
+/// // A perfect reflector is white.
+/// let nodes = Color::Spectral.nodes();
+/// let white = nodes.iter().fold([0.0; 3], |sum, node| [0, 1, 2].map(|c| sum[c] + node.weight[c]));
+/// assert!(white.iter().all(|channel| (channel - 1.0).abs() < 1e-12));
+/// assert_eq!(Color::ThreeWavelengths([645.0, 525.0, 445.0]).nodes().len(), 3);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Color {
@@ -22,7 +32,7 @@ pub enum Color {
     ThreeWavelengths([f64; 3]),
 }
 
-/// One wavelength and what a unit of reflectance there adds to each channel.
+/// A wavelength, and the weight of its reflectance in each channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthNode {
     /// Vacuum wavelength.
@@ -46,12 +56,12 @@ impl Color {
     }
 
     /// Fewer wavelengths for costly integrands that vary as given spectra do: `spectra` have a value per node of
-    /// [`Color::nodes`]. Nodes between which straight lines follow all spectra are left out, and their weights shared between
-    /// the neighbours kept.
+    /// [`Color::nodes`]. A node is left out if straight lines between others follow all spectra there; the neighbours that are kept share
+    /// its weight.
     ///
-    /// For each spectrum, what the lines miss, times the largest weight there, adds up to at most `tolerance`: a bound on the error
-    /// of its integral in every channel. Nodes are kept one after the other where most is missed (Ramer 1972). Three
-    /// wavelengths stay as they are.
+    /// For each spectrum, the differences to the lines, times the largest weight of each node, sum to at most `tolerance`. The sum bounds
+    /// the error of the integral in every channel. The node with the largest difference is kept next (Ramer 1972). Three wavelengths stay
+    /// as they are.
     pub fn sparse_nodes(&self, spectra: &[Vec<f64>], tolerance: f64) -> Vec<WavelengthNode> {
         let nodes = self.nodes();
         if matches!(self, Self::ThreeWavelengths(_)) {
@@ -104,7 +114,7 @@ fn lump(nodes: &[WavelengthNode], kept: &[usize]) -> Vec<WavelengthNode> {
     lumped
 }
 
-/// First and last wavelength in nm that colours depend on: those of the observer's table.
+/// First and last wavelength of the observer's table, in nm: colours depend on none outside.
 pub const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
 /// Relative luminance of linear Rec.709.
@@ -112,7 +122,7 @@ pub fn luminance(rgb: Rgb) -> f64 {
     LUMINANCE[0] * rgb[0] + LUMINANCE[1] * rgb[1] + LUMINANCE[2] * rgb[2]
 }
 
-/// Weights of the observer times D65, through the matrix from XYZ to Rec.709 whose white is that very illuminant.
+/// The observer's functions times D65, in Rec.709. The white of the matrix from XYZ is the white of the table, so that weights sum to one.
 fn cie_1931_d65() -> &'static [WavelengthNode] {
     static NODES: OnceLock<Vec<WavelengthNode>> = OnceLock::new();
     NODES.get_or_init(|| {

@@ -1,4 +1,4 @@
-//! CIEDE2000 between colours seen under D65: about 1 is the least difference that is seen of two patches side by side.
+//! CIEDE2000 between colours seen under D65: about 1 is the least visible difference between two patches side by side.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use crate::Rgb;
 /// Linear Rec.709 to XYZ over the white of D65, rows X, Y, Z (IEC 61966-2-1); each row sums to 1.
 const TO_XYZ: [[f64; 3]; 3] = [[0.4339, 0.3762, 0.1899], [0.2126, 0.7152, 0.0722], [0.0178, 0.1094, 0.8728]];
 
-/// CIE 1976 L*a*b* of a linear Rec.709 colour; what is below black is black.
+/// CIE 1976 L*a*b* of a linear Rec.709 colour; negative X, Y and Z count as 0.
 pub fn lab(rgb: Rgb) -> [f64; 3] {
     let [x, y, z] = TO_XYZ.map(|row| {
         let t = (row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2]).max(0.0);

@@ -39,10 +39,10 @@ const FORMULAS: [(Kind, usize); 9] = [
 /// Why there is no such formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum FormulaError {
-    /// A number of no formula.
+    /// No formula has the number.
     #[error("there is no formula {0}: they are 1 to 9")]
     Unknown(usize),
-    /// Coefficients that are none of the formula.
+    /// No coefficients, or more than the formula takes.
     #[error("{found} coefficients; formula {number} takes 1 to {most}")]
     Coefficients {
         /// Number of the formula.
@@ -146,7 +146,8 @@ impl Formula {
 /// Widest step of samples.
 const STEP_NM: f64 = 5.0;
 
-/// Error of a straight line at three places of a step, half of what is promised: it is largest near the middle one.
+/// Largest error of a straight line at three places of a step: half of the promised 1e-6, because the largest error is near the middle place
+/// and not at it.
 const CHORD_ERR: f64 = 5e-7;
 
 /// Halvings of a step: a thousandth of it is narrower than any resonance of a medium, and a range has at most 10^5 samples.

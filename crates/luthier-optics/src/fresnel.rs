@@ -30,7 +30,7 @@ pub struct FilmLayer {
     pub waves: f64,
 }
 
-/// Least wave number along the normal inside a film, over the vacuum's.
+/// Least wave number along the normal inside a film, over the vacuum's: see [`airy`].
 const FILM_Q_MIN: f64 = 1e-8;
 
 /// Reflectance of a bare interface, exact for any complex index below, total reflection included.
@@ -124,8 +124,10 @@ fn q_squared((above, q_above): Medium, ior: Complex64) -> Complex64 {
 /// Airy's formula from the bottom up: r = (r_ab + r_below e^{i delta}) / (1 + r_ab r_below e^{i delta}) with
 /// delta = 4 pi n cos d / lambda (Born and Wolf sec. 7.6; Parratt 1954).
 ///
-/// `root` has real and imaginary parts that are not negative. `boundary` makes the amplitudes of the boundary between two media from those reflected. `join` makes those of a film and all below it
-/// from those of its upper boundary, those of all below it, its q, and its thickness in waves.
+/// - `root` takes the square root whose real and imaginary parts are not negative.
+/// - `boundary` turns the reflected amplitudes of a boundary, with the media above and below it, into the amplitudes to combine.
+/// - `join` combines the amplitudes of a film's upper boundary with the amplitudes of everything below, by the film's q and its thickness in
+///   waves.
 fn airy<A>(
     above: Complex64,
     films: &[FilmLayer],
@@ -165,7 +167,7 @@ fn ratio(a: Complex64, b: Complex64) -> Complex64 {
     if b == Complex64::ZERO {
         return Complex64::ZERO;
     }
-    // The squared modulus that division needs is no number below 1e-154 and above 1e154.
+    // Division needs the squared modulus, which underflows for moduli below 1e-154 and overflows above 1e154.
     if b.norm_sqr().is_normal() {
         return a / b;
     }

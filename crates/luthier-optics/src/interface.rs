@@ -10,6 +10,15 @@ use crate::schlick::{Lazanyi, schlick};
 use crate::stack::{Base, Film, Stack};
 
 /// The optics of one interface: the medium above, films, the medium below. No micro-surface.
+///
+/// ```
+/// use luthier_optics::{color::Color, constants::dataset, interface::Interface, ior::Ior};
+///
+/// let gold = dataset("au").unwrap().ior.clone();
+/// let interface = Interface { above: Ior::vacuum(), films: Vec::new(), below: gold };
+/// let [red, green, blue] = interface.sampled(&Color::Spectral).rgb(1.0);
+/// assert!(red > 0.9 && green < 0.85 && blue < 0.5);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interface {
     /// Transparent medium above (its k is ignored: light that reaches the interface has been attenuated already).
@@ -21,7 +30,8 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The interface at the top of a layer, as far as it reflects, or `None` for a diffuse base, which has none, and out of range.
+    /// The interface at the top of a layer, with the media that its reflectance is computed from. `None` for a diffuse base, which has no
+    /// interface, below an opaque layer, and for a number out of range.
     pub fn of(stack: &Stack, layer: usize) -> Option<Self> {
         let here = stack.layers.get(layer)?;
         let below = match &here.base {
@@ -37,8 +47,7 @@ impl Interface {
         Some(Self { above, films: here.films.clone(), below })
     }
 
-    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2: those of an interface of Schlick's differ by
-    /// its F0 alone.
+    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2. Channels differ in the F0 alone, if there is one.
     pub fn at(&self, wavelength_nm: f64, channel: usize) -> Monochrome {
         Monochrome {
             f0: self.below.f0().map(|f0| f0[channel]),
@@ -48,8 +57,8 @@ impl Interface {
         }
     }
 
-    /// Whether some wavelength of a colour mode is totally reflected from an angle on that is not that of all, or where media absorb: the
-    /// reflectance then has kinks over the cosine of incidence and over that of the refracted direction.
+    /// Whether the reflectance has kinks over the cosine of incidence and over the cosine of the refracted direction alike. It does if some
+    /// wavelength of a colour mode is totally reflected, and critical angles differ or media absorb.
     pub fn has_kink(&self, color: &Color) -> bool {
         let sampled = self.sampled(color);
         // Schlick's formula has none.
@@ -102,7 +111,7 @@ pub struct Monochrome {
     pub films: Vec<FilmLayer>,
     /// Index below.
     pub below: Complex64,
-    /// Reflectance at normal incidence, where Schlick's formula takes the place of Fresnel's. There are no films then.
+    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. There are no films then.
     pub f0: Option<f64>,
 }
 
@@ -116,8 +125,8 @@ impl Monochrome {
     }
 }
 
-/// An interface in the form in which stores keep it, which has no place for an F0: it is the imaginary part of the index above, and that
-/// of the index below is -1 then.
+/// An interface as stores keep it. The form has no place for an F0: an F0 is the imaginary part of the index above, and an imaginary part of
+/// -1 below marks it.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Stored {
@@ -155,16 +164,16 @@ pub struct Sampled {
     pub nodes: Vec<(Rgb, Monochrome)>,
 }
 
-/// Media that absorb as much reflect smoothly at all angles.
+/// Extinction coefficient above which media reflect smoothly at all angles.
 const NO_KINK: f64 = 1e-2;
 
-/// Absorption that does not count: what data sets of clear glass and water have in the visible.
+/// Extinction coefficient that counts as none: data sets of clear glass and water reach it in the visible.
 const TRACE_OF_ABSORPTION: f64 = 1e-6;
 
 impl Sampled {
-    /// Squared cotangent of the critical angle, `1 / eta^2 - 1`, at the wavelength of the largest index below over that above: all light
-    /// flatter than that is totally reflected. 0 where some wavelength never is, where films or the medium below absorb, and for interfaces
-    /// of Schlick's, which media of no lower index lie below.
+    /// Squared cotangent of the critical angle, `1 / eta^2 - 1`, at the wavelength of the largest relative index `eta`: flatter light is
+    /// totally reflected at every wavelength. 0 if some wavelength never is, if films or the medium below absorb, and for Schlick's
+    /// formula, which has no total reflection.
     pub fn critical_cot_sq(&self) -> f64 {
         let eta = self.nodes.iter().map(|(_, at)| at.below.re / at.above.re).fold(0.0, f64::max);
         let is_clear = self.nodes.iter().all(|(_, at)| {
@@ -179,8 +188,8 @@ impl Sampled {
         self.sum(|interface| interface.reflectance(cos_theta_i))
     }
 
-    /// Schlick's form of each channel: through its reflectance at normal incidence. Linear in the reflectances at the wavelengths, so that in
-    /// spectral colour it is the sum of their forms.
+    /// Schlick's form of each channel, through its reflectance at normal incidence. The form is linear in this reflectance: in spectral
+    /// colour it is the sum of the forms of all wavelengths.
     pub fn schlick(&self) -> [Lazanyi; 3] {
         self.rgb(1.0).map(|f0| Lazanyi { f0, a: 0.0, exponent: 1.0 })
     }

@@ -46,7 +46,7 @@ const REACH_WITHIN: f64 = 1.06;
 impl GradedRules {
     /// Rules of `first + per_fold L` nodes, rounded up.
     pub fn new(first: f64, per_fold: f64) -> Self {
-        // Neighbours often have as many nodes.
+        // Kept for the next rule: neighbours often have as many nodes.
         let mut even = Vec::new();
         let rules = (0..LAST_EXPONENT << RULE_BITS).map(|index| {
             let squared = f64::from_bits(1.0f64.to_bits() + (index << (52 - RULE_BITS)));
@@ -64,7 +64,7 @@ impl GradedRules {
         Self { rules: rules.collect() }
     }
 
-    /// Nodes and weights for an interval of which the integrand changes fastest within the part `1 / reach` at its start.
+    /// Nodes and weights for an interval if the integrand changes fastest within the part `1 / reach` at its start.
     pub fn for_reach_squared(&self, reach_squared: f64) -> &[(f64, f64)] {
         // The highest bits of a positive number are its logarithm, as good as needed here.
         let index = (reach_squared.max(1.0).to_bits() - 1.0f64.to_bits()) >> (52 - RULE_BITS);

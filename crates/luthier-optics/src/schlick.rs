@@ -35,7 +35,7 @@ pub fn index_of_f0(f0: f64) -> f64 {
 /// F0 of the interface of a `metallic-roughness` surface, and albedo of the diffuse base below it (glTF 2.0, appendix B):
 ///
 /// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
-/// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
+/// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
 ///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes (Saunderson 1942).
 pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
     let f0 = base_color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));

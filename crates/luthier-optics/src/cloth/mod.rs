@@ -88,7 +88,7 @@ pub fn cloth_albedo(visibility: ClothVisibility, alpha: f64, cos_theta: f64) -> 
     albedo
 }
 
-/// The albedos under all of [`ClothVisibility::ALL`], as [`cloth_albedo`] has them.
+/// The values of [`cloth_albedo`] under all of [`ClothVisibility::ALL`], in one pass.
 pub fn cloth_albedos(alpha: f64, cos_theta: f64) -> [f64; 3] {
     albedos_of(rules(), ClothVisibility::ALL, alpha, cos_theta)
 }
@@ -97,7 +97,7 @@ pub fn cloth_albedos(alpha: f64, cos_theta: f64) -> [f64; 3] {
 struct Rules {
     /// Over the cosine, from the horizon.
     horizon: GradedRules,
-    /// Over the cosine, from that of the view.
+    /// Over the cosine, from the cosine of the view.
     mirror: GradedRules,
     /// Over the tangent of half the azimuth from the view, and from its opposite.
     azimuth: [GradedRules; 2],
@@ -119,13 +119,13 @@ fn rules() -> &'static Rules {
     RULES.get_or_init(|| Rules::new([8.0, 4.0], [4.0, 2.0], [[4.0, 2.0], [7.0, 2.5]]))
 }
 
-/// Length over the scale on which integrals over the azimuth have a weak kink where the light's cosine is the view's.
+/// Length of a panel over the scale of the weak kink that integrals over the azimuth have at the view's cosine.
 const MIRROR_REACH: f64 = 1e3;
 /// Cosine at which the fit of ln Lambda has a kink in its curvature.
 const FIT_JOINT: f64 = 0.5;
-/// Part of the scale at the horizon on which the fit of ln Lambda changes there.
+/// Scale on which the fit of ln Lambda changes at the horizon, over the scale of the other factors there.
 const FIT_SCALE: f64 = 1e-2;
-/// Power of the sine from which on that kink is too weak to matter.
+/// Power of the sine above which the kink at the view's cosine is too weak to matter.
 const SMOOTH_POWER: f64 = 3.0;
 
 fn albedos_of<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha: f64, cos_theta: f64) -> [f64; N] {
@@ -138,7 +138,7 @@ fn albedos_of<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha:
     over_largest(rules, terms, alpha, cos_v).map(|over| scale * over)
 }
 
-/// Largest D below which albedos, at most pi/2 of it, are 0.
+/// Albedos are 0 if the largest D is below this: they are at most pi/2 times it.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// The logarithm of the largest D over all directions of light: at the horizon below the view.
@@ -146,7 +146,7 @@ fn ln_largest(alpha: f64, cos_v: f64) -> f64 {
     libm::log((2.0 + 1.0 / alpha) / (2.0 * PI)) + 0.5 / alpha * ln_largest_sine_sq(cos_v)
 }
 
-/// The logarithm of the half vector's squared sine there; its cosine is the sine of half the view's elevation.
+/// The logarithm of the half vector's squared sine at the largest D. The half vector's cosine is the sine of half the view's elevation.
 fn ln_largest_sine_sq(cos_v: f64) -> f64 {
     libm::log1p(-0.5 * cos_v * cos_v / (1.0 + libm::sqrt((1.0 - cos_v) * (1.0 + cos_v))))
 }
@@ -205,7 +205,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// The integral over the azimuth of that power of the squared sine, over the largest.
+    /// The integral over the azimuth of the squared sine to `power`, over its largest value on all rings.
     fn around(&self, rules: &Rules, cos_l: f64) -> f64 {
         let sin_l_sq = (1.0 - cos_l) * (1.0 + cos_l);
         let sines = libm::sqrt(self.sin_v_sq) + libm::sqrt(sin_l_sq);
@@ -216,6 +216,7 @@ impl Ring {
         if near == 0.0 {
             return 0.0;
         }
+        // The logarithm of the squared sine, from the cosine where the sine is near 1 and has lost its digits.
         let ln_of = |near_part: f64, far_part: f64| {
             let sin_part = near * near_part + far * far_part;
             let length_sq = sin_part + cosines_sq * (near_part + far_part);
@@ -228,7 +229,8 @@ impl Ring {
         }
         let value =
             |near_part: f64, far_part: f64| libm::exp(self.power * (ln_of(near_part, far_part) - self.ln_reference));
-        // With t the tangent of half the azimuth: the scale of t on which the logarithm falls, and that of 1/t on which it rises.
+        // t is the tangent of half the azimuth. The logarithm falls on a scale of t and rises on a scale of 1/t; below are the inverse squares
+        // of these scales.
         let fall = self.power * cosines_sq * (near - far) / (near * (near + cosines_sq));
         let rise_of_length = (near + cosines_sq) / (far + cosines_sq);
         let rise_of_sine = if self.power > SMOOTH_POWER { 1.0 } else { near / (far + 1e-6 * near) };

@@ -24,7 +24,7 @@ const SCALE_MIN: f64 = 1e-12;
 /// Least cosine at which a refracted ray turns, and least width of the range of angles in which it does, in the choice of rules.
 const COS_TURN_MIN: f64 = 1e-9;
 
-/// Stands for 0 where a quotient would be without meaning.
+/// Replaces a divisor of 0, so that a quotient is huge and not NaN.
 const TINY: f64 = 1e-300;
 
 /// Graded rules over the angle against the light and over the azimuth.
@@ -171,7 +171,7 @@ impl<'a> Facets<'a> {
         })
     }
 
-    /// The light that facets of reflectance `f(cos_theta_d)` between transparent media let through, and that goes on away from the surface.
+    /// The light that facets of reflectance `f(cos_theta_d)` between transparent media transmit, away from the surface.
     pub(super) fn transmitted(&self, eta_ti: f64, f: impl Fn(f64) -> f64) -> f64 {
         let Self { theta_i, cos_i, sin_i, .. } = *self;
         let flat = FRAC_PI_2 - theta_i;
@@ -222,7 +222,7 @@ impl<'a> Facets<'a> {
         let Ring { versine, span, .. } = *ring;
         let mut range = [0.0, ring.h(self.cos_theta_h_min).min(1.0)];
         // The integrand changes fastest near two places beside the range: the peak of the distribution below it, and the horizon of the
-        // light above it. Gaussian slopes end like exp(-1/cos^2), at a horizon of their own.
+        // light above it. Gaussian slopes end like exp(-1/cos^2), where the cosine of the facet is 0.
         let far = if self.cos_theta_h_min > 0.0 { ring.h(0.0) } else { f64::INFINITY };
         let mut near = [-(2.0 * versine + alpha * alpha) / (2.0 * span.max(TINY)), far];
         let (cut, scale) = (-z0 / z1, horizon / z1.abs());

@@ -1,4 +1,4 @@
-//! Columns of a table of indices: what a header names them.
+//! Columns of a table of indices, and their names in a header.
 
 use super::error::{IndexFileError, Reason};
 use crate::rows::Row;
@@ -17,16 +17,16 @@ impl Unit {
     }
 }
 
-/// Which cell of a row has what.
+/// Places of quantities among the cells of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Columns {
     pub(super) wavelength: usize,
-    /// The unit, where the header names it.
+    /// The unit of wavelengths, if the header names it.
     pub(super) unit: Option<Unit>,
     pub(super) n: Option<usize>,
     pub(super) k: Option<usize>,
     pub(super) count: usize,
-    /// Names of columns that are of no use here.
+    /// Names of columns that are not read.
     pub(super) others: Vec<String>,
 }
 
@@ -41,12 +41,12 @@ enum Role {
 }
 
 impl Columns {
-    /// Those of rows without a header.
+    /// Columns of rows without a header.
     pub(super) fn plain(count: usize) -> Self {
         Self { wavelength: 0, unit: None, n: Some(1), k: (count > 2).then_some(2), count, others: Vec::new() }
     }
 
-    /// Those that a header names.
+    /// Columns that a header names.
     pub(super) fn named(row: &Row) -> Result<Self, IndexFileError> {
         let mut names = row.cells.clone();
         // A comma or a space before the unit makes two cells of `wavelength, um`.

@@ -6,9 +6,9 @@ use super::error::plain;
 use super::{IndexFile, IndexFileError, ROWS_MAX, Reason};
 use crate::rows::{Row, rows};
 
-/// Wavelengths up to this are micrometres where nothing names the unit: those of a table in nm are longer.
+/// Longest wavelength of a table in um, if nothing names the unit: a table in nm has longer ones.
 const UM_MOST: f64 = 30.0;
-/// Wavelengths from this on are nanometres where nothing names the unit.
+/// Shortest wavelength of a table in nm, if nothing names the unit.
 const NM_LEAST: f64 = 100.0;
 
 /// Reads an index from CSV text: rows of a wavelength, n and k below a row of names.
@@ -28,7 +28,7 @@ pub fn csv(text: &str) -> Result<IndexFile, IndexFileError> {
     let mut notes = Vec::new();
     let mut columns: Option<Columns> = None;
     let (mut n, mut k): (Vec<Point>, Vec<Point>) = (Vec::new(), Vec::new());
-    // Wavelengths whose unit is told by all of them.
+    // Least and greatest wavelength without a unit: together they tell it.
     let mut bare: Option<(f64, f64)> = None;
     let mut bare_line = None;
     let mut count = 0;

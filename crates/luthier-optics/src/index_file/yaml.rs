@@ -117,7 +117,7 @@ fn table(data: &Text, n: Option<&mut Vec<Point>>, k: Option<&mut Vec<Point>>) ->
     Ok(())
 }
 
-/// Samples of a formula over what is seen of its range.
+/// Samples of a formula over the visible part of its range.
 fn sampled(entry: &Entry, number: usize, line: usize) -> Result<Vec<Point>, IndexFileError> {
     let coefficients = entry.coefficients.as_ref().ok_or_else(|| entry.missing("coefficients"))?;
     let range = entry.wavelength_range.as_ref().ok_or_else(|| entry.missing("wavelength_range"))?;
@@ -139,7 +139,7 @@ fn sampled(entry: &Entry, number: usize, line: usize) -> Result<Vec<Point>, Inde
         .collect())
 }
 
-/// Finite numbers apart by spaces; no more than any formula takes is read.
+/// Finite numbers apart by spaces. The first hundred are read: no formula takes as many.
 fn numbers(text: &Text) -> Result<Vec<f64>, IndexFileError> {
     let words = text.text.split_whitespace().take(100);
     let numbers = words.map(|word| match word.parse::<f64>() {

@@ -10,7 +10,7 @@ use crate::rows::{Row, rows};
 
 pub use self::rgb::rgb;
 
-/// Shares of a column may sum to this little above 1.
+/// Excess over 1 that the sum of a column may have, because decimals are rounded.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
 /// A matrix and the wavelengths of its bins.

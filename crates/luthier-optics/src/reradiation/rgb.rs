@@ -1,4 +1,4 @@
-//! A re-radiation matrix in linear Rec.709: from the colour of the light to the colour of what comes out.
+//! A re-radiation matrix in linear Rec.709: from the colour of incident light to the colour of the light that comes out.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use crate::rows::rows;
 /// Half a step of the wavelengths of [`Color::Spectral`], nm.
 const HALF_STEP_NM: f64 = 2.5;
 
-/// Light of D65 around one wavelength: its power, and the shares of it that lights of the primary colours have.
+/// Light of D65 around one wavelength: its power, and the shares of the power in lights of the primary colours.
 struct Light {
     wavelength_nm: f64,
     power: f64,
@@ -24,15 +24,15 @@ struct Light {
 /// M_ij = sum over bins `to` of  W_i(to) / E(to)  sum over bins `from` of  share(to, from) E_j(from)
 /// ```
 ///
-/// `E(bin)` is the power of D65 in a bin, `E_j(bin)` that of a light of the j-th primary colour there, and `W_i(bin)` what a perfect reflector
-/// in the bin alone adds to channel i under D65. The spectra of the primaries sum to D65, so that the sum of a row is exact: the colour
-/// under white light, of which 1 is a perfect reflector. For other lights the spectrum is the smoothest of their colour (Mallett and
-/// Yuksel 2019). Rows may sum to more than 1 in a channel that receives light of others, and entries may be negative where a
-/// colour is outside of the gamut.
+/// `E(bin)` is the power of D65 in a bin, `E_j(bin)` the power of a light of the j-th primary colour there. `W_i(bin)` is the value of channel i
+/// under D65 if a perfect reflector covers the bin alone. The spectra of the primaries sum to D65, so that the sum of a row is exact: it is
+/// the colour under white light, 1 for a perfect reflector. Other lights have the smoothest spectrum of their colour (Mallett and
+/// Yuksel 2019). A row may sum to more than 1, because a channel receives light of others. Entries may be negative, because colours may be
+/// outside the gamut.
 ///
 /// A bin reaches half-way to its neighbours, the first and the last one as far outwards as inwards; within a bin, light that comes out is
-/// spread as D65 is. Light outside of all bins is absorbed, and so is what D65 does not have: below 360 and above 830 nm. A matrix of
-/// one bin is that bin from 360 to 830 nm.
+/// spread as D65 is. Light outside all bins is absorbed, and so is light below 360 and above 830 nm, where D65 has no power here. The bin of
+/// a matrix of one bin reaches from 360 to 830 nm.
 pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
     let nm = &matrix.wavelengths_nm;
     let count = nm.len();

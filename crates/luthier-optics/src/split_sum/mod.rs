@@ -92,7 +92,7 @@ pub fn split_sums(distribution: Distribution, alpha: f64, cos_theta: f64) -> [Sp
     sums_of(rules(distribution), Masking::ALL, distribution, alpha, cos_theta)
 }
 
-/// The split sum of one term, as [`split_sums`] has it.
+/// The split sum of one term: one of [`split_sums`], computed alone.
 pub fn split_sum(distribution: Distribution, masking: Masking, alpha: f64, cos_theta: f64) -> SplitSum {
     let [sum] = sums_of(rules(distribution), [masking], distribution, alpha, cos_theta);
     sum
@@ -260,7 +260,7 @@ impl Density {
     }
 }
 
-/// Reflected directions of one polar angle; the square of the cosine at their facets lies between a least value and that and a span.
+/// Reflected directions of one polar angle. The squared cosine at their facets is a minimum plus a part of a span.
 struct Ring {
     cos_i: f64,
     cos_o: f64,

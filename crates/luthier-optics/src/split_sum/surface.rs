@@ -14,7 +14,7 @@ const LINEAR_BELOW: f64 = 0.01;
 /// Split sums of one masking term: Chebyshev interpolation in ln alpha and asinh(cos_theta / b), where b is the scale on which masking changes.
 ///
 /// Within 2e-6 of [`split_sum`] for GGX with smooth terms, and 2e-4 for Beckmann, where the cosine is at least 0.001; elsewhere it is
-/// [`split_sum`]. Below an alpha of 0.001 each row is a polynomial in the cosine of its own.
+/// [`split_sum`]. Below an alpha of 0.001 each row has a polynomial in the cosine of its own.
 #[derive(Debug, Clone)]
 pub struct SplitSumSurface {
     distribution: Distribution,
@@ -61,7 +61,7 @@ fn over_cosines(distribution: Distribution, masking: Masking, alpha: f64) -> [[f
     }))
 }
 
-/// Split sums of one alpha, as [`SplitSumSurface`] has them.
+/// Split sums of one alpha over all directions: a row of a [`SplitSumSurface`].
 #[derive(Debug, Clone)]
 pub struct SplitSumRow {
     distribution: Distribution,
