@@ -1,7 +1,7 @@
 //! BC6H without sign (Khronos Data Format 1.4, section 20.2; Direct3D 11): 4 x 4 texels of three half floats in 16 bytes.
 //!
-//! Written are, of its fourteen modes, those of one line through the colours of a block: blocks of a smooth table are short and nearly
-//! straight. Such a block is the mode (5 bits), two ends of three numbers each (60), and for each texel its place between them (4, the
+//! Of the fourteen modes, only those with one line through the colours of a block are written: the colours of a block of a smooth table lie on
+//! a short line, nearly. Such a block is the mode (5 bits), two ends of three numbers each (60), and for each texel its place between them (4, the
 //! first 3).
 
 use half::f16;
@@ -33,7 +33,7 @@ const MODES: [Mode; 4] = [
     Mode { code: 3, first: 10, second: 10 },
 ];
 
-/// Modes that are tried of those whose ends are near enough: coarser ones are rarely better.
+/// Number of modes to try, the finest first that reach both ends: coarser ones are rarely better.
 const TRIED: usize = 2;
 
 /// Bits of the first end that come before the second; the rest comes behind it, highest first.
@@ -70,7 +70,7 @@ fn half(number: i32) -> f16 {
     f16::from_bits(((number * 31) >> 6) as u16)
 }
 
-/// Where a half float lies among numbers: in the middle of those that become it.
+/// The number of a half float: the middle of the numbers that become it.
 fn place(value: f64) -> f64 {
     // By way of single precision: `half` converts doubles in one step or in two, by the machine.
     (f64::from(f16::from_f32(value as f32).to_bits()) + 0.5) / 31.0 * 64.0
@@ -249,8 +249,7 @@ fn decompressed(block: [u8; BYTES]) -> [[f16; 3]; 16] {
     texels
 }
 
-/// The blocks of an image, row by row; its sides are multiples of [`SIDE`]. What is negative, and channels
-/// that it lacks, are 0; alpha goes.
+/// The blocks of an image, row by row; its sides are multiples of [`SIDE`]. Negative values and missing channels become 0; alpha is dropped.
 pub(crate) fn encode(image: &Image) -> Vec<u8> {
     let mut blocks = Vec::with_capacity(image.texel_count());
     for y in (0..image.height).step_by(SIDE as usize) {

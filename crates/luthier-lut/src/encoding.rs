@@ -3,6 +3,17 @@
 use crate::{Image, TableKind, TexelFormat};
 
 /// How values become texels, beyond the rounding of the texel format.
+///
+/// ```
+/// use luthier_lut::{Encoding, Image, TableKind, TexelFormat};
+///
+/// let encoding = Encoding::of(TableKind::Distribution, TexelFormat::Rg16Float);
+/// let values = Image { width: 1, height: 1, channels: 1, data: vec![1e-12] };
+/// let texels = encoding.split(&encoding.to_root(&values));
+/// // Half floats end at 6e-8; their sixteenth roots keep the value.
+/// let [value, ..] = encoding.decode([texels.data[0].into(), texels.data[1].into(), 0.0, 1.0]);
+/// assert!((value / 1e-12 - 1.0).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoding {
     /// Values as they are.
@@ -40,7 +51,7 @@ impl Encoding {
         }
     }
 
-    /// Texels, still in f32, from values in that scale.
+    /// Texels, still in f32, from the values of [`Self::to_root`].
     pub fn split(self, roots: &Image) -> Image {
         match self {
             Self::Plain => roots.clone(),

@@ -7,6 +7,16 @@ use crate::{Image, LutError, bc6h};
 
 crate::named! {
     /// Texel formats, named as WebGPU names them.
+    ///
+    /// ```
+    /// use luthier_lut::{Image, TexelFormat};
+    ///
+    /// let format: TexelFormat = "rgba8unorm".parse().unwrap();
+    /// let grey = Image { width: 1, height: 1, channels: 1, data: vec![0.5] };
+    /// // Missing channels are 0, and alpha is 1.
+    /// assert_eq!(format.encode(&grey), [128, 0, 0, 255]);
+    /// assert_eq!(format.quantise(&grey).data[0], 128.0 / 255.0);
+    /// ```
     #[derive(Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum TexelFormat("texel format") {
@@ -59,7 +69,7 @@ impl TexelFormat {
         !matches!(self, Self::Rgba16Unorm | Self::Bc6hRgbUfloat)
     }
 
-    /// Bytes per channel; of formats whose channels share a word, bytes of the word; of blocks 1.
+    /// Bytes per channel. Formats whose channels share a word have the bytes of the word; blocks have 1.
     pub fn channel_bytes(self) -> u32 {
         match self {
             Self::Rgba8Unorm | Self::Bc6hRgbUfloat => 1,
@@ -82,7 +92,7 @@ impl TexelFormat {
         !matches!(self, Self::R32Float | Self::Rgba32Float)
     }
 
-    /// The largest code of its first three channels where they are unsigned and normalised.
+    /// The largest code of its first three channels, if they are unsigned and normalised.
     pub fn unorm_max(self) -> Option<f64> {
         match self {
             Self::Rgba8Unorm => Some(255.0),
@@ -94,7 +104,7 @@ impl TexelFormat {
 
     /// The texels of an image as little-endian bytes, rounded to nearest. Channels the image lacks are 0, and 1 for
     /// alpha; surplus channels are dropped. Unorm clamps to 0..1; floats of less than 32 bits clamp to their finite range. Blocks are
-    /// fitted to their texels, and what was read from them need not give the same bytes again.
+    /// fitted to their texels; texels that were decoded from blocks may encode to other bytes.
     ///
     /// # Panics
     /// Where a side is no multiple of [`Self::block_side`].
@@ -193,7 +203,7 @@ impl TexelFormat {
     }
 }
 
-/// Some of the formats.
+/// A set of texel formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FormatSet(u16);
 

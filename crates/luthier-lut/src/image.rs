@@ -3,6 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 /// A rectangle of texels in f32, row by row from the top, channels interleaved.
+///
+/// ```
+/// use luthier_lut::Image;
+///
+/// let mut image = Image::zeros(2, 2, 1);
+/// image.texel_mut(1, 0)[0] = 4.0;
+/// assert_eq!(image.data, [0.0, 4.0, 0.0, 0.0]);
+/// assert_eq!(image.halved().data, [1.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Image {
     /// Texels across.

@@ -1,11 +1,11 @@
-//! Pictures as they are stored: 8 or 16 bits a value, and what a sampler makes of them.
+//! Pictures with their stored samples, 8 or 16 bits a value, and the values that a sampler gives.
 
 use std::sync::LazyLock;
 
 use crate::{Image, srgb};
 
-/// A picture in the samples that its file has, row by row from the top, channels interleaved. It takes a quarter of the bytes of an [`Image`]
-/// where these are of 8 bits.
+/// A picture in the samples of its file, row by row from the top, channels interleaved. With samples of 8 bits it takes a quarter of the bytes
+/// of an [`Image`].
 ///
 /// ```
 /// use luthier_lut::{Picture, PictureSamples};
@@ -29,11 +29,11 @@ pub struct Picture {
 /// Values of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PictureSamples {
-    /// Over 255.
+    /// Bytes, over 255.
     Bits8(Vec<u8>),
-    /// Over 65535.
+    /// Words of 16 bits, over 65535.
     Bits16(Vec<u16>),
-    /// As they are.
+    /// Floats, unscaled.
     Float(Vec<f32>),
 }
 

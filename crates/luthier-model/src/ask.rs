@@ -13,7 +13,7 @@ impl ShadingModel {
         row(self)
     }
 
-    /// The heading of a model in f64: that of the shader's model that it is a form of, or that it stands beside.
+    /// The heading of a model in f64, by its name: the heading of the shader's model that it is a form of or stands beside.
     pub fn heading_of(name: &str) -> Option<&'static str> {
         let kin = Self::ALL.iter().find(|kin| name.starts_with(kin.name()) || kin.facts().beside.contains(&name));
         kin.map(|model| model.facts().heading)
@@ -24,12 +24,12 @@ impl ShadingModel {
         self.facts().title
     }
 
-    /// Whether its shader has a form: what is read from tables alone has no other.
+    /// Whether its shader has a form; a model that exists in tables alone has the form `baked` only.
     pub fn has(self, form: Form) -> bool {
         self.facts().forms.contains(&form)
     }
 
-    /// Whether the shader of a form shows a feature where a material has it. Tests of luthier-shader and luthier-scene compare every
+    /// Whether the shader of a form shows a feature of a material. Tests of luthier-shader and luthier-scene compare every
     /// entry with what shaders and their f64 twins do.
     pub fn honours(self, feature: Feature, form: Form) -> bool {
         let Shows { always, baked, full } = &self.facts().shows;

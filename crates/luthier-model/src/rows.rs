@@ -26,12 +26,12 @@ const FACET_TABLES: &[TableRead] = &[
 const STATISTICS_TABLES: &[TableRead] =
     &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
 
-/// Parts of models that go down a path.
 /// Headings that models share.
 const ONE_LAYER: &str = "One layer";
 const ELEK_AND_GRANIER: &str = "Elek, Granier and Heidrich";
 const STATISTICS: &str = "Statistics of light";
 
+/// Parts of models that go down a path.
 const PATH_PARTS: &[ModelPart] = &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance];
 
 /// Tolerances of models that go down a path.
