@@ -33,7 +33,7 @@ const MODES: [Mode; 4] = [
     Mode { code: 3, first: 10, second: 10 },
 ];
 
-/// Number of modes to try, the finest first that reach both ends: coarser ones are rarely better.
+/// Number of modes to try, the finest of those that reach both ends: coarser ones are rarely better.
 const TRIED: usize = 2;
 
 /// Bits of the first end that come before the second; the rest comes behind it, highest first.

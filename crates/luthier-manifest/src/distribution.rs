@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 enum Named {
     /// A distribution whose only parameter is the slope parameter of its layer.
     Plain(String),
-    /// One that has parameters of its own.
+    /// A distribution with parameters of its own.
     Shaped(Shaped),
 }
 

@@ -11,11 +11,21 @@ use crate::search::Candidate;
 pub struct Decision {
     /// The kind.
     pub kind: TableKind,
-    /// The candidate that it took, with its bytes when it was taken, and the largest error of any of its tiles then.
+    /// The candidate taken, with its bytes and the largest error of its tiles at that time.
     pub candidate: Candidate,
 }
 
 /// A lock file: the sizes, axes and formats that bakes of a folder keep until a budget breaks.
+///
+/// ```
+/// use luthier_manifest::{Lock, Manifest};
+///
+/// // A bake without a search locks nothing.
+/// let lock = Lock::of(&Manifest::new("example", Vec::new(), Vec::new()));
+/// let text = lock.to_json().unwrap();
+/// assert!(lock.decisions.is_empty() && Lock::from_json(&text).unwrap().decides_as(&lock));
+/// assert!(Lock::from_json(&text.replace("\"schema\": 1", "\"schema\": 0")).is_err());
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lock {
     /// Number of the form of the file: [`Lock::SCHEMA`].
@@ -45,7 +55,7 @@ impl Lock {
     /// The lock of a text.
     ///
     /// # Errors
-    /// In words: what is not JSON, not a lock, or of another schema.
+    /// In words: the text is not JSON, not a lock, or of another schema.
     pub fn from_json(text: &str) -> Result<Self, String> {
         let lock: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         if lock.schema == Self::SCHEMA {
@@ -64,7 +74,7 @@ impl Lock {
         Ok(text + "\n")
     }
 
-    /// Whether the decisions are those of another lock, whatever errors were measured when they were taken.
+    /// Whether two locks hold equal decisions; errors measured at the time do not count.
     pub fn decides_as(&self, other: &Self) -> bool {
         let [ours, theirs] = [self, other].map(|lock| lock.decisions.iter().map(|d| (d.kind, &d.candidate.form)));
         ours.eq(theirs)

@@ -1,12 +1,12 @@
-//! Interfaces of a material for which the shader of its model reads a table: the one list that the baker, the emitter and the judge go by.
+//! Interfaces of a material for which the shader of its model reads a table. Baker, emitter and judge go by this one function.
 
 use luthier_lut::TableKind;
 use luthier_model::{Reach, ReadWhen, Reflectance, ShadingModel};
 
 use crate::record::{LayerKind, LayerRecord};
 
-/// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by the layer's number. For layers without a tile it
-/// does without the kinds that are optional.
+/// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by the layer's number. If the kind is optional, a layer
+/// may have no tile, and the shader computes the function.
 pub fn reads(model: ShadingModel, kind: TableKind, layers: &[LayerRecord], number: usize) -> bool {
     let facts = model.facts();
     let is_interface = layers.get(number).is_some_and(|layer| layer.kind != LayerKind::Diffuse);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::tiles::Tiles;
 
-/// `vec4` words of a layer in the material buffer: those of its numbers, and more where kinds of tables have slots beyond.
+/// `vec4` words of a layer in the material buffer: 11 for its numbers, and more if kinds of tables have slots beyond.
 pub const LAYER_WORDS: usize = {
     let (mut words, mut i) = (11, 0);
     while i < TableKind::ALL.len() {
@@ -38,8 +38,18 @@ pub enum LayerKind {
 
 /// Everything a shader needs of one layer; the f64 twin reads the same record.
 ///
-/// Indices are relative to the medium above the interface; the three samples are those of the material's three
-/// wavelengths.
+/// Indices are relative to the medium above the interface, at the three wavelengths of the material.
+///
+/// ```
+/// use luthier_manifest::{LAYER_WORDS, LayerKind, LayerRecord};
+///
+/// let base = LayerRecord { kind: LayerKind::Diffuse, albedo: [0.5; 3], ..LayerRecord::default() };
+/// let words = base.words();
+/// assert_eq!(words.len(), LAYER_WORDS);
+/// // Word 3 has the albedo over pi; word 1 has tiles, -1 for none.
+/// assert!((words[3][0] * std::f32::consts::PI - 0.5).abs() < 1e-6);
+/// assert_eq!(words[1], [-1.0; 4]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerRecord {
     /// Kind of the layer.
@@ -69,8 +79,8 @@ pub struct LayerRecord {
     pub ior_n: [f64; 3],
     /// Imaginary part.
     pub ior_k: [f64; 3],
-    /// Reflectance at normal incidence, RGB, where the interface reflects by Schlick's formula, f0 + (1 - f0)(1 - cos)^5, and not by its
-    /// index; the index then bends directions only.
+    /// Reflectance at normal incidence, RGB, of an interface that reflects by Schlick's formula, f0 + (1 - f0)(1 - cos)^5. Its index bends
+    /// directions only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub f0: Option<[f64; 3]>,
     /// Real part of the film's relative index; 0 without a film.
@@ -83,8 +93,8 @@ pub struct LayerRecord {
     pub film_thickness_nm: f64,
     /// Thickest the film gets; 0 without a film.
     pub film_thickness_max_nm: f64,
-    /// Squared cotangent of the critical angle where the Fresnel row and the film tile are over the cosine of the refracted direction, as
-    /// those of interfaces with total reflection are; else 0.
+    /// Squared cotangent of the critical angle, if the Fresnel row and the film tile are over the cosine of the refracted direction: for
+    /// interfaces with total reflection. Else 0.
     #[serde(default)]
     pub critical_cot_sq: f64,
     /// Masking of the model `microfacet`; absent where it is the default.
@@ -93,13 +103,13 @@ pub struct LayerRecord {
     /// Computation of the reflectance of the interface; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub reflectance: Reflectance,
-    /// Curve that stands for the reflectance, where it is an approximation.
+    /// Curve of the reflectance, if that is an approximation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<ReflectanceCurve>,
     /// Light from below that the interface lets out, of the models `elek` and `weidlich-wilkie`; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub internal_reflection: InternalReflection,
-    /// Medium above of which the reflectance of the interface is computed, and with it its indices here; absent where it is the default.
+    /// Medium above the interface in the computation of its reflectance, and of the indices here; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub lower_reflectance: LowerReflectance,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
@@ -117,7 +127,7 @@ impl LayerRecord {
         self.film_thickness_max_nm > self.film_thickness_nm
     }
 
-    /// The cosine at which the Fresnel row and the film tile are read for light that meets the interface at another.
+    /// The cosine at which the Fresnel row and the film tile are read for light that meets the interface at `cos_theta`.
     pub fn row_cosine(&self, cos_theta: f64) -> f64 {
         refracted_cosine(self.critical_cot_sq, cos_theta)
     }

@@ -3,7 +3,7 @@
 use luthier_lut::{AtlasLayout, Axis, RowBase, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
 
-/// Limits on tables; what is absent is unlimited.
+/// Limits on tables; an absent limit does not limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Budget {
     /// Largest absolute error of a sampled read, any channel.
@@ -82,7 +82,7 @@ impl Budget {
         }
     }
 
-    /// Error over limit, the largest of those limited: a budget holds where this is at most 1.
+    /// The largest quotient of an error and its limit: the budget holds if it is at most 1.
     pub fn excess(&self, error: &MeasuredError) -> f64 {
         over_limit(self.max_abs, Some(error.max_abs))
             .max(over_limit(self.max_rel, Some(error.max_rel)))
@@ -130,7 +130,7 @@ impl MeasuredError {
     }
 }
 
-/// A way to have the values of a kind of table at run time.
+/// A way to get the values of a kind of table at run time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// `table`, or `closed-form`: computed by the shader, no texels.
