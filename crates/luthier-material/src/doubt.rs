@@ -1,4 +1,4 @@
-//! Doubtful physics: what a material may say, but rarely means.
+//! Doubtful physics: values that are allowed, but rarely meant.
 
 use std::f64::consts::PI;
 use std::ops::Range as Span;
@@ -16,7 +16,7 @@ use crate::material::Material;
 use crate::places::Places;
 use crate::suggest::short;
 
-/// Smallest slope parameter that the real-time models tell from a smooth surface: layer records have it in place of less.
+/// Smallest slope parameter that the real-time models tell from a smooth surface. Layer records have it in place of smaller ones.
 pub const ALPHA_MIN: f64 = 1e-3;
 
 /// Thickest film whose colour the 5 nm steps of the spectrum still resolve with margin: at n = 1.5 neighbouring fringes
@@ -26,7 +26,7 @@ const FILM_MAX_NM: f64 = 5000.0;
 /// Two indices that differ by less than this reflect less than 1e-8 at normal incidence.
 const SAME_INDEX: f64 = 2e-4;
 
-/// Clear media reflect less: rutile, of index 2.6, has 0.2.
+/// Largest F0 of a clear medium: rutile, of index 2.6, has 0.2.
 const DIELECTRIC_F0_MAX: f64 = 0.2;
 
 /// A sampled spectrum that may be too short: name, range in nm, place.
@@ -105,7 +105,7 @@ pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<
     }
 }
 
-/// Spectra that do not reach as far as the bake asks for them.
+/// Warns of spectra that do not cover the wavelengths of the bake.
 fn clamped_spectra(bake: &BakeSettings, spectra: &[Spectrum], sink: &mut Sink<'_>) {
     let (low, high) = match bake.color {
         Some(ColorMode::ThreeWavelengths) => {
@@ -124,7 +124,7 @@ fn clamped_spectra(bake: &BakeSettings, spectra: &[Spectrum], sink: &mut Sink<'_
     }
 }
 
-/// Kinds of tables that nothing in the stack could fill.
+/// Warns of kinds of tables that the file asks for and no layer fills.
 fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut Sink<'_>) {
     if !places.has("bake.tables") {
         return;
@@ -152,7 +152,7 @@ fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut 
     }
 }
 
-/// Warns where a rough layer blurs what lies below, and the model blurs it too much or not at all.
+/// Warns of a layer below a rougher one, if the model blurs its reflection too much or not at all.
 fn smoother_than_above(layer: &Layer, roughest: f64, model: ShadingModel, at: &At<'_>, sink: &mut Sink<'_>) {
     let alpha = layer.surface.alpha_isotropic();
     if matches!(layer.base, Base::Diffuse(_)) || alpha >= roughest {

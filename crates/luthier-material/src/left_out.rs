@@ -6,6 +6,18 @@ use luthier_optics::stack::{Base, Distribution, Film, Layer};
 use crate::material::Material;
 
 /// A feature that a material asks for and its model does not show.
+///
+/// ```
+/// use luthier_manifest::{Feature, ShadingModel};
+/// use luthier_material::{left_out, parse};
+///
+/// let text = "schema = 1\nname = \"steel\"\n[[layer]]\ntype = \"conductor\"\nior = \"steel_316\"\nalpha_x = 0.1\nalpha_y = 0.3\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let steel = parse("steel.toml", text, &no_files).unwrap().material;
+/// let parts = left_out(&steel, ShadingModel::Belcour);
+/// assert_eq!((parts[0].feature, parts[0].key.as_str()), (Feature::Anisotropy, "layer.0.alpha_x"));
+/// assert!(left_out(&steel, ShadingModel::Yamaguchi).is_empty());
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOut {
     /// Feature that is not shown.
@@ -16,8 +28,8 @@ pub struct LeftOut {
     pub forms: Vec<Form>,
 }
 
-/// The features of a material that a model leaves out, layers from the top down, then effects. Of a layer that is left out nothing else is
-/// told.
+/// The features of a material that a model leaves out, layers from the top down, then effects. Layers that are left out have one entry in
+/// all.
 pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
     let mut asked = Vec::new();
     let layers = &material.stack.layers;

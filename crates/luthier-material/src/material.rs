@@ -59,7 +59,7 @@ pub struct NamedImage<'m> {
 }
 
 impl Material {
-    /// A diagnostic about a value of the file, by someone who knows more than this crate; see [`Places`] for keys.
+    /// A diagnostic about a value of the file, for callers that know more than this crate; see [`Places`] for keys.
     pub fn diagnostic(
         &self,
         severity: Severity,
@@ -70,7 +70,7 @@ impl Material {
         Sink::one(&self.source, &self.text, severity, self.places.span(key), message.into(), hint)
     }
 
-    /// Has the material shaded by a model, without the parts of others that its file chooses: for comparisons of models.
+    /// Sets the model, and drops parts of other models that the file chooses: for comparisons of models.
     pub fn shade_by(&mut self, model: ShadingModel) {
         self.bake.model = Some(model);
         self.bake.masking = self.bake.masking.filter(|_| model.takes(ModelPart::Masking));
@@ -91,7 +91,7 @@ impl Material {
         }
     }
 
-    /// The stack as its model reflects: as it is, but for lower interfaces that its file has reflect as in air.
+    /// The stack for computations of reflectance: its lower interfaces reflect as in air if the file says so.
     pub fn reflecting_stack(&self) -> Cow<'_, Stack> {
         match self.bake.lower_reflectance.unwrap_or_default() {
             LowerReflectance::InPlace => Cow::Borrowed(&self.stack),
@@ -99,7 +99,7 @@ impl Material {
         }
     }
 
-    /// Numbers of the model `granier-heidrich`, where the file gives some that are not those of every material.
+    /// Numbers of the model `granier-heidrich`, if the file gives some that differ from [`BeamsRecord::PLAIN`].
     pub fn beams(&self) -> Option<BeamsRecord> {
         let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth } = self.bake.beams.unwrap_or_default();
         let exponents = self.layers.first().and_then(|first| first.exponents);
@@ -163,7 +163,7 @@ pub struct LayerExtras {
     pub exponents: Option<[f64; 2]>,
     /// Texture slots.
     pub maps: Maps,
-    /// Base colour and metal of a `metallic-roughness` surface where maps multiply them: the stack has that without metal.
+    /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
 }
 
@@ -250,7 +250,7 @@ impl Maps {
 /// How the thickness of a film varies between its extremes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmVariation {
-    /// Where the variation comes from; 0 is the thinnest, 1 the thickest.
+    /// Source of the variation; 0 is the thinnest, 1 the thickest.
     pub source: VariationSource,
     /// Width of one repeat of the map on the surface.
     pub extent_um: f64,

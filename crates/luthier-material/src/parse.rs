@@ -9,7 +9,7 @@ use crate::grammar::DOCUMENT;
 use crate::material::Material;
 use crate::section::{Section, parse_toml};
 
-/// A material, and what to doubt about it.
+/// A material, with warnings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parsed {
     /// The material.
@@ -98,9 +98,10 @@ pub fn parse(
     }
 }
 
-/// As [`parse`], with what can be read of a file that has errors: enough to say what else is wrong, such as pictures that are not there.
+/// Reads a material file as [`parse`] does, and returns a material in spite of errors: enough to find further faults, such as missing
+/// pictures.
 ///
-/// Values with errors are left out or have defaults. There is no material where the file is not TOML, or is something else.
+/// Values with errors are left out or have defaults. There is no material if the file is not TOML, or is of another kind.
 pub fn parse_partly(
     label: &str,
     text: &str,

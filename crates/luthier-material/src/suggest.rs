@@ -1,6 +1,6 @@
 //! Suggestions for misspelt words, and the formatting of values in messages.
 
-/// Characters of the longest word that can be a misspelt one of ours.
+/// Characters of the longest word that can be a misspelt key or name.
 const WORD_MAX: usize = 64;
 
 /// The candidate that a misspelt word most likely stands for, if one is close enough: a few edits away, or the word

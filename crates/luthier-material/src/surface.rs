@@ -1,4 +1,4 @@
-//! Surface files: which material is at each place.
+//! Surface files: the material at each place.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ pub struct Surface {
     pub description: String,
     /// Grains that cover it.
     pub cells: SurfaceCells,
-    /// Other grains at some places; the first that are there are seen.
+    /// Other grains at some places; the first switch that holds at a place is seen.
     pub switches: Vec<SurfaceSwitch>,
     /// Particles on top of all of them.
     pub glitter: Option<SurfaceGlitter>,
@@ -40,7 +40,7 @@ pub struct SurfaceCells {
     pub materials: Vec<NamedMaterial>,
 }
 
-/// Grains in place of others, and where.
+/// Grains in place of others, and their places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceSwitch {
     /// The places.

@@ -1,4 +1,4 @@
-//! Cross-sections of materials of a manifest, which has no file of theirs.
+//! Cross-sections of materials of a manifest, without their files.
 
 use luthier_manifest::{LayerKind, LayerRecord, LowerReflectance, MaterialEntry};
 use luthier_optics::Rgb;
@@ -14,8 +14,8 @@ use crate::doubt::ALPHA_MIN;
 use crate::suggest::short;
 
 impl CrossSection {
-    /// A cross-section through a material of a manifest, by its layer records. They have neither the thickness of a slab, whose optical depth is among the
-    /// numbers, nor indices alone: `relative n` is over that of the medium above, at the three wavelengths. Colours are by these, too.
+    /// A cross-section through a material of a manifest, by its layer records. Records have no thickness of a slab: its optical depth is shown
+    /// instead. Their indices are relative to the medium above, `relative n`, at the three wavelengths; colours follow from these.
     pub fn recorded(entry: &MaterialEntry) -> Self {
         let exterior = Part {
             kind: PartKind::Exterior,
@@ -50,7 +50,7 @@ fn number_of(name: &'static str, value: String) -> PartNumber {
     PartNumber { name, value }
 }
 
-/// The micro-surface of a record; smooth where its slopes are no more than those that stand for none.
+/// The micro-surface of a record; a slope parameter of [`ALPHA_MIN`] stands for a smooth one.
 fn surface(record: &LayerRecord) -> Surface {
     let [alpha_x, alpha_y] = record.alpha_xy.map(|alpha| if alpha <= ALPHA_MIN { 0.0 } else { alpha });
     Surface { distribution: record.distribution, alpha_x, alpha_y, rotation: record.rotation }
@@ -105,7 +105,7 @@ fn medium(layer: usize, record: &LayerRecord, is_last: bool, surface: &Surface, 
     Part { kind, layer: Some(layer), label: label.to_owned(), numbers, color, height, outline }
 }
 
-/// Indices over that of the medium above, or by themselves where a record has those in air.
+/// Indices over the index of the medium above, or plain ones if a record has them in air.
 fn indices(record: &LayerRecord, n: Rgb, k: Rgb) -> Vec<PartNumber> {
     let names = match record.lower_reflectance {
         LowerReflectance::InPlace => ["relative n", "relative k"],

@@ -38,7 +38,7 @@ pub(super) fn decode(
     Some(ior)
 }
 
-/// Reports an index of 0, into whose medium no light is bent.
+/// Reports an index of 0: no light enters such a medium.
 pub(super) fn check_clear(ior: &Ior, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) {
     if let Some(sample) = ior.samples().iter().find(|sample| sample.n == 0.0) {
         let message =
@@ -47,7 +47,7 @@ pub(super) fn check_clear(ior: &Ior, at: &Section<'_>, key: &str, sink: &mut Sin
     }
 }
 
-/// The samples of a range this wide around the middle of the visible one stand for all of it.
+/// Samples that cover this middle of the visible range stand for all of it.
 const MIDDLE_NM: (f64, f64) = (500.0, 600.0);
 
 fn of_any_form(
@@ -111,7 +111,7 @@ fn sampled(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
     checked(Ior::sampled(samples), at, "wavelengths_nm", sink)
 }
 
-/// The index of a table, or an error at a key of it, unless one has been said.
+/// The index of a table, or an error at one of its keys, unless one is reported already.
 fn checked(ior: Result<Ior, IorError>, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<Ior> {
     ior.map_err(|error| {
         if !sink.has_error_in(&at.span) {

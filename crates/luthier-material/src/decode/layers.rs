@@ -11,7 +11,7 @@ use crate::grammar::LAYERS_MAX;
 use crate::material::{FilmVariation, LayerExtras};
 use crate::section::Section;
 
-/// The layers of the stack, and what each has beyond its physics.
+/// The layers of the stack, and the properties of each beyond its physics.
 pub(super) fn decode(
     document: &Section<'_>,
     exterior: &Ior,
@@ -140,7 +140,7 @@ fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<FilmVa
     top.variation.clone()
 }
 
-/// Exponents are of the first layer, whose lobes the model has.
+/// Reports exponents of a layer below the first: the model has lobes of the first alone.
 fn only_the_first_has_exponents(at: &Section<'_>, sink: &mut Sink<'_>) {
     if at.has("exponents") {
         let message = "exponents belong to the first layer: the model granier-heidrich has lobes of no other";
@@ -149,7 +149,7 @@ fn only_the_first_has_exponents(at: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// A place of a surface has one factor on a film's thickness.
+/// Reports a film that varies below the first layer: a place of a surface has one factor on a film's thickness.
 fn only_the_first_film_varies(films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
     if let Some(film) = films.first().filter(|film| film.variation.is_some()) {
         let message = "only the film of the first layer may vary in thickness: shaders read no map of another";

@@ -75,7 +75,7 @@ fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Refuses maps of single layers beside effects that say the same of them.
+/// Refuses maps of single layers beside effects that decide the same quantities.
 pub(super) fn check_effects(document: &Section<'_>, extras: &[LayerExtras], sink: &mut Sink<'_>) {
     let Some(effects) = document.section("effects") else { return };
     let maps = extras.iter().enumerate().flat_map(|(i, extra)| extra.maps.named().map(move |map| (i, map.key)));

@@ -1,4 +1,4 @@
-//! Decoder of pictures, and what they can be asked for.
+//! Decoder of pictures, with checks of the keys that fit their use.
 
 use crate::diagnostic::Sink;
 use crate::picture::{Channel, PictureRef, TexelUse, UvTransform};
@@ -30,7 +30,7 @@ pub(super) fn of(at: &Section<'_>) -> Option<PictureRef> {
     })
 }
 
-/// Refuses what the texels of a use cannot be asked for. `at` is the table, if there is one.
+/// Refuses keys that do not fit the use of the texels. `at` is the table of the picture.
 pub(super) fn check(at: &Section<'_>, texels: TexelUse, sink: &mut Sink<'_>) {
     let mut refuse = |key: &str, message: String, hint: &str| {
         if at.has(key) {

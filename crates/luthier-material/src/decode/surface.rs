@@ -37,7 +37,7 @@ pub(super) fn decode(at: &Section<'_>, sink: &mut Sink<'_>) -> Surface {
     Surface::isotropic(distribution, alpha)
 }
 
-/// Keys that do not go together.
+/// Reports keys that do not go together.
 fn check(at: &Section<'_>, distribution: Distribution, sink: &mut Sink<'_>) {
     if at.has("rotation_deg") && !at.has("alpha_x") && !at.has("alpha_y") {
         let hint = "give `alpha_x` and `alpha_y`, or leave it out".to_owned();

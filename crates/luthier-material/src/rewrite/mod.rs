@@ -9,11 +9,22 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::effects::{Effects, FlakeSource};
 use crate::material::Material;
 
-/// Returns the text of the file of `original` with the numbers of `edited`, which began as a copy of it: those of layers, films and effects. A surface
-/// that was given as a roughness or a slope is given by its `alpha`, because no other key has all its values. A `metallic-roughness` layer whose
+/// Returns the text of `original`'s file with the numbers of `edited`, an edited copy: numbers of layers, films and effects. A surface that
+/// was given as a roughness or a slope is given by its `alpha`, because no other key has all its values. A `metallic-roughness` layer whose
 /// parts no longer fit becomes the dielectric and the diffuse base that it stands for.
 ///
 /// Numbers that have no key of their own are not written: a caller that edits those parses the text and compares.
+///
+/// ```
+/// let text = "schema = 1\nname = \"gilding\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.1 # matt\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let original = luthier_material::parse("gilding.toml", text, &no_files).unwrap().material;
+/// let mut edited = original.clone();
+/// let surface = &mut edited.stack.layers[0].surface;
+/// (surface.alpha_x, surface.alpha_y) = (0.2, 0.2);
+/// let rewritten = luthier_material::rewritten(&original, &edited).unwrap();
+/// assert_eq!(rewritten, text.replace("0.1 # matt", "0.2 # matt"));
+/// ```
 ///
 /// # Errors
 /// A diagnostic about the key that has no place for a number.
@@ -94,14 +105,14 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Whether the index of the medium above a layer was edited: a dielectric with an F0 alone has its own index from that.
+    /// Whether the index of the medium above a layer was edited: the index of a dielectric with an F0 alone follows from it.
     fn index_above_differs(&self, number: usize) -> bool {
         let Some(above) = number.checked_sub(1) else { return false };
         let [before, after] = [self.original, self.edited].map(|material| Some(dielectric(material, above)?.0));
         before != after
     }
 
-    /// The diffuse base of a metallic-roughness layer: what light it scatters is of the layer's `base_color`.
+    /// Writes the diffuse base of a metallic-roughness layer. Its albedo follows from the layer's `base_color`: another one splits the layer.
     fn below_mixed(&mut self, number: usize, place: usize) -> Result<(), Refusal> {
         let (Base::Diffuse(before), Base::Diffuse(after)) =
             (&self.original.stack.layers[number].base, &self.edited.stack.layers[number].base)
@@ -247,7 +258,7 @@ fn write_index(table: &mut dyn TableLike, before: &Ior, after: &Ior, is_transpar
     }
 }
 
-/// Writes the one real number that an index beside an F0 is.
+/// Writes an index beside an F0, which is one real number.
 fn write_plain_index(table: &mut dyn TableLike, ior: &Ior) {
     put(table, "ior", number_item(ior.samples()[0].n));
 }
