@@ -86,7 +86,7 @@ impl Picture {
         let first = texel * channels;
         let colors = if channels < 3 { [0; 3] } else { [0, 1, 2] };
         let [r, g, b] = colors.map(|channel| self.color(first + channel));
-        let alpha = if channels % 2 == 0 { self.stored(first + channels - 1) } else { 1.0 };
+        let alpha = if channels.is_multiple_of(2) { self.stored(first + channels - 1) } else { 1.0 };
         [r, g, b, alpha]
     }
 
