@@ -9,8 +9,20 @@ use crate::{
 /// Where every texel of an atlas lies: equal tiles in a grid, filled row by row.
 ///
 /// Rows whose axis is [`Mapping::Apart`] are side by side, each with its own apron, and the height of the texture is a power of two. Samplers
-/// round positions: a part of a row beside it, however small, would count where numbers of two rows differ by thousands. For the same reason
-/// sides of many tiles are powers of two above 4096 texels: at other sizes there, graphics hardware takes 1/256 of the row beside for up to half of the rows.
+/// round positions and mix in a small part of the row beside, which shows where numbers of two rows differ by a factor of thousands. For the
+/// same reason sides of many tiles are powers of two above 4096 texels: at other sizes graphics hardware takes 1/256 of the row beside for up
+/// to half of the rows.
+///
+/// ```
+/// use luthier_lut::{AtlasLayout, Axis, Mapping, RowBase};
+///
+/// let (quantity, unit) = ("cos_theta".to_owned(), String::new());
+/// let x = Axis { quantity, unit, min: 0.0, max: 1.0, size: 64, mapping: Mapping::Linear };
+/// let rows = AtlasLayout { x, y: None, apron: 0, columns: 1, tiles: 3, base: RowBase::Zero };
+/// assert_eq!((rows.size(), rows.origin(2)), ([64, 3], [0, 2]));
+/// // The last node of the second row: the centre of the last texel.
+/// assert_eq!(rows.position(1, [1.0, 0.0]), [63.5, 1.5]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AtlasLayout {
     /// Axis across a tile.
@@ -23,13 +35,13 @@ pub struct AtlasLayout {
     pub columns: u32,
     /// Number of tiles, at least 1.
     pub tiles: u32,
-    /// Base that a look-up adds; absent from files when it is nothing.
+    /// Base that a look-up adds; absent from files when it is zero.
     #[serde(default, skip_serializing_if = "RowBase::is_zero")]
     pub base: RowBase,
 }
 
-/// Longest side of many tiles at which no sampler that was seen reads the tile beside one (NVIDIA Hopper: none of 4095 rows, 62 of 417
-/// of 5001, none of 8192).
+/// Longest side of many tiles that need not be a power of two. No sampler that was measured reads the tile beside one up to here (NVIDIA
+/// Hopper: none of 4095 rows, 62 of 417 of 5001, none of 8192).
 const EXACT_SIDE: u32 = 4096;
 
 /// Texels of a side with so many tiles on it; `None` on overflow.
@@ -42,7 +54,7 @@ fn side(tiles: u32, texels: u32, is_apart: bool) -> Option<u32> {
 }
 
 impl AtlasLayout {
-    /// The y axis whose nodes are rows side by side, where it is one.
+    /// The y axis, if its nodes are rows side by side ([`Mapping::Apart`]).
     pub fn abreast(&self) -> Option<&Axis> {
         self.y.as_ref().filter(|y| y.mapping == Mapping::Apart)
     }
@@ -71,7 +83,7 @@ impl AtlasLayout {
         [across.unwrap_or(u32::MAX), down.unwrap_or(u32::MAX)]
     }
 
-    /// [`AtlasLayout::size`] of a layout that may be nonsense: `None` where that would overflow, and where an axis has no interval.
+    /// [`AtlasLayout::size`] of a layout from a file: `None` if the size overflows, if there are no tiles, and if an axis has no interval.
     pub fn checked_size(&self) -> Option<[u32; 2]> {
         let apron = self.apron.checked_mul(2)?;
         let sizes = [Some(self.x.size), self.y.as_ref().map(|y| y.size)];
@@ -116,7 +128,7 @@ impl AtlasLayout {
     }
 }
 
-/// One tile: whose table it is and how good it is.
+/// One tile: the function that it holds, and its error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tile {
     /// Readable name: `red-lacquer/0`, `beckmann`.
@@ -127,13 +139,13 @@ pub struct Tile {
     pub input_hash: String,
     /// Error of a sampled read against the function, as measured by the baker.
     pub error: ErrorStats,
-    /// The error that it was to hold, as sampled: absent where a budget, or the size or format that a material asks for, decides instead.
+    /// Largest error as sampled that the bake aimed at; absent if a budget, or a size or format in a material file, decided instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aim: Option<f64>,
 }
 
 impl Tile {
-    /// How far it is off as sampled, and what it was to hold, where it does not hold that.
+    /// The error as sampled and the aim, if the error is larger.
     pub fn miss(&self) -> Option<(f64, f64)> {
         let difference = (self.error.worst.expected - self.error.worst.sampled).abs();
         self.aim.filter(|aim| difference > *aim).map(|aim| (difference, aim))
@@ -145,7 +157,7 @@ impl Tile {
 pub struct Atlas {
     /// Kind of the table.
     pub kind: TableKind,
-    /// Where it lies.
+    /// Places of its texels.
     pub layout: AtlasLayout,
     /// Format of the texels that ship.
     pub format: TexelFormat,
@@ -166,8 +178,8 @@ impl Atlas {
     }
 }
 
-/// The values that a look-up gives for axis values. Formats that core WebGPU does not filter are weighed in the shader: exactly, whatever
-/// `weights` says.
+/// The values that a look-up gives for axis values. The shader itself filters formats that core WebGPU does not: their weights are exact, and
+/// `weights` is ignored.
 pub fn read(
     kind: TableKind,
     layout: &AtlasLayout,

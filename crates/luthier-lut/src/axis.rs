@@ -28,6 +28,16 @@ pub enum Mapping {
 
 /// One axis of a table. Nodes are texel centres; the first lies at `u = 0`, and unless the axis is
 /// periodic the last lies at `u = 1`.
+///
+/// ```
+/// use luthier_lut::{Axis, Mapping};
+///
+/// let (quantity, unit) = ("alpha".to_owned(), String::new());
+/// let axis = Axis { quantity, unit, min: 0.01, max: 1.0, size: 3, mapping: Mapping::Logarithmic };
+/// assert!((axis.node(1) - 0.1).abs() < 1e-12);
+/// // Values outside are clamped.
+/// assert_eq!((axis.index(0.001), axis.index(2.0)), (0.0, 2.0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Name of the quantity, as in the conventions: `cos_theta`, `alpha`, `theta_h`.

@@ -6,8 +6,8 @@ use crate::Image;
 ///
 /// Between nodes that lie on a curve of second derivative f'', linear interpolation is too large by up to h^2 f''/8. Nodes
 /// moved by half of that the other way, `-h^2 f''/16`, spread the error evenly to both sides and halve its maximum (the
-/// usual minimax argument for broken lines). Second differences stand for h^2 f''; along an axis on whose border they lie
-/// nodes are not moved. Nodes that are not below `floor` are not moved below it: at the foot of a lobe a second difference says little.
+/// usual minimax argument for broken lines). Second differences stand for h^2 f''. A node on the border of an axis
+/// is not moved along it. No node is moved from above `floor` to below: at the foot of a lobe a second difference says little.
 pub fn balance(image: &Image, floor: f64) -> Image {
     let mut out = image.clone();
     let at = |x: u32, y: u32, c: usize| f64::from(image.texel(x, y)[c]);

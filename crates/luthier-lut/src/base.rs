@@ -1,10 +1,10 @@
-//! Bases of rows: the part of a Fresnel row that the shader computes, so that texels hold the difference.
+//! Bases of rows: the shader computes the base of a Fresnel row, and texels hold the difference.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Image, TexelFormat};
 
-/// Base that a look-up adds to what it reads between the nodes of a row.
+/// Base that a look-up adds to the texels of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RowBase {
@@ -12,7 +12,7 @@ pub enum RowBase {
     #[default]
     Zero,
     /// A closed form of Fresnel reflectance, whose coefficients lie behind the nodes of each row: see [`SchlickBase`]. The nodes
-    /// hold what it misses. The axis is `cos_theta`, the format one of unsigned normalised channels.
+    /// hold the difference. The axis is `cos_theta`, the format one of unsigned normalised channels.
     Schlick,
 }
 
@@ -32,15 +32,24 @@ impl RowBase {
 }
 
 /// `F = f0 + (f90 - f0) w - edge c (1 - c) w + scale (2 t - 1)` with `w = (1 - c)^5`: Schlick 1994, and a term of one more power as in
-/// Hoffman, "Fresnel Equations Considered Harmful", 2019, with what is left of the exact function in t, a texel. 2 is short of 2 by the
-/// part that makes a code mean nothing left: [`SchlickBase::span`].
+/// Hoffman, "Fresnel Equations Considered Harmful", 2019. The rest of the exact function is in t, a texel. The factor 2 is a little less, so
+/// that one code of a texel means no rest: [`SchlickBase::span`].
 ///
 /// Three texels of a row hold it: `f0 / 1.25` and in A f90, which is 0 or 1; `(edge + 16) / 32`; `scale`.
+///
+/// ```
+/// use luthier_lut::SchlickBase;
+///
+/// let base = SchlickBase { f0: [0.04; 3], f90: 1.0, edge: [0.0; 3], scale: [0.01; 3] };
+/// assert_eq!(base.closed_form(1.0), [0.04; 3]);
+/// // Halfway, Schlick's form adds a 32nd of the rest to 1.
+/// assert!((base.closed_form(0.5)[0] - (0.04 + 0.96 / 32.0)).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SchlickBase {
     /// Reflectance at normal incidence, RGB, up to [`SchlickBase::F0_MAX`]: colours beyond the gamut exceed 1.
     pub f0: [f64; 3],
-    /// Reflectance at grazing incidence: 1, or 0 of an interface that is none.
+    /// Reflectance at grazing incidence: 1, or 0 if there is no interface.
     pub f90: f64,
     /// Coefficient of the dip before grazing angles, RGB, of magnitude up to [`SchlickBase::EDGE_MAX`].
     pub edge: [f64; 3],
@@ -58,23 +67,20 @@ impl SchlickBase {
 
     /// The coefficients as texels, one after the other.
     pub fn texels(&self) -> [[f32; 4]; 3] {
-        let texel = |rgb: [f64; 3], a: f64| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, a as f32];
-        [
-            texel(self.f0.map(|f| f / Self::F0_MAX), self.f90),
-            texel(self.edge.map(|e| (e + Self::EDGE_MAX) / (2.0 * Self::EDGE_MAX)), 1.0),
-            texel(self.scale, 1.0),
-        ]
+        let f0 = self.f0.map(|f| f / Self::F0_MAX);
+        let edge = self.edge.map(|e| (e + Self::EDGE_MAX) / (2.0 * Self::EDGE_MAX));
+        [(f0, self.f90), (edge, 1.0), (self.scale, 1.0)].map(|([r, g, b], a)| [r, g, b, a].map(|value| value as f32))
     }
 
     /// The coefficients that texels hold; `first` is the texel of f0.
     pub fn read(image: &Image, first: [u32; 2]) -> Self {
-        let texel = |k: u32| image.texel(first[0] + k, first[1]);
-        let rgb = |k: u32| [0, 1, 2].map(|c: usize| f64::from(texel(k)[c]));
+        let [f0, edge, scale] = [0, 1, 2].map(|k| image.texel(first[0] + k, first[1]));
+        let [f0_rgb, edge, scale] = [f0, edge, scale].map(|texel| [0, 1, 2].map(|c: usize| f64::from(texel[c])));
         Self {
-            f0: rgb(0).map(|t| Self::F0_MAX * t),
-            f90: f64::from(texel(0)[3]),
-            edge: rgb(1).map(|t| 2.0 * Self::EDGE_MAX * t - Self::EDGE_MAX),
-            scale: rgb(2),
+            f0: f0_rgb.map(|t| Self::F0_MAX * t),
+            f90: f64::from(f0[3]),
+            edge: edge.map(|t| 2.0 * Self::EDGE_MAX * t - Self::EDGE_MAX),
+            scale,
         }
     }
 

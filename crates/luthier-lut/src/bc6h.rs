@@ -1,7 +1,7 @@
 //! BC6H without sign (Khronos Data Format 1.4, section 20.2; Direct3D 11): 4 x 4 texels of three half floats in 16 bytes.
 //!
-//! Written are, of its fourteen modes, those of one line through the colours of a block: blocks of a smooth table are short and nearly
-//! straight. Such a block is the mode (5 bits), two ends of three numbers each (60), and for each texel its place between them (4, the
+//! Of the fourteen modes, only those with one line through the colours of a block are written: the colours of a block of a smooth table lie on
+//! a short line, nearly. Such a block is the mode (5 bits), two ends of three numbers each (60), and for each texel its place between them (4, the
 //! first 3).
 
 use half::f16;
@@ -33,7 +33,7 @@ const MODES: [Mode; 4] = [
     Mode { code: 3, first: 10, second: 10 },
 ];
 
-/// Modes that are tried of those whose ends are near enough: coarser ones are rarely better.
+/// Number of modes to try, the finest of those that reach both ends: coarser ones are rarely better.
 const TRIED: usize = 2;
 
 /// Bits of the first end that come before the second; the rest comes behind it, highest first.
@@ -70,7 +70,7 @@ fn half(number: i32) -> f16 {
     f16::from_bits(((number * 31) >> 6) as u16)
 }
 
-/// Where a half float lies among numbers: in the middle of those that become it.
+/// The number of a half float: the middle of the numbers that become it.
 fn place(value: f64) -> f64 {
     // By way of single precision: `half` converts doubles in one step or in two, by the machine.
     (f64::from(f16::from_f32(value as f32).to_bits()) + 0.5) / 31.0 * 64.0
@@ -170,39 +170,41 @@ impl Fit {
     }
 }
 
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 /// The line through colours along which they differ most, as the two of its points that enclose them all.
 fn line(colors: &Texels) -> [[f64; 3]; 2] {
     let mean = [0, 1, 2].map(|c: usize| colors.iter().map(|n| n[c]).sum::<f64>() / 16.0);
     let off = colors.map(|color| [0, 1, 2].map(|c: usize| color[c] - mean[c]));
-    let along = |axis: &[f64; 3], off: &[f64; 3]| axis[0] * off[0] + axis[1] * off[1] + axis[2] * off[2];
     // The power method, from the texel that is farthest off.
-    let farthest = |a: [f64; 3], b: &[f64; 3]| if along(b, b) > along(&a, &a) { *b } else { a };
-    let mut axis = off.iter().fold([0.0; 3], farthest);
+    let mut axis = off.iter().fold([0.0; 3], |a, b| if dot(b, b) > dot(&a, &a) { *b } else { a });
     for _ in 0..8 {
         let mut next = [0.0; 3];
         for off in &off {
-            let weight = along(&axis, off);
+            let weight = dot(&axis, off);
             (0..3).for_each(|c| next[c] += weight * off[c]);
         }
-        let length = libm::sqrt(along(&next, &next));
+        let length = libm::sqrt(dot(&next, &next));
         if length == 0.0 {
             return [mean; 2];
         }
         axis = next.map(|v| v / length);
     }
-    let places = off.map(|off| along(&axis, &off));
+    let places = off.map(|off| dot(&axis, &off));
     let ends = [places.into_iter().fold(0.0, f64::min), places.into_iter().fold(0.0, f64::max)];
     ends.map(|place| [0, 1, 2].map(|c: usize| mean[c] + place * axis[c]))
 }
 
 /// The ends of the one colour that is least far from all texels, in the finest mode, which has every half float.
 fn flat(texels: &Texels) -> Ends {
-    let middle = |c: usize| {
+    let middle = [0, 1, 2].map(|c: usize| {
         let values = texels.map(|texel| texel[c]);
         let [low, high] = [values.into_iter().fold(f64::INFINITY, f64::min), values.into_iter().fold(0.0, f64::max)];
         code(place(f64::midpoint(low, high)), MODES[0].first)
-    };
-    [[0, 1, 2].map(middle); 2]
+    });
+    [middle; 2]
 }
 
 fn compressed(texels: &Texels) -> [u8; BYTES] {
@@ -229,14 +231,14 @@ fn decompressed(block: [u8; BYTES]) -> [[f16; 3]; 16] {
     let code = take(5) as u128;
     let Some(&mode) = MODES.iter().find(|mode| mode.code == code) else { return [[f16::ZERO; 3]; 16] };
     let Mode { first, second, .. } = mode;
-    let extended = |code: i32, bits: u32| code << (32 - bits) >> (32 - bits);
     let mut starts = [0; 3].map(|_| take(LOW_BITS));
     let mut ends = [0; 3];
     for (start, end) in starts.iter_mut().zip(&mut ends) {
         *end = take(second);
         (LOW_BITS..first).rev().for_each(|bit| *start |= take(1) << bit);
         if first != second {
-            *end = (*start + extended(*end, second)) & largest(first);
+            // The difference, with its sign extended.
+            *end = (*start + (*end << (32 - second) >> (32 - second))) & largest(first);
         }
     }
     let colors = mode.colors(&[starts, ends]);
@@ -247,16 +249,15 @@ fn decompressed(block: [u8; BYTES]) -> [[f16; 3]; 16] {
     texels
 }
 
-/// The blocks of an image, row by row; its sides are multiples of [`SIDE`]. What is negative, and channels
-/// that it lacks, are 0; alpha goes.
+/// The blocks of an image, row by row; its sides are multiples of [`SIDE`]. Negative values and missing channels become 0; alpha is dropped.
 pub(crate) fn encode(image: &Image) -> Vec<u8> {
     let mut blocks = Vec::with_capacity(image.texel_count());
-    let finite = |value: f32| f64::from(value.clamp(0.0, f16::MAX.to_f32()));
     for y in (0..image.height).step_by(SIDE as usize) {
         for x in (0..image.width).step_by(SIDE as usize) {
             let texels = std::array::from_fn(|i| {
                 let texel = image.texel(x + i as u32 % SIDE, y + i as u32 / SIDE);
-                [0, 1, 2].map(|c: usize| texel.get(c).copied().map_or(0.0, finite))
+                [0, 1, 2]
+                    .map(|c: usize| texel.get(c).map_or(0.0, |value| f64::from(value.clamp(0.0, f16::MAX.to_f32()))))
             });
             blocks.extend_from_slice(&compressed(&texels));
         }

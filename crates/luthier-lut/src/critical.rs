@@ -9,7 +9,7 @@ pub fn refracted_cosine(critical_cot_sq: f64, cos_theta: f64) -> f64 {
     (cos_theta * cos_theta - critical_cot_sq * (1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt()
 }
 
-/// The cosine above an interface for one below: what [`refracted_cosine`] takes to it.
+/// The cosine above an interface for one below: the inverse of [`refracted_cosine`].
 pub fn incident_cosine(critical_cot_sq: f64, cos_theta_t: f64) -> f64 {
     ((cos_theta_t * cos_theta_t + critical_cot_sq) / (1.0 + critical_cot_sq)).sqrt()
 }

@@ -3,6 +3,17 @@
 use crate::{Image, TableKind, TexelFormat};
 
 /// How values become texels, beyond the rounding of the texel format.
+///
+/// ```
+/// use luthier_lut::{Encoding, Image, TableKind, TexelFormat};
+///
+/// let encoding = Encoding::of(TableKind::Distribution, TexelFormat::Rg16Float);
+/// let values = Image { width: 1, height: 1, channels: 1, data: vec![1e-12] };
+/// let texels = encoding.split(&encoding.to_root(&values));
+/// // Half floats end at 6e-8; their sixteenth roots keep the value.
+/// let [value, ..] = encoding.decode([texels.data[0].into(), texels.data[1].into(), 0.0, 1.0]);
+/// assert!((value / 1e-12 - 1.0).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoding {
     /// Values as they are.
@@ -31,26 +42,26 @@ impl Encoding {
         match self {
             Self::Plain => values.clone(),
             Self::SplitSixteenthRoot => {
-                let root = |value: &f32| {
+                let roots = values.data.iter().map(|value| {
                     let fourth_root = libm::sqrt(libm::sqrt(f64::from(*value).max(0.0)));
                     libm::sqrt(libm::sqrt(fourth_root)) as f32
-                };
-                Image { data: values.data.iter().map(root).collect(), ..*values }
+                });
+                Image { data: roots.collect(), ..*values }
             }
         }
     }
 
-    /// Texels, still in f32, from values in that scale.
+    /// Texels, still in f32, from the values of [`Self::to_root`].
     pub fn split(self, roots: &Image) -> Image {
         match self {
             Self::Plain => roots.clone(),
             Self::SplitSixteenthRoot => {
-                let split = |texel: &[f32]| {
+                let halves = roots.texels().flat_map(|texel| {
                     let root = f64::from(texel[0]);
                     let coarse = half::f16::from_f64(root);
                     [coarse.to_f32(), ((root - coarse.to_f64()) * SPLIT) as f32]
-                };
-                Image { channels: 2, data: roots.texels().flat_map(split).collect(), ..*roots }
+                });
+                Image { channels: 2, data: halves.collect(), ..*roots }
             }
         }
     }

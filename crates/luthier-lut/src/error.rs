@@ -14,7 +14,7 @@ pub enum LutError {
         /// Width x height x bytes per texel.
         expected: usize,
     },
-    /// Blocks that only part of the image fills, or that are not fitted as here.
+    /// Blocks that the image fills in part, or blocks of modes that this crate does not write.
     #[error("blocks of texels that were not baked here")]
     Blocks,
 }

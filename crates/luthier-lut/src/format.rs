@@ -7,6 +7,16 @@ use crate::{Image, LutError, bc6h};
 
 crate::named! {
     /// Texel formats, named as WebGPU names them.
+    ///
+    /// ```
+    /// use luthier_lut::{Image, TexelFormat};
+    ///
+    /// let format: TexelFormat = "rgba8unorm".parse().unwrap();
+    /// let grey = Image { width: 1, height: 1, channels: 1, data: vec![0.5] };
+    /// // Missing channels are 0, and alpha is 1.
+    /// assert_eq!(format.encode(&grey), [128, 0, 0, 255]);
+    /// assert_eq!(format.quantise(&grey).data[0], 128.0 / 255.0);
+    /// ```
     #[derive(Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum TexelFormat("texel format") {
@@ -59,7 +69,7 @@ impl TexelFormat {
         !matches!(self, Self::Rgba16Unorm | Self::Bc6hRgbUfloat)
     }
 
-    /// Bytes per channel; of formats whose channels share a word, bytes of the word; of blocks 1.
+    /// Bytes per channel. Formats whose channels share a word have the bytes of the word; blocks have 1.
     pub fn channel_bytes(self) -> u32 {
         match self {
             Self::Rgba8Unorm | Self::Bc6hRgbUfloat => 1,
@@ -82,7 +92,7 @@ impl TexelFormat {
         !matches!(self, Self::R32Float | Self::Rgba32Float)
     }
 
-    /// The largest code of its first three channels where they are unsigned and normalised.
+    /// The largest code of its first three channels, if they are unsigned and normalised.
     pub fn unorm_max(self) -> Option<f64> {
         match self {
             Self::Rgba8Unorm => Some(255.0),
@@ -94,7 +104,7 @@ impl TexelFormat {
 
     /// The texels of an image as little-endian bytes, rounded to nearest. Channels the image lacks are 0, and 1 for
     /// alpha; surplus channels are dropped. Unorm clamps to 0..1; floats of less than 32 bits clamp to their finite range. Blocks are
-    /// fitted to their texels, and what was read from them need not give the same bytes again.
+    /// fitted to their texels; texels that were decoded from blocks may encode to other bytes.
     ///
     /// # Panics
     /// Where a side is no multiple of [`Self::block_side`].
@@ -104,31 +114,31 @@ impl TexelFormat {
         }
         let mut bytes = Vec::with_capacity(image.texel_count() * self.texel_bytes() as usize);
         for texel in image.texels() {
-            let channel = |c: usize| texel.get(c).copied().unwrap_or(if c == 3 { 1.0 } else { 0.0 });
-            // In f64 the product is exact: no rounding before the rounding.
-            let unorm = |c: usize, max: f64| (f64::from(channel(c).clamp(0.0, 1.0)) * max).round() as u32;
+            // Alpha is 1 where the image has none.
+            let texel: [f32; 4] = std::array::from_fn(|c| texel.get(c).copied().unwrap_or(f32::from(c == 3)));
             match self {
-                Self::Rgba8Unorm => bytes.extend((0..4).map(|c| unorm(c, 255.0) as u8)),
+                Self::Rgba8Unorm => bytes.extend(texel.map(|value| unorm(value, 255.0) as u8)),
                 Self::Rgb10a2Unorm => {
-                    let [r, g, b] = [0, 1, 2].map(|c| unorm(c, 1023.0));
-                    bytes.extend_from_slice(&(r | g << 10 | b << 20 | unorm(3, 3.0) << 30).to_le_bytes());
+                    let [r, g, b, _] = texel.map(|value| unorm(value, 1023.0));
+                    bytes.extend_from_slice(&(r | g << 10 | b << 20 | unorm(texel[3], 3.0) << 30).to_le_bytes());
                 }
                 Self::Rgba16Unorm => {
-                    (0..4).for_each(|c| bytes.extend_from_slice(&(unorm(c, 65535.0) as u16).to_le_bytes()));
+                    bytes.extend(texel.into_iter().flat_map(|value| (unorm(value, 65535.0) as u16).to_le_bytes()));
                 }
                 Self::Rg11b10Ufloat => {
-                    let [r, g, b] = [(0, 6), (1, 6), (2, 5)].map(|(c, mantissa)| ufloat(channel(c), mantissa));
+                    let [r, g, b] =
+                        [(0, 6), (1, 6), (2, 5)].map(|(c, mantissa): (usize, _)| ufloat(texel[c], mantissa));
                     bytes.extend_from_slice(&(r | g << 11 | b << 22).to_le_bytes());
                 }
                 Self::Bc6hRgbUfloat => {}
                 Self::R16Float | Self::Rg16Float | Self::Rgba16Float => {
-                    for c in 0..self.channels() as usize {
-                        let finite = channel(c).clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
+                    for value in &texel[..self.channels() as usize] {
+                        let finite = value.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
                         bytes.extend_from_slice(&f16::from_f32(finite).to_le_bytes());
                     }
                 }
                 Self::R32Float | Self::Rgba32Float => {
-                    (0..self.channels() as usize).for_each(|c| bytes.extend_from_slice(&channel(c).to_le_bytes()));
+                    bytes.extend(texel[..self.channels() as usize].iter().flat_map(|value| value.to_le_bytes()));
                 }
             }
         }
@@ -165,11 +175,11 @@ impl TexelFormat {
     }
 
     fn values(self, width: u32, height: u32, bytes: &[u8]) -> Vec<f32> {
-        let words = || bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        let words = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         match self {
             Self::Rgba8Unorm => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
             Self::Bc6hRgbUfloat => bc6h::decode(width, height, bytes),
-            Self::Rgb10a2Unorm => words()
+            Self::Rgb10a2Unorm => words
                 .flat_map(|w| {
                     let [r, g, b] = [0, 10, 20].map(|shift| (w >> shift & 1023) as f32 / 1023.0);
                     [r, g, b, (w >> 30) as f32 / 3.0]
@@ -178,7 +188,7 @@ impl TexelFormat {
             Self::Rgba16Unorm => {
                 bytes.chunks_exact(2).map(|b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0).collect()
             }
-            Self::Rg11b10Ufloat => words()
+            Self::Rg11b10Ufloat => words
                 .flat_map(|w| {
                     // A half float without its sign, the last bits of its mantissa 0.
                     [(w & 2047) << 4, (w >> 11 & 2047) << 4, w >> 22 << 5]
@@ -188,12 +198,12 @@ impl TexelFormat {
             Self::R16Float | Self::Rg16Float | Self::Rgba16Float => {
                 bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
             }
-            Self::R32Float | Self::Rgba32Float => words().map(f32::from_bits).collect(),
+            Self::R32Float | Self::Rgba32Float => words.map(f32::from_bits).collect(),
         }
     }
 }
 
-/// Some of the formats.
+/// A set of texel formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FormatSet(u16);
 
@@ -218,6 +228,11 @@ impl FromIterator<TexelFormat> for FormatSet {
     fn from_iter<I: IntoIterator<Item = TexelFormat>>(formats: I) -> Self {
         Self(formats.into_iter().fold(0, |set, format| set | 1 << format as u16))
     }
+}
+
+/// The code of an unsigned normalised value. In f64 the product is exact: it is rounded once.
+fn unorm(value: f32, max: f64) -> u32 {
+    (f64::from(value.clamp(0.0, 1.0)) * max).round() as u32
 }
 
 /// The bits of a float without sign, of five bits of exponent as a half float has, rounded to nearest even.

@@ -3,6 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 /// A rectangle of texels in f32, row by row from the top, channels interleaved.
+///
+/// ```
+/// use luthier_lut::Image;
+///
+/// let mut image = Image::zeros(2, 2, 1);
+/// image.texel_mut(1, 0)[0] = 4.0;
+/// assert_eq!(image.data, [0.0, 4.0, 0.0, 0.0]);
+/// assert_eq!(image.halved().data, [1.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Image {
     /// Texels across.
@@ -53,8 +62,8 @@ impl Image {
         let [width, height] = self.size().map(|side| (side / 2).max(1));
         let mut half = Self::zeros(width, height, self.channels);
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-            let at = |dx: u32, dy: u32| self.texel((2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1));
-            let texels = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+            let texels = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                .map(|(dx, dy)| self.texel((2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1)));
             for (c, value) in half.texel_mut(x, y).iter_mut().enumerate() {
                 *value = texels.iter().map(|texel| texel[c]).sum::<f32>() / 4.0;
             }

@@ -1,9 +1,17 @@
-//! Kinds of tables, and all that other crates need to know of a kind: one row of facts for each.
+//! Kinds of tables, with one row of facts for each: other crates know a kind by these.
 
 use serde::{Deserialize, Serialize};
 
 crate::named! {
     /// Kind of a table, by its contents. One texture of each kind serves any number of materials.
+    ///
+    /// ```
+    /// use luthier_lut::TableKind;
+    ///
+    /// let facts = TableKind::from_name("fgd").unwrap().facts();
+    /// assert_eq!((facts.binding, facts.y), (2, Some("alpha")));
+    /// assert!(!facts.is_optional);
+    /// ```
     #[derive(Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum TableKind("table") {
@@ -59,9 +67,9 @@ pub enum Values {
     Positive,
     /// A function of both signs.
     Signed,
-    /// A picture, of which the material file is the only source.
+    /// A picture, whose only source is the material file.
     Picture,
-    /// Rows of numbers of both signs that have nothing to do with the rows beside them.
+    /// Rows of numbers of both signs, each unrelated to the rows beside it.
     Apart,
 }
 
@@ -72,11 +80,11 @@ pub struct KindFacts {
     pub holds: &'static str,
     /// Binding number of its texture. 5 is the sampler, 6 the material buffer.
     pub binding: u32,
-    /// Word and component of a layer in the material buffer that have the number of its tile; `None` for tiles that serve a material as a
-    /// whole, whose number is in the header of the material. Records have these at the first layer.
+    /// Word and component of a layer in the material buffer that hold the number of its tile. `None` for tiles that serve a whole material:
+    /// the header of the material has their number, and so has the record of the first layer.
     pub slot: Option<[usize; 2]>,
-    /// The channels of its unquantised values by name: those of a colour by letter, others by what they are. None is called A,
-    /// which viewers take for transparency.
+    /// Names of the channels of its unquantised values: letters for a colour, words for others. No name is A, which viewers take for
+    /// transparency.
     pub channels: &'static [&'static str],
     /// Quantities that its x axis may have.
     pub x: &'static [&'static str],
@@ -86,7 +94,7 @@ pub struct KindFacts {
     pub values: Values,
     /// Layers that can have a tile.
     pub served: Served,
-    /// Whether a shader does without a tile: it computes the function, or takes the value that it mostly has.
+    /// Whether a shader can do without a tile: it computes the function, or takes its usual value.
     pub is_optional: bool,
     /// Whether `[bake.NAME]` in a material file sets the size and the format of its tiles.
     pub has_settings: bool,

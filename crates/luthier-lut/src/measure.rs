@@ -30,7 +30,7 @@ pub struct Worst {
 pub struct ErrorStats {
     /// Largest: the difference at `worst`, after local refinement around the worst points of the scan, and `slack`.
     pub max_abs_err: f64,
-    /// Root mean square over the scan, and in quadrature that of what the function may be off itself.
+    /// Root mean square over the scan, and in quadrature the root mean square error of the function itself.
     pub rms_err: f64,
     /// 99th percentile over the scan, and `slack`.
     pub p99_abs_err: f64,
@@ -44,7 +44,7 @@ pub struct ErrorStats {
 }
 
 impl ErrorStats {
-    /// The error if some more points, chosen because the error is large there, were looked at too: they count in the largest alone.
+    /// The error with more points, which were chosen for their large errors: they count in the largest error alone.
     #[must_use]
     pub fn with_worst_of(self, more: Self) -> Self {
         let points = self.points + more.points;
@@ -54,7 +54,7 @@ impl ErrorStats {
         Self { points, ..self }
     }
 
-    /// The error if the function may be off itself, by `largest` at most and by `rms` in the root mean square.
+    /// The error if the function itself is inexact, by `largest` at most and by `rms` in the root mean square.
     #[must_use]
     pub fn with_slack(self, largest: f64, rms: f64) -> Self {
         Self {
@@ -67,7 +67,17 @@ impl ErrorStats {
     }
 }
 
-/// Where to compare a table with its function.
+/// Places at which a table is compared with its function.
+///
+/// ```
+/// use luthier_lut::Scan;
+///
+/// // A row of five nodes, with two points in each of its four intervals.
+/// let scan = Scan::whole([4, 0], [2, 1]);
+/// let places: Vec<f64> = scan.coordinates().map(|[u, _]| u).collect();
+/// assert_eq!(places.len(), 4 * 2 + 5);
+/// assert_eq!((places[0], places[8]), (1.0 / 16.0, 0.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scan {
     /// Points along each axis, in the middle of equal intervals of `u`; 1 (as 0 is) along an axis that the table lacks.
@@ -76,8 +86,8 @@ pub struct Scan {
     pub from: [f64; 2],
     /// Highest coordinate `u` along each axis; equal to `from` along an axis that the table lacks.
     pub to: [f64; 2],
-    /// Intervals of equal `u` along each axis, whose ends are points too: the nodes of a table, which balancing moves. 0 for none, and
-    /// along an axis that the table lacks.
+    /// Intervals of equal `u` along each axis. Their ends, the nodes of a table, are points too, because balancing moves nodes. 0 for none,
+    /// and along an axis that the table lacks.
     pub nodes: [u32; 2],
     /// Halvings of the search radius around the worst point.
     pub refinements: u32,
@@ -90,11 +100,10 @@ impl Scan {
     /// The whole table: its nodes, and `per_cell[k]` points in each of `cells[k]` intervals between them; a one-axis table has
     /// `cells[1] == 0`.
     pub fn whole(cells: [u32; 2], per_cell: [u32; 2]) -> Self {
-        let has = |k: usize| cells[k] > 0;
         Self {
             points: [0, 1].map(|k: usize| (cells[k] * per_cell[k]).max(1)),
-            from: [0, 1].map(|k: usize| if has(k) { 0.0 } else { 0.5 }),
-            to: [0, 1].map(|k: usize| if has(k) { 1.0 } else { 0.5 }),
+            from: cells.map(|cells| if cells > 0 { 0.0 } else { 0.5 }),
+            to: cells.map(|cells| if cells > 0 { 1.0 } else { 0.5 }),
             nodes: cells,
             refinements: Self::REFINEMENTS,
         }
@@ -108,7 +117,7 @@ impl Scan {
         between.chain(rows.into_iter().flat_map(move |v| columns.clone().into_iter().map(move |u| [u, v])))
     }
 
-    /// Coordinates of the nodes along an axis; none at all if either axis of two is without.
+    /// Coordinates of the nodes along an axis; none if either of two axes has no nodes.
     fn node_coordinates(&self, axis: usize) -> Vec<f64> {
         let (from, to, count) = (self.from[axis], self.to[axis], self.nodes[axis]);
         match count {
@@ -173,15 +182,14 @@ pub fn measure_scan(
 pub fn measure_at(points: impl IntoIterator<Item = (Vec<f64>, Comparison)>) -> ErrorStats {
     let mut errors = Errors::default();
     let points: Vec<(Vec<f64>, Comparison)> = points.into_iter().collect();
-    let candidate = |i: usize| Candidate::at([i as f64, 0.0], &points[i].1);
-    (0..points.len()).for_each(|i| errors.add(candidate(i)));
+    points.iter().enumerate().for_each(|(i, (_, there))| errors.add(Candidate::at([i as f64, 0.0], there)));
     let worst = errors.worst.first().copied().unwrap_or(NOWHERE);
     let nothing = (Vec::new(), Comparison { expected: [0.0; 4], sampled: [0.0; 4] });
     let (at, there) = points.into_iter().nth(worst.u[0] as usize).unwrap_or(nothing);
     errors.stats(worst, &there, at)
 }
 
-/// A candidate that is worse than any point.
+/// A candidate that any point replaces.
 const NOWHERE: Candidate = Candidate { u: [0.5, 0.5], channel: 0, error: -1.0 };
 
 /// Errors as they come in.

@@ -64,8 +64,9 @@ macro_rules! named {
             type Err = $crate::UnknownName;
 
             fn from_str(name: &str) -> Result<Self, Self::Err> {
-                let unknown = || $crate::UnknownName { kind: $kind, name: name.to_owned(), known: Self::NAMES.join(", ") };
-                Self::from_name(name).ok_or_else(unknown)
+                Self::from_name(name).ok_or_else(|| {
+                    $crate::UnknownName { kind: $kind, name: name.to_owned(), known: Self::NAMES.join(", ") }
+                })
             }
         }
 

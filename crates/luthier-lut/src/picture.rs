@@ -1,11 +1,11 @@
-//! Pictures as they are stored: 8 or 16 bits a value, and what a sampler makes of them.
+//! Pictures with their stored samples, 8 or 16 bits a value, and the values that a sampler gives.
 
 use std::sync::LazyLock;
 
 use crate::{Image, srgb};
 
-/// A picture in the samples that its file has, row by row from the top, channels interleaved. It takes a quarter of the bytes of an [`Image`]
-/// where these are of 8 bits.
+/// A picture in the samples of its file, row by row from the top, channels interleaved. With samples of 8 bits it takes a quarter of the bytes
+/// of an [`Image`].
 ///
 /// ```
 /// use luthier_lut::{Picture, PictureSamples};
@@ -29,11 +29,11 @@ pub struct Picture {
 /// Values of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PictureSamples {
-    /// Over 255.
+    /// Bytes, over 255.
     Bits8(Vec<u8>),
-    /// Over 65535.
+    /// Words of 16 bits, over 65535.
     Bits16(Vec<u16>),
-    /// As they are.
+    /// Floats, unscaled.
     Float(Vec<f32>),
 }
 
@@ -84,16 +84,18 @@ impl Picture {
     fn at(&self, texel: usize) -> [f32; 4] {
         let channels = self.channels as usize;
         let first = texel * channels;
-        let color = |channel: usize| match &self.samples {
-            PictureSamples::Bits8(values) if self.is_srgb => CURVE[usize::from(values[first + channel])],
-            _ if self.is_srgb => srgb::linear(self.stored(first + channel)),
-            _ => self.stored(first + channel),
-        };
-        match channels {
-            1 => [color(0), color(0), color(0), 1.0],
-            2 => [color(0), color(0), color(0), self.stored(first + 1)],
-            3 => [color(0), color(1), color(2), 1.0],
-            _ => [color(0), color(1), color(2), self.stored(first + 3)],
+        let colors = if channels < 3 { [0; 3] } else { [0, 1, 2] };
+        let [r, g, b] = colors.map(|channel| self.color(first + channel));
+        let alpha = if channels.is_multiple_of(2) { self.stored(first + channels - 1) } else { 1.0 };
+        [r, g, b, alpha]
+    }
+
+    /// The linear value of a sample of a colour.
+    fn color(&self, index: usize) -> f32 {
+        match &self.samples {
+            PictureSamples::Bits8(values) if self.is_srgb => CURVE[usize::from(values[index])],
+            _ if self.is_srgb => srgb::linear(self.stored(index)),
+            _ => self.stored(index),
         }
     }
 }

@@ -3,6 +3,15 @@
 use crate::Image;
 
 /// Precision of the interpolation weights.
+///
+/// ```
+/// use luthier_lut::{Image, WeightBits, bilinear};
+///
+/// let ramp = Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] };
+/// let at = [0.5 + 0.3, 0.5];
+/// assert!((bilinear(&ramp, at, WeightBits::Exact)[0] - 0.3).abs() < 1e-12);
+/// assert_eq!(bilinear(&ramp, at, WeightBits::Fixed(8))[0], 77.0 / 256.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WeightBits {
     /// Weights as precise as the arithmetic (software rasterisers).
@@ -27,6 +36,7 @@ pub fn bilinear(image: &Image, position: [f64; 2], weights: WeightBits) -> [f64;
     out
 }
 
+/// The two texels around a position, and the weight of the second.
 fn footprint(position: f64, size: u32, weights: WeightBits) -> (u32, u32, f64) {
     let last = f64::from(size - 1);
     let p = position - 0.5;

@@ -6,8 +6,20 @@ use luthier_model::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::color::ColorMode;
+use crate::search::over_limit;
 
-/// Limits on the error of a model against the reference under the light of a scene; what is absent is unlimited.
+/// Limits on the error of a model against the reference under the light of a scene; an absent limit does not limit.
+///
+/// ```
+/// use luthier_manifest::{SceneBudget, SceneError};
+///
+/// let scene = SceneBudget { max_rel: Some(0.1), ..SceneBudget::default() };
+/// let own = SceneBudget { max_abs: Some(0.02), ..SceneBudget::default() }.or(&scene);
+/// let error = SceneError { max_abs: 0.03, max_rel: 0.05, ..SceneError::default() };
+/// // The absolute error is one and a half times its limit.
+/// assert!((own.excess(&error) - 1.5).abs() < 1e-12);
+/// assert_eq!(scene.excess(&error), 0.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SceneBudget {
     /// Largest absolute error of `f cos theta_i` (of albedo over pi, where light comes from everywhere), any channel.
@@ -55,7 +67,7 @@ impl fmt::Display for SceneDirection {
 }
 
 impl SceneBudget {
-    /// The budget with the limits of another where it has none of its own.
+    /// The budget, with missing limits taken from another.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
         Self {
@@ -68,16 +80,16 @@ impl SceneBudget {
     /// All limits times a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let scaled = |limit: Option<f64>| limit.map(|limit| factor * limit);
-        Self { max_abs: scaled(self.max_abs), max_rel: scaled(self.max_rel), delta_e: scaled(self.delta_e) }
+        let limits = [self.max_abs, self.max_rel, self.delta_e];
+        let [max_abs, max_rel, delta_e] = limits.map(|limit| limit.map(|limit| factor * limit));
+        Self { max_abs, max_rel, delta_e }
     }
 
-    /// Error over limit, the largest of those limited: a budget holds where this is at most 1.
+    /// The largest quotient of an error and its limit: the budget holds if it is at most 1.
     pub fn excess(&self, error: &SceneError) -> f64 {
-        let ratio = |limit: Option<f64>, error: Option<f64>| limit.zip(error).map_or(0.0, |(limit, e)| e / limit);
-        ratio(self.max_abs, Some(error.max_abs))
-            .max(ratio(self.max_rel, Some(error.max_rel)))
-            .max(ratio(self.delta_e, error.delta_e))
+        over_limit(self.max_abs, Some(error.max_abs))
+            .max(over_limit(self.max_rel, Some(error.max_rel)))
+            .max(over_limit(self.delta_e, error.delta_e))
     }
 }
 
@@ -104,7 +116,7 @@ pub struct SceneCandidate {
     pub left_out: Vec<String>,
     /// Inverse throughput in cycles per wave of 64 on RDNA2.
     pub cost: f64,
-    /// Whether the cost is that of the most similar surface of the measured ones, and not of this very one.
+    /// Whether the cost was measured on the most similar surface, and not on this one.
     pub cost_is_of_similar: bool,
     /// Error of the model against the reference; tables and single precision are not in it.
     pub error: SceneError,
@@ -117,7 +129,7 @@ pub struct SceneCandidate {
 pub struct MaterialChoice {
     /// Name of the material.
     pub name: String,
-    /// The limits of its model: three quarters of those of the scene, whose rest is for tables.
+    /// Limits of its model: three quarters of the scene's limits; the rest is for tables.
     pub budget: SceneBudget,
     /// Place in `tried` of the candidate that ships.
     pub chosen: usize,
@@ -142,7 +154,7 @@ impl MaterialChoice {
         &self.tried[self.chosen]
     }
 
-    /// Whether what ships holds the budget.
+    /// Whether the candidate that ships holds the budget.
     pub fn holds(&self) -> bool {
         self.candidate().verdict == Verdict::Holds
     }

@@ -1,6 +1,6 @@
 //! Slope distributions in a manifest: a name, or an object of a name and parameters.
 
-use luthier_optics::ndf::{NdfError, Shape};
+use luthier_optics::ndf::Shape;
 use luthier_optics::stack::Distribution;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 enum Named {
     /// A distribution whose only parameter is the slope parameter of its layer.
     Plain(String),
-    /// One that has parameters of its own.
+    /// A distribution with parameters of its own.
     Shaped(Shaped),
 }
 
@@ -39,12 +39,12 @@ pub(crate) fn serialize<S: Serializer>(distribution: &Distribution, serializer: 
 }
 
 pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Distribution, D::Error> {
-    let wrong = |error: NdfError| D::Error::custom(format!("slope distribution: {error}"));
-    match Named::deserialize(deserializer)? {
-        Named::Plain(name) => Distribution::from_name(&name).ok_or_else(|| {
+    let shaped = match Named::deserialize(deserializer)? {
+        Named::Plain(name) => return Distribution::from_name(&name).ok_or_else(|| {
             D::Error::custom(format!("unknown slope distribution `{name}`; known: beckmann, ggx, blinn, and abc and sgd with their parameters"))
         }),
-        Named::Shaped(Shaped::Abc { b, c }) => Ok(Distribution::Abc(Shape::abc(b, c).map_err(wrong)?)),
-        Named::Shaped(Shaped::Sgd { alpha, p }) => Ok(Distribution::Sgd(Shape::sgd(alpha, p).map_err(wrong)?)),
-    }
+        Named::Shaped(Shaped::Abc { b, c }) => Shape::abc(b, c).map(Distribution::Abc),
+        Named::Shaped(Shaped::Sgd { alpha, p }) => Shape::sgd(alpha, p).map(Distribution::Sgd),
+    };
+    shaped.map_err(|error| D::Error::custom(format!("slope distribution: {error}")))
 }

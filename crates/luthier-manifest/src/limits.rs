@@ -2,22 +2,31 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Longest side of textures while their texels fit: the least that GLSL ES 3.00 and every device of the last decade take.
+/// Longest side of textures as long as their texels fit: GLSL ES 3.00 and every device of the last decade take it.
 pub const SIDE: u32 = 2048;
 
 /// Longest side of any texture of a bake: what core WebGPU takes.
 pub const SIDE_MAX: u32 = 8192;
 
-/// Most `vec4` words of a material buffer. Shaders count words in the 23 low bits of a float, and core WebGPU binds 128 MiB of storage: it
-/// is one number.
+/// Most `vec4` words of a material buffer. Shaders count words in the 23 low bits of a float, and core WebGPU binds 128 MiB of storage: both
+/// limits are this number.
 pub const BUFFER_WORDS_MAX: usize = 1 << 23;
 
 const _: () = assert!(BUFFER_WORDS_MAX * size_of::<[f32; 4]>() == 128 << 20);
 
 /// Texels of the material buffer as a texture.
+///
+/// ```
+/// use luthier_manifest::MaterialTexture;
+///
+/// assert_eq!(MaterialTexture::of(100), MaterialTexture { width: 100, height: 1 });
+/// // Longer buffers fill whole rows.
+/// let rows = MaterialTexture::of(3000);
+/// assert_eq!((rows.width, rows.height, rows.words()), (2048, 2, 4096));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MaterialTexture {
-    /// Texels across: those of the buffer if they are at most [`SIDE`], else [`SIDE`].
+    /// Texels across: the words of the buffer, but at most [`SIDE`].
     pub width: u32,
     /// Rows.
     pub height: u32,

@@ -4,18 +4,28 @@ use luthier_lut::TableKind;
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::Manifest;
-use crate::search::{Candidate, Search};
+use crate::search::Candidate;
 
 /// The decision of a search for one kind of table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// The kind.
     pub kind: TableKind,
-    /// The candidate that it took, with its bytes when it was taken, and the largest error of any of its tiles then.
+    /// The candidate taken, with its bytes and the largest error of its tiles at that time.
     pub candidate: Candidate,
 }
 
 /// A lock file: the sizes, axes and formats that bakes of a folder keep until a budget breaks.
+///
+/// ```
+/// use luthier_manifest::{Lock, Manifest};
+///
+/// // A bake without a search locks nothing.
+/// let lock = Lock::of(&Manifest::new("example", Vec::new(), Vec::new()));
+/// let text = lock.to_json().unwrap();
+/// assert!(lock.decisions.is_empty() && Lock::from_json(&text).unwrap().decides_as(&lock));
+/// assert!(Lock::from_json(&text.replace("\"schema\": 1", "\"schema\": 0")).is_err());
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lock {
     /// Number of the form of the file: [`Lock::SCHEMA`].
@@ -30,14 +40,14 @@ impl Lock {
 
     /// The decisions of the searches of a bake.
     pub fn of(manifest: &Manifest) -> Self {
-        let decision = |search: &Search| {
+        let decisions = manifest.searches.iter().filter_map(|search| {
             let mut candidate = search.front.get(search.chosen)?.clone();
             // A search leaves out tiles that no candidate serves; a lock takes them as they are.
             let tiles = manifest.table(search.kind).map_or(&[][..], |table| &table.tiles);
             candidate.error.max_abs = tiles.iter().map(|t| t.error.max_abs_err).fold(candidate.error.max_abs, f64::max);
             Some(Decision { kind: search.kind, candidate })
-        };
-        let mut decisions: Vec<Decision> = manifest.searches.iter().filter_map(decision).collect();
+        });
+        let mut decisions: Vec<Decision> = decisions.collect();
         decisions.sort_by_key(|decision| decision.kind);
         Self { schema: Self::SCHEMA, decisions }
     }
@@ -45,7 +55,7 @@ impl Lock {
     /// The lock of a text.
     ///
     /// # Errors
-    /// In words: what is not JSON, not a lock, or of another schema.
+    /// In words: the text is not JSON, not a lock, or of another schema.
     pub fn from_json(text: &str) -> Result<Self, String> {
         let lock: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         if lock.schema == Self::SCHEMA {
@@ -64,19 +74,17 @@ impl Lock {
         Ok(text + "\n")
     }
 
-    /// Whether the decisions are those of another lock, whatever errors were measured when they were taken.
+    /// Whether two locks hold equal decisions; errors measured at the time do not count.
     pub fn decides_as(&self, other: &Self) -> bool {
-        let forms = |lock: &Self| -> Vec<_> {
-            lock.decisions.iter().map(|decision| (decision.kind, decision.candidate.form.clone())).collect()
-        };
-        forms(self) == forms(other)
+        let [ours, theirs] = [self, other].map(|lock| lock.decisions.iter().map(|d| (d.kind, &d.candidate.form)));
+        ours.eq(theirs)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, CandidateForm, MeasuredError};
+    use crate::{Budget, CandidateForm, MeasuredError, Search};
 
     #[test]
     fn a_lock_reads_what_it_wrote() {

@@ -17,7 +17,7 @@ use crate::target::Target;
 /// Version of the manifest's shape. A reader refuses any other.
 pub const MANIFEST_SCHEMA: u32 = 3;
 
-/// `manifest.json`: everything a bake made and how it hangs together. Paths are relative to the manifest.
+/// `manifest.json`: all files and records of a bake. Paths are relative to the manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// [`MANIFEST_SCHEMA`].
@@ -31,22 +31,22 @@ pub struct Manifest {
     pub surfaces: Vec<SurfaceEntry>,
     /// The tables, at most one of each kind, in binding order.
     pub tables: Vec<TableEntry>,
-    /// How the tables came by their sizes, mappings and formats, where these were searched for.
+    /// Searches for the sizes, mappings and formats of tables.
     #[serde(default)]
     pub searches: Vec<Search>,
-    /// How the models came from a scene, for a bake of one.
+    /// Choice of the models, for a bake of a scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choice: Option<SceneChoice>,
     /// The emitted shaders.
     pub shaders: Vec<ShaderEntry>,
-    /// The groups of functions that each of them has; absent where it is `eval` alone.
+    /// Groups of functions of every shader; absent if there is `eval` alone.
     #[serde(default, skip_serializing_if = "Functions::is_eval_alone")]
     pub functions: Functions,
     /// Resources of group 0, and where to bind them.
     pub bindings: Vec<BindingEntry>,
     /// The material buffer: little-endian `vec4<f32>` words, see [`crate::material_buffer`].
     pub material_buffer: FileEntry,
-    /// The size of the same words as a texture of RGBA32F, which they fill; absent from earlier bakes.
+    /// Size of the material buffer as a texture of RGBA32F; absent from earlier bakes.
     #[serde(default)]
     pub material_texture: MaterialTexture,
 }
@@ -56,7 +56,7 @@ pub struct Manifest {
 pub struct TableEntry {
     /// Kind of the table.
     pub kind: TableKind,
-    /// Where its texels lie.
+    /// Places of its texels.
     pub layout: AtlasLayout,
     /// Texel format of the texture.
     pub format: TexelFormat,
@@ -98,7 +98,7 @@ pub struct BindingEntry {
 }
 
 impl TableEntry {
-    /// Checks that texels are those of the entry: its layout, its format, its bytes.
+    /// Checks texels against the entry: size, format and bytes.
     ///
     /// # Errors
     /// [`ManifestError::Layout`], [`ManifestError::TableMismatch`].
@@ -106,9 +106,8 @@ impl TableEntry {
         let stated = self.layout.checked_size().ok_or(ManifestError::Layout(self.kind))?;
         let texels = u128::from(stated[0]) * u128::from(stated[1]);
         let texel_bytes = texels * u128::from(self.format.texel_bytes());
-        let describe = |size: [u32; 2], format, bytes| format!("{} x {} {format}, {bytes} bytes", size[0], size[1]);
-        let found = describe(size, format, bytes as u128);
-        let expected = describe(stated, self.format, texel_bytes);
+        let [found, expected] = [(size, format, bytes as u128), (stated, self.format, texel_bytes)]
+            .map(|([width, height], format, bytes)| format!("{width} x {height} {format}, {bytes} bytes"));
         if found == expected { Ok(()) } else { Err(ManifestError::TableMismatch { kind: self.kind, found, expected }) }
     }
 }
@@ -128,7 +127,7 @@ impl Manifest {
     /// [`ManifestError::Json`] if a number is not finite.
     pub fn to_json(&self) -> Result<String, ManifestError> {
         let mut json = serde_json::to_string_pretty(self)?;
-        // What is not finite has become null, which no number reads back.
+        // JSON has no infinite number and no NaN: they have become null, which does not read back.
         serde_json::from_str::<Self>(&json)?;
         json.push('\n');
         Ok(json)

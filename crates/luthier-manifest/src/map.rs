@@ -1,4 +1,4 @@
-//! Maps of materials: which quantity each varies, and for which layer.
+//! Maps of materials: the quantity that each varies, and the layer.
 
 use luthier_model::Feature;
 use serde::{Deserialize, Serialize};
@@ -45,9 +45,9 @@ luthier_lut::named! {
 pub struct MapEntry {
     /// Quantity that the map varies.
     pub slot: MapSlot,
-    /// The layer that it is of, from the top; null for maps of the whole surface.
+    /// Number of the layer from the top; null for maps of the whole surface.
     pub layer: Option<u32>,
-    /// Where it came from: the path in the material file, or the noise that it was made of.
+    /// Origin: the path in the material file, or a noise.
     pub source: String,
     /// The file.
     pub file: FileEntry,
@@ -67,7 +67,7 @@ pub struct MapEntry {
 }
 
 impl MapSlot {
-    /// The feature of a map that is of one layer; `None` for those of the whole surface.
+    /// The feature of a map of one layer; `None` for maps of the whole surface.
     pub fn layer_feature(self, layer: u32) -> Option<Feature> {
         match self {
             Self::Bumps => Some(Feature::Bumps),

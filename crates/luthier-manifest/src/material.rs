@@ -9,11 +9,20 @@ use crate::map::{MapEntry, MapSlot};
 use crate::record::{LayerKind, LayerRecord};
 
 /// One material.
+///
+/// ```
+/// use luthier_manifest::{LayerRecord, MaterialEntry};
+///
+/// let mirror = MaterialEntry { layers: vec![LayerRecord::default()], ..MaterialEntry::default() };
+/// assert!(!mirror.varies());
+/// // A light of a radius of 0.01 gives a mirror a highlight of the slopes of half that radius.
+/// assert!((mirror.widened(0.01).layers[0].alpha - 0.005).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MaterialEntry {
     /// Name, unique in the bake; letters, digits and hyphens.
     pub name: String,
-    /// The file it came from: a path from the folder of the manifest. Before a package is made for a folder, the path that was given.
+    /// Its file: a path from the folder of the manifest. Before a package is made for a folder, the path that was given.
     pub source: String,
     /// SHA-256, hex, of that file; of the file and, in the order of their names, the hashes of the files that it names, if any.
     pub source_hash: String,
@@ -41,13 +50,13 @@ impl MaterialEntry {
         has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
     }
 
-    /// Masking and reflectance of the model: those of its first interface.
+    /// Masking and reflectance of the first interface, by which the model goes.
     pub fn parts(&self) -> (Masking, Reflectance) {
         let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
         first.map(|layer| (layer.masking, layer.reflectance)).unwrap_or_default()
     }
 
-    /// Internal reflection of the model: that of its first interface.
+    /// Internal reflection of the first interface, by which the model goes.
     pub fn internal_reflection(&self) -> InternalReflection {
         let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
         first.map(|layer| layer.internal_reflection).unwrap_or_default()
@@ -62,27 +71,22 @@ impl MaterialEntry {
             .unwrap_or_default()
     }
 
-    /// Whether it has lobes below an interface, which know their surroundings: those of `luthier_environment`.
+    /// Whether `luthier_environment` shows its lobes: the model is fitted, and the first layer is an interface.
     pub fn shows_lobes(&self) -> bool {
         self.model.is_fitted() && self.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
     }
 
-    /// The material with slopes widened by a light of this angular radius, in radians, which gives a highlight of a smooth surface a size: the squares
-    /// of slope parameters grow by the square of half the radius, because the half vector turns by half of what the light does.
+    /// The material with slopes widened by a light of an angular radius in radians, so that highlights of smooth surfaces have a size. Squares
+    /// of slope parameters grow by the square of half the radius, because the half vector turns half as far as the light.
     pub fn widened(&self, angular_radius: f64) -> Self {
-        let wider = |alpha: f64| {
-            let spread = 0.5 * angular_radius;
-            libm::sqrt(alpha * alpha + spread * spread).min(1.0)
-        };
-        let widened = |layer: &LayerRecord| LayerRecord {
-            alpha: wider(layer.alpha),
-            alpha_xy: layer.alpha_xy.map(wider),
-            ..layer.clone()
-        };
-        let mut entry = Self { layers: self.layers.iter().map(widened).collect(), ..self.clone() };
-        if let Some(patina) = &mut entry.constants.patina {
-            patina.bare = widened(&patina.bare);
-            patina.base_alpha = patina.base_alpha.map(wider);
+        let mut entry = self.clone();
+        let MaterialEntry { layers, constants: MaterialConstants { patina, .. }, .. } = &mut entry;
+        for layer in layers.iter_mut().chain(patina.as_mut().map(|patina| &mut patina.bare)) {
+            layer.alpha = wider(layer.alpha, angular_radius);
+            layer.alpha_xy = layer.alpha_xy.map(|alpha| wider(alpha, angular_radius));
+        }
+        if let Some(patina) = patina {
+            patina.base_alpha = patina.base_alpha.map(|alpha| wider(alpha, angular_radius));
         }
         entry
     }
@@ -92,8 +96,8 @@ impl MaterialEntry {
         self.layers.iter().chain(self.constants.patina.as_ref().map(|patina| &patina.bare))
     }
 
-    /// Layers with maps of their own that the model shows, and quantities that these vary, in the order of the maps. `LuthierPlace` has
-    /// values of these, that of an albedo as its `base_color`.
+    /// Maps of single layers that the model shows, in order: number of the layer, and quantity. `LuthierPlace` has their values; the value of
+    /// an albedo map is its `base_color`.
     pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
         let reads_all = self.model.facts().reach == Reach::All;
         self.maps.iter().filter_map(move |map| {
@@ -105,4 +109,10 @@ impl MaterialEntry {
             is_shown.then_some((layer, map.slot))
         })
     }
+}
+
+/// A slope parameter under a light of an angular radius: see [`MaterialEntry::widened`].
+fn wider(alpha: f64, angular_radius: f64) -> f64 {
+    let spread = 0.5 * angular_radius;
+    libm::sqrt(alpha * alpha + spread * spread).min(1.0)
 }

@@ -1,4 +1,4 @@
-//! Values of a `LuthierPlace`: what the textures of a material say at one place of its surface.
+//! Values of a `LuthierPlace`: texels of a material's textures at one place of its surface.
 
 /// Values of textures at one place, as shaders get them. Factors multiply the numbers of the material.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,15 +15,15 @@ pub struct PlaceValues {
     pub slope_variance: f32,
     /// Normal of the lower boundary of the film, unit, in the frame of `normal`.
     pub inner_normal: [f32; 3],
-    /// Normal of what lies below the first interface, unit, in the frame of `normal`.
+    /// Normal of the layers below the first interface, unit, in the frame of `normal`.
     pub flake_normal: [f32; 3],
-    /// Albedo of a diffuse base, RGB; `None` leaves that of the material.
+    /// Albedo of a diffuse base, RGB; `None` leaves the albedo of the material.
     pub base_color: Option<[f32; 3]>,
-    /// Amount of patina, 0 to 1; `None` where the material has none.
+    /// Amount of patina, 0 to 1; `None` for a material without patina.
     pub patina: Option<f32>,
-    /// Base colour of a metallic-roughness surface and how metallic it is, where maps say so. Its albedo takes the place of `base_color`.
+    /// Base colour and metal of a metallic-roughness surface, if maps have them. The albedo that follows replaces `base_color`.
     pub metallic: Option<([f32; 3], f32)>,
-    /// Values of textures of single layers, from the top down; layers that are missing have none.
+    /// Values of textures of single layers, from the top down; a missing layer has no textures.
     pub layers: Vec<LayerValues>,
 }
 

@@ -1,33 +1,36 @@
-//! Interfaces of a material for which the shader of its model reads a table: the one list that the baker, the emitter and the judge go by.
+//! Interfaces of a material for which the shader of its model reads a table. Baker, emitter and judge go by this one function.
 
 use luthier_lut::TableKind;
 use luthier_model::{Reach, ReadWhen, Reflectance, ShadingModel};
 
 use crate::record::{LayerKind, LayerRecord};
 
-/// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by the layer's number. For layers without a tile it
-/// does without the kinds that are optional.
+/// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by the layer's number. If the kind is optional, a layer
+/// may have no tile, and the shader computes the function.
 pub fn reads(model: ShadingModel, kind: TableKind, layers: &[LayerRecord], number: usize) -> bool {
-    let Some(layer) = layers.get(number).filter(|layer| layer.kind != LayerKind::Diffuse) else { return false };
     let facts = model.facts();
-    let is_reached = number == 0 || facts.reach == Reach::All;
-    let is_for = |when: ReadWhen| {
-        let is_tabled = layer.reflectance == Reflectance::Table;
-        let has_film = layer.film_ior_n[0] > 0.0;
-        match when {
-            ReadWhen::Always => true,
-            ReadWhen::Steady => is_tabled && !layer.varies(),
-            ReadWhen::Varying => is_tabled && layer.varies(),
-            ReadWhen::FirstVarying => layer.varies() && number == 0,
-            ReadWhen::Filmed => has_film,
-            ReadWhen::BareConductor => !has_film && layer.kind == LayerKind::Conductor,
-            ReadWhen::DenserCoat => {
-                let is_below = layers.get(number + 1).is_some_and(|below| below.kind != LayerKind::Diffuse);
-                layer.kind == LayerKind::Dielectric && layer.eta > 1.0 && is_below
-            }
+    let is_interface = layers.get(number).is_some_and(|layer| layer.kind != LayerKind::Diffuse);
+    let is_reached = is_interface && (number == 0 || facts.reach == Reach::All);
+    is_reached && facts.tables.iter().any(|table| table.kind == kind && is_met(table.when, layers, number))
+}
+
+/// Whether the condition of a table holds for an interface, by its number.
+fn is_met(when: ReadWhen, layers: &[LayerRecord], number: usize) -> bool {
+    let layer = &layers[number];
+    let is_tabled = layer.reflectance == Reflectance::Table;
+    let has_film = layer.film_ior_n[0] > 0.0;
+    match when {
+        ReadWhen::Always => true,
+        ReadWhen::Steady => is_tabled && !layer.varies(),
+        ReadWhen::Varying => is_tabled && layer.varies(),
+        ReadWhen::FirstVarying => layer.varies() && number == 0,
+        ReadWhen::Filmed => has_film,
+        ReadWhen::BareConductor => !has_film && layer.kind == LayerKind::Conductor,
+        ReadWhen::DenserCoat => {
+            let is_below = layers.get(number + 1).is_some_and(|below| below.kind != LayerKind::Diffuse);
+            layer.kind == LayerKind::Dielectric && layer.eta > 1.0 && is_below
         }
-    };
-    is_reached && facts.tables.iter().any(|table| table.kind == kind && is_for(table.when))
+    }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::tiles::Tiles;
 
-/// `vec4` words of a layer in the material buffer: those of its numbers, and more where kinds of tables have slots beyond.
+/// `vec4` words of a layer in the material buffer: 11 for its numbers, and more if kinds of tables have slots beyond.
 pub const LAYER_WORDS: usize = {
     let (mut words, mut i) = (11, 0);
     while i < TableKind::ALL.len() {
@@ -38,8 +38,18 @@ pub enum LayerKind {
 
 /// Everything a shader needs of one layer; the f64 twin reads the same record.
 ///
-/// Indices are relative to the medium above the interface; the three samples are those of the material's three
-/// wavelengths.
+/// Indices are relative to the medium above the interface, at the three wavelengths of the material.
+///
+/// ```
+/// use luthier_manifest::{LAYER_WORDS, LayerKind, LayerRecord};
+///
+/// let base = LayerRecord { kind: LayerKind::Diffuse, albedo: [0.5; 3], ..LayerRecord::default() };
+/// let words = base.words();
+/// assert_eq!(words.len(), LAYER_WORDS);
+/// // Word 3 has the albedo over pi; word 1 has tiles, -1 for none.
+/// assert!((words[3][0] * std::f32::consts::PI - 0.5).abs() < 1e-6);
+/// assert_eq!(words[1], [-1.0; 4]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerRecord {
     /// Kind of the layer.
@@ -69,8 +79,8 @@ pub struct LayerRecord {
     pub ior_n: [f64; 3],
     /// Imaginary part.
     pub ior_k: [f64; 3],
-    /// Reflectance at normal incidence, RGB, where the interface reflects by Schlick's formula, f0 + (1 - f0)(1 - cos)^5, and not by its
-    /// index; the index then bends directions only.
+    /// Reflectance at normal incidence, RGB, of an interface that reflects by Schlick's formula, f0 + (1 - f0)(1 - cos)^5. Its index bends
+    /// directions only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub f0: Option<[f64; 3]>,
     /// Real part of the film's relative index; 0 without a film.
@@ -83,8 +93,8 @@ pub struct LayerRecord {
     pub film_thickness_nm: f64,
     /// Thickest the film gets; 0 without a film.
     pub film_thickness_max_nm: f64,
-    /// Squared cotangent of the critical angle where the Fresnel row and the film tile are over the cosine of the refracted direction, as
-    /// those of interfaces with total reflection are; else 0.
+    /// Squared cotangent of the critical angle, if the Fresnel row and the film tile are over the cosine of the refracted direction: for
+    /// interfaces with total reflection. Else 0.
     #[serde(default)]
     pub critical_cot_sq: f64,
     /// Masking of the model `microfacet`; absent where it is the default.
@@ -93,13 +103,13 @@ pub struct LayerRecord {
     /// Computation of the reflectance of the interface; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub reflectance: Reflectance,
-    /// Curve that stands for the reflectance, where it is an approximation.
+    /// Curve of the reflectance, if that is an approximation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<ReflectanceCurve>,
     /// Light from below that the interface lets out, of the models `elek` and `weidlich-wilkie`; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub internal_reflection: InternalReflection,
-    /// Medium above of which the reflectance of the interface is computed, and with it its indices here; absent where it is the default.
+    /// Medium above the interface in the computation of its reflectance, and of the indices here; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub lower_reflectance: LowerReflectance,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
@@ -117,7 +127,7 @@ impl LayerRecord {
         self.film_thickness_max_nm > self.film_thickness_nm
     }
 
-    /// The cosine at which the Fresnel row and the film tile are read for light that meets the interface at another.
+    /// The cosine at which the Fresnel row and the film tile are read for light that meets the interface at `cos_theta`.
     pub fn row_cosine(&self, cos_theta: f64) -> f64 {
         refracted_cosine(self.critical_cot_sq, cos_theta)
     }
@@ -167,8 +177,7 @@ impl LayerRecord {
             Distribution::Abc(_) => 3.0,
             Distribution::Sgd(_) => 4.0,
         };
-        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-        let sharpness = inverse(self.alpha * self.alpha);
+        let sharpness = reciprocal(self.alpha * self.alpha);
         let unit = match self.distribution {
             Distribution::Beckmann => LOG2_E,
             Distribution::Ggx | Distribution::Blinn => 1.0,
@@ -176,34 +185,28 @@ impl LayerRecord {
         };
         let [tangent, bitangent] = match self.distribution {
             Distribution::Abc(shape) => shape.parameters(),
-            Distribution::Sgd(shape) => [inverse(shape.parameters()[0]), shape.parameters()[1]],
+            Distribution::Sgd(shape) => [reciprocal(shape.parameters()[0]), shape.parameters()[1]],
             _ => self.alpha_xy,
         };
         let grazing_cos_sq = (self.eta - 1.0) * (self.eta + 1.0) / (self.eta * self.eta).max(f64::MIN_POSITIVE);
-        let rgbw = |rgb: [f64; 3], w: f32| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, w];
         let numbers = [
-            [
-                (sharpness * unit) as f32,
-                (sharpness * 0.25 * FRAC_1_PI) as f32,
-                inverse(self.eta) as f32,
-                grazing_cos_sq as f32,
-            ],
+            vec4([sharpness * unit, sharpness * 0.25 * FRAC_1_PI, reciprocal(self.eta)], grazing_cos_sq),
             [0.0; 4],
-            rgbw(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
-            rgbw(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
-            rgbw(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm as f32),
-            rgbw(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm as f32),
-            rgbw(first, 0.0),
-            rgbw(second, self.critical_cot_sq as f32),
-            rgbw(third, 0.0),
-            [tangent as f32, bitangent as f32, libm::cos(self.rotation) as f32, libm::sin(self.rotation) as f32],
+            vec4(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
+            vec4(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
+            vec4(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm),
+            vec4(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm),
+            vec4(first, 0.0),
+            vec4(second, self.critical_cot_sq),
+            vec4(third, 0.0),
+            vec4([tangent, bitangent, libm::cos(self.rotation)], libm::sin(self.rotation)),
             [whole(kind + parts as usize), self.alpha as f32, self.eta as f32, self.sigma as f32],
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
         words[..numbers.len()].copy_from_slice(&numbers);
         if let Some(rows) = self.reradiation {
             for (word, row) in words[4..7].iter_mut().zip(rows) {
-                *word = rgbw(row.map(|share| share * FRAC_1_PI), word[3]);
+                *word = vec4(row.map(|share| share * FRAC_1_PI), f64::from(word[3]));
             }
             words[8][0] = 1.0;
         }
@@ -214,6 +217,16 @@ impl LayerRecord {
         }
         words
     }
+}
+
+/// 1 / value, and 0 for values that are not positive.
+fn reciprocal(value: f64) -> f64 {
+    if value > 0.0 { 1.0 / value } else { 0.0 }
+}
+
+/// A word of the material buffer.
+pub(crate) fn vec4([x, y, z]: [f64; 3], w: f64) -> [f32; 4] {
+    [x, y, z, w].map(|value| value as f32)
 }
 
 /// A whole number below 2^23 as the material buffer has it.

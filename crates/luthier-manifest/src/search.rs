@@ -3,7 +3,7 @@
 use luthier_lut::{AtlasLayout, Axis, RowBase, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
 
-/// Limits on tables; what is absent is unlimited.
+/// Limits on tables; an absent limit does not limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Budget {
     /// Largest absolute error of a sampled read, any channel.
@@ -71,7 +71,6 @@ impl Budget {
     /// The tighter of two budgets, limit by limit.
     #[must_use]
     pub fn tighter(&self, other: &Self) -> Self {
-        let least = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::min);
         Self {
             max_abs: least(self.max_abs, other.max_abs),
             max_rel: least(self.max_rel, other.max_rel),
@@ -83,15 +82,23 @@ impl Budget {
         }
     }
 
-    /// Error over limit, the largest of those limited: a budget holds where this is at most 1.
+    /// The largest quotient of an error and its limit: the budget holds if it is at most 1.
     pub fn excess(&self, error: &MeasuredError) -> f64 {
-        let ratio = |limit: Option<f64>, error: Option<f64>| limit.zip(error).map_or(0.0, |(limit, e)| e / limit);
-        ratio(self.max_abs, Some(error.max_abs))
-            .max(ratio(self.max_rel, Some(error.max_rel)))
-            .max(ratio(self.delta_e, error.delta_e))
-            .max(ratio(self.max_lobe_err, error.lobe))
-            .max(ratio(self.max_albedo_err, error.albedo))
+        over_limit(self.max_abs, Some(error.max_abs))
+            .max(over_limit(self.max_rel, Some(error.max_rel)))
+            .max(over_limit(self.delta_e, error.delta_e))
+            .max(over_limit(self.max_lobe_err, error.lobe))
+            .max(over_limit(self.max_albedo_err, error.albedo))
     }
+}
+
+/// Error over limit; 0 without a limit or without an error.
+pub(crate) fn over_limit(limit: Option<f64>, error: Option<f64>) -> f64 {
+    limit.zip(error).map_or(0.0, |(limit, error)| error / limit)
+}
+
+fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    a.into_iter().chain(b).reduce(f64::min)
 }
 
 /// Largest errors of a kind of table, as sampled with 8-bit weights, over all its tiles.
@@ -115,18 +122,15 @@ impl MeasuredError {
     /// The larger of each error.
     #[must_use]
     pub fn max(&self, other: &Self) -> Self {
-        let greatest = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::max);
-        Self {
-            max_abs: self.max_abs.max(other.max_abs),
-            max_rel: self.max_rel.max(other.max_rel),
-            delta_e: greatest(self.delta_e, other.delta_e),
-            lobe: greatest(self.lobe, other.lobe),
-            albedo: greatest(self.albedo, other.albedo),
-        }
+        let [delta_e, lobe, albedo] =
+            [(self.delta_e, other.delta_e), (self.lobe, other.lobe), (self.albedo, other.albedo)]
+                .map(|(a, b)| a.into_iter().chain(b).reduce(f64::max));
+        let [max_abs, max_rel] = [self.max_abs.max(other.max_abs), self.max_rel.max(other.max_rel)];
+        Self { max_abs, max_rel, delta_e, lobe, albedo }
     }
 }
 
-/// A way to have the values of a kind of table at run time.
+/// A way to get the values of a kind of table at run time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// `table`, or `closed-form`: computed by the shader, no texels.

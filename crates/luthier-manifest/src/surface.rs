@@ -1,20 +1,30 @@
-//! Surfaces: which material is at each place.
+//! Surfaces: the material at each place.
 
 use serde::{Deserialize, Serialize};
 
 /// A surface of several materials (Weidlich and Wilkie 2009, section 5.2.1). The shader's `luthier_pick` has its numbers as
 /// constants.
+///
+/// ```
+/// use luthier_manifest::{CellsRecord, SurfaceEntry};
+///
+/// let cells = CellsRecord { seed: 0, frequency: 20.0, materials: vec![4, 1, 4] };
+/// let name = "lepidolite".to_owned();
+/// let (source, source_hash) = ("lepidolite.toml".to_owned(), String::new());
+/// let surface = SurfaceEntry { name, source, source_hash, cells, switches: Vec::new(), glitter: None };
+/// assert_eq!(surface.materials(), [1, 4]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceEntry {
     /// Name, unique among the surfaces and materials of the bake; letters, digits and hyphens.
     pub name: String,
-    /// The file it came from, as of a material.
+    /// Its file, as of a material.
     pub source: String,
     /// SHA-256, hex, of that file.
     pub source_hash: String,
     /// Grains that cover it.
     pub cells: CellsRecord,
-    /// Other grains at some places; the first that are there are seen.
+    /// Other grains at some places; the first switch that holds at a place is seen.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub switches: Vec<SwitchRecord>,
     /// Particles on top of all of them.
@@ -33,7 +43,7 @@ pub struct CellsRecord {
     pub materials: Vec<u32>,
 }
 
-/// Grains in place of others, and where.
+/// Grains in place of others, and their places.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SwitchRecord {
     /// The places.
@@ -43,7 +53,7 @@ pub struct SwitchRecord {
     pub cells: CellsRecord,
 }
 
-/// Places where grains are in place of others.
+/// Places of a switch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SwitchBy {

@@ -8,8 +8,18 @@ use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Numbers of the tiles that serve a layer, by the kind of table. Files have each as `NAME_tile`, null where there is none; tiles that serve a
-/// whole material are left out where there are none.
+/// Numbers of the tiles that serve a layer, by the kind of table. Files have each as `NAME_tile`, null for a missing tile; missing tiles of a
+/// whole material are left out.
+///
+/// ```
+/// use luthier_lut::TableKind;
+/// use luthier_manifest::Tiles;
+///
+/// let tiles = Tiles::of([(TableKind::Fresnel, 3)]);
+/// assert_eq!((tiles[TableKind::Fresnel], tiles[TableKind::Fgd]), (Some(3), None));
+/// let json = serde_json::to_value(tiles).unwrap();
+/// assert!(json["fgd_tile"].is_null() && json.get("lobes_tile").is_none());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tiles([Option<u32>; TableKind::ALL.len()]);
 
@@ -21,7 +31,7 @@ impl Tiles {
         out
     }
 
-    /// These tiles in place of those of their kinds.
+    /// The tiles with those of some kinds replaced.
     #[must_use]
     pub fn with<const N: usize>(self, tiles: [(TableKind, Option<u32>); N]) -> Self {
         tiles.into_iter().fold(self, |mut out, (kind, tile)| {
@@ -47,9 +57,9 @@ impl IndexMut<TableKind> for Tiles {
 
 impl Serialize for Tiles {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let is_written = |kind: &TableKind| kind.facts().slot.is_some() || self[*kind].is_some();
-        let mut map = serializer.serialize_map(Some(TableKind::ALL.iter().filter(|kind| is_written(kind)).count()))?;
-        for kind in TableKind::ALL.into_iter().filter(is_written) {
+        let written = TableKind::ALL.into_iter().filter(|&kind| kind.facts().slot.is_some() || self[kind].is_some());
+        let mut map = serializer.serialize_map(Some(written.clone().count()))?;
+        for kind in written {
             map.serialize_entry(&format!("{}_tile", kind.name()), &self[kind])?;
         }
         map.end()

@@ -76,7 +76,7 @@ pub struct BakeSettings {
     pub thickness: RowSettings,
 }
 
-/// Numbers of the model `granier-heidrich` that are none of a layer.
+/// Numbers of the model `granier-heidrich` that belong to no layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beams {
     /// Weight of the specular part.
@@ -101,8 +101,7 @@ impl BakeSettings {
         self.wavelengths_nm.unwrap_or(DEFAULT_WAVELENGTHS_NM)
     }
 
-    /// Whether tables of a kind are to be baked whether or not the shader reads them: `tables` names the kind, or it has settings of its
-    /// own.
+    /// Whether the file asks for tables of a kind, even if the shader does not read them: `tables` names the kind, or the kind has settings.
     pub fn asks_for(&self, kind: TableKind) -> bool {
         let is_set = match kind {
             TableKind::Fresnel => self.fresnel != FresnelSettings::default(),

@@ -15,7 +15,7 @@ use crate::suggest::{did_you_mean, one_of, short};
 
 /// Checks a table and everything in it. `siblings` are tables that could stand in its place.
 pub(crate) fn check_table(table: &'static Table, siblings: &[&'static Table], at: &Section<'_>, sink: &mut Sink<'_>) {
-    // Keys that a misspelt one stands for: present, as far as missing keys go.
+    // Known keys that misspelt keys probably stand for. They count as present, so that one mistake is reported once.
     let mut meant = Vec::new();
     for (key, value) in at.table {
         let name: &str = key.get_ref();
@@ -317,9 +317,8 @@ fn check_text(name: &str, form: TextForm, text: &str, span: std::ops::Range<usiz
             sink.error(span, message, Some(format!("at most {NAME_MAX} are allowed")));
         }
         TextForm::Name => {
-            let plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
-            if text.is_empty() || text.starts_with('-') || !text.chars().all(plain) {
-                let fixed: String = text.chars().map(|c| if plain(c) { c } else { '-' }).collect();
+            let fixed = text.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+            if text.is_empty() || text.starts_with('-') || fixed != text {
                 let fixed = fixed.trim_matches('-');
                 let hint = (!fixed.is_empty()).then(|| format!("write `{name} = \"{fixed}\"`"));
                 sink.error(span, format!("`{name}` is made of letters, digits and hyphens"), hint);
@@ -390,7 +389,7 @@ fn describe(kind: &Kind) -> String {
     }
 }
 
-/// Upper bounds from here on go without saying where a value does not break them.
+/// Messages leave out upper bounds from here on, unless a value is above them.
 const FAR: f64 = 1e6;
 
 fn bounds(range: Range, found: f64) -> String {

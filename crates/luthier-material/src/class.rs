@@ -4,7 +4,14 @@ use std::fmt;
 
 use luthier_optics::stack::{Base, Stack, Surface};
 
-/// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4, and four of surfaces that have no coat.
+/// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4, and four classes of surfaces without a coat.
+///
+/// ```
+/// use luthier_material::SurfaceClass;
+///
+/// assert_eq!(SurfaceClass::D.to_string(), "d) Metal Foil");
+/// assert!(SurfaceClass::H.is_layered() && !SurfaceClass::Film.is_layered());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SurfaceClass {
     /// Smooth clear coat on a diffuse base.
@@ -91,7 +98,7 @@ impl SurfaceClass {
         }
     }
 
-    /// The letter that the text gives it, or a word: as manifests have it.
+    /// Its letter in the text, or a word, as in manifests.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::A => "a",
@@ -114,7 +121,7 @@ impl SurfaceClass {
         self <= Self::H
     }
 
-    /// The name that the text gives it, or ours.
+    /// Its name in the text, or ours.
     pub fn name(self) -> &'static str {
         match self {
             Self::A => "Glossy Paint",

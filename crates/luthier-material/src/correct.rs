@@ -1,4 +1,4 @@
-//! Guesses at the number that one outside its range was probably meant to be.
+//! Corrections of numbers outside their range: guesses at the number that was meant.
 
 use crate::grammar::{REFLECTANCES, Range};
 use crate::suggest::short;
@@ -15,7 +15,7 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
         return None;
     }
     if value < 0.0 && range.min == 0.0 && !matches!(name, "n" | "ior") {
-        // A number without its sign is another one, which nothing in the file asks for.
+        // Nothing in the file says that the number without its sign was meant.
         return match name {
             "k" if range.contains(-value) => {
                 Some(format!("k > 0 absorbs (phase e^{{+i beta}}): write {}", write(-value)))

@@ -9,11 +9,12 @@ use crate::bake_settings::SODIUM_D_NM;
 use crate::left_out::{LeftOut, left_out};
 use crate::material::Material;
 
-/// Slope parameter up to which one bounce is all light of an interface: of a white one 0.01 is missing at 86 degrees, where GGX loses the most
+/// Slope parameter up to which further bounces are neglected: a white interface then lacks 0.01 at 86 degrees, where GGX loses the most
 /// (`luthier-layers/tests/layers/bounces.rs`).
 const ONE_BOUNCE_ALPHA: f64 = 0.008;
 
-/// F0 of a second interface from which closed forms may return more light than falls in: they leave out that light is spread by n^2 where it comes out of a slab.
+/// F0 above which a second interface counts as a mirror: closed forms may then return more light than falls in, because they leave out that
+/// light spreads by n^2 when it comes out of a slab.
 const MIRROR_F0: f64 = 0.2;
 
 impl Material {
@@ -22,8 +23,8 @@ impl Material {
     /// `elek`, and one smooth interface or a base has nothing to simulate and begins with `elek`. That `belcour` and `yamaguchi` show a Beckmann
     /// distribution as GGX does not count.
     ///
-    /// Over a second interface that is a mirror, closed forms return more light than falls in: they are no default there. Where no other model shows
-    /// all, the one that leaves the least out is.
+    /// Over a second interface that is a mirror, closed forms return more light than falls in, and are no defaults. If no model shows all, the
+    /// one that leaves out the least is taken.
     pub fn model(&self) -> ShadingModel {
         self.bake.model.unwrap_or_else(|| {
             let kind = if self.is_stack() { DefaultFor::Stack } else { DefaultFor::Facets };
@@ -33,12 +34,13 @@ impl Material {
         })
     }
 
-    /// The model that shades it where nothing is simulated: the one that its file names, or else a closed form.
+    /// The model that shades it without a simulation: the one that its file names, or else a closed form.
     pub fn model_without_fit(&self) -> ShadingModel {
         self.bake.model.unwrap_or_else(|| self.most_whole(DefaultFor::Closed.models()))
     }
 
-    /// The features that keep a material with something to simulate, whose file names no model, from the model `lobes`; each once.
+    /// The features that keep the material from the model `lobes`, each once. None if its file names a model, and if there is nothing to
+    /// simulate.
     pub fn unfit_for_lobes(&self) -> Vec<LeftOut> {
         let is_open = self.bake.model.is_none() && self.has_further_bounces() && !self.model().is_fitted();
         let mut parts = if is_open { self.lacks(ShadingModel::Lobes) } else { Vec::new() };
@@ -64,36 +66,39 @@ impl Material {
             })
     }
 
-    /// Whether an interface below the first may reflect much: a metal, one with an F0 that is large or in textures, or one to a thinner medium. Layers
-    /// whose slopes only closed forms have count as none: other models refuse them.
+    /// Whether an interface below the first may reflect much: a metal, an interface with an F0 that is large or in textures, or one to a thinner
+    /// medium. False if a layer has slopes that only closed forms show: no other model is left then.
     fn covers_mirror(&self) -> bool {
         let layers = &self.stack.layers;
-        let is_free =
-            |layer: &Layer| !matches!(layer.base, Base::Diffuse(_)) && !layer.surface.distribution.has_walks();
+        let have_walks =
+            layers.iter().all(|layer| matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks());
         let mut above = None;
-        let mut is_mirror = |(number, layer): (usize, &Layer)| match &layer.base {
+        let mut mirrors = layers.iter().zip(&self.layers).map(|(layer, extras)| match &layer.base {
             Base::Conductor { .. } => true,
             Base::Diffuse(_) => false,
             Base::Dielectric { ior, .. } => {
                 let n = ior.at(SODIUM_D_NM).re;
                 let is_thinner = above.replace(n).is_some_and(|above| n < above);
                 let is_bright = ior.f0().is_some_and(|f0| f0.into_iter().any(|f0| f0 > MIRROR_F0));
-                is_thinner || is_bright || self.layers[number].metallic.is_some()
+                is_thinner || is_bright || extras.metallic.is_some()
             }
-        };
-        let mirrors: Vec<bool> = layers.iter().enumerate().map(&mut is_mirror).collect();
-        mirrors.iter().skip(1).any(|mirror| *mirror) && !layers.iter().any(is_free)
+        });
+        // The first interface counts as the medium above the second.
+        mirrors.next();
+        have_walks && mirrors.any(|is_mirror| is_mirror)
     }
 
-    /// The first model that shows the most of it.
+    /// The model that leaves out the fewest of its features; of several the first.
     fn most_whole(&self, models: impl Iterator<Item = ShadingModel>) -> ShadingModel {
         models.min_by_key(|model| self.lacks(*model).len()).unwrap_or_default()
     }
 
-    /// The things that a shader with tables does not show of it.
+    /// The features that a shader with tables leaves out.
     fn lacks(&self, model: ShadingModel) -> Vec<LeftOut> {
-        let counts = |part: &LeftOut| !(model.is_statistical() && part.feature == Feature::Beckmann);
-        left_out(self, model).into_iter().filter(|part| part.forms.contains(&Form::Baked) && counts(part)).collect()
+        let mut parts = left_out(self, model);
+        parts.retain(|part| part.forms.contains(&Form::Baked));
+        parts.retain(|part| !(model.is_statistical() && part.feature == Feature::Beckmann));
+        parts
     }
 }
 

@@ -25,6 +25,14 @@ impl Severity {
 }
 
 /// A message about a place in a material file.
+///
+/// ```
+/// let text = "schema = 1\nname = \"gilding\"\nlayer = 3\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let mistakes = luthier_material::parse("gilding.toml", text, &no_files).unwrap_err();
+/// assert!(mistakes[0].is_error() && mistakes[0].to_string().starts_with("gilding.toml:3:9: error: "));
+/// assert!(mistakes[0].render(text).contains("layer = 3"));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// How bad it is.
@@ -45,7 +53,7 @@ pub struct Diagnostic {
     pub count: usize,
 }
 
-/// Errors, and warnings, of a file that are listed. A file with more of them is no file of ours with mistakes in it.
+/// Number of errors, and of warnings, that are listed. A file with more of them is of another kind, and not a material with mistakes.
 const LISTED: usize = 20;
 
 /// Characters of a message or a hint: what they quote may be as long as the file.
@@ -123,7 +131,7 @@ impl<'t> Sink<'t> {
         self.counts[Severity::Error as usize] >= LISTED
     }
 
-    /// Whether an error about a part of the span has been said already.
+    /// Whether an error about a part of the span is reported already.
     pub(crate) fn has_error_in(&self, span: &Range<usize>) -> bool {
         self.diagnostics.iter().any(|d| d.is_error() && span.start <= d.span.start && d.span.end <= span.end)
     }

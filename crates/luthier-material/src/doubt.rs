@@ -1,11 +1,11 @@
-//! Doubtful physics: what a material may say, but rarely means.
+//! Doubtful physics: values that are allowed, but rarely meant.
 
 use std::f64::consts::PI;
 use std::ops::Range as Span;
 
 use luthier_optics::color::VISIBLE_NM;
 use luthier_optics::ior::Ior;
-use luthier_optics::stack::{Base, Layer, Slab, Stack};
+use luthier_optics::stack::{Base, Film, Layer, Slab, Stack};
 
 use luthier_lut::Served;
 use luthier_manifest::{ColorMode, ShadingModel};
@@ -16,7 +16,7 @@ use crate::material::Material;
 use crate::places::Places;
 use crate::suggest::short;
 
-/// Smallest slope parameter that the real-time models tell from a smooth surface: layer records have it in place of less.
+/// Smallest slope parameter that the real-time models tell from a smooth surface. Layer records have it in place of smaller ones.
 pub const ALPHA_MIN: f64 = 1e-3;
 
 /// Thickest film whose colour the 5 nm steps of the spectrum still resolve with margin: at n = 1.5 neighbouring fringes
@@ -26,7 +26,7 @@ const FILM_MAX_NM: f64 = 5000.0;
 /// Two indices that differ by less than this reflect less than 1e-8 at normal incidence.
 const SAME_INDEX: f64 = 2e-4;
 
-/// Clear media reflect less: rutile, of index 2.6, has 0.2.
+/// Largest F0 of a clear medium: rutile, of index 2.6, has 0.2.
 const DIELECTRIC_F0_MAX: f64 = 0.2;
 
 /// A sampled spectrum that may be too short: name, range in nm, place.
@@ -105,7 +105,7 @@ pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<
     }
 }
 
-/// Spectra that do not reach as far as the bake asks for them.
+/// Warns of spectra that do not cover the wavelengths of the bake.
 fn clamped_spectra(bake: &BakeSettings, spectra: &[Spectrum], sink: &mut Sink<'_>) {
     let (low, high) = match bake.color {
         Some(ColorMode::ThreeWavelengths) => {
@@ -124,24 +124,25 @@ fn clamped_spectra(bake: &BakeSettings, spectra: &[Spectrum], sink: &mut Sink<'_
     }
 }
 
-/// Kinds of tables that nothing in the stack could fill.
+/// Warns of kinds of tables that the file asks for and no layer fills.
 fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut Sink<'_>) {
     if !places.has("bake.tables") {
         return;
     }
     let at = places.span("bake.tables");
-    let has = |is: fn(&Layer) -> bool| stack.layers.iter().any(is);
     for kind in &bake.tables {
+        let mut layers = stack.layers.iter();
         let (is_some, reason) = match kind.facts().served {
-            Served::Interfaces => (has(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface"),
-            Served::Transparent => {
-                (has(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
+            Served::Interfaces => {
+                (layers.any(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface")
             }
-            Served::Films => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
-            Served::VaryingFilms => (
-                has(|layer| layer.films.iter().any(|film| film.thickness.max_nm > film.thickness.min_nm)),
-                "no film varies in thickness",
-            ),
+            Served::Transparent => {
+                (layers.any(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
+            }
+            Served::Films => (layers.any(|layer| !layer.films.is_empty()), "no layer has a film"),
+            Served::VaryingFilms => {
+                (layers.any(|layer| layer.films.iter().any(Film::varies)), "no film varies in thickness")
+            }
         };
         if !is_some {
             let name = kind.name();
@@ -151,7 +152,7 @@ fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut 
     }
 }
 
-/// Warns where a rough layer blurs what lies below, and the model blurs it too much or not at all.
+/// Warns of a layer below a rougher one, if the model blurs its reflection too much or not at all.
 fn smoother_than_above(layer: &Layer, roughest: f64, model: ShadingModel, at: &At<'_>, sink: &mut Sink<'_>) {
     let alpha = layer.surface.alpha_isotropic();
     if matches!(layer.base, Base::Diffuse(_)) || alpha >= roughest {
@@ -192,8 +193,9 @@ fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, at: &At<'_>, sink: &mut Sin
         }
     }
     // By Schlick's formula an interface reflects whatever its index.
-    let same = |nm: f64| ior.f0().is_none() && (ior.at(nm) - above.at(nm)).norm_sqr() < SAME_INDEX * SAME_INDEX;
-    if layer.films.is_empty() && [450.0, 550.0, 650.0].into_iter().all(same) {
+    let differences = [450.0, 550.0, 650.0].map(|nm| (ior.at(nm) - above.at(nm)).norm_sqr());
+    let is_same = ior.f0().is_none() && differences.into_iter().all(|squared| squared < SAME_INDEX * SAME_INDEX);
+    if layer.films.is_empty() && is_same {
         let hint = "the index is relative to nothing: give it as tables do, against vacuum".to_owned();
         sink.warn(
             at.span("ior"),

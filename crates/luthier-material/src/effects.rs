@@ -31,7 +31,7 @@ pub struct Glitter {
 /// Metal flakes: normals that are perturbed below the first interface only (Elek 2010, section 4.1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flakes {
-    /// Where the normals come from.
+    /// Source of the normals.
     pub source: FlakeSource,
     /// Repeats of the map per unit of texture coordinate.
     pub tiling: f64,
@@ -41,12 +41,12 @@ pub struct Flakes {
     pub fade_start: f64,
 }
 
-/// Where the normals of flakes come from.
+/// Source of the normals of flakes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FlakeSource {
     /// A tangent-space normal map, sampled without filtering.
     NormalMap(PictureRef),
-    /// Heights, of which normals are made by finite differences.
+    /// Heights, which finite differences turn into normals.
     HeightMap {
         /// The picture.
         picture: PictureRef,

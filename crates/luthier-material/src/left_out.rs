@@ -6,6 +6,18 @@ use luthier_optics::stack::{Base, Distribution, Film, Layer};
 use crate::material::Material;
 
 /// A feature that a material asks for and its model does not show.
+///
+/// ```
+/// use luthier_manifest::{Feature, ShadingModel};
+/// use luthier_material::{left_out, parse};
+///
+/// let text = "schema = 1\nname = \"steel\"\n[[layer]]\ntype = \"conductor\"\nior = \"steel_316\"\nalpha_x = 0.1\nalpha_y = 0.3\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let steel = parse("steel.toml", text, &no_files).unwrap().material;
+/// let parts = left_out(&steel, ShadingModel::Belcour);
+/// assert_eq!((parts[0].feature, parts[0].key.as_str()), (Feature::Anisotropy, "layer.0.alpha_x"));
+/// assert!(left_out(&steel, ShadingModel::Yamaguchi).is_empty());
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOut {
     /// Feature that is not shown.
@@ -16,36 +28,24 @@ pub struct LeftOut {
     pub forms: Vec<Form>,
 }
 
-/// The features of a material that a model leaves out, layers from the top down, then effects. Of a layer that is left out nothing else is
-/// told.
+/// The features of a material that a model leaves out, layers from the top down, then effects. Layers that are left out have one entry in
+/// all.
 pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
-    let mut found = Vec::new();
-    let missing =
-        |feature| -> Vec<Form> { Form::ALL.into_iter().filter(|&form| !model.honours(feature, form)).collect() };
-    let mut tell = |feature: Feature, key: String| {
-        let forms = missing(feature);
-        if !forms.is_empty() {
-            found.push(LeftOut { feature, key, forms });
-        }
-    };
+    let mut asked = Vec::new();
     let layers = &material.stack.layers;
-    let of_layer = |number: usize| match layers[number].base {
-        Base::Diffuse(_) => Feature::Base,
-        _ => Feature::InnerInterface,
-    };
-    let is_read = |number: usize| number == 0 || number < layers.len() && missing(of_layer(number)).is_empty();
-    // Whether light of such a layer comes up through a slab.
-    let lights = |slab: usize, kind| (slab + 1..layers.len()).any(|below| of_layer(below) == kind && is_read(below));
     let mut is_told = false;
     for (number, layer) in layers.iter().enumerate() {
-        let key = |name: &str| format!("layer.{number}.{name}");
-        if !is_read(number) {
+        if number > 0 && !missing(model, feature_of(layer)).is_empty() {
             if !is_told {
-                tell(of_layer(number), key("type"));
+                asked.push((feature_of(layer), format!("layer.{number}.type")));
             }
             is_told = true;
             continue;
         }
+        // Whether light of interfaces, and of a base, comes up through the slab.
+        let [lights_of_interfaces, light_of_base] = [Feature::InnerInterface, Feature::Base].map(|kind| {
+            missing(model, kind).is_empty() && layers[number + 1..].iter().any(|below| feature_of(below) == kind)
+        });
         let film = layer.films.first();
         let varies = film.is_some_and(Film::varies);
         let slopes = layer.surface;
@@ -55,7 +55,7 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             Base::Diffuse(diffuse) => (false, diffuse.sigma != 0.0, false),
         };
         let is_rough = is_facetted && !slopes.is_smooth();
-        for (asked, feature, name) in [
+        for (is_asked, feature, name) in [
             (film.is_some(), Feature::Films, "film.0.type"),
             (varies, Feature::FilmVariation, "film.0.thickness_nm"),
             (layer.films.len() > 1, Feature::InnerFilms, "film.1.type"),
@@ -66,24 +66,24 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 Feature::Distribution,
                 distribution_key(slopes.distribution),
             ),
-            (absorbs && lights(number, Feature::InnerInterface), Feature::Absorption, "absorption_per_um"),
-            (absorbs && lights(number, Feature::Base), Feature::BaseAbsorption, "absorption_per_um"),
+            (absorbs && lights_of_interfaces, Feature::Absorption, "absorption_per_um"),
+            (absorbs && light_of_base, Feature::BaseAbsorption, "absorption_per_um"),
             (deviates, Feature::DiffuseSlopes, "sigma"),
             (material.layers[number].reradiation.is_some(), Feature::Reradiation, "reradiation"),
         ] {
-            if asked {
-                tell(feature, key(name));
+            if is_asked {
+                asked.push((feature, format!("layer.{number}.{name}")));
             }
         }
         for map in material.layers[number].maps.named() {
             if let Some(feature) = map.slot.layer_feature(number as u32) {
-                tell(feature, key(&format!("maps.{}", map.key)));
+                asked.push((feature, format!("layer.{number}.maps.{}", map.key)));
             }
         }
     }
     let maps = material.layers.first().map(|first| &first.maps);
     let effects = &material.effects;
-    for (asked, feature, key) in [
+    for (is_asked, feature, key) in [
         (maps.is_some_and(|maps| maps.normal.is_some()), Feature::NormalMap, "layer.0.maps.normal"),
         (maps.is_some_and(|maps| maps.roughness.is_some()), Feature::RoughnessMap, "layer.0.maps.roughness"),
         (maps.is_some_and(|maps| maps.thickness.is_some()), Feature::ThicknessMap, "layer.0.maps.thickness"),
@@ -91,10 +91,12 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         (effects.patina.is_some(), Feature::Patina, "effects.patina"),
         (effects.glitter.is_some(), Feature::Glitter, "effects.glitter"),
     ] {
-        if asked {
-            tell(feature, key.to_owned());
+        if is_asked {
+            asked.push((feature, key.to_owned()));
         }
     }
+    let found = asked.into_iter().map(|(feature, key)| LeftOut { feature, key, forms: missing(model, feature) });
+    let mut found: Vec<LeftOut> = found.filter(|part| !part.forms.is_empty()).collect();
     if let Some(maps) = maps.filter(|_| model.is_fitted()) {
         // Rows are over one factor, over the amount of patina, or over the azimuth.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
@@ -119,6 +121,19 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
     }
     found
+}
+
+/// The forms of a model that leave a feature out.
+fn missing(model: ShadingModel, feature: Feature) -> Vec<Form> {
+    Form::ALL.into_iter().filter(|&form| !model.honours(feature, form)).collect()
+}
+
+/// The feature that a layer below the first is.
+fn feature_of(layer: &Layer) -> Feature {
+    match layer.base {
+        Base::Diffuse(_) => Feature::Base,
+        _ => Feature::InnerInterface,
+    }
 }
 
 /// The key of a layer that says which distribution its slopes have.

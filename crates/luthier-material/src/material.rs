@@ -59,7 +59,7 @@ pub struct NamedImage<'m> {
 }
 
 impl Material {
-    /// A diagnostic about a value of the file, by someone who knows more than this crate; see [`Places`] for keys.
+    /// A diagnostic about a value of the file, for callers that know more than this crate; see [`Places`] for keys.
     pub fn diagnostic(
         &self,
         severity: Severity,
@@ -70,7 +70,7 @@ impl Material {
         Sink::one(&self.source, &self.text, severity, self.places.span(key), message.into(), hint)
     }
 
-    /// Has the material shaded by a model, without the parts of others that its file chooses: for comparisons of models.
+    /// Sets the model, and drops parts of other models that the file chooses: for comparisons of models.
     pub fn shade_by(&mut self, model: ShadingModel) {
         self.bake.model = Some(model);
         self.bake.masking = self.bake.masking.filter(|_| model.takes(ModelPart::Masking));
@@ -91,7 +91,7 @@ impl Material {
         }
     }
 
-    /// The stack as its model reflects: as it is, but for lower interfaces that its file has reflect as in air.
+    /// The stack for computations of reflectance: its lower interfaces reflect as in air if the file says so.
     pub fn reflecting_stack(&self) -> Cow<'_, Stack> {
         match self.bake.lower_reflectance.unwrap_or_default() {
             LowerReflectance::InPlace => Cow::Borrowed(&self.stack),
@@ -99,7 +99,7 @@ impl Material {
         }
     }
 
-    /// Numbers of the model `granier-heidrich`, where the file gives some that are not those of every material.
+    /// Numbers of the model `granier-heidrich`, if the file gives some that differ from [`BeamsRecord::PLAIN`].
     pub fn beams(&self) -> Option<BeamsRecord> {
         let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth } = self.bake.beams.unwrap_or_default();
         let exponents = self.layers.first().and_then(|first| first.exponents);
@@ -127,28 +127,27 @@ impl Material {
     /// The images that it names: of layers from the top down, then of effects.
     pub fn images(&self) -> Vec<NamedImage<'_>> {
         let mut found = Vec::new();
-        let mut add = |key: String, texels, picture| found.push(NamedImage { key, picture, texels });
         for (i, LayerExtras { film_variation, maps, .. }) in self.layers.iter().enumerate() {
             for map in maps.named() {
-                add(format!("layer.{i}.maps.{}", map.key), map.texels(), map.picture);
+                found.push((format!("layer.{i}.maps.{}", map.key), map.texels(), map.picture));
             }
             if let Some(picture) = film_variation.as_ref().and_then(|variation| variation.source.image()) {
-                add(format!("layer.{i}.film.0.thickness_nm.map.image"), TexelUse::Number, picture);
+                found.push((format!("layer.{i}.film.0.thickness_nm.map.image"), TexelUse::Number, picture));
             }
         }
         match self.effects.flakes.as_ref().map(|flakes| &flakes.source) {
             Some(FlakeSource::NormalMap(picture)) => {
-                add("effects.flakes.normal_map".to_owned(), TexelUse::Normal, picture);
+                found.push(("effects.flakes.normal_map".to_owned(), TexelUse::Normal, picture));
             }
             Some(FlakeSource::HeightMap { picture, .. }) => {
-                add("effects.flakes.height_map.image".to_owned(), TexelUse::Number, picture);
+                found.push(("effects.flakes.height_map.image".to_owned(), TexelUse::Number, picture));
             }
             Some(FlakeSource::Cells { .. }) | None => {}
         }
         if let Some(picture) = self.effects.patina.as_ref().and_then(|patina| patina.map.image()) {
-            add("effects.patina.map.image".to_owned(), TexelUse::Number, picture);
+            found.push(("effects.patina.map.image".to_owned(), TexelUse::Number, picture));
         }
-        found
+        found.into_iter().map(|(key, texels, picture)| NamedImage { key, picture, texels }).collect()
     }
 }
 
@@ -164,7 +163,7 @@ pub struct LayerExtras {
     pub exponents: Option<[f64; 2]>,
     /// Texture slots.
     pub maps: Maps,
-    /// Base colour and metal of a `metallic-roughness` surface where maps multiply them: the stack has that without metal.
+    /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
 }
 
@@ -251,7 +250,7 @@ impl Maps {
 /// How the thickness of a film varies between its extremes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmVariation {
-    /// Where the variation comes from; 0 is the thinnest, 1 the thickest.
+    /// Source of the variation; 0 is the thinnest, 1 the thickest.
     pub source: VariationSource,
     /// Width of one repeat of the map on the surface.
     pub extent_um: f64,

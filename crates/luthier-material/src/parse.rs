@@ -9,7 +9,7 @@ use crate::grammar::DOCUMENT;
 use crate::material::Material;
 use crate::section::{Section, parse_toml};
 
-/// A material, and what to doubt about it.
+/// A material, with warnings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parsed {
     /// The material.
@@ -44,13 +44,12 @@ impl FileKind {
     /// ```
     pub fn of(text: &str) -> Self {
         let (document, _) = DeTable::parse_recoverable(text);
-        let table = document.get_ref();
-        let has = |key: &str| table.get(key).is_some();
-        if has("scene") || has("light") && !has("layer") {
+        let file = Section::document(&document);
+        if file.has("scene") || file.has("light") && !file.has("layer") {
             Self::Scene
-        } else if !has("schema") && (has("surface") || has("cells") && !has("layer")) {
+        } else if !file.has("schema") && (file.has("surface") || file.has("cells") && !file.has("layer")) {
             Self::Surface
-        } else if has("schema") || has("layer") {
+        } else if file.has("schema") || file.has("layer") {
             Self::Material
         } else {
             Self::Other
@@ -99,9 +98,10 @@ pub fn parse(
     }
 }
 
-/// As [`parse`], with what can be read of a file that has errors: enough to say what else is wrong, such as pictures that are not there.
+/// Reads a material file as [`parse`] does, and returns a material in spite of errors: enough to find further faults, such as missing
+/// pictures.
 ///
-/// Values with errors are left out or have defaults. There is no material where the file is not TOML, or is something else.
+/// Values with errors are left out or have defaults. There is no material if the file is not TOML, or is of another kind.
 pub fn parse_partly(
     label: &str,
     text: &str,

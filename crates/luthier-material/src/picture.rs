@@ -5,13 +5,13 @@
 pub struct PictureRef {
     /// Path relative to the file that names it.
     pub path: String,
-    /// The channel that is taken alone; `None` where the file names none.
+    /// The channel that is taken alone; `None` if the file names no channel.
     pub channel: Option<Channel>,
-    /// Whether colours are stored by the sRGB curve; `None` where the file does not say it, which counts as linear.
+    /// Whether colours are stored by the sRGB curve; `None` if the file does not say, which counts as linear.
     pub srgb: Option<bool>,
     /// Factor on the linear texels; of normals, on their slope.
     pub scale: f64,
-    /// Where the picture lies on the surface; `None` where it lies as the texture coordinates do.
+    /// Place of the picture on the surface; `None` if it lies as the texture coordinates do.
     pub transform: Option<UvTransform>,
 }
 

@@ -5,8 +5,16 @@ use std::ops::Range;
 
 use crate::section::{Section, section};
 
-/// Where the values of a material file stand, by key: `name`, `bake.fgd.size`, `effects.flakes`; of a layer `layer.1.alpha_x`, counted
+/// Places of the values of a material file, by key: `name`, `bake.fgd.size`, `effects.flakes`; of a layer `layer.1.alpha_x`, counted
 /// as in the stack, of its films `layer.1.film.0.ior`.
+///
+/// ```
+/// let text = "schema = 1\nname = \"gilding\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.3\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let places = luthier_material::parse("gilding.toml", text, &no_files).unwrap().material.places;
+/// assert_eq!(&text[places.span("layer.0.ior")], "\"au\"");
+/// assert!(places.has("layer.0.roughness") && !places.has("layer.0.alpha"));
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Places(BTreeMap<String, Range<usize>>);
 
@@ -29,7 +37,7 @@ impl Places {
         self.0.contains_key(key)
     }
 
-    /// Bytes of the value of a key; where the file lacks it those of the table that it belongs to.
+    /// Bytes of the value of a key; if the file lacks the key, of the table that it belongs to.
     pub fn span(&self, key: &str) -> Range<usize> {
         let mut key = key;
         loop {

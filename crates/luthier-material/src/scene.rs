@@ -8,7 +8,7 @@ use luthier_manifest::SceneBudget;
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::grammar::SCENE;
-use crate::section::{Numbers, Section, parse_toml};
+use crate::section::{Section, parse_toml};
 
 /// A validated scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,8 +147,8 @@ fn decode(label: &str, text: &str, document: &Section<'_>, sink: &mut Sink<'_>) 
             span: at.value_span("file"),
         })
         .collect();
-    let is_limited = |own: &SceneBudget| *own != SceneBudget::default();
-    if !is_limited(&budget) && !scene_materials.iter().all(|material| is_limited(&material.budget)) {
+    let none = SceneBudget::default();
+    if budget == none && scene_materials.iter().any(|material| material.budget == none) {
         let hint = Some("add `max_rel = 0.1` to [budget]".to_owned());
         sink.error(document.value_span("budget"), "the budget limits nothing", hint);
     }
@@ -193,8 +193,7 @@ fn light(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Light> {
 
 /// Two numbers that ascend.
 fn range(at: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<[f64; 2]> {
-    let Numbers::Many(values) = at.numbers(key)? else { return None };
-    let [least, most] = values.try_into().ok()?;
+    let [least, most] = at.two_numbers(key)?;
     if least > most {
         let hint = Some(format!("write `{key} = [{most}, {least}]`"));
         sink.error(at.value_span(key), format!("`{key}` must ascend"), hint);

@@ -7,8 +7,8 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::diagnostic::Sink;
 
-/// The document of a text; what is wrong with its TOML goes to the sink. What could be recovered from broken TOML is not what was
-/// meant, and its other mistakes would mislead: there is no document then.
+/// The document of a text; faults of its TOML go to the sink. Broken TOML gives no document: a recovered one is not what was meant, and its
+/// other mistakes would mislead.
 pub(crate) fn parse_toml<'t>(text: &'t str, sink: &mut Sink<'_>) -> Option<Spanned<DeTable<'t>>> {
     let (document, errors) = DeTable::parse_recoverable(text);
     for error in &errors {
@@ -27,7 +27,7 @@ pub(crate) struct Section<'t> {
 }
 
 impl<'t> Section<'t> {
-    /// The whole of a document. Its span is all of the text; what is missing from it is missing at its start.
+    /// The whole of a document. Its span is the start of the text, where missing keys are reported.
     pub(crate) fn document(document: &'t Spanned<DeTable<'t>>) -> Self {
         Self { table: document.get_ref(), span: 0..0 }
     }
@@ -40,12 +40,12 @@ impl<'t> Section<'t> {
         self.value(key).is_some()
     }
 
-    /// Where the key stands; where the table stands when it lacks the key.
+    /// The span of a key, or of the table when it lacks the key.
     pub(crate) fn key_span(&self, key: &str) -> Span<usize> {
         self.table.get_key_value(key).map_or_else(|| self.span.clone(), |(k, _)| k.span())
     }
 
-    /// Where the value stands; where the table stands when it lacks the key.
+    /// The span of a value, or of the table when it lacks the key.
     pub(crate) fn value_span(&self, key: &str) -> Span<usize> {
         self.value(key).map_or_else(|| self.span.clone(), Spanned::span)
     }
@@ -98,6 +98,14 @@ impl<'t> Section<'t> {
         value.as_array()?.iter().map(|v| number(v.get_ref())).collect::<Option<Vec<f64>>>().map(Numbers::Many)
     }
 
+    /// Two numbers.
+    pub(crate) fn two_numbers(&self, key: &str) -> Option<[f64; 2]> {
+        match self.numbers(key)? {
+            Numbers::Many(pair) => pair.try_into().ok(),
+            Numbers::One(_) => None,
+        }
+    }
+
     /// A triple of numbers; one number stands for three.
     pub(crate) fn rgb(&self, key: &str) -> Option<[f64; 3]> {
         match self.numbers(key)? {
@@ -106,7 +114,7 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// A triple of reflectances. What is a little above 1 has been told, and counts as 1.
+    /// A triple of reflectances. A value a little above 1, of which the checker has warned, counts as 1.
     pub(crate) fn reflectance(&self, key: &str) -> Option<[f64; 3]> {
         self.rgb(key).map(|rgb| rgb.map(|value| value.min(1.0)))
     }

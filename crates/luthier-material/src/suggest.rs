@@ -1,6 +1,6 @@
 //! Suggestions for misspelt words, and the formatting of values in messages.
 
-/// Characters of the longest word that can be a misspelt one of ours.
+/// Characters of the longest word that can be a misspelt key or name.
 const WORD_MAX: usize = 64;
 
 /// The candidate that a misspelt word most likely stands for, if one is close enough: a few edits away, or the word
@@ -10,19 +10,19 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
         return None;
     }
     let word = word.to_lowercase().replace('-', "_");
-    let distance = |candidate: &str| {
-        let candidate = candidate.to_lowercase().replace('-', "_");
+    let distances = candidates.into_iter().map(|word_of_ours| {
+        let candidate = word_of_ours.to_lowercase().replace('-', "_");
         let continued = word.len() >= 3 && candidate.strip_prefix(&word).is_some_and(|rest| rest.starts_with('_'));
-        if continued { 0 } else { strsim::damerau_levenshtein(&word, &candidate) }
-    };
-    let nearest = candidates.into_iter().map(|c| (distance(c), c)).min_by_key(|&(d, _)| d)?;
+        (if continued { 0 } else { strsim::damerau_levenshtein(&word, &candidate) }, word_of_ours)
+    });
+    let (distance, nearest) = distances.min_by_key(|&(distance, _)| distance)?;
     let allowed = match word.chars().count() {
         0..=2 => 0,
         3..=5 => 1,
         6..=9 => 2,
         _ => 3,
     };
-    (nearest.0 <= allowed).then_some(nearest.1)
+    (distance <= allowed).then_some(nearest)
 }
 
 /// A number as a person would write it: at most five significant digits, no trailing zeros. TOML reads it.
@@ -31,15 +31,19 @@ pub(crate) fn short(value: f64) -> String {
         return format!("{value}");
     }
     let magnitude = libm::floor(libm::log10(value.abs()));
-    let trimmed = |text: &str| text.trim_end_matches('0').trim_end_matches('.').to_owned();
     if !(-5.0..9.0).contains(&magnitude) {
         let text = format!("{value:.4e}");
         let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-        return format!("{}e{exponent}", trimmed(digits));
+        return format!("{}e{exponent}", without_zeros(digits));
     }
     let decimals = (4.0 - magnitude).clamp(0.0, 12.0) as usize;
     let text = format!("{value:.decimals$}");
-    if text.contains('.') { trimmed(&text) } else { text }
+    if text.contains('.') { without_zeros(&text).to_owned() } else { text }
+}
+
+/// A decimal fraction without the zeros at its end, and without a point that ends it.
+fn without_zeros(fraction: &str) -> &str {
+    fraction.trim_end_matches('0').trim_end_matches('.')
 }
 
 /// Names in backquotes: "`a`, `b` or `c`".

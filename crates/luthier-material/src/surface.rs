@@ -1,4 +1,4 @@
-//! Surface files: which material is at each place.
+//! Surface files: the material at each place.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use luthier_manifest::SwitchBy;
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::grammar::SURFACE;
-use crate::section::{Numbers, Section, parse_toml};
+use crate::section::{Section, parse_toml};
 
 /// A validated surface: grains of several materials, others at some places, and particles on top of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Surface {
     pub description: String,
     /// Grains that cover it.
     pub cells: SurfaceCells,
-    /// Other grains at some places; the first that are there are seen.
+    /// Other grains at some places; the first switch that holds at a place is seen.
     pub switches: Vec<SurfaceSwitch>,
     /// Particles on top of all of them.
     pub glitter: Option<SurfaceGlitter>,
@@ -40,7 +40,7 @@ pub struct SurfaceCells {
     pub materials: Vec<NamedMaterial>,
 }
 
-/// Grains in place of others, and where.
+/// Grains in place of others, and their places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceSwitch {
     /// The places.
@@ -161,10 +161,7 @@ fn check_range(noise: &Section<'_>, sink: &mut Sink<'_>) {
 }
 
 fn range_of(noise: &Section<'_>) -> Option<[f64; 2]> {
-    match noise.numbers("between")? {
-        Numbers::Many(ends) => ends.try_into().ok(),
-        Numbers::One(_) => None,
-    }
+    noise.two_numbers("between")
 }
 
 fn switch_of(at: &Section<'_>) -> Option<SurfaceSwitch> {

@@ -18,10 +18,10 @@ impl ShadingModel {
         row(self)
     }
 
-    /// The heading of a model in f64: that of the shader's model that it is a form of, or that it stands beside.
+    /// The heading of a model in f64, by its name: the heading of the shader's model that it is a form of or stands beside.
     pub fn heading_of(name: &str) -> Option<&'static str> {
-        let is_kin = |model: &&Self| name.starts_with(model.name()) || model.facts().beside.contains(&name);
-        Self::ALL.iter().find(is_kin).map(|model| model.facts().heading)
+        let kin = Self::ALL.iter().find(|kin| name.starts_with(kin.name()) || kin.facts().beside.contains(&name));
+        kin.map(|model| model.facts().heading)
     }
 
     /// Name and source, for headers and reports.
@@ -29,12 +29,12 @@ impl ShadingModel {
         self.facts().title
     }
 
-    /// Whether its shader has a form: what is read from tables alone has no other.
+    /// Whether its shader has a form; a model that exists in tables alone has the form `baked` only.
     pub fn has(self, form: Form) -> bool {
         self.facts().forms.contains(&form)
     }
 
-    /// Whether the shader of a form shows a feature where a material has it. Tests of luthier-shader and luthier-scene compare every
+    /// Whether the shader of a form shows a feature of a material. Tests of luthier-shader and luthier-scene compare every
     /// entry with what shaders and their f64 twins do.
     pub fn honours(self, feature: Feature, form: Form) -> bool {
         let Shows { always, baked, full } = &self.facts().shows;
@@ -76,10 +76,10 @@ impl ShadingModel {
 impl DefaultFor {
     /// The models to choose among, the first choice first.
     pub fn models(self) -> impl Iterator<Item = ShadingModel> {
-        let rank = move |model: &ShadingModel| {
-            model.facts().default_for.iter().find(|(of, _)| *of == self).map(|(_, rank)| (*rank, *model))
-        };
-        let mut ranked: Vec<(u8, ShadingModel)> = ShadingModel::ALL.iter().filter_map(rank).collect();
+        let ranked = ShadingModel::ALL.into_iter().filter_map(|model| {
+            model.facts().default_for.iter().find(|(of, _)| *of == self).map(|(_, rank)| (*rank, model))
+        });
+        let mut ranked: Vec<(u8, ShadingModel)> = ranked.collect();
         ranked.sort_unstable();
         ranked.into_iter().map(|(_, model)| model)
     }

@@ -5,7 +5,7 @@
 //!
 //! A model may leave out parts of the light within its domain (bounces, blur, 1/n^2): `docs/pages/models.md` has their size.
 
-/// Quantity that a domain is a range of.
+/// Quantity that a domain limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// Index of a coat over that above it, at the wavelength that bends directions.
@@ -52,6 +52,14 @@ impl Quantity {
 }
 
 /// A range of a quantity.
+///
+/// ```
+/// use luthier_model::{Quantity, ShadingModel};
+///
+/// // `elek` lacks 1/n^2: coats of a high index would be too bright.
+/// let limit = ShadingModel::Elek.limits().find(|limit| limit.quantity == Quantity::Index).unwrap();
+/// assert!(limit.most < 2.0 && !limit.refuses);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     /// The quantity.
@@ -60,7 +68,7 @@ pub struct Limit {
     pub least: f64,
     /// Largest value.
     pub most: f64,
-    /// Whether what is outside is wrong beyond use, not merely in doubt.
+    /// Whether values outside are refused as wrong beyond use, and not merely doubted.
     pub refuses: bool,
     /// Fault outside the range, in words.
     pub reason: &'static str,
@@ -88,8 +96,8 @@ pub(crate) const COMMON: &[Limit] = &[
     },
 ];
 
-/// Limit of the index of a coat over metal, of which 0.92 comes back: 1.9 is the last that the suite tried before the albedo of a coated
-/// metal is off by more than 1.
+/// Limit of the index of a coat over a metal that reflects 0.92: 1.9 is the last index of the suite before the albedo of the coated metal is
+/// off by more than 1.
 pub(crate) const BRIGHT: Limit = limit(
     Quantity::Index,
     0.25,

@@ -9,7 +9,7 @@ use crate::form::Form;
 use crate::parts::ModelPart;
 use crate::tolerance::Tolerances;
 
-/// All that other crates know a model by. A model is added as one row in `rows.rs`, its formula in luthier-layers, and its module in
+/// The facts of a model, by which other crates know it. A model is added as one row in `rows.rs`, its formula in luthier-layers, and its module in
 /// luthier-shader.
 #[derive(Debug, Clone, Copy)]
 pub struct Facts {
@@ -78,7 +78,7 @@ pub enum Reach {
     All,
 }
 
-/// Features that the shader of a model shows where a material has them. What is in no list, the model leaves out.
+/// Features of materials that the shader of a model shows. The model leaves out features that are in no list.
 #[derive(Debug, Clone, Copy)]
 pub struct Shows {
     /// In both forms.
@@ -101,15 +101,15 @@ pub struct TableRead {
 /// Interfaces for which a table is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReadWhen {
-    /// All that the model reaches.
+    /// All interfaces that the model reaches.
     Always,
-    /// Those whose reflectance is that of a table, and without a film that varies.
+    /// Interfaces with a tabulated reflectance, and without a film that varies.
     Steady,
-    /// Those whose reflectance is that of a table, and with a film that varies.
+    /// Interfaces with a tabulated reflectance, and with a film that varies.
     Varying,
-    /// The first, where its film varies.
+    /// The first interface, if its film varies.
     FirstVarying,
-    /// Those with a film.
+    /// Interfaces with a film.
     Filmed,
     /// Conductors without a film.
     BareConductor,

@@ -1,6 +1,15 @@
 //! Features of a material that a model may leave out.
 
 /// A feature that a material file can ask for and a model can leave out.
+///
+/// ```
+/// use luthier_model::{Feature, Form, ShadingModel};
+///
+/// // Models that show tilted tangents also show anisotropy.
+/// let turned = ShadingModel::ALL.into_iter().filter(|model| model.honours(Feature::Tangents, Form::Baked));
+/// assert!(turned.clone().all(|model| model.honours(Feature::Anisotropy, Form::Baked)));
+/// assert_eq!(turned.map(ShadingModel::name).collect::<Vec<_>>(), ["weidlich-wilkie", "yamaguchi", "microfacet"]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
     /// Dielectrics and conductors below the first layer.

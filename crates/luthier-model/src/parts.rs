@@ -20,6 +20,15 @@ pub enum ModelPart {
 
 luthier_lut::named! {
     /// Masking and shadowing of the model `microfacet`.
+    ///
+    /// ```
+    /// use luthier_model::{Masking, ModelPart, ShadingModel};
+    ///
+    /// assert!(ShadingModel::Microfacet.takes(ModelPart::Masking) && !ShadingModel::Elek.takes(ModelPart::Masking));
+    /// assert_eq!(Masking::from_name("v-cavity"), Some(Masking::VCavity));
+    /// // V-cavities need D alone, so that any distribution may have them.
+    /// assert!(!Masking::VCavity.needs_lambda());
+    /// ```
     #[derive(Default, Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum Masking("masking") {

@@ -15,26 +15,26 @@ use crate::microsurface::{TransparentFacets, Walk, crossed_and_returned, walk_af
 use crate::quadrature::gauss_legendre;
 use crate::stack::Distribution;
 
-/// Nodes of the cosine axis that first-bounce weights are spread over by cubics.
+/// Nodes of the cosine axis on which cubics spread first-bounce weights.
 const FIRST_NODES: usize = 129;
 
-/// Nodes of the cosine axis that walks look reflectances up on, and that first-bounce weights are spread over by straight
-/// lines for curves with a kink.
+/// Nodes of the finer cosine axis. Walks look reflectances up on it; for curves with a kink, straight lines spread first-bounce weights
+/// on it.
 const WALK_NODES: usize = 1025;
 
 /// Tolerance of cubics against a curve. They miss a kink by a hundred times as much.
 const CUBIC_TOLERANCE: f64 = 1e-3;
 
-/// Least cosine at which the tolerance holds: steep films are missed next to grazing, at no great cost.
+/// Least cosine at which cubics are compared with curves. Nearer to grazing incidence they miss the curves of films, at no great cost.
 const CUBIC_COS_THETA: f64 = 1.0 / 32.0;
 
-/// Points of a curve, per interval of nodes, in the means that stand for it where cubics fail.
+/// Points of a curve per interval of nodes, for the means that replace its values if cubics fail.
 const MEAN_POINTS: u32 = 8;
 
-/// Directions flatter than this are evaluated as this one: the limit at grazing incidence.
+/// Least cosine of a direction, the limit at grazing incidence: flatter directions are evaluated at it.
 pub const COS_THETA_MIN: f64 = 1e-5;
 
-/// Slopes above this make a micro-surface; below it is a mirror.
+/// Least slope parameter of a micro-surface; a surface below it is a mirror.
 pub const ALPHA_MIN: f64 = 1e-5;
 
 /// Reflectances as functions of the cosine, one per wavelength, tabulated for lookups by the million.
@@ -52,13 +52,11 @@ impl ReflectanceCurves {
     /// Tabulates `count` curves: `f(k, cos_theta)` is the k-th.
     pub fn new(count: usize, f: impl Fn(usize, f64) -> f64) -> Self {
         let last = (WALK_NODES - 1) as f64;
-        let node = |i: usize| (0..count).map(move |k| (k, i as f64 / last));
-        let mut curves =
-            Self { count, values: (0..WALK_NODES).flat_map(node).map(|(k, cos)| f(k, cos)).collect(), means: None };
+        let nodes = (0..WALK_NODES).flat_map(|i| (0..count).map(move |k| (k, i as f64 / last)));
+        let values = nodes.clone().map(|(k, cos)| f(k, cos)).collect();
+        let mut curves = Self { count, values, means: None };
         if !curves.cubics_follow() {
-            let means =
-                (0..WALK_NODES).flat_map(node).map(|(k, cos)| tent_mean(|c| f(k, c), cos, 1.0 / last)).collect();
-            curves.means = Some(means);
+            curves.means = Some(nodes.map(|(k, cos)| tent_mean(|c| f(k, c), cos, 1.0 / last)).collect());
         }
         curves
     }
@@ -110,13 +108,12 @@ impl ReflectanceCurves {
 pub struct Effort {
     /// Points for the first bounce.
     pub first: usize,
-    /// Points for the first facets of the walks that make the later bounces, when these carry a quarter of the light; fewer when they carry
-    /// less.
+    /// Points for the first facets of walks, if later bounces carry a quarter of the light. The number grows as the root of their share.
     pub later: usize,
 }
 
 impl Effort {
-    /// Walks in proportion to what they carry: half of them for half the light is still half the error.
+    /// Points for later bounces that carry `remaining` of the light. Their square, the number of walks, is in proportion to the light.
     fn points_for(self, remaining: f64) -> usize {
         let points = self.later as f64 * libm::sqrt(4.0 * remaining.max(0.0));
         (libm::ceil(points) as usize).max(self.later.min(6))
@@ -124,6 +121,16 @@ impl Effort {
 }
 
 /// Encounters of the light from one direction with the facets of a perfectly reflecting micro-surface.
+///
+/// ```
+/// use luthier_optics::{albedo::{Effort, FacetStatistics, ReflectanceCurves}, stack::Distribution};
+///
+/// let statistics = FacetStatistics::new(Distribution::Ggx, 0.5, 0.7, Effort { first: 24, later: 12 }, 0);
+/// // White facets return all light; grey ones lose some at every bounce.
+/// let albedos = statistics.albedo(&ReflectanceCurves::new(2, |k, _| [1.0, 0.5][k]));
+/// assert!((albedos[0] - 1.0).abs() < 1e-4);
+/// assert!(albedos[1] < 0.5);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FacetStatistics {
@@ -131,10 +138,9 @@ pub struct FacetStatistics {
     first: Vec<f64>,
     /// Weight of the first bounce over the finer nodes, by straight lines.
     first_fine: Vec<f32>,
-    /// Light that the first bounce leaves.
+    /// Share of the light that has not left after the first bounce.
     remaining: f64,
-    /// Facets of all walks, one after the other: cosine, and light that leaves there. The sign of the latter marks the end of
-    /// a walk.
+    /// Facets of all walks, one after the other: cosine, and light that leaves there. The light is negative at the last facet of a walk.
     facets: Vec<(f32, f32)>,
     /// Light of all walks.
     later: f64,
@@ -143,7 +149,7 @@ pub struct FacetStatistics {
 impl FacetStatistics {
     /// The statistics for light at `cos_theta_i` (clamped to [`COS_THETA_MIN`]) on a surface of slope `alpha`.
     ///
-    /// The first bounce is exact to the quadrature (within 2e-5 at 24 points down to cosines of 0.05, 5e-5 to 0.0087); later bounces share what it leaves over, so
+    /// The first bounce is exact to the quadrature (within 2e-5 at 24 points down to cosines of 0.05, 5e-5 to 0.0087); later bounces share the rest of the light, so
     /// that a perfect reflector has albedo 1 within rounding. Reflectances with a kink (total reflection) converge more slowly:
     /// within 2e-3 at 64 points, against 2e-2 at 24.
     pub fn new(distribution: Distribution, alpha: f64, cos_theta_i: f64, effort: Effort, seed: u32) -> Self {
@@ -190,18 +196,17 @@ impl FacetStatistics {
     /// Albedo of the first bounce alone, per curve.
     pub fn single_scattering(&self, f: &ReflectanceCurves) -> Vec<f64> {
         let mut sums = vec![0.0; f.count];
-        let mut add = |weight: f64, values: &[f64]| {
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += weight * value;
-            }
-        };
         match &f.means {
-            None => self.first.iter().enumerate().for_each(|(i, weight)| add(*weight, f.at_first_node(i))),
-            Some(means) => self
-                .first_fine
-                .iter()
-                .zip(means.chunks_exact(f.count))
-                .for_each(|(w, values)| add(f64::from(*w), values)),
+            None => {
+                for (i, weight) in self.first.iter().enumerate() {
+                    add_weighted(&mut sums, *weight, f.at_first_node(i));
+                }
+            }
+            Some(means) => {
+                for (weight, values) in self.first_fine.iter().zip(means.chunks_exact(f.count)) {
+                    add_weighted(&mut sums, f64::from(*weight), values);
+                }
+            }
         }
         sums
     }
@@ -211,8 +216,8 @@ impl FacetStatistics {
         self.remaining
     }
 
-    /// Share of the light left by the first bounce, per curve, that facets of reflectance `f` send out in the end, their first reflection
-    /// included. A smooth function of direction and alpha, estimated with a little noise.
+    /// Share of the [remaining](Self::remaining) light, per curve, that facets of reflectance `f` send out in the end; the first reflection
+    /// counts. It is a smooth function of direction and alpha, estimated with a little noise.
     pub fn later_share(&self, f: &ReflectanceCurves) -> Vec<f64> {
         let mut sums = vec![0.0; f.count];
         let mut throughput = vec![1.0; f.count];
@@ -238,8 +243,8 @@ impl FacetStatistics {
     }
 }
 
-/// Part of the light at `cos_theta_i` that crosses a rough interface between transparent media and leaves it upward all the
-/// same: the mean of `walks` low-discrepancy walks.
+/// Part of the light at `cos_theta_i` that crosses a rough interface between transparent media and returns upward: the mean of `walks`
+/// low-discrepancy walks.
 pub fn crossed_albedo(
     distribution: Distribution,
     alpha: f64,
@@ -255,6 +260,12 @@ pub fn crossed_albedo(
     let returned =
         (0..walks).map(|index| crossed_and_returned(distribution, alpha, facets, cos_theta_i, Walk { seed, index }));
     returned.sum::<f64>() / f64::from(walks)
+}
+
+fn add_weighted(sums: &mut [f64], weight: f64, values: &[f64]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += weight * value;
+    }
 }
 
 /// Spreads a weight over four neighbouring nodes so that cubics integrate exactly.
@@ -274,8 +285,7 @@ fn spread_fine(first: &mut [f32], cos_theta: f64, weight: f64) {
     first[base + 1] += (weight * t) as f32;
 }
 
-/// Mean of a function of the cosine around a node, weighted by a tent as wide as the intervals beside it, which is cut off at 0
-/// and 1.
+/// Mean of a function of the cosine around a node. The weight is a tent over the intervals on both sides, cut off at 0 and 1.
 fn tent_mean(f: impl Fn(f64) -> f64, cos_theta: f64, interval: f64) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for i in 0..2 * MEAN_POINTS {
@@ -359,7 +369,6 @@ impl Microsurface {
                 let (fraction, stretch) = (x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x));
                 let (r, density) = radius(distribution, from + (to - from) * fraction);
                 let slope = alpha * r;
-                let azimuth = |cos: f64| if cos >= 1.0 { 0.0 } else { libm::acos(cos.max(-1.0)) };
                 let horizon_azimuth = azimuth(cos_i * (1.0 - slope * slope) / (2.0 * slope * sin_i));
                 let (phi_from, phi_to) = match horizon {
                     Horizon::Above => (horizon_azimuth, PI),
@@ -389,6 +398,11 @@ impl Microsurface {
             }
         }
     }
+}
+
+/// The azimuth of a cosine, which may lie outside -1..=1 where a horizon does not cut a circle.
+fn azimuth(cos: f64) -> f64 {
+    if cos >= 1.0 { 0.0 } else { libm::acos(cos.max(-1.0)) }
 }
 
 /// Radius at which Gaussian slopes end.

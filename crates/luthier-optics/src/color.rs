@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::Rgb;
+use crate::rows::rows;
 
 /// Red, green and blue wavelengths of Granier and Heidrich 2003, the default of the three-wavelength mode.
 pub const GRANIER_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -11,6 +12,16 @@ pub const GRANIER_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 pub const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
 
 /// Rule by which a function of wavelength becomes three numbers.
+///
+/// ```
+/// use luthier_optics::color::Color;
+///
+/// // A perfect reflector is white.
+/// let nodes = Color::Spectral.nodes();
+/// let white = nodes.iter().fold([0.0; 3], |sum, node| [0, 1, 2].map(|c| sum[c] + node.weight[c]));
+/// assert!(white.iter().all(|channel| (channel - 1.0).abs() < 1e-12));
+/// assert_eq!(Color::ThreeWavelengths([645.0, 525.0, 445.0]).nodes().len(), 3);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Color {
@@ -21,7 +32,7 @@ pub enum Color {
     ThreeWavelengths([f64; 3]),
 }
 
-/// One wavelength and what a unit of reflectance there adds to each channel.
+/// A wavelength, and the weight of its reflectance in each channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthNode {
     /// Vacuum wavelength.
@@ -45,12 +56,12 @@ impl Color {
     }
 
     /// Fewer wavelengths for costly integrands that vary as given spectra do: `spectra` have a value per node of
-    /// [`Color::nodes`]. Nodes between which straight lines follow all spectra are left out, and their weights shared between
-    /// the neighbours kept.
+    /// [`Color::nodes`]. A node is left out if straight lines between others follow all spectra there; the neighbours that are kept share
+    /// its weight.
     ///
-    /// For each spectrum, what the lines miss, times the largest weight there, adds up to at most `tolerance`: a bound on the error
-    /// of its integral in every channel. Nodes are kept one after the other where most is missed (Ramer 1972). Three
-    /// wavelengths stay as they are.
+    /// For each spectrum, the differences to the lines, times the largest weight of each node, sum to at most `tolerance`. The sum bounds
+    /// the error of the integral in every channel. The node with the largest difference is kept next (Ramer 1972). Three wavelengths stay
+    /// as they are.
     pub fn sparse_nodes(&self, spectra: &[Vec<f64>], tolerance: f64) -> Vec<WavelengthNode> {
         let nodes = self.nodes();
         if matches!(self, Self::ThreeWavelengths(_)) {
@@ -84,8 +95,8 @@ impl Color {
 
 /// Fraction of the way from node `a` to node `b` at which node `i` lies.
 fn between(nodes: &[WavelengthNode], i: usize, a: usize, b: usize) -> f64 {
-    let nm = |i: usize| nodes[i].wavelength_nm;
-    (nm(i) - nm(a)) / (nm(b) - nm(a))
+    let [i, a, b] = [i, a, b].map(|node| nodes[node].wavelength_nm);
+    (i - a) / (b - a)
 }
 
 /// The kept nodes, with the weights of the others shared out linearly.
@@ -103,7 +114,7 @@ fn lump(nodes: &[WavelengthNode], kept: &[usize]) -> Vec<WavelengthNode> {
     lumped
 }
 
-/// First and last wavelength in nm that colours depend on: those of the observer's table.
+/// First and last wavelength of the observer's table, in nm: colours depend on none outside.
 pub const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
 /// Relative luminance of linear Rec.709.
@@ -111,21 +122,13 @@ pub fn luminance(rgb: Rgb) -> f64 {
     LUMINANCE[0] * rgb[0] + LUMINANCE[1] * rgb[1] + LUMINANCE[2] * rgb[2]
 }
 
-/// Weights of the observer times D65, through the matrix from XYZ to Rec.709 whose white is that very illuminant.
+/// The observer's functions times D65, in Rec.709. The white of the matrix from XYZ is the white of the table, so that weights sum to one.
 fn cie_1931_d65() -> &'static [WavelengthNode] {
     static NODES: OnceLock<Vec<WavelengthNode>> = OnceLock::new();
     NODES.get_or_init(|| {
-        let rows: Vec<[f64; 5]> = include_str!("../data/cie_1931_d65.csv")
-            .lines()
-            .filter(|line| !line.starts_with('#'))
-            .map(|line| {
-                let mut row = [f64::NAN; 5];
-                for (value, field) in row.iter_mut().zip(line.split(',')) {
-                    *value = field.parse().unwrap_or(f64::NAN);
-                }
-                row
-            })
-            .collect();
+        let rows = rows(include_str!("../data/cie_1931_d65.csv")).map_while(Result::ok);
+        let rows = rows.map(|row| std::array::from_fn(|cell| row.number(cell).unwrap_or(f64::NAN)));
+        let rows: Vec<[f64; 5]> = rows.collect();
         let mut white = [0.0; 3];
         for [_, x, y, z, power] in &rows {
             for (sum, bar) in white.iter_mut().zip([x, y, z]) {
@@ -160,12 +163,14 @@ pub(crate) fn xyz_to_rec709(white: [f64; 3]) -> Matrix {
 }
 
 fn inverse(m: &Matrix) -> Matrix {
-    let cofactor = |r: usize, c: usize| {
-        let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
-        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
-    };
-    let determinant = (0..3).map(|c| m[0][c] * cofactor(0, c)).sum::<f64>();
-    [0, 1, 2].map(|r: usize| [0, 1, 2].map(|c: usize| cofactor(c, r) / determinant))
+    let determinant = (0..3).map(|c| m[0][c] * cofactor(m, 0, c)).sum::<f64>();
+    [0, 1, 2].map(|r: usize| [0, 1, 2].map(|c: usize| cofactor(m, c, r) / determinant))
+}
+
+/// The determinant without a row and a column, with its sign: rows and columns behind them wrap around.
+fn cofactor(m: &Matrix, r: usize, c: usize) -> f64 {
+    let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+    m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! CIEDE2000 between colours seen under D65: about 1 is the least difference that is seen of two patches side by side.
+//! CIEDE2000 between colours seen under D65: about 1 is the least visible difference between two patches side by side.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,29 +7,29 @@ use crate::Rgb;
 /// Linear Rec.709 to XYZ over the white of D65, rows X, Y, Z (IEC 61966-2-1); each row sums to 1.
 const TO_XYZ: [[f64; 3]; 3] = [[0.4339, 0.3762, 0.1899], [0.2126, 0.7152, 0.0722], [0.0178, 0.1094, 0.8728]];
 
-/// CIE 1976 L*a*b* of a linear Rec.709 colour; what is below black is black.
+/// CIE 1976 L*a*b* of a linear Rec.709 colour; negative X, Y and Z count as 0.
 pub fn lab(rgb: Rgb) -> [f64; 3] {
-    let f = |row: [f64; 3]| {
+    let [x, y, z] = TO_XYZ.map(|row| {
         let t = (row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2]).max(0.0);
         if t > 216.0 / 24389.0 { libm::cbrt(t) } else { (24389.0 / 27.0 * t + 16.0) / 116.0 }
-    };
-    let [x, y, z] = TO_XYZ.map(f);
+    });
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// `sqrt(C^7 / (C^7 + 25^7))`: near 0 for greys, 1 for vivid colours.
+fn vividness(chroma: f64) -> f64 {
+    let c7 = libm::pow(chroma, 7.0);
+    (c7 / (c7 + 6_103_515_625.0)).sqrt()
 }
 
 /// CIEDE2000 with unit weights (Sharma, Wu and Dalal 2005).
 pub fn ciede2000([l1, a1, b1]: [f64; 3], [l2, a2, b2]: [f64; 3]) -> f64 {
-    let seventh = |c: f64| {
-        let c7 = libm::pow(c, 7.0);
-        (c7 / (c7 + 6_103_515_625.0)).sqrt()
-    };
-    let g = 0.5 * (1.0 - seventh(0.5 * (libm::hypot(a1, b1) + libm::hypot(a2, b2))));
-    let polar = |a: f64, b: f64| {
+    let g = 0.5 * (1.0 - vividness(0.5 * (libm::hypot(a1, b1) + libm::hypot(a2, b2))));
+    let [(c1, h1), (c2, h2)] = [(a1, b1), (a2, b2)].map(|(a, b)| {
         let a = (1.0 + g) * a;
         let angle = if a == 0.0 && b == 0.0 { 0.0 } else { libm::atan2(b, a) };
         (libm::hypot(a, b), if angle < 0.0 { angle + TAU } else { angle })
-    };
-    let ((c1, h1), (c2, h2)) = (polar(a1, b1), polar(a2, b2));
+    });
     let turn = match h2 - h1 {
         _ if c1 * c2 == 0.0 => 0.0,
         d if d > PI => d - TAU,
@@ -50,7 +50,7 @@ pub fn ciede2000([l1, a1, b1]: [f64; 3], [l2, a2, b2]: [f64; 3]) -> f64 {
     let s_l = 1.0 + 0.015 * l_50 / (20.0 + l_50).sqrt();
     let (s_c, s_h) = (1.0 + 0.045 * c, 1.0 + 0.015 * c * t);
     let away = (h.to_degrees() - 275.0) / 25.0;
-    let rotation = -2.0 * seventh(c) * libm::sin((60.0 * libm::exp(-away * away)).to_radians());
+    let rotation = -2.0 * vividness(c) * libm::sin((60.0 * libm::exp(-away * away)).to_radians());
     let [l, c, h] = [d_l / s_l, d_c / s_c, d_h / s_h];
     (l * l + c * c + h * h + rotation * c * h).max(0.0).sqrt()
 }

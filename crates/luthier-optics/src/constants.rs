@@ -9,7 +9,16 @@ use std::sync::OnceLock;
 use crate::index_file::csv;
 use crate::ior::Ior;
 
-/// A built-in index of refraction and where it comes from.
+/// A built-in index of refraction, and its source.
+///
+/// ```
+/// use luthier_optics::constants::dataset;
+///
+/// let silver = dataset("ag").unwrap();
+/// assert_eq!((silver.class, silver.k_given), ("conductor", true));
+/// assert!(silver.ior.at(550.0).im > 3.0);
+/// assert!(dataset("unobtainium").is_none());
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
     /// Name in material files: lower case, digits and underscores.

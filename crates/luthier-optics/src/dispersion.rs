@@ -39,10 +39,10 @@ const FORMULAS: [(Kind, usize); 9] = [
 /// Why there is no such formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum FormulaError {
-    /// A number of no formula.
+    /// No formula has the number.
     #[error("there is no formula {0}: they are 1 to 9")]
     Unknown(usize),
-    /// Coefficients that are none of the formula.
+    /// No coefficients, or more than the formula takes.
     #[error("{found} coefficients; formula {number} takes 1 to {most}")]
     Coefficients {
         /// Number of the formula.
@@ -72,30 +72,21 @@ impl Formula {
     pub fn at(&self, um: f64) -> f64 {
         let c = |i: usize| self.coefficients.get(i - 1).copied().unwrap_or(0.0);
         let sq = um * um;
-        // Coefficients from `first` on, by pairs.
-        let pairs = |first: usize, term: &dyn Fn(f64, f64) -> f64| -> f64 {
-            self.coefficients
-                .get(first - 1..)
-                .unwrap_or_default()
-                .chunks(2)
-                .map(|p| term(p[0], p.get(1).copied().unwrap_or(0.0)))
-                .sum()
-        };
         let power = |factor: f64, exponent: f64| factor * libm::pow(um, exponent);
         match self.kind {
-            Kind::Sellmeier => libm::sqrt(1.0 + c(1) + pairs(2, &|b, l| b * sq / (sq - l * l))),
-            Kind::Sellmeier2 => libm::sqrt(1.0 + c(1) + pairs(2, &|b, l_sq| b * sq / (sq - l_sq))),
-            Kind::Polynomial => libm::sqrt(c(1) + pairs(2, &power)),
+            Kind::Sellmeier => libm::sqrt(1.0 + c(1) + self.pairs(2, |b, l| b * sq / (sq - l * l))),
+            Kind::Sellmeier2 => libm::sqrt(1.0 + c(1) + self.pairs(2, |b, l_sq| b * sq / (sq - l_sq))),
+            Kind::Polynomial => libm::sqrt(c(1) + self.pairs(2, power)),
             Kind::RefractiveIndexInfo => {
-                // A term of no factor is none, and not 0/0.
-                let resonance = |i: usize| match c(i) {
+                let [first, second] = [2, 6].map(|i| match c(i) {
+                    // A resonance without a factor adds nothing; computed, it would be 0/0.
                     0.0 => 0.0,
                     factor => power(factor, c(i + 1)) / (sq - libm::pow(c(i + 2), c(i + 3))),
-                };
-                libm::sqrt(c(1) + resonance(2) + resonance(6) + pairs(10, &power))
+                });
+                libm::sqrt(c(1) + first + second + self.pairs(10, power))
             }
-            Kind::Cauchy => c(1) + pairs(2, &power),
-            Kind::Gases => 1.0 + c(1) + pairs(2, &|b, c| if b == 0.0 { 0.0 } else { b / (c - 1.0 / sq) }),
+            Kind::Cauchy => c(1) + self.pairs(2, power),
+            Kind::Gases => 1.0 + c(1) + self.pairs(2, |b, c| if b == 0.0 { 0.0 } else { b / (c - 1.0 / sq) }),
             Kind::Herzberger => {
                 let l = 1.0 / (sq - 0.028);
                 c(1) + c(2) * l + c(3) * l * l + c(4) * sq + c(5) * sq * sq + c(6) * sq * sq * sq
@@ -113,39 +104,50 @@ impl Formula {
         }
     }
 
+    /// The sum of terms of two coefficients each, from number `first` on.
+    fn pairs(&self, first: usize, term: impl Fn(f64, f64) -> f64) -> f64 {
+        let pairs = self.coefficients.get(first - 1..).unwrap_or_default().chunks(2);
+        pairs.map(|p| term(p[0], p.get(1).copied().unwrap_or(0.0))).sum()
+    }
+
     /// Wavelengths in nm and indices from `first` to `last` nm, near enough for straight lines between them to err by less than 1e-6.
     /// `Err` has a wavelength at which the formula gives no index.
     pub fn samples(&self, first: f64, last: f64) -> Result<Vec<(f64, f64)>, f64> {
-        let at = |nm: f64| Some((nm, self.at(nm / 1e3))).filter(|(_, n)| n.is_finite() && *n > 0.0).ok_or(nm);
         let steps = libm::ceil((last - first) / STEP_NM).max(1.0) as u32;
-        let mut samples = vec![at(first)?];
+        let mut samples = vec![self.sample(first)?];
         for step in 1..=steps {
             let to = if step == steps { last } else { first + STEP_NM * f64::from(step) };
             // Halves of a step wait until all to their left is done.
-            let mut waiting = vec![(at(to)?, 0)];
+            let mut waiting = vec![(self.sample(to)?, 0)];
             while let Some((right, halvings)) = waiting.pop() {
                 let left = samples[samples.len() - 1];
-                let err = |share: f64| -> Result<f64, f64> {
-                    let (_, n) = at(left.0 + share * (right.0 - left.0))?;
-                    Ok((left.1 + share * (right.1 - left.1) - n).abs())
-                };
-                let is_straight = err(0.5)?.max(err(0.25)?).max(err(0.75)?) <= CHORD_ERR;
-                if is_straight || halvings == HALVINGS_MAX {
+                let mut err: f64 = 0.0;
+                for share in [0.5, 0.25, 0.75] {
+                    let (_, n) = self.sample(left.0 + share * (right.0 - left.0))?;
+                    err = err.max((left.1 + share * (right.1 - left.1) - n).abs());
+                }
+                if err <= CHORD_ERR || halvings == HALVINGS_MAX {
                     samples.push(right);
                 } else {
                     waiting.push((right, halvings + 1));
-                    waiting.push((at(0.5 * (left.0 + right.0))?, halvings + 1));
+                    waiting.push((self.sample(0.5 * (left.0 + right.0))?, halvings + 1));
                 }
             }
         }
         Ok(samples)
+    }
+
+    /// A wavelength in nm with its index, or the wavelength alone if the formula gives none.
+    fn sample(&self, nm: f64) -> Result<(f64, f64), f64> {
+        Some((nm, self.at(nm / 1e3))).filter(|(_, n)| n.is_finite() && *n > 0.0).ok_or(nm)
     }
 }
 
 /// Widest step of samples.
 const STEP_NM: f64 = 5.0;
 
-/// Error of a straight line at three places of a step, half of what is promised: it is largest near the middle one.
+/// Largest error of a straight line at three places of a step: half of the promised 1e-6, because the largest error is near the middle place
+/// and not at it.
 const CHORD_ERR: f64 = 5e-7;
 
 /// Halvings of a step: a thousandth of it is narrower than any resonance of a medium, and a range has at most 10^5 samples.

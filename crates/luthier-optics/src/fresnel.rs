@@ -30,7 +30,7 @@ pub struct FilmLayer {
     pub waves: f64,
 }
 
-/// Least wave number along the normal inside a film, over the vacuum's.
+/// Least wave number along the normal inside a film, over the vacuum's: see [`airy`].
 const FILM_Q_MIN: f64 = 1e-8;
 
 /// Reflectance of a bare interface, exact for any complex index below, total reflection included.
@@ -74,25 +74,30 @@ pub fn transmitted(above: f64, films: &[FilmLayer], below: f64, cos_theta_i: f64
     if q_above <= 0.0 || q_below_sq <= 0.0 {
         return 0.0;
     }
-    // Manifests of scenes state errors to the last digit, in which this root and `sqrt` differ.
-    let root = |z: Complex64| {
-        let modulus = libm::hypot(z.re, z.im);
-        let [re, im] = [z.re, -z.re].map(|x| libm::sqrt((0.5 * (modulus + x)).max(0.0)));
-        Complex64::new(re, im)
-    };
-    let boundary = |[r_s, r_p]: [Complex64; 2], (na, qa): Medium, (nb, qb): Medium| {
-        [(r_s, 2.0 * qa / (qa + qb)), (r_p, 2.0 * na * nb * qa / (nb * nb * qa + na * na * qb))]
-    };
     let [above, below] = [above, below].map(|ior| Complex64::new(ior, 0.0));
-    let [s, p] = airy(above, films, below, cos_theta_i, root, boundary, |boundary, inner, q, waves| {
-        let once = exp_i(q * (2.0 * PI * waves));
-        [0, 1].map(|p: usize| {
-            let ((r, t), echo) = (boundary[p], inner[p].0 * once * once);
-            let sum = Complex64::ONE + r * echo;
-            ((r + echo) / sum, t * once * inner[p].1 / sum)
-        })
-    });
+    let [s, p] =
+        airy(above, films, below, cos_theta_i, sqrt_by_halves, with_transmitted, |boundary, inner, q, waves| {
+            let once = exp_i(q * (2.0 * PI * waves));
+            [0, 1].map(|p: usize| {
+                let ((r, t), echo) = (boundary[p], inner[p].0 * once * once);
+                let sum = Complex64::ONE + r * echo;
+                ((r + echo) / sum, t * once * inner[p].1 / sum)
+            })
+        });
     0.5 * (s.1.norm_sqr() + p.1.norm_sqr()) * libm::sqrt(q_below_sq) / q_above
+}
+
+/// The root that [`sqrt`] takes, for z with Im >= 0, by another formula. Manifests of scenes state errors to the last digit, in which the
+/// two differ.
+fn sqrt_by_halves(z: Complex64) -> Complex64 {
+    let modulus = libm::hypot(z.re, z.im);
+    let [re, im] = [z.re, -z.re].map(|x| libm::sqrt((0.5 * (modulus + x)).max(0.0)));
+    Complex64::new(re, im)
+}
+
+/// Amplitudes (s, p) that a boundary reflects, each with the amplitude that it transmits.
+fn with_transmitted([r_s, r_p]: [Complex64; 2], (na, qa): Medium, (nb, qb): Medium) -> [(Complex64, Complex64); 2] {
+    [(r_s, 2.0 * qa / (qa + qb)), (r_p, 2.0 * na * nb * qa / (nb * nb * qa + na * na * qb))]
 }
 
 /// Amplitudes (s, p) that a bare interface reflects.
@@ -109,11 +114,20 @@ fn reflected((na, qa): Medium, (nb, qb): Medium) -> [Complex64; 2] {
     [ratio(qa - qb, qa + qb), ratio(nb * nb * qa - na * na * qb, nb * nb * qa + na * na * qb)]
 }
 
+/// Squared wave number along the normal in a medium of index `ior`, `q^2 = n^2 - (n_above sin theta_above)^2`: written so that nothing cancels
+/// between nearly equal indices.
+#[inline(always)]
+fn q_squared((above, q_above): Medium, ior: Complex64) -> Complex64 {
+    (ior - above) * (ior + above) + q_above * q_above
+}
+
 /// Airy's formula from the bottom up: r = (r_ab + r_below e^{i delta}) / (1 + r_ab r_below e^{i delta}) with
 /// delta = 4 pi n cos d / lambda (Born and Wolf sec. 7.6; Parratt 1954).
 ///
-/// `root` has real and imaginary parts that are not negative. `boundary` makes the amplitudes of the boundary between two media from those reflected. `join` makes those of a film and all below it
-/// from those of its upper boundary, those of all below it, its q, and its thickness in waves.
+/// - `root` takes the square root whose real and imaginary parts are not negative.
+/// - `boundary` turns the reflected amplitudes of a boundary, with the media above and below it, into the amplitudes to combine.
+/// - `join` combines the amplitudes of a film's upper boundary with the amplitudes of everything below, by the film's q and its thickness in
+///   waves.
 fn airy<A>(
     above: Complex64,
     films: &[FilmLayer],
@@ -127,24 +141,21 @@ fn airy<A>(
     let matched = films.iter().take_while(|film| above.im == 0.0 && film.ior == above).count();
     let films = &films[matched..];
 
-    // q^2 = n^2 - (n_above sin theta_above)^2, written so that nothing cancels between nearly equal indices.
-    let q_above = above * cos_theta_i;
-    let normal = |ior: Complex64| root((ior - above) * (ior + above) + q_above * q_above);
-
-    // Airy's formula is 0/0 for a film exactly at its critical angle. The reflectance is even in q, so a q kept off zero errs by
-    // its square only, and by rounding over q.
-    let inside = |ior: Complex64| {
-        let q = normal(ior);
-        if q.norm_sqr() < FILM_Q_MIN * FILM_Q_MIN { Complex64::new(FILM_Q_MIN, 0.0) } else { q }
+    let top = (above, above * cos_theta_i);
+    // The medium above the i-th film. Airy's formula is 0/0 for a film exactly at its critical angle. The reflectance is even in q, so a q
+    // kept off zero errs by its square only, and by rounding over q.
+    let medium = |i: usize| {
+        let Some(FilmLayer { ior, .. }) = i.checked_sub(1).map(|film| films[film]) else { return top };
+        let q = root(q_squared(top, ior));
+        (ior, if q.norm_sqr() < FILM_Q_MIN * FILM_Q_MIN { Complex64::new(FILM_Q_MIN, 0.0) } else { q })
     };
 
-    let medium = |i: usize| if i == 0 { (above, q_above) } else { (films[i - 1].ior, inside(films[i - 1].ior)) };
-    let at = |upper: Medium, lower: Medium| boundary(reflected(upper, lower), upper, lower);
+    let base = (below, root(q_squared(top, below)));
     let mut lower = medium(films.len());
-    let mut inner = at(lower, (below, normal(below)));
+    let mut inner = boundary(reflected(lower, base), lower, base);
     for (i, film) in films.iter().enumerate().rev() {
         let upper = medium(i);
-        inner = join(at(upper, lower), inner, lower.1, film.waves);
+        inner = join(boundary(reflected(upper, lower), upper, lower), inner, lower.1, film.waves);
         lower = upper;
     }
     inner
@@ -156,7 +167,7 @@ fn ratio(a: Complex64, b: Complex64) -> Complex64 {
     if b == Complex64::ZERO {
         return Complex64::ZERO;
     }
-    // The squared modulus that division needs is no number below 1e-154 and above 1e154.
+    // Division needs the squared modulus, which underflows for moduli below 1e-154 and overflows above 1e154.
     if b.norm_sqr().is_normal() {
         return a / b;
     }

@@ -10,6 +10,15 @@ use crate::schlick::{Lazanyi, schlick};
 use crate::stack::{Base, Film, Stack};
 
 /// The optics of one interface: the medium above, films, the medium below. No micro-surface.
+///
+/// ```
+/// use luthier_optics::{color::Color, constants::dataset, interface::Interface, ior::Ior};
+///
+/// let gold = dataset("au").unwrap().ior.clone();
+/// let interface = Interface { above: Ior::vacuum(), films: Vec::new(), below: gold };
+/// let [red, green, blue] = interface.sampled(&Color::Spectral).rgb(1.0);
+/// assert!(red > 0.9 && green < 0.85 && blue < 0.5);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interface {
     /// Transparent medium above (its k is ignored: light that reaches the interface has been attenuated already).
@@ -21,7 +30,8 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The interface at the top of a layer, as far as it reflects, or `None` for a diffuse base, which has none, and out of range.
+    /// The interface at the top of a layer, with the media that its reflectance is computed from. `None` for a diffuse base, which has no
+    /// interface, below an opaque layer, and for a number out of range.
     pub fn of(stack: &Stack, layer: usize) -> Option<Self> {
         let here = stack.layers.get(layer)?;
         let below = match &here.base {
@@ -37,8 +47,7 @@ impl Interface {
         Some(Self { above, films: here.films.clone(), below })
     }
 
-    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2: those of an interface of Schlick's differ by
-    /// its F0 alone.
+    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2. Channels differ in the F0 alone, if there is one.
     pub fn at(&self, wavelength_nm: f64, channel: usize) -> Monochrome {
         Monochrome {
             f0: self.below.f0().map(|f0| f0[channel]),
@@ -48,14 +57,14 @@ impl Interface {
         }
     }
 
-    /// Whether some wavelength of a colour mode is totally reflected from an angle on that is not that of all, or where media absorb: the
-    /// reflectance then has kinks over the cosine of incidence and over that of the refracted direction.
+    /// Whether the reflectance has kinks over the cosine of incidence and over the cosine of the refracted direction alike. It does if some
+    /// wavelength of a colour mode is totally reflected, and critical angles differ or media absorb.
     pub fn has_kink(&self, color: &Color) -> bool {
         let sampled = self.sampled(color);
         // Schlick's formula has none.
-        let clear = || sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.f0.is_none() && at.below.im <= NO_KINK);
-        let etas = || clear().map(|at| at.below.re / at.above.re);
-        let (least, most) = etas().fold((f64::INFINITY, 0.0), |(a, b), eta| (f64::min(a, eta), f64::max(b, eta)));
+        let clear = sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.f0.is_none() && at.below.im <= NO_KINK);
+        let etas = clear.map(|at| at.below.re / at.above.re);
+        let (least, most) = etas.fold((f64::INFINITY, 0.0), |(a, b), eta| (f64::min(a, eta), f64::max(b, eta)));
         least < 1.0 && (least < most || sampled.critical_cot_sq() == 0.0)
     }
 
@@ -71,20 +80,17 @@ impl Interface {
 
     /// The interface at given wavelength nodes; a single node when it is achromatic.
     pub fn at_nodes(&self, nodes: &[WavelengthNode]) -> Sampled {
-        let is_achromatic = self.is_achromatic();
-        match self.below.f0() {
-            // Each channel by itself, of one wavelength or of all.
-            Some([r, g, b]) if r != g || g != b => {
-                let channels = |weight: Rgb, nm: f64| (0..3).map(move |c| (channel_of(weight, c), self.at(nm, c)));
-                let nodes = match is_achromatic {
-                    true => channels([1.0; 3], 550.0).collect(),
-                    false => nodes.iter().flat_map(|n| channels(n.weight, n.wavelength_nm)).collect(),
-                };
-                Sampled { nodes }
-            }
-            _ if is_achromatic => Sampled { nodes: vec![([1.0; 3], self.at(550.0, 0))] },
-            _ => Sampled { nodes: nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect() },
-        }
+        let single = [WavelengthNode { wavelength_nm: 550.0, weight: [1.0; 3] }];
+        let nodes = if self.is_achromatic() { &single } else { nodes };
+        let nodes = match self.below.f0() {
+            // Each channel by itself.
+            Some([r, g, b]) if r != g || g != b => nodes
+                .iter()
+                .flat_map(|n| (0..3).map(|c| (channel_of(n.weight, c), self.at(n.wavelength_nm, c))))
+                .collect(),
+            _ => nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect(),
+        };
+        Sampled { nodes }
     }
 }
 
@@ -105,7 +111,7 @@ pub struct Monochrome {
     pub films: Vec<FilmLayer>,
     /// Index below.
     pub below: Complex64,
-    /// Reflectance at normal incidence, where Schlick's formula takes the place of Fresnel's. There are no films then.
+    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. There are no films then.
     pub f0: Option<f64>,
 }
 
@@ -119,8 +125,8 @@ impl Monochrome {
     }
 }
 
-/// An interface in the form in which stores keep it, which has no place for an F0: it is the imaginary part of the index above, and that
-/// of the index below is -1 then.
+/// An interface as stores keep it. The form has no place for an F0: an F0 is the imaginary part of the index above, and an imaginary part of
+/// -1 below marks it.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Stored {
@@ -158,23 +164,23 @@ pub struct Sampled {
     pub nodes: Vec<(Rgb, Monochrome)>,
 }
 
-/// Media that absorb as much reflect smoothly at all angles.
+/// Extinction coefficient above which media reflect smoothly at all angles.
 const NO_KINK: f64 = 1e-2;
 
-/// Absorption that does not count: what data sets of clear glass and water have in the visible.
+/// Extinction coefficient that counts as none: data sets of clear glass and water reach it in the visible.
 const TRACE_OF_ABSORPTION: f64 = 1e-6;
 
 impl Sampled {
-    /// Squared cotangent of the critical angle, `1 / eta^2 - 1`, at the wavelength of the largest index below over that above: all light
-    /// flatter than that is totally reflected. 0 where some wavelength never is, where films or the medium below absorb, and for interfaces
-    /// of Schlick's, which media of no lower index lie below.
+    /// Squared cotangent of the critical angle, `1 / eta^2 - 1`, at the wavelength of the largest relative index `eta`: flatter light is
+    /// totally reflected at every wavelength. 0 if some wavelength never is, if films or the medium below absorb, and for Schlick's
+    /// formula, which has no total reflection.
     pub fn critical_cot_sq(&self) -> f64 {
-        let is_clear = |index: Complex64| index.im <= TRACE_OF_ABSORPTION;
-        let is_total =
-            |at: &Monochrome| at.f0.is_none() && is_clear(at.below) && at.films.iter().all(|film| is_clear(film.ior));
-        let interfaces = || self.nodes.iter().map(|(_, at)| at);
-        let eta = interfaces().map(|at| at.below.re / at.above.re).fold(0.0, f64::max);
-        if eta > 0.0 && eta < 1.0 && interfaces().all(is_total) { 1.0 / (eta * eta) - 1.0 } else { 0.0 }
+        let eta = self.nodes.iter().map(|(_, at)| at.below.re / at.above.re).fold(0.0, f64::max);
+        let is_clear = self.nodes.iter().all(|(_, at)| {
+            let mut indices = at.films.iter().map(|film| film.ior).chain([at.below]);
+            at.f0.is_none() && indices.all(|index| index.im <= TRACE_OF_ABSORPTION)
+        });
+        if eta > 0.0 && eta < 1.0 && is_clear { 1.0 / (eta * eta) - 1.0 } else { 0.0 }
     }
 
     /// Unpolarised reflectance per channel.
@@ -182,8 +188,8 @@ impl Sampled {
         self.sum(|interface| interface.reflectance(cos_theta_i))
     }
 
-    /// Schlick's form of each channel: through its reflectance at normal incidence. Linear in the reflectances at the wavelengths, so that in
-    /// spectral colour it is the sum of their forms.
+    /// Schlick's form of each channel, through its reflectance at normal incidence. The form is linear in this reflectance: in spectral
+    /// colour it is the sum of the forms of all wavelengths.
     pub fn schlick(&self) -> [Lazanyi; 3] {
         self.rgb(1.0).map(|f0| Lazanyi { f0, a: 0.0, exponent: 1.0 })
     }

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 use crate::ndf::Ndf;
 use crate::quadrature::gauss_legendre;
 
-/// Whether shadowing knows that high facets are lit and seen alike.
+/// Whether masking and shadowing are independent, or correlated because high facets are both lit and seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Correlation {
     /// The product of both G1.
@@ -65,7 +65,11 @@ pub fn schlick_smith_g1(alpha: f64, cos_theta: f64) -> f64 {
     if cos_theta <= 0.0 {
         return 0.0;
     }
-    let k = alpha * libm::sqrt(2.0 / PI);
+    rational_g1(alpha * libm::sqrt(2.0 / PI), cos_theta)
+}
+
+/// Schlick's fit for any k: cos/(cos (1 - k) + k).
+pub(crate) fn rational_g1(k: f64, cos_theta: f64) -> f64 {
     cos_theta / (cos_theta * (1.0 - k) + k)
 }
 
@@ -83,8 +87,8 @@ fn rule() -> &'static [(f64, f64)] {
     RULE.get_or_init(|| gauss_legendre(NODES))
 }
 
-/// Smith's G1 of any isotropic distribution, by quadrature of the facets that a direction sees: what gives Blinn-Phong, ABC and SGD,
-/// which have no closed form, a masking that conserves area (Heitz 2014, eq. 42).
+/// Smith's G1 of any isotropic distribution, by quadrature over the facets that a direction sees (Heitz 2014, eq. 42). It gives Blinn-Phong,
+/// ABC and SGD, which have no closed form, a masking that conserves area.
 ///
 /// Within 1e-6 for lobes wider than a hundredth of a radian; costs 256 evaluations of D.
 pub fn smith_g1_of(ndf: &impl Ndf, cos_theta: f64) -> f64 {

@@ -11,14 +11,14 @@ use crate::microfacet::lambda;
 use crate::stack::Distribution;
 use crate::visible_normals;
 
-/// Walks whose remaining light falls below this fraction end; what is left counts as leaving at the last facet. The error
-/// this makes in a reflectance is below half of it.
+/// A walk ends when its remaining light falls below this fraction, which then counts as leaving at the last facet. The error of a
+/// reflectance is below half of the fraction.
 const REMAINDER: f64 = 1e-3;
 
 /// Largest number of facets of a walk.
 const MAX_FACETS: u32 = 64;
 
-/// Sets of four Sobol dimensions that there are.
+/// Number of sets of four Sobol dimensions; later facets use them again.
 const SETS: u32 = 64;
 
 /// Identity of a walk: its numbers are a function of this and nothing else.
@@ -119,7 +119,7 @@ fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, m
 /// one of them by chance.
 const SPLIT: f64 = 0.02;
 
-/// An interface between transparent media, as the facets of a micro-surface have it.
+/// The interface between transparent media at the facets of a micro-surface.
 #[derive(Clone, Copy)]
 pub struct TransparentFacets<R> {
     /// Index below over index above.
@@ -142,7 +142,7 @@ impl<R: Fn(f64) -> f64> TransparentFacets<R> {
     }
 }
 
-/// Fraction of the light of a walk that crosses an interface between transparent media, and leaves it upward all the same.
+/// Fraction of the light of a walk that crosses an interface between transparent media and returns upward.
 ///
 /// Light that leaves counts by its expectation; strong branches are followed both ways, weak ones reflect or refract by chance.
 /// `alpha` > 0, `cos_theta_i` > 0.
@@ -248,7 +248,7 @@ impl Passage {
     }
 }
 
-/// The depth of a place in the frame of the other side: from `-ln c` to `-ln(1 - c)`.
+/// The depth of a place in the frame of the other side: from `-ln c` to `-ln(1 - c)`, which stays finite at depth 0.
 fn flipped(depth: f64) -> f64 {
     -libm::log((-libm::expm1(-depth)).max(f64::MIN_POSITIVE))
 }

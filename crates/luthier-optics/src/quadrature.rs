@@ -46,25 +46,25 @@ const REACH_WITHIN: f64 = 1.06;
 impl GradedRules {
     /// Rules of `first + per_fold L` nodes, rounded up.
     pub fn new(first: f64, per_fold: f64) -> Self {
-        // Neighbours often have as many nodes.
+        // Kept for the next rule: neighbours often have as many nodes.
         let mut even = Vec::new();
-        let rule = |index: u64| {
+        let rules = (0..LAST_EXPONENT << RULE_BITS).map(|index| {
             let squared = f64::from_bits(1.0f64.to_bits() + (index << (52 - RULE_BITS)));
             let length = libm::asinh(REACH_WITHIN * libm::sqrt(squared));
             let end = libm::sinh(length);
-            let graded = |&(u, weight): &(f64, f64)| {
-                (libm::sinh(length * u) / end, weight * length * libm::cosh(length * u) / end)
-            };
             let nodes = libm::ceil(first + per_fold * length) as usize;
             if even.len() != nodes {
                 even = gauss_legendre(nodes);
             }
-            even.iter().map(graded).collect()
-        };
-        Self { rules: (0..LAST_EXPONENT << RULE_BITS).map(rule).collect() }
+            let graded = even
+                .iter()
+                .map(|&(u, weight)| (libm::sinh(length * u) / end, weight * length * libm::cosh(length * u) / end));
+            graded.collect()
+        });
+        Self { rules: rules.collect() }
     }
 
-    /// Nodes and weights for an interval of which the integrand changes fastest within the part `1 / reach` at its start.
+    /// Nodes and weights for an interval if the integrand changes fastest within the part `1 / reach` at its start.
     pub fn for_reach_squared(&self, reach_squared: f64) -> &[(f64, f64)] {
         // The highest bits of a positive number are its logarithm, as good as needed here.
         let index = (reach_squared.max(1.0).to_bits() - 1.0f64.to_bits()) >> (52 - RULE_BITS);
@@ -73,10 +73,10 @@ impl GradedRules {
 
     /// Rules with every node and weight changed, and more nodes behind.
     pub fn map(self, change: impl Fn(f64, f64) -> (f64, f64), behind: &[(f64, f64)]) -> Self {
-        let changed = |rule: Vec<(f64, f64)>| {
+        let rules = self.rules.into_iter().map(|rule| {
             rule.into_iter().map(|(node, weight)| change(node, weight)).chain(behind.iter().copied()).collect()
-        };
-        Self { rules: self.rules.into_iter().map(changed).collect() }
+        });
+        Self { rules: rules.collect() }
     }
 }
 

@@ -35,7 +35,7 @@ pub fn index_of_f0(f0: f64) -> f64 {
 /// F0 of the interface of a `metallic-roughness` surface, and albedo of the diffuse base below it (glTF 2.0, appendix B):
 ///
 /// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
-/// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
+/// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
 ///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes (Saunderson 1942).
 pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
     let f0 = base_color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
@@ -94,9 +94,9 @@ impl Lazanyi {
     /// The least-squares correction for an interface: for each exponent the weight in closed form, over equal steps of the
     /// cosine; the best exponent to an eighth.
     pub fn fit(above: f64, below: Complex64) -> Self {
-        let exact = |cos: f64| fresnel::interface(Complex64::new(above, 0.0), below, cos).unpolarised();
-        let angles: Vec<f64> = Self::cosines().map(exact).collect();
-        Self::through(f0(above, below), &angles)
+        let index = Complex64::new(above, 0.0);
+        let exact = Self::cosines().map(|cos| fresnel::interface(index, below, cos).unpolarised());
+        Self::through(f0(above, below), &exact.collect::<Vec<_>>())
     }
 
     /// The cosines that a fit looks at.
@@ -106,8 +106,8 @@ impl Lazanyi {
 
     /// [`Lazanyi::fit`] to any reflectance, from its values at normal incidence and at [`Lazanyi::cosines`].
     pub fn through(f0: f64, values: &[f64]) -> Self {
-        let excess = |(cos, exact): (f64, &f64)| (cos, schlick(f0, cos) - exact);
-        let angles: Vec<(f64, f64)> = Self::cosines().zip(values).map(excess).collect();
+        let angles = Self::cosines().zip(values).map(|(cos, exact)| (cos, schlick(f0, cos) - exact));
+        let angles: Vec<(f64, f64)> = angles.collect();
         let mut best = (f64::INFINITY, Self { f0, a: 0.0, exponent: 1.0 });
         for exponent in FIT_EXPONENTS.map(|e| f64::from(e) / 8.0) {
             let (mut cross, mut square) = (0.0, 0.0);
@@ -162,9 +162,9 @@ impl F82 {
     /// The reflectance, not below 0.
     pub fn eval(&self, cos_theta: f64) -> f64 {
         let there = schlick(self.f0, F82_COS_THETA);
-        let sixth = |cos: f64| cos * (1.0 - cos) * fifth(1.0 - cos);
-        let weight = there * (1.0 - self.tint) / sixth(F82_COS_THETA);
-        (schlick(self.f0, cos_theta) - weight * sixth(cos_theta)).max(0.0)
+        let [dip, deepest] = [cos_theta, F82_COS_THETA].map(|cos| cos * (1.0 - cos) * fifth(1.0 - cos));
+        let weight = there * (1.0 - self.tint) / deepest;
+        (schlick(self.f0, cos_theta) - weight * dip).max(0.0)
     }
 }
 

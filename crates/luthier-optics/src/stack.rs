@@ -3,7 +3,7 @@
 //! A [`Stack`] is read from the top down. Each [`Layer`] is one interface (its micro-surface, the thin
 //! films that coat it, the medium or base below it). A dielectric base continues into a [`Slab`] and
 //! the next layer; a conductor or a diffuse base ends the stack; a dielectric that comes last is
-//! half-infinite, and what enters it is lost.
+//! half-infinite, and light that enters it is lost.
 
 use crate::Rgb;
 use crate::fresnel::FilmLayer;
@@ -35,7 +35,7 @@ impl Stack {
     }
 }
 
-/// One interface and what lies below it.
+/// One interface, and the material below it.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layer {
@@ -134,7 +134,7 @@ pub struct FilmThickness {
 }
 
 impl FilmThickness {
-    /// The middle of the range: what models without a thickness map use.
+    /// The middle of the range, for models without a thickness map.
     pub fn nominal_nm(&self) -> f64 {
         0.5 * (self.min_nm + self.max_nm)
     }
@@ -174,7 +174,7 @@ impl Distribution {
         [Self::Beckmann, Self::Ggx, Self::Blinn].into_iter().find(|distribution| distribution.name() == name)
     }
 
-    /// Slope parameter that follows from the parameters of a distribution that has some of its own; others take any.
+    /// Slope parameter that the own parameters of a distribution decide; `None` for distributions that take any slope parameter.
     pub fn own_alpha(self) -> Option<f64> {
         match self {
             Self::Abc(shape) | Self::Sgd(shape) => Some(shape.alpha()),
@@ -182,13 +182,13 @@ impl Distribution {
         }
     }
 
-    /// Whether Smith's masking, visible normals and walks between facets have a closed form: Beckmann and GGX, whose slopes are stretched from
-    /// those of alpha 1.
+    /// Whether Smith's masking, visible normals and walks between facets have a closed form: for Beckmann and GGX, because every alpha is a
+    /// stretched alpha 1.
     pub fn has_walks(self) -> bool {
         matches!(self, Self::Beckmann | Self::Ggx)
     }
 
-    /// The distribution with walks that stands in for it: its own, or else GGX of its slope parameter.
+    /// The distribution that stands in for it in walks between facets: itself, or GGX of equal slope parameter.
     #[must_use]
     pub fn walked(self) -> Self {
         if self.has_walks() { self } else { Self::Ggx }
@@ -225,7 +225,7 @@ impl Surface {
         self.alpha_x == 0.0 && self.alpha_y == 0.0
     }
 
-    /// Geometric mean of the two slope parameters: what isotropic models use.
+    /// Geometric mean of the two slope parameters, for isotropic models.
     pub fn alpha_isotropic(&self) -> f64 {
         (self.alpha_x * self.alpha_y).sqrt()
     }

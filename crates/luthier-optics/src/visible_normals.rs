@@ -31,6 +31,7 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
             let sin = libm::sqrt((1.0 - z * z).max(0.0));
             let (sin_phi, cos_phi) = libm::sincos(phi);
             let h = DVec3::new(sin * cos_phi, sin * sin_phi, z) + stretched;
+            // Rounding must not put a normal below the horizon, where it would have no slope.
             DVec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-300)).normalize()
         }
     }
@@ -48,12 +49,13 @@ fn invert_visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
     let mut high = if sin > 0.0 { (cos / sin).clamp(-SLOPE_LIMIT, SLOPE_LIMIT) } else { SLOPE_LIMIT };
     let mut low = -SLOPE_LIMIT;
     let target = u * cumulative(high, libm::exp(-high * high));
-    // Between a logistic guess at the normal quantile (seen from the normal) and Rayleigh's (grazing).
+    // Between a logistic guess at the normal quantile (seen from the normal) and Rayleigh's (grazing). Both are infinite at 0 or 1.
     let v = u.clamp(1e-9, 1.0 - 1e-9);
     let guess = cos.max(0.0) * 0.43 * libm::log(v / (1.0 - v)) - sin * libm::sqrt(-libm::log(v));
     // Where the visible slopes end, their density starts like a wedge: the rest of it grows like a square.
     let limit = high;
     let mut x = if guess < limit { guess.max(low) } else { (limit - libm::sqrt(1.0 - u)).max(low) };
+    // Bisection alone would bring the bracket to 1e-12 in 44 steps.
     for _ in 0..60 {
         let gauss = libm::exp(-x * x);
         let excess = cumulative(x, gauss) - target;

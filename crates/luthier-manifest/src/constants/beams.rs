@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Numbers of the model `granier-heidrich` that are none of a layer.
+/// Numbers of the model `granier-heidrich` that belong to no layer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BeamsRecord {
     /// Slope parameter of the inner boundary over that of the outer one, `sqrt((e0 + 2) / (e1 + 2))`; the exponent of either is `2 / alpha^2 - 2`.

@@ -7,9 +7,19 @@ use std::f64::consts::FRAC_1_PI;
 use serde::{Deserialize, Serialize};
 
 pub use self::beams::BeamsRecord;
-use crate::record::LayerRecord;
+use crate::record::{LayerRecord, vec4};
 
 /// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.
+///
+/// ```
+/// use luthier_manifest::{GlitterRecord, MaterialConstants};
+///
+/// let glitter = GlitterRecord { seed: 0x0003_0007, frequency: 200.0, filled: 0.1, tilt: 0.0 };
+/// let words = MaterialConstants { glitter: Some(glitter), ..MaterialConstants::default() }.words();
+/// // Word 9 of the header, the ninth of the constants: the seed in two halves, which floats hold exactly.
+/// assert_eq!(words[8][..3], [7.0, 3.0, 200.0]);
+/// assert_eq!(words[0], [0.0; 4]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MaterialConstants {
     /// Diffuse coefficient of Phong's model, RGB.
@@ -20,13 +30,13 @@ pub struct MaterialConstants {
     pub phong_exponent: f64,
     /// Cosine-weighted share of the light from a diffuse base that the layers above send back to it, RGB.
     pub internal_reflectance: [f64; 3],
-    /// Share of diffuse light from below that layers keep beyond the share that they keep from above: 1 - Ti0/T0i of the statistics; 0 for
-    /// smooth ones.
+    /// Share of diffuse light that layers keep from below in excess of the share from above: 1 - Ti0/T0i of the statistics; 0 for smooth
+    /// layers.
     pub upward_loss: f64,
     /// Lobes, for the model that reads these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lobes: Option<LobesRecord>,
-    /// Numbers of the model `granier-heidrich`, where its material has some of its own.
+    /// Numbers of the model `granier-heidrich`, if its material has some of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beams: Option<BeamsRecord>,
     /// Flakes in the coat.
@@ -52,7 +62,7 @@ pub struct LobesRecord {
     pub critical_width: f64,
     /// Share of `5 cos / (1 + 4 cos)` of the view in the axis of the rows; the rest is the cosine inside.
     pub critical_plain_share: f64,
-    /// Tiles over a factor that a texture has, where rows are over one.
+    /// Tiles over a factor of a texture, if there are such tiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub varying: Option<VaryingRecord>,
     /// Axes of an anisotropic stack, with tiles over the azimuth; lobes of others are in the plane of the eye.
@@ -66,14 +76,15 @@ pub struct LobesRecord {
     pub error: Option<LobesError>,
 }
 
-/// Diffuse base below lobes. For an albedo R its light is that of the rows times `q(R) / q(albedo)`, with `q(R) = R / (1 - r R)`, r being what the
-/// layers send back to it.
+/// Diffuse base below lobes. Rows hold its light for `albedo`. For an albedo R the light is `q(R) / q(albedo)` times as much, with
+/// `q(R) = R / (1 - r R)`, where r is the share that the layers send back to the base.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PaintedRecord {
     /// Albedo with which the stack was simulated, RGB.
     pub albedo: [f64; 3],
-    /// Where the base is Lambertian, and rows over a factor have the coefficients a and b of the remainder: the integrals of `(1 - c)^5 mu / pi` and `(1 - c)^2 mu / pi`
-    /// over the hemisphere, mu being the cosine of the light. That of S is 1 less a times the first and b times the second.
+    /// Integrals of `(1 - c)^5 mu / pi` and `(1 - c)^2 mu / pi` over the hemisphere, mu being the cosine of the light. Present if the base is
+    /// Lambertian and rows over a factor have coefficients a and b of their own. The integral of S is 1 less a times the first and b times
+    /// the second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moments: Option<[f64; 2]>,
 }
@@ -92,12 +103,13 @@ pub struct LobesError {
     pub albedo_noise: f64,
 }
 
-/// Tiles of lobes one after the other, over a factor that a texture has, at equal distances of its root. The first is that of 1. The last is
-/// that of 0 on the slab, and on slope parameters one step before it. Rows of two are mixed linearly in the root. Those over a film are at equal
-/// distances of the factor itself, between `factors`.
+/// Tiles of lobes one after the other, over a factor of a texture, at equal steps of the root of the factor. The first tile has the factor 1.
+/// The last tile has the factor 0 of a slab, and for slope parameters the factor one step above 0. Shaders mix rows of two tiles linearly in
+/// the root. Tiles over a film are at equal steps of the factor itself, between `factors`.
 ///
-/// Over patina the last is that of bare layers, and the one before it that of patina grown whole; the tile of an amount lies so far before the last. Where
-/// scattering, tarnish or another base come with patina there are three, and the first is that of all layers without these.
+/// Over patina, the last tile has the bare layers and the one before it patina that has grown whole: the place of an amount lies that amount
+/// before the last. If scattering, tarnish or another base come with patina, there are three tiles, and the first has all layers without
+/// these.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VaryingRecord {
     /// Factor of the texture.
@@ -124,14 +136,14 @@ impl VaryingRecord {
 pub struct AxesRecord {
     /// Cosine and sine of the angle from the tangent of the surface to the first axis.
     pub turn: [f64; 2],
-    /// Whether the stack is its own mirror image in both axes: tiles then go over a quarter of a circle; else over half of one, and the last is
-    /// the first.
+    /// Whether the stack is its own mirror image in both axes: tiles then go over a quarter of a circle, else over half a circle, where the
+    /// last tile equals the first.
     pub is_mirrored: bool,
     /// Number of the tiles.
     pub tiles: u32,
 }
 
-/// A member of `LuthierPlace` that rows of lobes are over.
+/// A member of `LuthierPlace` over which lobes have tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VaryingFactor {
@@ -146,8 +158,8 @@ pub enum VaryingFactor {
 }
 
 impl LobesRecord {
-    /// Tiles beyond the first over the factor on slope parameters and over that on the first slab or film, and the least factor on slopes. Those over patina
-    /// are [`Self::beyond_cover`].
+    /// Number of tiles after the first over the factor on slope parameters, then over the factor on the first slab or film, and the least
+    /// factor on slopes. [`Self::beyond_cover`] has the number over patina.
     fn varying(&self) -> [f64; 3] {
         let Some(VaryingRecord { factor, tiles, least_spread, .. }) = self.varying else {
             return [0.0, 0.0, SPREAD_MIN];
@@ -160,14 +172,14 @@ impl LobesRecord {
         }
     }
 
-    /// Tiles beyond the first over the amount of patina; 0 where rows are not over it.
+    /// Number of tiles after the first over the amount of patina; 0 without such tiles.
     fn beyond_cover(&self) -> f64 {
         let over = self.varying.filter(|varying| varying.factor == VaryingFactor::Patina);
         over.map_or(0.0, |varying| f64::from(varying.tiles) - 1.0)
     }
 
-    /// Numbers of the azimuth or of the film that tiles are over: cosine and sine of the first axis, and tiles beyond the first in a quarter of a
-    /// circle; or what the share of the tiles is per factor on the film and at none, and -1.
+    /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
+    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1.
     fn sheet(&self) -> [f64; 3] {
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
             return [1.0 / (least - most), most / (most - least), -1.0];
@@ -182,13 +194,13 @@ impl LobesRecord {
         let scale = 1.0 + self.critical_cot_sq;
         let (cos_sq, width) = (self.critical_cot_sq / scale, self.critical_width / scale);
         let four_width_sq = 4.0 * width * width;
-        let root = |x: f64| (x + (x * x + four_width_sq).sqrt()).max(0.0).sqrt();
-        let [horizon, normal] = [root(-cos_sq), root(1.0 - cos_sq)];
+        let [horizon, normal] =
+            [-cos_sq, 1.0 - cos_sq].map(|x: f64| (x + (x * x + four_width_sq).sqrt()).max(0.0).sqrt());
         [cos_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
     }
 }
 
-/// The least factor on slopes where rows are not over one.
+/// Least factor on slopes if tiles are over no such factor.
 const SPREAD_MIN: f64 = 1e-3;
 
 /// Flakes, one per cell of a grid or as a normal map has them (Elek 2010, section 4.1).
@@ -196,7 +208,7 @@ const SPREAD_MIN: f64 = 1e-3;
 pub struct FlakesRecord {
     /// Seed of the flakes.
     pub seed: u32,
-    /// Cells along one repeat; 0 where the flakes are those of a normal map.
+    /// Cells along one repeat; 0 if a normal map has the flakes.
     pub count: u32,
     /// Repeats per unit of texture coordinate.
     pub tiling: f64,
@@ -221,7 +233,7 @@ pub struct PatinaRecord {
     pub base_alpha: Option<f64>,
     /// Factor on the reflection of the layer below where patina has grown, RGB.
     pub tarnish: [f64; 3],
-    /// The layer below the first as it is where no patina has grown: against the medium above the surface.
+    /// The layer below the first at places without patina, where it meets the medium above the surface.
     pub bare: LayerRecord,
 }
 
@@ -257,37 +269,37 @@ impl MaterialConstants {
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
-        let with = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
         let mut words = [[0.0; 4]; Self::WORDS];
-        words[0] = with(self.phong_diffuse, self.phong_exponent);
-        words[1] = with(self.phong_specular, 0.0);
-        words[2] = with(self.internal_reflectance, self.upward_loss);
+        words[0] = vec4(self.phong_diffuse, self.phong_exponent);
+        words[1] = vec4(self.phong_specular, 0.0);
+        words[2] = vec4(self.internal_reflectance, self.upward_loss);
         if let Some(lobes) = self.lobes {
             let LobesRecord { index, falloff: [a, b], integral, .. } = lobes;
-            words[0] = with(lobes.varying(), lobes.critical_plain_share);
+            words[0] = vec4(lobes.varying(), lobes.critical_plain_share);
             words[1] = lobes.inside().map(|x| x as f32);
-            words[2] = with([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
+            words[2] = vec4([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
         }
         if let Some(beams) = &self.beams {
             words[..2].copy_from_slice(&beams.words());
         }
-        let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
-            words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
-            words[4] = with([f.spread, f.scale, f.fade_start], 0.0);
+            let [low, high] = [f.seed & 0xffff, f.seed >> 16].map(|bits| bits as f32);
+            words[3] = [low, high, f.count as f32, f.tiling as f32];
+            words[4] = vec4([f.spread, f.scale, f.fade_start], 0.0);
         }
         if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), &self.patina) {
             let [fifth, square] = base.moments.unwrap_or_default();
-            words[5] = with(base.albedo, if base.moments.is_some() { -1.0 } else { 0.0 });
-            words[6] = with([fifth, square, 0.0], 0.0);
+            words[5] = vec4(base.albedo, if base.moments.is_some() { -1.0 } else { 0.0 });
+            words[6] = vec4([fifth, square, 0.0], 0.0);
         }
         if let Some(p) = &self.patina {
-            words[5] = with([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
-            words[6] = with(p.diffuse_albedo, 0.0);
-            words[7] = with(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
+            words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
+            words[6] = vec4(p.diffuse_albedo, 0.0);
+            words[7] = vec4(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
         }
         if let Some(g) = &self.glitter {
-            words[8] = [half(g.seed), half(g.seed >> 16), g.frequency as f32, g.filled as f32];
+            let [low, high] = [g.seed & 0xffff, g.seed >> 16].map(|bits| bits as f32);
+            words[8] = [low, high, g.frequency as f32, g.filled as f32];
             words[9][0] = (1.0 - libm::cos(g.tilt)) as f32;
         }
         let [y, z, w] = self.lobes.map_or([0.0; 3], |lobes| lobes.sheet()).map(|x| x as f32);

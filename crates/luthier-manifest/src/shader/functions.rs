@@ -27,7 +27,16 @@ luthier_lut::named! {
     }
 }
 
-/// Groups of functions of one shader: `eval` always, others where they were asked for.
+/// Groups of functions of one shader: `eval` always, others if they were asked for.
+///
+/// ```
+/// use luthier_manifest::{FunctionGroup, Functions};
+///
+/// let functions: Functions = [FunctionGroup::Propose].into_iter().collect();
+/// // A group brings the groups that it calls.
+/// assert!(functions.has(FunctionGroup::Sample) && functions.has(FunctionGroup::Light));
+/// assert!(!functions.has(FunctionGroup::Albedo) && Functions::default().is_eval_alone());
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<FunctionGroup>", into = "Vec<FunctionGroup>")]
 pub struct Functions(BTreeSet<FunctionGroup>);

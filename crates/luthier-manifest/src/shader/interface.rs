@@ -2,7 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The part of a shader that a program around it calls, fills and binds. Names and types are those of WGSL, in whatever language the shader is.
+/// The part of a shader that a program around it calls, fills and binds. Names and types are those of WGSL, whatever the language of the
+/// shader.
+///
+/// ```
+/// use luthier_manifest::Interface;
+///
+/// let wgsl = "@group(0) @binding(5) var luthier_sampler: sampler;\nfn luthier_layer_count(material: u32) -> u32 {\n}\n";
+/// let interface = Interface::read(wgsl);
+/// assert!(interface.binds("luthier_sampler") && !interface.has("LuthierPlace"));
+/// assert_eq!(interface.function("luthier_layer_count").unwrap().parameters, ["u32"]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Interface {
     /// Functions to call.

@@ -15,6 +15,15 @@ use crate::picture::PictureRef;
 use crate::suggest::short;
 
 /// Cross-section through a material. Lengths are in widths of the drawing.
+///
+/// ```
+/// let text = "schema = 1\nname = \"gilding\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.3\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let section = luthier_material::parse("gilding.toml", text, &no_files).unwrap().material.cross_section();
+/// assert_eq!(section.parts.iter().map(|part| part.label.as_str()).collect::<Vec<_>>(), ["air", "conductor"]);
+/// let [red, _, blue] = section.parts[1].color;
+/// assert!(red > 2.0 * blue);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrossSection {
     /// Media from the exterior down to the base.
@@ -80,10 +89,10 @@ const RANKS: [usize; SEGMENTS] = [
     13, 34, 36, 8, 0, 14, 30, 15, 19, 3, 46, 22, 27, 35, 4, 23, 28, 45,
 ];
 
-/// Absorption that data sets of clear media have in the visible, and that no number tells.
+/// Extinction coefficient of clear media in data sets, which is too small to show.
 const TRACE_OF_K: f64 = 1e-6;
 
-/// Height of the exterior, and least heights of a film, of a slab and of what has no thickness.
+/// Height of the exterior, and least heights of a film, of a slab and of a medium without a thickness.
 const EXTERIOR: f64 = 0.12;
 const FILM: f64 = 0.05;
 const SLAB: f64 = 0.14;
@@ -194,7 +203,7 @@ impl Material {
         interface.sampled(&self.color()).rgb(1.0).map(|c| c.clamp(0.0, 1.0))
     }
 
-    /// The index of a medium: F0, one number or two, or those of the sodium line with the name of the data set.
+    /// The index of a medium: F0, or n and k, at the sodium line if they vary, with the name of the data set.
     fn index(&self, key: &str, ior: &Ior) -> Vec<PartNumber> {
         if let Some(f0) = ior.f0() {
             return vec![PartNumber { name: "F0", value: rgb(f0) }];
@@ -212,7 +221,7 @@ impl Material {
         numbers
     }
 
-    /// The name of a data set or of a file, where the index at a key is one.
+    /// The name of a data set or of a file, if the index at a key is given by one.
     fn data_set(&self, key: &str) -> Option<&str> {
         let text = self.places.has(key).then(|| self.text.get(self.places.span(key)))??;
         text.strip_prefix(['"', '\''])?.strip_suffix(['"', '\''])
@@ -305,7 +314,7 @@ fn level() -> Vec<[f64; 2]> {
     vec![[0.0, 0.0], [1.0, 0.0]]
 }
 
-/// Parts with room for what rises into them from below, and falls into them from above.
+/// Parts with room for outlines that rise into them from below and fall into them from above.
 fn with_room(mut parts: Vec<Part>) -> Vec<Part> {
     let outlines = parts.iter().map(|part| part.outline.iter());
     let reaches: Vec<f64> = outlines.map(|line| line.fold(0.0, |most: f64, [_, y]| most.max(y.abs()))).collect();

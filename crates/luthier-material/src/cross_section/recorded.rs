@@ -1,4 +1,4 @@
-//! Cross-sections of materials of a manifest, which has no file of theirs.
+//! Cross-sections of materials of a manifest, without their files.
 
 use luthier_manifest::{LayerKind, LayerRecord, LowerReflectance, MaterialEntry};
 use luthier_optics::Rgb;
@@ -14,8 +14,8 @@ use crate::doubt::ALPHA_MIN;
 use crate::suggest::short;
 
 impl CrossSection {
-    /// A cross-section through a material of a manifest, by its layer records. They have neither the thickness of a slab, whose optical depth is among the
-    /// numbers, nor indices alone: `relative n` is over that of the medium above, at the three wavelengths. Colours are by these, too.
+    /// A cross-section through a material of a manifest, by its layer records. Records have no thickness of a slab: its optical depth is shown
+    /// instead. Their indices are relative to the medium above, `relative n`, at the three wavelengths; colours follow from these.
     pub fn recorded(entry: &MaterialEntry) -> Self {
         let exterior = Part {
             kind: PartKind::Exterior,
@@ -50,7 +50,7 @@ fn number_of(name: &'static str, value: String) -> PartNumber {
     PartNumber { name, value }
 }
 
-/// The micro-surface of a record; smooth where its slopes are no more than those that stand for none.
+/// The micro-surface of a record; a slope parameter of [`ALPHA_MIN`] stands for a smooth one.
 fn surface(record: &LayerRecord) -> Surface {
     let [alpha_x, alpha_y] = record.alpha_xy.map(|alpha| if alpha <= ALPHA_MIN { 0.0 } else { alpha });
     Surface { distribution: record.distribution, alpha_x, alpha_y, rotation: record.rotation }
@@ -73,20 +73,20 @@ fn film(layer: usize, record: &LayerRecord, outline: Vec<[f64; 2]>) -> Part {
 }
 
 fn medium(layer: usize, record: &LayerRecord, is_last: bool, surface: &Surface, outline: Vec<[f64; 2]>) -> Part {
-    let below = || match record.f0 {
+    let below = match record.f0 {
         Some(f0) => vec![number_of("F0", rgb(f0))],
         None => indices(record, record.ior_n, record.ior_k),
     };
     let (kind, label, mut numbers, color, height) = match record.kind {
         LayerKind::Dielectric if !is_last => {
-            let mut numbers = below();
+            let mut numbers = below;
             if record.optical_depth != [0.0; 3] {
                 numbers.push(number_of("optical depth", rgb(record.optical_depth)));
             }
             (PartKind::Slab, "dielectric", numbers, record.optical_depth.map(|depth| libm::exp(-depth)), SLAB)
         }
-        LayerKind::Dielectric => (PartKind::HalfSpace, "dielectric", below(), reflected(record, false), BASE),
-        LayerKind::Conductor => (PartKind::Conductor, "conductor", below(), reflected(record, false), BASE),
+        LayerKind::Dielectric => (PartKind::HalfSpace, "dielectric", below, reflected(record, false), BASE),
+        LayerKind::Conductor => (PartKind::Conductor, "conductor", below, reflected(record, false), BASE),
         LayerKind::Diffuse => {
             let mut numbers = vec![number_of("albedo", rgb(record.albedo))];
             if record.sigma > 0.0 {
@@ -105,7 +105,7 @@ fn medium(layer: usize, record: &LayerRecord, is_last: bool, surface: &Surface, 
     Part { kind, layer: Some(layer), label: label.to_owned(), numbers, color, height, outline }
 }
 
-/// Indices over that of the medium above, or by themselves where a record has those in air.
+/// Indices over the index of the medium above, or plain ones if a record has them in air.
 fn indices(record: &LayerRecord, n: Rgb, k: Rgb) -> Vec<PartNumber> {
     let names = match record.lower_reflectance {
         LowerReflectance::InPlace => ["relative n", "relative k"],
@@ -124,11 +124,11 @@ fn reflected(record: &LayerRecord, has_film: bool) -> Rgb {
         return f0;
     }
     [0, 1, 2].map(|c| {
-        let index = |n: Rgb, k: Rgb| Complex64::new(n[c], k[c]);
-        let film =
-            FilmLayer { ior: index(record.film_ior_n, record.film_ior_k), waves: record.film_thickness_waves[c] };
+        let [film, below] = [(record.film_ior_n, record.film_ior_k), (record.ior_n, record.ior_k)]
+            .map(|(n, k)| Complex64::new(n[c], k[c]));
+        let film = FilmLayer { ior: film, waves: record.film_thickness_waves[c] };
         let films = if has_film { &[film][..] } else { &[] };
-        coated(Complex64::ONE, films, index(record.ior_n, record.ior_k), 1.0).unpolarised()
+        coated(Complex64::ONE, films, below, 1.0).unpolarised()
     })
 }
 

@@ -73,7 +73,6 @@ fn distinct(wavelengths: &[f64; 3], at: &Section<'_>, sink: &mut Sink<'_>) -> bo
 
 fn beams(at: &Section<'_>, sink: &mut Sink<'_>) -> Beams {
     let plain = Beams::default();
-    let angle = |key: &str| at.number(key).map(f64::to_radians);
     if at.has("inner_azimuth_deg") && !at.has("inner_tilt_deg") {
         let hint = "give `inner_tilt_deg`, or leave it out".to_owned();
         sink.error(at.key_span("inner_azimuth_deg"), "a boundary that does not lean has no azimuth", Some(hint));
@@ -81,8 +80,8 @@ fn beams(at: &Section<'_>, sink: &mut Sink<'_>) -> Beams {
     Beams {
         specular_weight: at.number("specular_weight").unwrap_or(plain.specular_weight),
         diffuse_weight: at.number("diffuse_weight").unwrap_or(plain.diffuse_weight),
-        inner_tilt: angle("inner_tilt_deg").unwrap_or(plain.inner_tilt),
-        inner_azimuth: angle("inner_azimuth_deg").unwrap_or(plain.inner_azimuth),
+        inner_tilt: at.number("inner_tilt_deg").map_or(plain.inner_tilt, f64::to_radians),
+        inner_azimuth: at.number("inner_azimuth_deg").map_or(plain.inner_azimuth, f64::to_radians),
     }
 }
 

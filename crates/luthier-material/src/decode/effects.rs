@@ -71,7 +71,7 @@ fn flakes(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Flakes> {
 fn patina(at: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Option<Patina> {
     let (extent, transition) = (at.number("extent")?, at.number("transition")?);
     let (least, most) = (-transition, 1.0 + transition);
-    // What is no number, or no softness, has been reported by itself.
+    // The checker has reported an extent or a transition that is out of range by itself.
     if !(least..=most).contains(&extent) && extent.is_finite() && UNIT.contains(transition) {
         let message =
             format!("`extent` runs from -transition to 1 + transition, {} to {} here", short(least), short(most));
@@ -88,7 +88,7 @@ fn patina(at: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Option<Patina
     })
 }
 
-/// The diffuse reflectance of a patina: stated, or a part of what the absorption of the first layer leaves over (Elek 2010, section 4.2).
+/// The diffuse reflectance of a patina: stated, or a part of the light that the first layer does not absorb (Elek 2010, section 4.2).
 fn scattered(at: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Rgb {
     let Some(part) = at.number("diffuse_remainder") else { return at.rgb("diffuse_albedo").unwrap_or([0.0; 3]) };
     if at.has("diffuse_albedo") {

@@ -47,7 +47,7 @@ pub(super) fn decode<'t>(at: Section<'t>, read: Read<'_>, sink: &mut Sink<'_>, s
 }
 
 impl Pending<'_> {
-    /// How the file would say that the film is even.
+    /// A hint with the thickness that makes the film even.
     pub(super) fn evened(&self) -> Option<String> {
         let nm = self.film.thickness.nominal_nm();
         POSITIVE.contains(nm).then(|| format!("write `thickness_nm = {}`", short(nm)))
@@ -57,7 +57,7 @@ impl Pending<'_> {
 fn varying(at: &Section<'_>, sink: &mut Sink<'_>) -> (FilmThickness, Option<FilmVariation>) {
     let min_nm = at.number("min").unwrap_or(0.0);
     let max_nm = at.number("max").unwrap_or(min_nm);
-    // What is no number, or beyond all of them, has been reported by itself.
+    // The checker has reported ends that are out of range by themselves.
     if min_nm > max_nm && [min_nm, max_nm].into_iter().all(|nm| NOT_NEGATIVE.contains(nm)) {
         let hint = format!("write `min = {}, max = {}`", short(max_nm), short(min_nm));
         let message = format!("the range is upside down: min {} is above max {}", short(min_nm), short(max_nm));

@@ -38,7 +38,7 @@ pub(super) fn decode(
     Some(ior)
 }
 
-/// Reports an index of 0, into whose medium no light is bent.
+/// Reports an index of 0: no light enters such a medium.
 pub(super) fn check_clear(ior: &Ior, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) {
     if let Some(sample) = ior.samples().iter().find(|sample| sample.n == 0.0) {
         let message =
@@ -47,7 +47,7 @@ pub(super) fn check_clear(ior: &Ior, at: &Section<'_>, key: &str, sink: &mut Sin
     }
 }
 
-/// The samples of a range this wide around the middle of the visible one stand for all of it.
+/// Samples that cover this middle of the visible range stand for all of it.
 const MIDDLE_NM: (f64, f64) = (500.0, 600.0);
 
 fn of_any_form(
@@ -111,7 +111,7 @@ fn sampled(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
     checked(Ior::sampled(samples), at, "wavelengths_nm", sink)
 }
 
-/// The index of a table, or an error at a key of it, unless one has been said.
+/// The index of a table, or an error at one of its keys, unless one is reported already.
 fn checked(ior: Result<Ior, IorError>, at: &Section<'_>, key: &str, sink: &mut Sink<'_>) -> Option<Ior> {
     ior.map_err(|error| {
         if !sink.has_error_in(&at.span) {
@@ -142,11 +142,11 @@ fn as_many(
 
 /// The text of a file that the material names.
 pub(super) fn named_text(name: &str, span: &Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<String> {
-    let told = |error| {
+    let text = read(name).map_err(|error| {
         let hint = "the path is relative to the material file".to_owned();
         sink.error(span.clone(), format!("cannot read `{name}`: {error}"), Some(hint));
-    };
-    read(name).map_err(told).ok()
+    });
+    text.ok()
 }
 
 /// A file, or a built-in data set.
@@ -194,11 +194,11 @@ fn reader(name: &str) -> Option<Reader> {
 /// The data set that a name probably means: by id, or by what people call it.
 fn nearest_dataset(name: &str) -> Option<(&'static str, &'static str)> {
     let lower = name.to_lowercase();
-    let called = |set: &str| {
-        set.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| word.len() > 2 && word == lower)
-    };
-    if let Some(set) = datasets().iter().find(|d| d.id == lower).or_else(|| datasets().iter().find(|d| called(d.name)))
-    {
+    let called = datasets().iter().filter(|set| {
+        let name = set.name.to_lowercase();
+        name.split(|c: char| !c.is_alphanumeric()).any(|word| word.len() > 2 && word == lower)
+    });
+    if let Some(set) = datasets().iter().filter(|set| set.id == lower).chain(called).next() {
         return Some((set.id, set.name));
     }
     let words = datasets().iter().flat_map(|d| {

@@ -11,7 +11,7 @@ use crate::grammar::LAYERS_MAX;
 use crate::material::{FilmVariation, LayerExtras};
 use crate::section::Section;
 
-/// The layers of the stack, and what each has beyond its physics.
+/// The layers of the stack, and the properties of each beyond its physics.
 pub(super) fn decode(
     document: &Section<'_>,
     exterior: &Ior,
@@ -39,9 +39,6 @@ pub(super) fn decode(
             let hint = format!("move it to the end, or remove {layers} below it");
             sink.error(at.value_span("type"), message, Some(hint));
         }
-        let index = |sink: &mut Sink<'_>, sources: &mut Sources| {
-            ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum)
-        };
         let above = match layers.last() {
             Some(Layer { base: Base::Dielectric { ior, .. }, .. }) => ior,
             _ => exterior,
@@ -50,16 +47,16 @@ pub(super) fn decode(
         let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
             "dielectric" if at.has("f0") => {
-                let ior = at.has("ior").then(|| index(sink, sources));
+                let ior = at.has("ior").then(|| index(at, read, sink, sources));
                 Base::Dielectric { ior: schlick::dielectric(at, ior, above, sink), slab: slab(at) }
             }
             "dielectric" => {
-                let ior = index(sink, sources);
+                let ior = index(at, read, sink, sources);
                 ior::check_clear(&ior, at, "ior", sink);
                 Base::Dielectric { ior, slab: slab(at) }
             }
             "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at) },
-            "conductor" => Base::Conductor { ior: index(sink, sources) },
+            "conductor" => Base::Conductor { ior: index(at, read, sink, sources) },
             "metallic-roughness" => {
                 let (interface, diffuse) = schlick::metallic_roughness(at, above, sink);
                 below = diffuse;
@@ -114,6 +111,11 @@ pub(super) fn decode(
     (layers, extras)
 }
 
+/// The index of a layer. Vacuum stands in for a wrong one, which has been reported.
+fn index(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sources: &mut Sources) -> Ior {
+    ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum)
+}
+
 fn slab(at: &Section<'_>) -> Slab {
     Slab {
         thickness_um: at.number("thickness_um").unwrap_or(0.0),
@@ -138,7 +140,7 @@ fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<FilmVa
     top.variation.clone()
 }
 
-/// Exponents are of the first layer, whose lobes the model has.
+/// Reports exponents of a layer below the first: the model has lobes of the first alone.
 fn only_the_first_has_exponents(at: &Section<'_>, sink: &mut Sink<'_>) {
     if at.has("exponents") {
         let message = "exponents belong to the first layer: the model granier-heidrich has lobes of no other";
@@ -147,7 +149,7 @@ fn only_the_first_has_exponents(at: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// A place of a surface has one factor on a film's thickness.
+/// Reports a film that varies below the first layer: a place of a surface has one factor on a film's thickness.
 fn only_the_first_film_varies(films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
     if let Some(film) = films.first().filter(|film| film.variation.is_some()) {
         let message = "only the film of the first layer may vary in thickness: shaders read no map of another";

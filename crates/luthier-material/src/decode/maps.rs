@@ -75,17 +75,15 @@ fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Refuses maps of single layers beside effects that say the same of them.
+/// Refuses maps of single layers beside effects that decide the same quantities.
 pub(super) fn check_effects(document: &Section<'_>, extras: &[LayerExtras], sink: &mut Sink<'_>) {
     let Some(effects) = document.section("effects") else { return };
-    let own = |is_own: &dyn Fn(usize, &str) -> bool| {
-        let mut maps = extras.iter().enumerate().flat_map(|(i, extra)| extra.maps.named().map(move |map| (i, map.key)));
-        maps.find(|&(i, key)| is_own(i, key))
-    };
-    let bumps = own(&|_, key| key == "bumps");
-    let any = own(&|i, key| match key {
+    let maps = extras.iter().enumerate().flat_map(|(i, extra)| extra.maps.named().map(move |map| (i, map.key)));
+    let maps: Vec<(usize, &str)> = maps.collect();
+    let bumps = maps.iter().find(|(_, key)| *key == "bumps");
+    let any = maps.iter().find(|(i, key)| match *key {
         "normal" | "roughness" => false,
-        "thickness" => i > 0,
+        "thickness" => *i > 0,
         _ => true,
     });
     for (effect, clash, why) in [

@@ -1,6 +1,6 @@
-//! Decoder from a document to a material. The checker has seen to keys, types and ranges; what is left is what the values mean together.
-//! Where a value is missing or wrong a stand-in keeps the decoder going, so that one run reports everything; the result counts only when
-//! nothing was reported.
+//! Decoder from a document to a material. The checker has seen to keys, types and ranges; the decoder checks values against each other. A
+//! stand-in for a missing or wrong value keeps the decoder going, so that one run reports everything; the result counts only when nothing
+//! was reported.
 
 mod bake;
 mod effects;

@@ -1,4 +1,4 @@
-//! Decoder of pictures, and what they can be asked for.
+//! Decoder of pictures, with checks of the keys that fit their use.
 
 use crate::diagnostic::Sink;
 use crate::picture::{Channel, PictureRef, TexelUse, UvTransform};
@@ -16,14 +16,10 @@ pub(super) fn under(at: &Section<'_>, key: &str) -> Option<PictureRef> {
 /// The picture of a table.
 pub(super) fn of(at: &Section<'_>) -> Option<PictureRef> {
     let channel = at.text("channel").and_then(|name| Channel::ALL.into_iter().find(|channel| channel.name() == name));
-    let pair = |at: &Section<'_>, key: &str| match at.numbers(key) {
-        Some(Numbers::Many(pair)) => <[f64; 2]>::try_from(pair).ok(),
-        _ => None,
-    };
     let transform = at.section("transform").map(|at| UvTransform {
-        offset: pair(&at, "offset").unwrap_or([0.0; 2]),
+        offset: at.two_numbers("offset").unwrap_or([0.0; 2]),
         rotation: at.number("rotation_deg").unwrap_or(0.0).to_radians(),
-        scale: pair(&at, "scale").unwrap_or([1.0; 2]),
+        scale: at.two_numbers("scale").unwrap_or([1.0; 2]),
     });
     Some(PictureRef {
         path: at.path("image")?,
@@ -34,7 +30,7 @@ pub(super) fn of(at: &Section<'_>) -> Option<PictureRef> {
     })
 }
 
-/// Refuses what the texels of a use cannot be asked for. `at` is the table, if there is one.
+/// Refuses keys that do not fit the use of the texels. `at` is the table of the picture.
 pub(super) fn check(at: &Section<'_>, texels: TexelUse, sink: &mut Sink<'_>) {
     let mut refuse = |key: &str, message: String, hint: &str| {
         if at.has(key) {

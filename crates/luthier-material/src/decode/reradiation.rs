@@ -7,7 +7,7 @@ use super::ior::{Read, named_text};
 use crate::diagnostic::Sink;
 use crate::section::Section;
 
-/// Rows of the matrix of a base in linear Rec.709; `None` where it names none, or a wrong one.
+/// Rows of the matrix of a base in linear Rec.709; `None` if it names no matrix, or a wrong one.
 pub(super) fn decode(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<[Rgb; 3]> {
     let name = at.text("reradiation")?;
     let span = at.value_span("reradiation");
@@ -26,7 +26,7 @@ pub(super) fn decode(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> O
     }
 }
 
-/// The colour of a base under white light, as far as an albedo holds it.
+/// The colour of a base under white light, clamped to the range of an albedo.
 pub(super) fn albedo(rows: [Rgb; 3]) -> Rgb {
     rows.map(|row| row.iter().sum::<f64>().clamp(0.0, 1.0))
 }

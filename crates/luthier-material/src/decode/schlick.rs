@@ -48,18 +48,18 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
     ior.with_f0(f0)
 }
 
-/// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal has not:
+/// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal lacks:
 ///
 /// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
 /// - the index is that of the medium above: engines bend no light;
-/// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
+/// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
 ///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes.
 ///
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
 pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<'_>) -> (Base, Option<Diffuse>) {
     let color = at.reflectance("base_color").unwrap_or([0.0; 3]);
-    // Textures make of it any other surface at a place; what is baked is that without metal.
+    // Textures decide at each place how metallic the surface is; the bake has the surface without metal.
     let metallic = if textured(at).is_some() { 0.0 } else { at.number("metallic").unwrap_or(0.0) };
     if metallic >= 1.0 {
         if at.has("sigma") {

@@ -4,14 +4,11 @@ use luthier_optics::ndf::{NdfError, Shape};
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::diagnostic::Sink;
-use crate::section::{Numbers, Section};
+use crate::section::Section;
 
 /// Exponents of the lobes of the outer boundary and of the inner one, for the model `granier-heidrich`.
 pub(super) fn exponents(at: &Section<'_>) -> Option<[f64; 2]> {
-    match at.numbers("exponents")? {
-        Numbers::Many(list) => <[f64; 2]>::try_from(list).ok(),
-        Numbers::One(_) => None,
-    }
+    at.two_numbers("exponents")
 }
 
 /// The micro-surface of a layer, in whichever way the file gives it.
@@ -40,7 +37,7 @@ pub(super) fn decode(at: &Section<'_>, sink: &mut Sink<'_>) -> Surface {
     Surface::isotropic(distribution, alpha)
 }
 
-/// Keys that do not go together.
+/// Reports keys that do not go together.
 fn check(at: &Section<'_>, distribution: Distribution, sink: &mut Sink<'_>) {
     if at.has("rotation_deg") && !at.has("alpha_x") && !at.has("alpha_y") {
         let hint = "give `alpha_x` and `alpha_y`, or leave it out".to_owned();

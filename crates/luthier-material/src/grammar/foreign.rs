@@ -1,4 +1,4 @@
-//! Words of other formats (glTF 2.0, OpenPBR, Standard Surface, Disney's model), and how a material file says what they mean.
+//! Words of other formats (glTF 2.0, OpenPBR, Standard Surface, Disney's model), and the words of material files for them.
 
 use super::table::Table;
 
@@ -83,7 +83,7 @@ fn of(list: &[(&str, &'static str)], word: &str) -> Option<&'static str> {
     list.iter().find(|(beginning, _)| plain.starts_with(beginning)).map(|(_, advice)| *advice)
 }
 
-/// Advice on a key that a table does not have, and whose meaning it says otherwise.
+/// Advice on a key that a table lacks and has other words for.
 pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
     match (table.name, name) {
         ("dielectric", "color" | "colour" | "base_color") => Some(

@@ -9,7 +9,7 @@ use super::table::{
 /// Wavelengths that samples of an index may have: far wider than what is seen, narrow enough to notice micrometres.
 const SAMPLED_NM: Range = Range { min: 100.0, max: 30_000.0, above: false };
 
-/// Mean slopes of which the slope parameter, the tangent, stays within its domain.
+/// Mean slopes whose tangent, the slope parameter, is at most 1.
 const SLOPE_DEG: Range = Range { min: 0.0, max: 45.0, above: false };
 
 /// Real part and extinction coefficient of an index: those of real media stay below 10, in the far infrared below 1000.

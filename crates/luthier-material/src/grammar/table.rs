@@ -11,11 +11,11 @@ pub(crate) struct Table {
     pub(crate) doc: &'static str,
     /// Its keys.
     pub(crate) keys: &'static [Key],
-    /// Groups of keys of which exactly one must be given.
+    /// Groups of keys: the table takes exactly one of them.
     pub(crate) exactly_one: Option<Alternatives>,
 }
 
-/// Ways to say the same thing, of which a table takes exactly one.
+/// Alternative ways to say a thing: a table takes exactly one.
 pub(crate) struct Alternatives {
     /// Name of the alternatives, with its article.
     pub(crate) what: &'static str,
@@ -103,7 +103,7 @@ impl Range {
 }
 
 pub(crate) const ANY: Range = Range { min: f64::NEG_INFINITY, max: f64::INFINITY, above: false };
-/// More than any quantity here is, in any unit; its square is a number in single precision still.
+/// More than any quantity of a file, in any unit. Its square does not overflow single precision.
 const VAST: f64 = 1e12;
 
 pub(crate) const POSITIVE: Range = Range { min: 0.0, max: VAST, above: true };
@@ -116,9 +116,9 @@ pub(crate) const NOT_NEGATIVE_RGB: Kind =
 pub(crate) const UNIT_RGB: Kind =
     Kind::OneOf(&[Kind::Number(UNIT), Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 }]);
 
-/// Reflectances of which a little more than 1 is read as 1: colours of wide gamuts in Rec.709.
+/// Reflectances whose values a little above 1 are read as 1: colours of wide gamuts exceed 1 in Rec.709.
 pub(crate) const REFLECTANCES: [&str; 3] = ["albedo", "base_color", "f0"];
-/// Most of a reflectance that is read as 1: the primaries of ACEScg have up to 1.71 in Rec.709.
+/// Largest reflectance that is read as 1: the primaries of ACEScg have up to 1.71 in Rec.709.
 pub(crate) const REFLECTANCE_READ_MAX: f64 = 2.0;
 
 pub(crate) const PATH: Kind = Kind::Text(TextForm::Path);

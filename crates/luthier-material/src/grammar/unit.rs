@@ -5,7 +5,7 @@ use super::table::{Key, Kind, Table};
 /// Unit of a pure number: a share, an index, a slope, an exponent.
 pub(crate) const PURE: &str = "1";
 
-/// Keys that end so have this unit; the longer ending is first.
+/// Endings of keys, and the unit that each states; the longer ending is first.
 const SUFFIXES: [(&str, &str); 5] =
     [("_per_um", "1/um"), ("_um", "um"), ("_nm", "nm"), ("_deg", "degrees"), ("_bytes", "bytes")];
 

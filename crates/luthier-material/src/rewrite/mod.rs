@@ -9,29 +9,41 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::effects::{Effects, FlakeSource};
 use crate::material::Material;
 
-/// Returns the text of the file of `original` with the numbers of `edited`, which began as a copy of it: those of layers, films and effects. A surface
-/// that was given as a roughness or a slope is given by its `alpha`, because no other key has all its values. A `metallic-roughness` layer whose
+/// Returns the text of `original`'s file with the numbers of `edited`, an edited copy: numbers of layers, films and effects. A surface that
+/// was given as a roughness or a slope is given by its `alpha`, because no other key has all its values. A `metallic-roughness` layer whose
 /// parts no longer fit becomes the dielectric and the diffuse base that it stands for.
 ///
 /// Numbers that have no key of their own are not written: a caller that edits those parses the text and compares.
 ///
+/// ```
+/// let text = "schema = 1\nname = \"gilding\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.1 # matt\n";
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let original = luthier_material::parse("gilding.toml", text, &no_files).unwrap().material;
+/// let mut edited = original.clone();
+/// let surface = &mut edited.stack.layers[0].surface;
+/// (surface.alpha_x, surface.alpha_y) = (0.2, 0.2);
+/// let rewritten = luthier_material::rewritten(&original, &edited).unwrap();
+/// assert_eq!(rewritten, text.replace("0.1 # matt", "0.2 # matt"));
+/// ```
+///
 /// # Errors
 /// A diagnostic about the key that has no place for a number.
 pub fn rewritten(original: &Material, edited: &Material) -> Result<String, Diagnostic> {
-    let refused = |key: &str, message: &str| {
-        let hint = "leave this number as it is in the file, or change the layer there".to_owned();
-        original.diagnostic(Severity::Error, key, message, Some(hint))
-    };
-    let mut document: DocumentMut = original.text.parse().map_err(|_| refused("", "the file is not TOML"))?;
+    let mut document: DocumentMut = original.text.parse().map_err(|_| refused(original, "", "the file is not TOML"))?;
     let mut file = File { document: &mut document, original, edited };
     // From the bottom up: a layer that becomes two leaves the numbers of those above it alone.
     for number in (0..original.stack.layers.len()).rev() {
-        file.layer(number).map_err(|(key, message)| refused(&format!("layer.{number}.{key}"), message))?;
+        file.layer(number).map_err(|(key, message)| refused(original, &format!("layer.{number}.{key}"), message))?;
     }
     if let Some(effects) = document.get_mut("effects").and_then(Item::as_table_like_mut) {
         write_effects(effects, original, edited);
     }
     Ok(document.to_string())
+}
+
+fn refused(original: &Material, key: &str, message: &str) -> Diagnostic {
+    let hint = "leave this number as it is in the file, or change the layer there".to_owned();
+    original.diagnostic(Severity::Error, key, message, Some(hint))
 }
 
 /// A key of a layer, and why it has no place for a number.
@@ -93,16 +105,14 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Whether the index of the medium above a layer was edited: a dielectric with an F0 alone has its own index from that.
+    /// Whether the index of the medium above a layer was edited: the index of a dielectric with an F0 alone follows from it.
     fn index_above_differs(&self, number: usize) -> bool {
-        let above = |material: &Material| match material.stack.layers.get(number.checked_sub(1)?).map(|l| &l.base) {
-            Some(Base::Dielectric { ior, .. }) => Some(ior.clone()),
-            _ => None,
-        };
-        above(self.original) != above(self.edited)
+        let Some(above) = number.checked_sub(1) else { return false };
+        let [before, after] = [self.original, self.edited].map(|material| Some(dielectric(material, above)?.0));
+        before != after
     }
 
-    /// The diffuse base of a metallic-roughness layer: what light it scatters is of the layer's `base_color`.
+    /// Writes the diffuse base of a metallic-roughness layer. Its albedo follows from the layer's `base_color`: another one splits the layer.
     fn below_mixed(&mut self, number: usize, place: usize) -> Result<(), Refusal> {
         let (Base::Diffuse(before), Base::Diffuse(after)) =
             (&self.original.stack.layers[number].base, &self.edited.stack.layers[number].base)
@@ -153,6 +163,14 @@ impl File<'_> {
             _ => return Err(("type", "this layer is not in the file")),
         }
         Ok(())
+    }
+}
+
+/// The index and the slab of a layer of a material, if it is a dielectric.
+fn dielectric(material: &Material, number: usize) -> Option<(&Ior, &Slab)> {
+    match &material.stack.layers.get(number)?.base {
+        Base::Dielectric { ior, slab } => Some((ior, slab)),
+        _ => None,
     }
 }
 
@@ -240,7 +258,7 @@ fn write_index(table: &mut dyn TableLike, before: &Ior, after: &Ior, is_transpar
     }
 }
 
-/// Writes the one real number that an index beside an F0 is.
+/// Writes an index beside an F0, which is one real number.
 fn write_plain_index(table: &mut dyn TableLike, ior: &Ior) {
     put(table, "ior", number_item(ior.samples()[0].n));
 }
@@ -302,14 +320,11 @@ fn write_effects(table: &mut dyn TableLike, original: &Material, edited: &Materi
         }
     }
     // A reflectance that followed from the absorption of the first layer stays as it was.
-    let slab = |material: &Material| match material.stack.layers.first().map(|first| &first.base) {
-        Some(Base::Dielectric { slab, .. }) => Some(*slab),
-        _ => None,
-    };
+    let [slab_before, slab_after] = [original, edited].map(|material| Some(dielectric(material, 0)?.1));
     let patina = table.get_mut("patina").and_then(Item::as_table_like_mut);
     if let (Some(table), Some(patina)) = (patina, &after.patina)
         && table.contains_key("diffuse_remainder")
-        && slab(original) != slab(edited)
+        && slab_before != slab_after
     {
         rename(table, "diffuse_remainder", "diffuse_albedo", rgb(patina.diffuse_albedo));
     }

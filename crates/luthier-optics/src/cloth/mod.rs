@@ -48,16 +48,16 @@ impl ClothVisibility {
     }
 
     fn of_lambda(self, cos_view: f64, lambda_view: f64, cos_light: f64, alpha: f64) -> f64 {
-        let smith = |lambda_light: f64| 0.25 / (cos_view * cos_light * (1.0 + lambda_view + lambda_light));
-        match self {
-            Self::Neubelt => 0.25 / (cos_view + cos_light - cos_view * cos_light),
-            Self::EstevezKulla => smith(charlie_lambda(alpha, cos_light)),
+        let lambda_light = match self {
+            Self::Neubelt => return 0.25 / (cos_view + cos_light - cos_view * cos_light),
+            Self::EstevezKulla => charlie_lambda(alpha, cos_light),
             Self::EstevezKullaSoftened => {
                 let from_horizon = (1.0 - cos_light) * (1.0 - cos_light);
                 let to_fourth = from_horizon * from_horizon;
-                smith(libm::pow(charlie_lambda(alpha, cos_light), 1.0 + 2.0 * to_fourth * to_fourth))
+                libm::pow(charlie_lambda(alpha, cos_light), 1.0 + 2.0 * to_fourth * to_fourth)
             }
-        }
+        };
+        0.25 / (cos_view * cos_light * (1.0 + lambda_view + lambda_light))
     }
 }
 
@@ -88,7 +88,7 @@ pub fn cloth_albedo(visibility: ClothVisibility, alpha: f64, cos_theta: f64) -> 
     albedo
 }
 
-/// The albedos under all of [`ClothVisibility::ALL`], as [`cloth_albedo`] has them.
+/// The values of [`cloth_albedo`] under all of [`ClothVisibility::ALL`], in one pass.
 pub fn cloth_albedos(alpha: f64, cos_theta: f64) -> [f64; 3] {
     albedos_of(rules(), ClothVisibility::ALL, alpha, cos_theta)
 }
@@ -97,7 +97,7 @@ pub fn cloth_albedos(alpha: f64, cos_theta: f64) -> [f64; 3] {
 struct Rules {
     /// Over the cosine, from the horizon.
     horizon: GradedRules,
-    /// Over the cosine, from that of the view.
+    /// Over the cosine, from the cosine of the view.
     mirror: GradedRules,
     /// Over the tangent of half the azimuth from the view, and from its opposite.
     azimuth: [GradedRules; 2],
@@ -105,10 +105,12 @@ struct Rules {
 
 impl Rules {
     fn new(horizon: [f64; 2], mirror: [f64; 2], azimuth: [[f64; 2]; 2]) -> Self {
-        let graded = |[first, per_fold]: [f64; 2]| GradedRules::new(first, per_fold);
+        let [front, back] = azimuth;
+        let [horizon, mirror, front, back] =
+            [horizon, mirror, front, back].map(|[first, per_fold]| GradedRules::new(first, per_fold));
         // The square t^2 of the tangent in place of the tangent; weights are of the azimuth.
-        let of_azimuth = |rule: [f64; 2]| graded(rule).map(|t, weight| (t * t, 2.0 * weight / (1.0 + t * t)), &[]);
-        Self { horizon: graded(horizon), mirror: graded(mirror), azimuth: azimuth.map(of_azimuth) }
+        let azimuth = [front, back].map(|rules| rules.map(|t, weight| (t * t, 2.0 * weight / (1.0 + t * t)), &[]));
+        Self { horizon, mirror, azimuth }
     }
 }
 
@@ -117,13 +119,13 @@ fn rules() -> &'static Rules {
     RULES.get_or_init(|| Rules::new([8.0, 4.0], [4.0, 2.0], [[4.0, 2.0], [7.0, 2.5]]))
 }
 
-/// Length over the scale on which integrals over the azimuth have a weak kink where the light's cosine is the view's.
+/// Length of a panel over the scale of the weak kink that integrals over the azimuth have at the view's cosine.
 const MIRROR_REACH: f64 = 1e3;
 /// Cosine at which the fit of ln Lambda has a kink in its curvature.
 const FIT_JOINT: f64 = 0.5;
-/// Part of the scale at the horizon on which the fit of ln Lambda changes there.
+/// Scale on which the fit of ln Lambda changes at the horizon, over the scale of the other factors there.
 const FIT_SCALE: f64 = 1e-2;
-/// Power of the sine from which on that kink is too weak to matter.
+/// Power of the sine above which the kink at the view's cosine is too weak to matter.
 const SMOOTH_POWER: f64 = 3.0;
 
 fn albedos_of<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha: f64, cos_theta: f64) -> [f64; N] {
@@ -136,7 +138,7 @@ fn albedos_of<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha:
     over_largest(rules, terms, alpha, cos_v).map(|over| scale * over)
 }
 
-/// Largest D below which albedos, at most pi/2 of it, are 0.
+/// Albedos are 0 if the largest D is below this: they are at most pi/2 times it.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// The logarithm of the largest D over all directions of light: at the horizon below the view.
@@ -144,7 +146,7 @@ fn ln_largest(alpha: f64, cos_v: f64) -> f64 {
     libm::log((2.0 + 1.0 / alpha) / (2.0 * PI)) + 0.5 / alpha * ln_largest_sine_sq(cos_v)
 }
 
-/// The logarithm of the half vector's squared sine there; its cosine is the sine of half the view's elevation.
+/// The logarithm of the half vector's squared sine at the largest D. The half vector's cosine is the sine of half the view's elevation.
 fn ln_largest_sine_sq(cos_v: f64) -> f64 {
     libm::log1p(-0.5 * cos_v * cos_v / (1.0 + libm::sqrt((1.0 - cos_v) * (1.0 + cos_v))))
 }
@@ -158,38 +160,37 @@ fn over_largest<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alph
         ln_reference: ln_largest_sine_sq(cos_v),
     };
     let lambda_v = charlie_lambda(alpha, cos_v);
-    let mut sums = [0.0; N];
-    let mut add = |cos_l: f64, weight: f64| {
-        let around = weight * cos_l * ring.around(rules, cos_l);
-        for (sum, term) in sums.iter_mut().zip(terms) {
-            *sum += around * term.of_lambda(cos_v, lambda_v, cos_l, alpha);
-        }
-    };
     // At the horizon: the scale of the visibility, and that on which sin^(1/alpha) falls with the cosine of the half vector.
     let from_horizon = cos_v.min(libm::sqrt(alpha)).min(alpha / cos_v);
     let mirror_reach = if ring.power > SMOOTH_POWER { 10.0 } else { MIRROR_REACH };
     let is_fitted = terms.iter().any(|&term| term != ClothVisibility::Neubelt);
     let at_horizon = if is_fitted { FIT_SCALE * from_horizon } else { from_horizon };
-    let mut even = |start: f64, end: f64, scale: f64, rules: &GradedRules| {
-        let length = end - start;
-        let reach = length / scale;
-        for &(part, weight) in rules.for_reach_squared(reach * reach) {
-            add(start + length * part, weight * length.abs());
-        }
-    };
-    let mut panel = |start: f64, end: f64, scale: f64, rules: &GradedRules| {
-        if is_fitted && (start - FIT_JOINT) * (end - FIT_JOINT) < 0.0 {
-            even(start, FIT_JOINT, scale, rules);
-            even(FIT_JOINT, end, scale + (FIT_JOINT - start).abs(), rules);
-        } else {
-            even(start, end, scale, rules);
-        }
-    };
     let (below, above) = (0.5 * cos_v, (2.0 * cos_v).min(0.5 * (1.0 + cos_v)));
-    panel(0.0, below, at_horizon, &rules.horizon);
-    panel(cos_v, below, below / mirror_reach, &rules.mirror);
-    panel(cos_v, above, (above - cos_v) / mirror_reach, &rules.mirror);
-    panel(above, 1.0, from_horizon.max(cos_v), &rules.horizon);
+    let panels = [
+        (0.0, below, at_horizon, &rules.horizon),
+        (cos_v, below, below / mirror_reach, &rules.mirror),
+        (cos_v, above, (above - cos_v) / mirror_reach, &rules.mirror),
+        (above, 1.0, from_horizon.max(cos_v), &rules.horizon),
+    ];
+    let mut sums = [0.0; N];
+    for (start, end, scale, graded) in panels {
+        let parts = if is_fitted && (start - FIT_JOINT) * (end - FIT_JOINT) < 0.0 {
+            &[(start, FIT_JOINT, scale), (FIT_JOINT, end, scale + (FIT_JOINT - start).abs())][..]
+        } else {
+            &[(start, end, scale)][..]
+        };
+        for &(start, end, scale) in parts {
+            let length: f64 = end - start;
+            let reach = length / scale;
+            for &(part, weight) in graded.for_reach_squared(reach * reach) {
+                let cos_l = start + length * part;
+                let around = weight * length.abs() * cos_l * ring.around(rules, cos_l);
+                for (sum, term) in sums.iter_mut().zip(terms) {
+                    *sum += around * term.of_lambda(cos_v, lambda_v, cos_l, alpha);
+                }
+            }
+        }
+    }
     sums
 }
 
@@ -204,7 +205,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// The integral over the azimuth of that power of the squared sine, over the largest.
+    /// The integral over the azimuth of the squared sine to `power`, over its largest value on all rings.
     fn around(&self, rules: &Rules, cos_l: f64) -> f64 {
         let sin_l_sq = (1.0 - cos_l) * (1.0 + cos_l);
         let sines = libm::sqrt(self.sin_v_sq) + libm::sqrt(sin_l_sq);
@@ -215,6 +216,7 @@ impl Ring {
         if near == 0.0 {
             return 0.0;
         }
+        // The logarithm of the squared sine, from the cosine where the sine is near 1 and has lost its digits.
         let ln_of = |near_part: f64, far_part: f64| {
             let sin_part = near * near_part + far * far_part;
             let length_sq = sin_part + cosines_sq * (near_part + far_part);
@@ -227,7 +229,8 @@ impl Ring {
         }
         let value =
             |near_part: f64, far_part: f64| libm::exp(self.power * (ln_of(near_part, far_part) - self.ln_reference));
-        // With t the tangent of half the azimuth: the scale of t on which the logarithm falls, and that of 1/t on which it rises.
+        // t is the tangent of half the azimuth. The logarithm falls on a scale of t and rises on a scale of 1/t; below are the inverse squares
+        // of these scales.
         let fall = self.power * cosines_sq * (near - far) / (near * (near + cosines_sq));
         let rise_of_length = (near + cosines_sq) / (far + cosines_sq);
         let rise_of_sine = if self.power > SMOOTH_POWER { 1.0 } else { near / (far + 1e-6 * near) };

@@ -55,7 +55,7 @@ fn stretched(cos_theta: f64) -> f64 {
     libm::asinh(libm::asin(cos_theta) / LINEAR_BELOW)
 }
 
-/// The coordinate of cosines: -1 at the lowest, 1 where albedos are negligible, at 1 at the latest.
+/// The coordinate of cosines: -1 at the lowest, 1 at the highest whose albedo is not negligible.
 #[derive(Debug, Clone, Copy)]
 struct Coordinate {
     highest: f64,

@@ -24,7 +24,7 @@ const SCALE_MIN: f64 = 1e-12;
 /// Least cosine at which a refracted ray turns, and least width of the range of angles in which it does, in the choice of rules.
 const COS_TURN_MIN: f64 = 1e-9;
 
-/// Stands for 0 where a quotient would be without meaning.
+/// Replaces a divisor of 0, so that a quotient is huge and not NaN.
 const TINY: f64 = 1e-300;
 
 /// Graded rules over the angle against the light and over the azimuth.
@@ -38,13 +38,10 @@ pub(super) struct Rules {
 impl Rules {
     /// `[first, per_fold]` nodes of [`GradedRules::new`], each for half a piece.
     pub(super) fn new(rings: [f64; 2], azimuths: [f64; 2], averages: [f64; 2]) -> Self {
-        // Squared: pieces start like square roots where a circle of facets begins to be cut.
-        let squared = |x: f64, weight: f64| (x * x, 2.0 * x * weight);
-        Self {
-            rings: GradedRules::new(rings[0], rings[1]).map(squared, &[]),
-            azimuths: GradedRules::new(azimuths[0], azimuths[1]),
-            averages: GradedRules::new(averages[0], averages[1]).map(squared, &[]),
-        }
+        // Squared nodes: pieces start like square roots where a circle of facets begins to be cut.
+        let [rings, averages] = [rings, averages]
+            .map(|[first, per_fold]| GradedRules::new(first, per_fold).map(|x, weight| (x * x, 2.0 * x * weight), &[]));
+        Self { rings, azimuths: GradedRules::new(azimuths[0], azimuths[1]), averages }
     }
 
     /// The rules in use.
@@ -122,6 +119,18 @@ struct Ring {
     span: f64,
 }
 
+impl Ring {
+    /// h of the facet at a cosine against the normal. At normal incidence, where the span is 0, all of them are infinite.
+    fn h(&self, cos_theta_h: f64) -> f64 {
+        (1.0 - self.versine - cos_theta_h) / self.span.max(TINY)
+    }
+}
+
+/// Cosine of the refracted direction, 0 under total reflection.
+fn refracted(eta_ti: f64, cos_d: f64) -> f64 {
+    libm::sqrt((1.0 - (1.0 - cos_d * cos_d) / (eta_ti * eta_ti)).max(0.0))
+}
+
 impl<'a> Facets<'a> {
     pub(super) fn new(
         rules: &'a Rules,
@@ -162,7 +171,7 @@ impl<'a> Facets<'a> {
         })
     }
 
-    /// The light that facets of reflectance `f(cos_theta_d)` between transparent media let through, and that goes on away from the surface.
+    /// The light that facets of reflectance `f(cos_theta_d)` between transparent media transmit, away from the surface.
     pub(super) fn transmitted(&self, eta_ti: f64, f: impl Fn(f64) -> f64) -> f64 {
         let Self { theta_i, cos_i, sin_i, .. } = *self;
         let flat = FRAC_PI_2 - theta_i;
@@ -171,10 +180,10 @@ impl<'a> Facets<'a> {
         let last = fresnel.at;
         // Where the refracted ray of the first facet of a ring turns back above the horizon: theta_t - theta_d = pi/2 - theta_i.
         let turn = if denser { last } else { libm::atan2(cos_i, 1.0 / eta_ti - sin_i).min(last) };
-        let refracted = |cos_d: f64| libm::sqrt((1.0 - (1.0 - cos_d * cos_d) / (eta_ti * eta_ti)).max(0.0));
         let away = cos_i / eta_ti + self.horizon;
         let cos_turn = libm::cos(turn);
-        let turn_width = self.horizon * eta_ti * refracted(cos_turn) / cos_turn.max(COS_TURN_MIN) + COS_TURN_MIN;
+        let turn_width =
+            self.horizon * eta_ti * refracted(eta_ti, cos_turn) / cos_turn.max(COS_TURN_MIN) + COS_TURN_MIN;
         let features = [
             Feature { at: theta_i, width: self.alpha },
             Feature { at: flat, width: away },
@@ -186,7 +195,7 @@ impl<'a> Facets<'a> {
             if transmittance <= 0.0 {
                 return 0.0;
             }
-            transmittance * self.around(ring, [cos_i / eta_ti, refracted(ring.cos_d) - ring.cos_d / eta_ti])
+            transmittance * self.around(ring, [cos_i / eta_ti, refracted(eta_ti, ring.cos_d) - ring.cos_d / eta_ti])
         })
     }
 
@@ -211,46 +220,45 @@ impl<'a> Facets<'a> {
     fn around(&self, ring: &Ring, [z0, z1]: [f64; 2]) -> f64 {
         let Self { alpha, horizon, .. } = *self;
         let Ring { versine, span, .. } = *ring;
-        let first = 1.0 - versine;
-        // h at a cosine of the facet. At normal incidence, where the span is 0, all of them are infinite.
-        let h_of = |cos_theta_h: f64| (first - cos_theta_h) / span.max(TINY);
-        let mut range = [0.0, h_of(self.cos_theta_h_min).min(1.0)];
-        // What is near below and above the range: the peak of the distribution and the horizon of the light.
-        // Gaussian slopes end like exp(-1/cos^2).
-        let far = if self.cos_theta_h_min > 0.0 { h_of(0.0) } else { f64::INFINITY };
+        let mut range = [0.0, ring.h(self.cos_theta_h_min).min(1.0)];
+        // The integrand changes fastest near two places beside the range: the peak of the distribution below it, and the horizon of the
+        // light above it. Gaussian slopes end like exp(-1/cos^2), where the cosine of the facet is 0.
+        let far = if self.cos_theta_h_min > 0.0 { ring.h(0.0) } else { f64::INFINITY };
         let mut near = [-(2.0 * versine + alpha * alpha) / (2.0 * span.max(TINY)), far];
         let (cut, scale) = (-z0 / z1, horizon / z1.abs());
         if z1 > 0.0 {
-            range[1] = range[1].min(h_of(cut));
-            near[1] = near[1].min(h_of(cut - scale));
+            range[1] = range[1].min(ring.h(cut));
+            near[1] = near[1].min(ring.h(cut - scale));
         } else if z1 < 0.0 {
-            range[0] = h_of(cut).max(0.0);
-            near[0] = near[0].max(h_of(cut + scale));
+            range[0] = ring.h(cut).max(0.0);
+            near[0] = near[0].max(ring.h(cut + scale));
         }
         let [from, to] = range;
         if to <= from {
             return 0.0;
         }
-        let integrand = |h: f64| {
-            let versine_h = versine + span * h;
-            let cos_theta_h = 1.0 - versine_h;
-            let density = scaled_distribution(self.distribution, alpha, cos_theta_h, versine_h * (1.0 + cos_theta_h));
-            density * self.masking(z0 + z1 * cos_theta_h)
-        };
         let mut sum = 0.0;
-        // The tangent t of half the azimuth up to 1, then 1/t.
+        // The tangent t of half the azimuth up to 1, where h is 1/2; then 1/t.
         if from < 0.5 {
-            let tangent_sq = |h: f64| h / (1.0 - h);
-            let ends = [tangent_sq(from), if to < 0.5 { tangent_sq(to) } else { 1.0 }];
-            sum += self.piece(ends, near.map(tangent_sq), |t_sq| integrand(t_sq / (1.0 + t_sq)));
+            let [ends, near] = [[from, to.min(0.5)], near].map(|pair| pair.map(|h| h / (1.0 - h)));
+            sum += self.piece(ends, near, |t_sq| self.integrand(ring, [z0, z1], t_sq / (1.0 + t_sq)));
         }
         if to > 0.5 {
-            let cotangent_sq = |h: f64| (1.0 - h) / h;
-            let ends = [cotangent_sq(to), if from > 0.5 { cotangent_sq(from) } else { 1.0 }];
-            let near = near.map(|h| if h.is_infinite() { -1.0 } else { cotangent_sq(h) });
-            sum += self.piece(ends, near, |t_sq| integrand(1.0 / (1.0 + t_sq)));
+            // At an infinite h the cotangent has the limit i.
+            let [ends, near] = [[to, from.max(0.5)], near]
+                .map(|pair| pair.map(|h: f64| if h.is_infinite() { -1.0 } else { (1.0 - h) / h }));
+            sum += self.piece(ends, near, |t_sq| self.integrand(ring, [z0, z1], 1.0 / (1.0 + t_sq)));
         }
         sum
+    }
+
+    /// pi alpha^2 D G of the facet at `h`.
+    fn integrand(&self, ring: &Ring, [z0, z1]: [f64; 2], h: f64) -> f64 {
+        let versine_h = ring.versine + ring.span * h;
+        let cos_theta_h = 1.0 - versine_h;
+        let sin_theta_h_sq = versine_h * (1.0 + cos_theta_h);
+        let density = scaled_distribution(self.distribution, self.alpha, cos_theta_h, sin_theta_h_sq);
+        density * self.masking(z0 + z1 * cos_theta_h)
     }
 
     /// The integral of `f(t^2)` over the azimuth whose half has tangent (or cotangent) t, between ends and near singular places given by
@@ -258,27 +266,27 @@ impl<'a> Facets<'a> {
     fn piece(&self, ends: [f64; 2], near: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
         let [a, b] = ends.map(|sq| libm::sqrt(sq.max(0.0)));
         let length = b - a;
-        let distance = |end: f64| {
-            let to = |sq: f64| if sq >= 0.0 { (end - libm::sqrt(sq)).abs() } else { libm::sqrt(end * end - sq) };
-            near.into_iter().map(to).fold(f64::INFINITY, f64::min).max(SCALE_MIN)
+        // A negative square is a place beside the real line.
+        let scales = [a, b].map(|end| {
+            let near = near.map(|sq| if sq >= 0.0 { (end - libm::sqrt(sq)).abs() } else { libm::sqrt(end * end - sq) });
+            near.into_iter().fold(f64::INFINITY, f64::min).max(SCALE_MIN)
+        });
+        // Graded to the end with a place near it, or to both.
+        let parts = if scales[1] >= length {
+            &[(a, length, scales[0])][..]
+        } else if scales[0] >= length {
+            &[(b, -length, scales[1])][..]
+        } else {
+            &[(a, 0.5 * length, scales[0]), (b, -0.5 * length, scales[1])][..]
         };
-        let scales = [distance(a), distance(b)];
         let mut sum = 0.0;
-        let mut part = |end: f64, step: f64, scale: f64| {
+        for &(end, step, scale) in parts {
             let reach = step.abs() / scale;
             for &(x, weight) in self.rules.azimuths.for_reach_squared(reach * reach) {
                 let t = end + step * x;
                 let t_sq = t * t;
                 sum += weight * step.abs() * 2.0 / (1.0 + t_sq) * f(t_sq);
             }
-        };
-        if scales[1] >= length {
-            part(a, length, scales[0]);
-        } else if scales[0] >= length {
-            part(b, -length, scales[1]);
-        } else {
-            part(a, 0.5 * length, scales[0]);
-            part(b, -0.5 * length, scales[1]);
         }
         sum
     }

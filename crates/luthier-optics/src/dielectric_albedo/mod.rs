@@ -3,7 +3,7 @@
 //! Albedos that energy-compensation tables hold (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"; Turquin 2019,
 //! "Practical multiple scattering compensation for microfacet models"). Facets reflect and refract by Fresnel's formulas (Walter et al. 2007,
 //! "Microfacet Models for Refraction through Rough Surfaces", eq. 20 and 21, integrated over the facets instead of directions). Albedos
-//! are of power: radiance that changes with the square of the index is no part of them.
+//! are of power: the change of radiance with the square of the index is left out.
 //!
 //! Out of scope: films, absorption, anisotropy, light that meets a second facet.
 
@@ -49,7 +49,7 @@ impl JointMasking {
     }
 }
 
-/// Light that leaves an interface after one facet, as parts of what falls on it.
+/// Light that leaves an interface after one facet, as parts of the incident light.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct InterfaceAlbedo {
     /// Part reflected.
@@ -59,7 +59,7 @@ pub struct InterfaceAlbedo {
 }
 
 impl InterfaceAlbedo {
-    /// Both parts: 1 less what multiple scattering carries.
+    /// Both parts together; multiple scattering carries the rest of the light.
     pub fn total(self) -> f64 {
         self.reflected + self.transmitted
     }
@@ -107,14 +107,13 @@ fn with_rules(
     cos_theta_i: f64,
 ) -> InterfaceAlbedo {
     let cos_i = cos_theta_i.clamp(COS_THETA_MIN, 1.0);
-    let fresnel = |cos: f64| fresnel_dielectric(eta_ti, cos);
     if alpha < ALPHA_MIN {
-        let reflected = fresnel(cos_i);
+        let reflected = fresnel_dielectric(eta_ti, cos_i);
         return InterfaceAlbedo { reflected, transmitted: 1.0 - reflected };
     }
     let facets = Facets::new(rules, distribution, masking, alpha, cos_i);
-    let reflected = facets.reflected(fresnel_feature(eta_ti), fresnel);
-    let transmitted = facets.transmitted(eta_ti, fresnel);
+    let reflected = facets.reflected(fresnel_feature(eta_ti), |cos| fresnel_dielectric(eta_ti, cos));
+    let transmitted = facets.transmitted(eta_ti, |cos| fresnel_dielectric(eta_ti, cos));
     InterfaceAlbedo { reflected, transmitted }
 }
 

@@ -1,4 +1,4 @@
-//! Columns of a table of indices: what a header names them.
+//! Columns of a table of indices, and their names in a header.
 
 use super::error::{IndexFileError, Reason};
 use crate::rows::Row;
@@ -17,16 +17,16 @@ impl Unit {
     }
 }
 
-/// Which cell of a row has what.
+/// Places of quantities among the cells of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Columns {
     pub(super) wavelength: usize,
-    /// The unit, where the header names it.
+    /// The unit of wavelengths, if the header names it.
     pub(super) unit: Option<Unit>,
     pub(super) n: Option<usize>,
     pub(super) k: Option<usize>,
     pub(super) count: usize,
-    /// Names of columns that are of no use here.
+    /// Names of columns that are not read.
     pub(super) others: Vec<String>,
 }
 
@@ -41,12 +41,12 @@ enum Role {
 }
 
 impl Columns {
-    /// Those of rows without a header.
+    /// Columns of rows without a header.
     pub(super) fn plain(count: usize) -> Self {
         Self { wavelength: 0, unit: None, n: Some(1), k: (count > 2).then_some(2), count, others: Vec::new() }
     }
 
-    /// Those that a header names.
+    /// Columns that a header names.
     pub(super) fn named(row: &Row) -> Result<Self, IndexFileError> {
         let mut names = row.cells.clone();
         // A comma or a space before the unit makes two cells of `wavelength, um`.
@@ -58,12 +58,10 @@ impl Columns {
             names[at] = format!("{} {unit}", names[at]);
         }
         let roles: Vec<Role> = names.iter().map(|name| role(name)).collect();
-        let first = |is: &dyn Fn(&Role) -> bool| roles.iter().position(is);
-        let header = |lacks| Reason::Header { found: clipped(&names.join(",")), lacks }.at(row.line);
-        let Some(wavelength) = first(&|role| matches!(role, Role::Wavelength(_) | Role::Unit(_))) else {
-            return Err(match first(&|role| *role == Role::Energy) {
+        let Some(wavelength) = roles.iter().position(|role| matches!(role, Role::Wavelength(_) | Role::Unit(_))) else {
+            return Err(match roles.iter().position(|role| *role == Role::Energy) {
                 Some(at) => Reason::Energy(clipped(&names[at])).in_column(row.line, at + 1),
-                None => header("wavelengths"),
+                None => lacking("wavelengths", &names).at(row.line),
             });
         };
         let unit = match roles[wavelength] {
@@ -71,14 +69,25 @@ impl Columns {
             Role::Unit(unit) => Some(unit),
             _ => None,
         };
-        let (n, k) = (first(&|role| *role == Role::N), first(&|role| *role == Role::K));
+        let [n, k] = [Role::N, Role::K].map(|wanted| roles.iter().position(|role| *role == wanted));
         if n.is_none() && k.is_none() {
-            return Err(header("n or k"));
+            return Err(lacking("n or k", &names).at(row.line));
         }
-        let is_used = |at: &usize| [Some(wavelength), n, k].contains(&Some(*at));
-        let others = (0..names.len()).filter(|at| !is_used(at)).map(|at| clipped(&names[at])).collect();
+        let others = (0..names.len()).filter(|&at| ![Some(wavelength), n, k].contains(&Some(at)));
+        let others = others.map(|at| clipped(&names[at])).collect();
         Ok(Self { wavelength, unit, n, k, count: names.len(), others })
     }
+}
+
+/// The fault of a header that names no column of a quantity.
+fn lacking(lacks: &'static str, names: &[String]) -> Reason {
+    Reason::Header { found: clipped(&names.join(",")), lacks }
+}
+
+/// The number of a cell, or a fault with its text and its place.
+pub(super) fn number(row: &Row, cell: usize) -> Result<f64, IndexFileError> {
+    let text = row.cells.get(cell).map_or("", String::as_str);
+    row.number(cell).ok_or_else(|| Reason::Number(clipped(text)).in_column(row.line, cell + 1))
 }
 
 /// Characters of a text of the file in messages.

@@ -1,14 +1,14 @@
 //! Tables of indices in CSV.
 
-use super::columns::{Columns, NM, UM, clipped};
+use super::columns::{Columns, NM, UM, number};
 use super::curves::{Point, joined};
 use super::error::plain;
 use super::{IndexFile, IndexFileError, ROWS_MAX, Reason};
 use crate::rows::{Row, rows};
 
-/// Wavelengths up to this are micrometres where nothing names the unit: those of a table in nm are longer.
+/// Longest wavelength of a table in um, if nothing names the unit: a table in nm has longer ones.
 const UM_MOST: f64 = 30.0;
-/// Wavelengths from this on are nanometres where nothing names the unit.
+/// Shortest wavelength of a table in nm, if nothing names the unit.
 const NM_LEAST: f64 = 100.0;
 
 /// Reads an index from CSV text: rows of a wavelength, n and k below a row of names.
@@ -28,7 +28,7 @@ pub fn csv(text: &str) -> Result<IndexFile, IndexFileError> {
     let mut notes = Vec::new();
     let mut columns: Option<Columns> = None;
     let (mut n, mut k): (Vec<Point>, Vec<Point>) = (Vec::new(), Vec::new());
-    // Wavelengths whose unit is told by all of them.
+    // Least and greatest wavelength without a unit: together they tell it.
     let mut bare: Option<(f64, f64)> = None;
     let mut bare_line = None;
     let mut count = 0;
@@ -64,11 +64,7 @@ pub fn csv(text: &str) -> Result<IndexFile, IndexFileError> {
         if row.cells.len() != columns.count {
             return Err(Reason::Columns { found: row.cells.len(), expected: columns.count }.at(row.line));
         }
-        let number = |cell: usize| {
-            let text = || clipped(row.cells.get(cell).map_or("", String::as_str));
-            row.number(cell).ok_or_else(|| Reason::Number(text()).in_column(row.line, cell + 1))
-        };
-        let wavelength = number(columns.wavelength)?;
+        let wavelength = number(&row, columns.wavelength)?;
         if wavelength <= 0.0 {
             return Err(Reason::Wavelength(wavelength).in_column(row.line, columns.wavelength + 1));
         }
@@ -79,7 +75,7 @@ pub fn csv(text: &str) -> Result<IndexFile, IndexFileError> {
         }
         for (curve, cell) in [(&mut n, columns.n), (&mut k, columns.k)] {
             let Some(cell) = cell else { continue };
-            let value = number(cell)?;
+            let value = number(&row, cell)?;
             curve.push(Point {
                 nm: wavelength,
                 unit: columns.unit,

@@ -26,7 +26,7 @@ fn is_seen(nm: f64) -> bool {
     (VISIBLE_NM.0..=VISIBLE_NM.1).contains(&nm)
 }
 
-/// The index of both, in any order of wavelengths.
+/// The index that n and k make; points may come in any order.
 pub(super) fn joined(n: Vec<Point>, k: Vec<Point>, notes: &mut Vec<String>) -> Result<Ior, IndexFileError> {
     if n.is_empty() {
         return Err(if k.is_empty() { Reason::Empty } else { Reason::OnlyK }.at(None));
@@ -73,7 +73,7 @@ pub(super) fn joined(n: Vec<Point>, k: Vec<Point>, notes: &mut Vec<String>) -> R
     Ior::sampled(samples).map_err(|_| Reason::Empty.at(None))
 }
 
-/// The points in ascending order of wavelengths, each once, as far as what is seen depends on them.
+/// The points in ascending order of wavelengths, each wavelength once, as far as visible light depends on them.
 fn read(name: &str, mut points: Vec<Point>, notes: &mut Vec<String>) -> Result<Vec<Point>, IndexFileError> {
     points.sort_by(|a, b| a.nm.total_cmp(&b.nm));
     let mut found: Vec<Point> = Vec::new();
@@ -106,7 +106,7 @@ fn read(name: &str, mut points: Vec<Point>, notes: &mut Vec<String>) -> Result<V
     Ok(found)
 }
 
-/// The points with the values that a check gives them. What it refuses outside the visible range is left out.
+/// The points with the values that a check gives them. Refused points outside the visible range are left out.
 fn checked(
     points: Vec<Point>,
     notes: &mut Vec<String>,

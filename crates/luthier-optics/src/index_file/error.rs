@@ -37,7 +37,7 @@ pub enum Reason {
     /// Photon energies in place of wavelengths.
     #[error("`{0}` is an energy, and a table begins with wavelengths")]
     Energy(String),
-    /// Rows of many numbers that nothing names.
+    /// Rows of other than two or three numbers, without a header.
     #[error("{0} columns without a header")]
     NoHeader(usize),
     /// Wavelengths that may be nanometres or micrometres.
@@ -54,7 +54,7 @@ pub enum Reason {
     /// A cell that is no number.
     #[error("`{0}` is not a number")]
     Number(String),
-    /// A wavelength that is none.
+    /// A wavelength that is not positive.
     #[error("the wavelength {0} is not positive")]
     Wavelength(f64),
     /// A negative index.
@@ -83,10 +83,10 @@ pub enum Reason {
         /// The value.
         value: f64,
     },
-    /// Nothing at all.
+    /// n and k that are both 0.
     #[error("n and k are both 0 at {0} nm, which no medium is")]
     Nothing(f64),
-    /// Samples of light that is not seen.
+    /// Samples outside the visible range alone.
     #[error("no sample of this index is visible: they lie from {0} to {1} nm")]
     NotVisible(f64, f64),
     /// k alone.
@@ -119,10 +119,10 @@ pub enum Reason {
     /// A second source of the same quantity.
     #[error("a second entry of `DATA` gives {0}")]
     Twice(&'static str),
-    /// A range that is none.
+    /// A range that is not two ascending wavelengths.
     #[error("`wavelength_range` is `{0}`, not two ascending wavelengths in um")]
     Range(String),
-    /// A formula that is none.
+    /// An unknown formula, or one with wrong coefficients.
     #[error(transparent)]
     Formula(#[from] FormulaError),
     /// A formula with a pole.

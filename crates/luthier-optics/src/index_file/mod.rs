@@ -1,7 +1,7 @@
 //! Indices in files of others: tables in CSV, and pages of the refractiveindex.info database in YAML.
 //!
-//! A file is read as far as the visible range needs it; what lies beyond is no reason to refuse it. What is not read as it stands is told in
-//! notes.
+//! A file is read as far as the visible range needs it, and faults beyond do not refuse it. Notes name everything that is not read as it
+//! stands.
 
 mod columns;
 mod csv;
@@ -22,7 +22,7 @@ pub use yaml::yaml;
 pub struct IndexFile {
     /// The index, over the visible range and one sample beyond each of its ends.
     pub ior: Ior,
-    /// Sentences about what was not read as it stands.
+    /// Sentences about values that were not read as they stand.
     pub notes: Vec<String>,
 }
 

@@ -2,12 +2,12 @@
 
 use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 
-use super::columns::{UM, clipped};
+use super::columns::{UM, clipped, number};
 use super::curves::{Point, joined};
 use super::{IndexFile, IndexFileError, ROWS_MAX, Reason};
 use crate::color::VISIBLE_NM;
 use crate::dispersion::Formula;
-use crate::rows::rows;
+use crate::rows::{Row, rows};
 
 /// Levels of lists and mappings; a page has four.
 const DEPTH_MAX: usize = 32;
@@ -42,6 +42,10 @@ impl Entry {
             _ => None,
         }
     }
+
+    fn missing(&self, key: &'static str) -> IndexFileError {
+        Reason::Missing(key).at(self.line)
+    }
 }
 
 /// Reads an index from a page of the refractiveindex.info database: entries of `DATA` of the types `tabulated nk`, `tabulated n`, `tabulated k`
@@ -59,15 +63,15 @@ impl Entry {
 pub fn yaml(text: &str) -> Result<IndexFile, IndexFileError> {
     let (mut n, mut k): (Vec<Point>, Vec<Point>) = (Vec::new(), Vec::new());
     for entry in entries(text)? {
-        let kind = entry.kind.as_ref().ok_or_else(|| Reason::Missing("type").at(entry.line))?;
+        let kind = entry.kind.as_ref().ok_or_else(|| entry.missing("type"))?;
         let words: Vec<&str> = kind.text.split_whitespace().collect();
-        let unknown = || Reason::Type(clipped(&kind.text)).at(kind.line);
+        let unknown = Reason::Type(clipped(&kind.text)).at(kind.line);
         let (has_n, has_k) = match words.as_slice() {
             ["tabulated", "nk"] => (true, true),
             ["tabulated", "n"] => (true, false),
             ["tabulated", "k"] => (false, true),
             ["formula", _] => (true, false),
-            _ => return Err(unknown()),
+            _ => return Err(unknown),
         };
         for (has, curve, name) in [(has_n, &n, "n"), (has_k, &k, "k")] {
             if has && !curve.is_empty() {
@@ -75,10 +79,10 @@ pub fn yaml(text: &str) -> Result<IndexFile, IndexFileError> {
             }
         }
         if words[0] == "formula" {
-            let number = words[1].parse().map_err(|_| unknown())?;
+            let number = words[1].parse().map_err(|_| unknown)?;
             n = sampled(&entry, number, kind.line)?;
         } else {
-            let data = entry.data.as_ref().ok_or_else(|| Reason::Missing("data").at(entry.line))?;
+            let data = entry.data.as_ref().ok_or_else(|| entry.missing("data"))?;
             table(data, has_n.then_some(&mut n), has_k.then_some(&mut k))?;
         }
     }
@@ -92,35 +96,31 @@ fn table(data: &Text, n: Option<&mut Vec<Point>>, k: Option<&mut Vec<Point>>) ->
     let mut curves: Vec<&mut Vec<Point>> = n.into_iter().chain(k).collect();
     let expected = curves.len() + 1;
     for (count, row) in rows(&data.text).enumerate() {
-        let line = |line: usize| data.line + line - 1;
-        let row = row.map_err(|error| Reason::TooManyCells.at(line(error.line)))?;
+        let row = row.map_err(|error| Reason::TooManyCells.at(data.line + error.line - 1))?;
+        // Faults name lines of the page, not of the text.
+        let row = Row { line: data.line + row.line - 1, ..row };
         if count == ROWS_MAX {
-            return Err(Reason::TooManyRows.at(line(row.line)));
+            return Err(Reason::TooManyRows.at(row.line));
         }
         if row.cells.len() != expected {
-            return Err(Reason::Columns { found: row.cells.len(), expected }.at(line(row.line)));
+            return Err(Reason::Columns { found: row.cells.len(), expected }.at(row.line));
         }
-        let number = |cell: usize| {
-            row.number(cell)
-                .ok_or_else(|| Reason::Number(clipped(&row.cells[cell])).in_column(line(row.line), cell + 1))
-        };
-        let um = number(0)?;
+        let um = number(&row, 0)?;
         if um <= 0.0 {
-            return Err(Reason::Wavelength(um).in_column(line(row.line), 1));
+            return Err(Reason::Wavelength(um).in_column(row.line, 1));
         }
         for (i, curve) in curves.iter_mut().enumerate() {
-            let (line, column) = (Some(line(row.line)), Some(i + 2));
-            curve.push(Point { nm: UM.nm(um), unit: Some(UM), value: number(i + 1)?, line, column });
+            let (line, column) = (Some(row.line), Some(i + 2));
+            curve.push(Point { nm: UM.nm(um), unit: Some(UM), value: number(&row, i + 1)?, line, column });
         }
     }
     Ok(())
 }
 
-/// Samples of a formula over what is seen of its range.
+/// Samples of a formula over the visible part of its range.
 fn sampled(entry: &Entry, number: usize, line: usize) -> Result<Vec<Point>, IndexFileError> {
-    let missing = |key| Reason::Missing(key).at(entry.line);
-    let coefficients = entry.coefficients.as_ref().ok_or_else(|| missing("coefficients"))?;
-    let range = entry.wavelength_range.as_ref().ok_or_else(|| missing("wavelength_range"))?;
+    let coefficients = entry.coefficients.as_ref().ok_or_else(|| entry.missing("coefficients"))?;
+    let range = entry.wavelength_range.as_ref().ok_or_else(|| entry.missing("wavelength_range"))?;
     let formula =
         Formula::new(number, numbers(coefficients)?).map_err(|error| Reason::from(error).at(coefficients.line))?;
     let ends: Vec<f64> = numbers(range)?.into_iter().map(|um| UM.nm(um)).collect();
@@ -139,15 +139,14 @@ fn sampled(entry: &Entry, number: usize, line: usize) -> Result<Vec<Point>, Inde
         .collect())
 }
 
-/// Finite numbers apart by spaces; no more than any formula takes is read.
+/// Finite numbers apart by spaces. The first hundred are read: no formula takes as many.
 fn numbers(text: &Text) -> Result<Vec<f64>, IndexFileError> {
-    let number = |word: &str| {
-        word.parse::<f64>()
-            .ok()
-            .filter(|number| number.is_finite())
-            .ok_or_else(|| Reason::Number(clipped(word)).at(text.line))
-    };
-    text.text.split_whitespace().take(100).map(number).collect()
+    let words = text.text.split_whitespace().take(100);
+    let numbers = words.map(|word| match word.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(Reason::Number(clipped(word)).at(text.line)),
+    });
+    numbers.collect()
 }
 
 /// The entries of `DATA` of the first document. Aliases are not followed.

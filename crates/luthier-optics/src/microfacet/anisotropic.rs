@@ -6,7 +6,7 @@ use super::lambda;
 use crate::ndf::{NdfError, positive};
 use crate::stack::{Distribution, Surface};
 
-/// A distribution whose slopes over (`alpha_x`, `alpha_y`) are those of the isotropic one of alpha 1.
+/// The isotropic distribution of alpha 1 with its slopes stretched by `alpha_x` and `alpha_y`.
 ///
 /// Beckmann: Ward 1992 as normalised by Heitz 2014, eq. 81. GGX: Burley 2012, eq. 13; Heitz 2014, eq. 85.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,8 +17,8 @@ pub struct Anisotropic {
 }
 
 impl Anisotropic {
-    /// The distribution of slope parameters along the tangent (x) and the bitangent (y). GGX stands in for those that are no slopes of alpha 1,
-    /// stretched ([`Distribution::walked`]).
+    /// The distribution of slope parameters along the tangent (x) and the bitangent (y). GGX stands in for distributions that no
+    /// stretching makes from alpha 1 ([`Distribution::walked`]).
     ///
     /// # Errors
     /// [`NdfError::NotPositive`] unless both are positive and finite.
@@ -27,7 +27,7 @@ impl Anisotropic {
         Ok(Self { distribution, alpha_x: positive("alpha_x", alpha_x)?, alpha_y: positive("alpha_y", alpha_y)? })
     }
 
-    /// The distribution of a surface in the surface's own frame; its rotation is the caller's (see [`to_layer`]).
+    /// The distribution of a surface in the frame of its layer; the caller rotates directions into it (see [`to_layer`]).
     ///
     /// # Errors
     /// [`NdfError::NotPositive`] for a surface that is smooth along a tangent.

@@ -18,7 +18,7 @@ use crate::stack::Distribution;
 ///
 /// Beckmann: Elek 2010 sec. 2.1 as mended in CONVENTIONS.md. GGX: Walter et al. 2007, eq. 33. Blinn: cos^n with n = 2/alpha^2 - 2 (Walter et
 /// al. 2007, section 5.2), whose D is (n + 2)/(2 pi) cos^n = cos^n/(pi alpha^2). ABC and the shifted gamma distribution: [`Shape`](crate::ndf::Shape);
-/// the value at the normal is 1 as that of all others, and larger elsewhere for wide shifted gamma distributions alone.
+/// the value at the normal is 1, as for the others; only wide shifted gamma distributions are larger elsewhere.
 pub fn scaled_distribution(distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
     if cos_theta_h <= 0.0 {
         return 0.0;

@@ -17,7 +17,7 @@ pub struct Abc {
 /// Gauss-Legendre points of the norm.
 const NODES: usize = 64;
 
-/// The integrand of the norm ends where it has fallen to exp of minus this.
+/// The integral of the norm ends where its integrand has fallen by exp(-40), which is below rounding.
 const DECAY: f64 = 40.0;
 
 impl Abc {

@@ -21,7 +21,7 @@ pub struct Sgd {
 /// Gauss-Legendre points of the incomplete gamma function.
 const NODES: usize = 128;
 
-/// Fall of the integrand of the incomplete gamma function at its end: e^{-t} by exp of minus this.
+/// The integral of the incomplete gamma function ends where e^{-t} has fallen by exp(-40), which is below rounding.
 const DECAY: f64 = 40.0;
 
 impl Sgd {

@@ -9,7 +9,7 @@ use super::{Abc, Ndf, NdfError, Sgd};
 /// Widest surface that has a slope parameter: D is 1/pi at the normal.
 const ALPHA_MAX: f64 = 1.0;
 
-/// Two parameters of a distribution, and the slope parameter alpha of its peak: D is 1/(pi alpha^2) at the normal, as Beckmann's and that of GGX.
+/// Two parameters of a distribution, and the slope parameter alpha of its peak: D is 1/(pi alpha^2) at the normal, as for Beckmann and GGX.
 ///
 /// Alpha holds the norm, which is computed by quadrature once. It is from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,10 +55,9 @@ impl Shape {
         self.alpha
     }
 
-    /// `pi alpha^2 D` of ABC whose slopes are stretched from those of its own alpha to those of `alpha`.
+    /// `pi alpha^2 D` of ABC with slopes stretched from its own alpha to `alpha`.
     ///
-    /// The density of slopes of a stretched surface is that of the slopes before, over the squared stretch (Heitz 2014, section 5.3), so that the
-    /// projected area stays 1. With theta' the angle of the slope before, D = (cos theta' / cos theta)^4 D(theta') / stretch^2.
+    /// Stretching divides the density of slopes by the squared stretch (Heitz 2014, section 5.3), so that the projected area stays 1. With theta' the angle of the slope before, D = (cos theta' / cos theta)^4 D(theta') / stretch^2.
     pub(crate) fn scaled_abc(&self, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
         let [b, c] = self.parameters;
         let cos_sq = cos_theta_h * cos_theta_h;

@@ -10,7 +10,7 @@ use crate::rows::{Row, rows};
 
 pub use self::rgb::rgb;
 
-/// Shares of a column may sum to this little above 1.
+/// Excess over 1 that the sum of a column may have, because decimals are rounded.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
 /// A matrix and the wavelengths of its bins.
@@ -44,17 +44,15 @@ impl Matrix {
     /// # Errors
     /// [`MatrixError`], whose text continues the name of the file.
     pub fn parse(text: &str) -> Result<Self, MatrixError> {
-        let whole = |reason: String| MatrixError { line: None, reason };
-        let wrong = |line: usize, reason: String| MatrixError { line: Some(line), reason };
         let mut rows = rows(text).map(|row| row.map_err(|error| wrong(error.line, error.to_string())));
-        let head = rows.next().ok_or_else(|| whole("no matrix".to_owned()))??;
+        let head = rows.next().ok_or_else(|| wrong(None, "no matrix"))??;
         let at = head.line;
         if head.cells.len() < 2 {
-            return Err(wrong(at, "expected the wavelengths of the light after a comma".to_owned()));
+            return Err(wrong(at, "expected the wavelengths of the light after a comma"));
         }
         let wavelengths_nm = numbers(&head, 1).map_err(|reason| wrong(at, reason))?;
         if !wavelengths_nm.is_sorted_by(|a, b| a < b) {
-            return Err(wrong(at, "wavelengths have to ascend".to_owned()));
+            return Err(wrong(at, "wavelengths have to ascend"));
         }
         let bins = wavelengths_nm.len();
         // Grows with the rows: the head alone may promise a matrix that no memory holds.
@@ -84,7 +82,7 @@ impl Matrix {
         }
         let rows = shares.len() / bins;
         if rows < bins {
-            return Err(whole(format!("expected {bins} rows, as many as there are wavelengths, found {rows}")));
+            return Err(wrong(None, format!("expected {bins} rows, as many as there are wavelengths, found {rows}")));
         }
         for (from, nm) in wavelengths_nm.iter().enumerate() {
             let power: f64 = shares.iter().skip(from).step_by(bins).sum();
@@ -100,10 +98,10 @@ impl Matrix {
 
     /// The bin that is nearest to a wavelength; `None` outside all bins.
     pub fn bin(&self, nm: f64) -> Option<usize> {
-        let away = |bin: &usize| (self.wavelengths_nm[*bin] - nm).abs();
-        let nearest = (0..self.wavelengths_nm.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let distances = self.wavelengths_nm.iter().map(|bin| (bin - nm).abs()).enumerate();
+        let nearest = distances.min_by(|a, b| a.1.total_cmp(&b.1));
         let [first, last] = self.ends();
-        nearest.filter(|_| (first..=last).contains(&nm))
+        nearest.filter(|_| (first..=last).contains(&nm)).map(|(bin, _)| bin)
     }
 
     /// The first and the last wavelength.
@@ -112,10 +110,14 @@ impl Matrix {
     }
 }
 
+fn wrong(line: impl Into<Option<usize>>, reason: impl Into<String>) -> MatrixError {
+    MatrixError { line: line.into(), reason: reason.into() }
+}
+
 /// The numbers of a row from a cell on.
 fn numbers(row: &Row, first: usize) -> Result<Vec<f64>, String> {
-    let number = |cell| row.number(cell).ok_or_else(|| format!("`{}` is not a number", row.cells[cell]));
-    (first..row.cells.len()).map(number).collect()
+    let cells = row.cells.iter().enumerate().skip(first);
+    cells.map(|(cell, text)| row.number(cell).ok_or_else(|| format!("`{text}` is not a number"))).collect()
 }
 
 #[cfg(test)]

@@ -1,15 +1,16 @@
-//! A re-radiation matrix in linear Rec.709: from the colour of the light to the colour of what comes out.
+//! A re-radiation matrix in linear Rec.709: from the colour of incident light to the colour of the light that comes out.
 
 use std::sync::OnceLock;
 
 use super::Matrix;
 use crate::Rgb;
 use crate::color::Color;
+use crate::rows::rows;
 
 /// Half a step of the wavelengths of [`Color::Spectral`], nm.
 const HALF_STEP_NM: f64 = 2.5;
 
-/// Light of D65 around one wavelength: its power, and the shares of it that lights of the primary colours have.
+/// Light of D65 around one wavelength: its power, and the shares of the power in lights of the primary colours.
 struct Light {
     wavelength_nm: f64,
     power: f64,
@@ -23,29 +24,28 @@ struct Light {
 /// M_ij = sum over bins `to` of  W_i(to) / E(to)  sum over bins `from` of  share(to, from) E_j(from)
 /// ```
 ///
-/// `E(bin)` is the power of D65 in a bin, `E_j(bin)` that of a light of the j-th primary colour there, and `W_i(bin)` what a perfect reflector
-/// in the bin alone adds to channel i under D65. The spectra of the primaries sum to D65, so that the sum of a row is exact: the colour
-/// under white light, of which 1 is a perfect reflector. For other lights the spectrum is the smoothest of their colour (Mallett and
-/// Yuksel 2019). Rows may sum to more than 1 in a channel that receives light of others, and entries may be negative where a
-/// colour is outside of the gamut.
+/// `E(bin)` is the power of D65 in a bin, `E_j(bin)` the power of a light of the j-th primary colour there. `W_i(bin)` is the value of channel i
+/// under D65 if a perfect reflector covers the bin alone. The spectra of the primaries sum to D65, so that the sum of a row is exact: it is
+/// the colour under white light, 1 for a perfect reflector. Other lights have the smoothest spectrum of their colour (Mallett and
+/// Yuksel 2019). A row may sum to more than 1, because a channel receives light of others. Entries may be negative, because colours may be
+/// outside the gamut.
 ///
 /// A bin reaches half-way to its neighbours, the first and the last one as far outwards as inwards; within a bin, light that comes out is
-/// spread as D65 is. Light outside of all bins is absorbed, and so is what D65 does not have: below 360 and above 830 nm. A matrix of
-/// one bin is that bin from 360 to 830 nm.
+/// spread as D65 is. Light outside all bins is absorbed, and so is light below 360 and above 830 nm, where D65 has no power here. The bin of
+/// a matrix of one bin reaches from 360 to 830 nm.
 pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
     let nm = &matrix.wavelengths_nm;
     let count = nm.len();
-    let middle = |i: usize| 0.5 * (nm[i] + nm[i + 1]);
-    let edges = |i: usize| match count {
-        1 => [0.0, f64::MAX],
-        _ if i == 0 => [2.0 * nm[0] - middle(0), middle(0)],
-        _ if i + 1 == count => [middle(i - 1), 2.0 * nm[i] - middle(i - 1)],
-        _ => [middle(i - 1), middle(i)],
-    };
+    let middles: Vec<f64> = nm.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     // Of each bin: power of D65, that of the primaries, weights of the channels.
     let bins: Vec<(f64, Rgb, Rgb)> = (0..count)
         .map(|i| {
-            let [from, to] = edges(i);
+            let [from, to] = match count {
+                1 => [0.0, f64::MAX],
+                _ if i == 0 => [2.0 * nm[0] - middles[0], middles[0]],
+                _ if i + 1 == count => [middles[i - 1], 2.0 * nm[i] - middles[i - 1]],
+                _ => [middles[i - 1], middles[i]],
+            };
             let mut bin = (0.0, [0.0; 3], [0.0; 3]);
             for light in d65() {
                 let [low, high] = [light.wavelength_nm - HALF_STEP_NM, light.wavelength_nm + HALF_STEP_NM];
@@ -62,8 +62,8 @@ pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
     let mut out = [[0.0; 3]; 3];
     for (to, (power, _, weight)) in bins.iter().enumerate().filter(|(_, bin)| bin.0 > 0.0) {
         let row = &matrix.shares[to * count..][..count];
-        let emitted = |j: usize| row.iter().zip(&bins).map(|(share, (_, lights, _))| share * lights[j]).sum::<f64>();
-        let emitted = [0, 1, 2].map(emitted);
+        let emitted = [0, 1, 2]
+            .map(|j: usize| row.iter().zip(&bins).map(|(share, (_, lights, _))| share * lights[j]).sum::<f64>());
         for (sums, weight) in out.iter_mut().zip(weight) {
             for (sum, emitted) in sums.iter_mut().zip(emitted) {
                 *sum += weight * emitted / power;
@@ -77,20 +77,17 @@ pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
 fn d65() -> &'static [Light] {
     static LIGHTS: OnceLock<Vec<Light>> = OnceLock::new();
     LIGHTS.get_or_init(|| {
-        let rows = |text: &'static str| text.lines().filter(|line| !line.starts_with('#'));
-        let field = |line: &str, i: usize| line.split(',').nth(i).and_then(|f| f.parse().ok()).unwrap_or(f64::NAN);
-        let powers = rows(include_str!("../../data/cie_1931_d65.csv")).map(|line| field(line, 4));
-        let primaries = rows(include_str!("../../data/rec709_primaries.csv")).map(|line| {
-            let [red, green] = [field(line, 1), field(line, 2)];
-            [red, green, 1.0 - red - green]
-        });
-        let nodes = Color::Spectral.nodes();
-        (nodes.iter().zip(powers).zip(primaries))
-            .map(|((node, power), primaries)| Light {
-                wavelength_nm: node.wavelength_nm,
-                power,
-                primaries,
-                weight: node.weight,
+        let powers = rows(include_str!("../../data/cie_1931_d65.csv")).map_while(Result::ok);
+        let primaries = rows(include_str!("../../data/rec709_primaries.csv")).map_while(Result::ok);
+        (Color::Spectral.nodes().iter().zip(powers).zip(primaries))
+            .map(|((node, power), primaries)| {
+                let [red, green] = [1, 2].map(|cell| primaries.number(cell).unwrap_or(f64::NAN));
+                Light {
+                    wavelength_nm: node.wavelength_nm,
+                    power: power.number(4).unwrap_or(f64::NAN),
+                    primaries: [red, green, 1.0 - red - green],
+                    weight: node.weight,
+                }
             })
             .collect()
     })

@@ -20,7 +20,7 @@ pub struct Row {
     pub has_decimal_commas: bool,
 }
 
-/// A row that is not read.
+/// A row has more cells than are read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("more than {CELLS_MAX} cells in a row")]
 pub struct TooManyCells {
@@ -29,7 +29,7 @@ pub struct TooManyCells {
 }
 
 impl Row {
-    /// The finite number of a cell; `None` for any other text, and for a cell that there is not.
+    /// The finite number of a cell; `None` for any other text, and for a missing cell.
     pub fn number(&self, cell: usize) -> Option<f64> {
         let text = self.cells.get(cell)?;
         let value = match self.has_decimal_commas && !text.contains('.') {
@@ -55,7 +55,7 @@ impl Separator {
     }
 }
 
-/// The rows of a text. The first row that counts tells what separates cells.
+/// The rows of a text. The first row that counts decides the separator of cells.
 ///
 /// ```
 /// let rows: Result<Vec<_>, _> = luthier_optics::rows::rows("\u{feff}nm;n\r\n# d line\r\n587,6;1,5168\r\n").collect();

@@ -50,6 +50,17 @@ impl Sampler for CosineHemisphere {
 
 /// `wo` mirrored at a micro-normal that it sees: the density is G1(wo) D(wh) / (4 cos_theta_o) (Heitz and d'Eon 2014, "Importance
 /// Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals").
+///
+/// ```
+/// use luthier_optics::{glam::DVec3, microfacet::Anisotropic, stack::Distribution};
+/// use luthier_optics::sampling::{Sampler, VisibleNormals};
+///
+/// let sampler = VisibleNormals { ndf: Anisotropic::new(Distribution::Ggx, 0.2, 0.4).unwrap() };
+/// let wo = DVec3::new(0.6, 0.0, 0.8);
+/// let sample = sampler.sample(wo, [0.3, 0.7, 0.5]).unwrap();
+/// let pdf = sampler.pdf_solid_angle(wo, sample.wi);
+/// assert!(sample.wi.z > 0.0 && (pdf / sample.pdf_solid_angle - 1.0).abs() < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VisibleNormals {
     /// The distribution of normals.

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use crate::albedo::{ALPHA_MIN, COS_THETA_MIN};
-use crate::masking::{Correlation, implicit, kelemen, schlick_smith, smith, v_cavity};
+use crate::masking::{Correlation, implicit, kelemen, rational_g1, schlick_smith, smith, v_cavity};
 use crate::microfacet::lambda;
 use crate::quadrature::{GradedRules, gauss_legendre};
 use crate::stack::Distribution;
@@ -92,7 +92,7 @@ pub fn split_sums(distribution: Distribution, alpha: f64, cos_theta: f64) -> [Sp
     sums_of(rules(distribution), Masking::ALL, distribution, alpha, cos_theta)
 }
 
-/// The split sum of one term, as [`split_sums`] has it.
+/// The split sum of one term: one of [`split_sums`], computed alone.
 pub fn split_sum(distribution: Distribution, masking: Masking, alpha: f64, cos_theta: f64) -> SplitSum {
     let [sum] = sums_of(rules(distribution), [masking], distribution, alpha, cos_theta);
     sum
@@ -109,15 +109,13 @@ struct Rules {
 impl Rules {
     fn new(tilt: [f64; 2], azimuth: [f64; 2], behind: usize) -> Self {
         // The tangent t of half the azimuth from 0 to 1, graded; then from 1 on, where 1/t goes from 1 to 0 and nothing is narrow.
-        let front = |t: f64, weight: f64| (t * t / (1.0 + t * t), 2.0 * weight / (1.0 + t * t));
         let back: Vec<(f64, f64)> = gauss_legendre(behind)
             .into_iter()
             .map(|(t, weight)| (1.0 / (1.0 + t * t), 2.0 * weight / (1.0 + t * t)))
             .collect();
-        Self {
-            tilt: GradedRules::new(tilt[0], tilt[1]),
-            azimuth: GradedRules::new(azimuth[0], azimuth[1]).map(front, &back),
-        }
+        let azimuth = GradedRules::new(azimuth[0], azimuth[1])
+            .map(|t, weight| (t * t / (1.0 + t * t), 2.0 * weight / (1.0 + t * t)), &back);
+        Self { tilt: GradedRules::new(tilt[0], tilt[1]), azimuth }
     }
 }
 
@@ -262,7 +260,7 @@ impl Density {
     }
 }
 
-/// Reflected directions of one polar angle; the square of the cosine at their facets lies between a least value and that and a span.
+/// Reflected directions of one polar angle. The squared cosine at their facets is a minimum plus a part of a span.
 struct Ring {
     cos_i: f64,
     cos_o: f64,
@@ -285,20 +283,18 @@ impl Ring {
     /// The part of a masking term that is equal at all azimuths.
     fn masking(&self, masking: Masking, distribution: Distribution, alpha: f64, lambda_i: f64) -> f64 {
         let Self { cos_i, cos_o, .. } = *self;
-        let smith_of = |correlation| smith(correlation, lambda_i, lambda(distribution, alpha, cos_o));
-        let rational = |k: f64| cos_i / (cos_i * (1.0 - k) + k) * (cos_o / (cos_o * (1.0 - k) + k));
         match masking {
-            Masking::SmithCorrelated => smith_of(Correlation::Height),
-            Masking::SmithSeparable => smith_of(Correlation::Separable),
+            Masking::SmithCorrelated => smith(Correlation::Height, lambda_i, lambda(distribution, alpha, cos_o)),
+            Masking::SmithSeparable => smith(Correlation::Separable, lambda_i, lambda(distribution, alpha, cos_o)),
             Masking::SmithJointApprox => {
                 let from_i = cos_o * (cos_i * (1.0 - alpha) + alpha);
                 let from_o = cos_i * (cos_o * (1.0 - alpha) + alpha);
                 2.0 * cos_i * cos_o / (from_i + from_o)
             }
-            Masking::SchlickHalf => rational(0.5 * alpha),
+            Masking::SchlickHalf => rational_g1(0.5 * alpha, cos_i) * rational_g1(0.5 * alpha, cos_o),
             Masking::SchlickKaris => {
                 let r = 1.0 + libm::sqrt(alpha);
-                rational(r * r / 8.0)
+                rational_g1(r * r / 8.0, cos_i) * rational_g1(r * r / 8.0, cos_o)
             }
             Masking::Schlick => schlick_smith(alpha, cos_i, cos_o),
             Masking::Implicit => implicit(cos_i, cos_o),

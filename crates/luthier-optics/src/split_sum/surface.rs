@@ -14,7 +14,7 @@ const LINEAR_BELOW: f64 = 0.01;
 /// Split sums of one masking term: Chebyshev interpolation in ln alpha and asinh(cos_theta / b), where b is the scale on which masking changes.
 ///
 /// Within 2e-6 of [`split_sum`] for GGX with smooth terms, and 2e-4 for Beckmann, where the cosine is at least 0.001; elsewhere it is
-/// [`split_sum`]. Below an alpha of 0.001 each row is a polynomial in the cosine of its own.
+/// [`split_sum`]. Below an alpha of 0.001 each row has a polynomial in the cosine of its own.
 #[derive(Debug, Clone)]
 pub struct SplitSumSurface {
     distribution: Distribution,
@@ -26,8 +26,8 @@ pub struct SplitSumSurface {
 impl SplitSumSurface {
     /// Interpolates 784 split sums.
     pub fn new(distribution: Distribution, masking: Masking) -> Self {
-        let row = |x: f64| over_cosines(distribution, masking, libm::exp(libm::log(LOWEST) * 0.5 * (1.0 - x)));
-        let rows: [[[f64; 2]; NODES]; NODES] = nodes().map(row);
+        let alphas = nodes().map(|x| libm::exp(libm::log(LOWEST) * 0.5 * (1.0 - x)));
+        let rows: [[[f64; 2]; NODES]; NODES] = alphas.map(|alpha| over_cosines(distribution, masking, alpha));
         let mut over_both = vec![[[0.0; 2]; NODES]; NODES];
         for degree in 0..NODES {
             let down: [_; NODES] = coefficients(&std::array::from_fn(|j| rows[j][degree]));
@@ -61,7 +61,7 @@ fn over_cosines(distribution: Distribution, masking: Masking, alpha: f64) -> [[f
     }))
 }
 
-/// Split sums of one alpha, as [`SplitSumSurface`] has them.
+/// Split sums of one alpha over all directions: a row of a [`SplitSumSurface`].
 #[derive(Debug, Clone)]
 pub struct SplitSumRow {
     distribution: Distribution,
