@@ -104,10 +104,9 @@ pub fn outline_with(
 /// # Errors
 /// See [`BakeError`].
 pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<Vec<(usize, f64)>, BakeError> {
-    let is_kinked = |layer: usize| {
-        Interface::of(&material.reflecting_stack(), layer).is_some_and(|i| i.has_kink(&material.color()))
-    };
-    let layers: Vec<usize> = (0..material.stack.layers.len()).filter(|&layer| is_kinked(layer)).collect();
+    let (stack, color) = (material.reflecting_stack(), material.color());
+    let layers = (0..stack.layers.len()).filter(|&i| Interface::of(&stack, i).is_some_and(|i| i.has_kink(&color)));
+    let layers: Vec<usize> = layers.collect();
     let materials = std::slice::from_ref(material);
     if layers.is_empty() || !budget(materials, &Budget::default())?.of_texels().is_empty() {
         return Ok(Vec::new());
@@ -123,11 +122,11 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
         results,
     )?;
     let rows = &plan.tiles[TableKind::Fresnel as usize].tiles;
-    let error = |layer: usize| {
+    let errors = layers.into_iter().filter_map(|layer| {
         let (_, key) = rows.get(plan.records[0].layers[layer].tiles[TableKind::Fresnel]? as usize)?;
         Some((layer, results.find(*key)?.error.max_abs_err))
-    };
-    Ok(layers.into_iter().filter_map(error).filter(|(_, error)| *error > AIM).collect())
+    });
+    Ok(errors.filter(|(_, error)| *error > AIM).collect())
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
@@ -155,10 +154,10 @@ pub fn bake_with(
     let Plan { settings, graph, tiles, records } = plan;
     let mut results = graph.run(observer, store, results)?;
     let is_asked = !options.search || !budget(materials, &options.budget)?.of_texels().is_empty();
-    let aim = |kind: TableKind| (!is_asked && is_left(&settings, kind)).then_some(AIM);
     let mut atlases = Vec::with_capacity(layouts.len());
     for (kind, layout, format) in layouts {
-        atlases.push(atlas(kind, layout, format, &tiles[kind as usize], &mut results, aim(kind)));
+        let aim = (!is_asked && is_left(&settings, kind)).then_some(AIM);
+        atlases.push(atlas(kind, layout, format, &tiles[kind as usize], &mut results, aim));
     }
     Ok(Baked { atlases, materials: baked_materials(materials, records, &settings, &results), searches })
 }
@@ -169,15 +168,12 @@ fn baked_materials(
     settings: &Settings,
     results: &Results,
 ) -> Vec<BakedMaterial> {
-    let lobes = |m: &Material| m.model().is_fitted().then(|| lobes::record(m, settings, results));
-    let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
-        model: m.model(),
-        color: color_mode(m),
-        constants: constants(m, planned.bare, lobes(m)),
-        records: planned.layers,
-        maps: maps(m),
-    };
-    materials.par_iter().zip(records).map(baked).collect()
+    let baked = materials.par_iter().zip(records).map(|(m, planned)| {
+        let lobes = m.model().is_fitted().then(|| lobes::record(m, settings, results));
+        let (constants, color) = (constants(m, planned.bare, lobes), color_mode(m));
+        BakedMaterial { model: m.model(), color, constants, records: planned.layers, maps: maps(m) }
+    });
+    baked.collect()
 }
 
 /// The atlas of the tiles of a kind, whose results are forgotten one by one: of many materials they are as large as the atlas.

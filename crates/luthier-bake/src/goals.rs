@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use crate::candidates::{Found, WEIGHTS, choose, measured};
 use crate::graph::{MemoryStore, Results, Silent};
 use crate::kinds::distribution::DistributionJob;
+use crate::kinds::distribution::search::axes;
 use crate::kinds::fgd::{FgdJob, FgdTruth};
 use crate::kinds::fresnel::search::{self as fresnel, FORMATS, Truth};
 use crate::kinds::fresnel::{FresnelJob, RowShape};
@@ -117,16 +118,16 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .into_par_iter()
         .filter_map(|(base, format)| {
             let size = (ROW_BYTES / u64::from(format.texel_bytes())) as u32 - base.header_texels();
-            let family = |mapping: Mapping| {
+            // The fitted maps: exponents in twentieths from 1 to 4, bends in twentieths to 1.
+            let powers = (20..=80).map(|e| Mapping::Power { exponent: f64::from(e) / 20.0 });
+            let bends = (1..=20).map(|b| Mapping::Rational { bend: f64::from(b) / 20.0 });
+            let families = powers.chain(bends).map(|mapping| {
                 let shape = RowShape { axis: axis("cos_theta", "", [0.0, 1.0], size, mapping), format, base };
                 let gains = rows.iter().zip(&elek).filter(|(_, elek)| **elek > 0.0);
                 let gains = gains.map(|(truth, elek)| elek / truth.error(&shape, false).max_abs);
                 Family { base, format, least_gain: gains.fold(f64::INFINITY, f64::min), axis: shape.axis }
-            };
-            // The fitted maps: exponents in twentieths from 1 to 4, bends in twentieths to 1.
-            let powers = (20..=80).map(|e| Mapping::Power { exponent: f64::from(e) / 20.0 });
-            let bends = (1..=20).map(|b| Mapping::Rational { bend: f64::from(b) / 20.0 });
-            powers.chain(bends).map(family).reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
+            });
+            families.reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
         })
         .collect();
     // What ships is of core WebGPU.
@@ -202,28 +203,29 @@ fn sampled_error(truth: &FgdTruth, grid: &[Axis; 2]) -> MeasuredError {
 }
 
 fn distributions() -> Vec<DistributionGoal> {
-    let angle = |exponent, size| axis("theta_h", "rad", [0.0, FRAC_PI_2], size, Mapping::Power { exponent });
-    let log = |size| axis("alpha", "", [ALPHA_MIN, 1.0], size, Mapping::Logarithmic);
-    let linear = axis("alpha", "", [0.0, 1.0], 512, Mapping::Linear);
-    let of = |name, axes: [Axis; 2], format: TexelFormat| {
-        let bytes = u64::from(axes[0].size) * u64::from(axes[1].size) * u64::from(format.texel_bytes());
-        let error = |distribution| table_error(&DistributionJob { distribution, axes: axes.clone(), format });
-        DistributionGoal { name, bytes, errors: [error(Distribution::Beckmann), error(Distribution::Ggx)] }
-    };
-    let slopes = |name, size: u32| DistributionGoal {
-        name,
-        bytes: 4 * u64::from(size),
-        errors: [Distribution::Beckmann, Distribution::Ggx].map(|d| slope_row_error(d, size)),
-    };
+    let [angle, _] = axes(8.0, 512);
+    let linear = [angle, axis("alpha", "", [0.0, 1.0], 512, Mapping::Linear)];
     vec![
-        of("u^8, linear m, 512 x 512 halves (Elek)", [angle(8.0, 512), linear], TexelFormat::R16Float),
-        of("u^8, log m, 512 x 512 split roots (fixed default)", [angle(8.0, 512), log(512)], TexelFormat::Rg16Float),
-        of("u^8, log m, 128 x 128 split roots", [angle(8.0, 128), log(128)], TexelFormat::Rg16Float),
-        of("u^4, log m, 128 x 128 split roots", [angle(4.0, 128), log(128)], TexelFormat::Rg16Float),
-        slopes("row over tan/(m + tan), 256 split roots", 256),
-        slopes("row over tan/(m + tan), 4096 split roots", 4096),
+        table_goal("u^8, linear m, 512 x 512 halves (Elek)", linear, TexelFormat::R16Float),
+        table_goal("u^8, log m, 512 x 512 split roots (fixed default)", axes(8.0, 512), TexelFormat::Rg16Float),
+        table_goal("u^8, log m, 128 x 128 split roots", axes(8.0, 128), TexelFormat::Rg16Float),
+        table_goal("u^4, log m, 128 x 128 split roots", axes(4.0, 128), TexelFormat::Rg16Float),
+        row_goal("row over tan/(m + tan), 256 split roots", 256),
+        row_goal("row over tan/(m + tan), 4096 split roots", 4096),
         DistributionGoal { name: "closed form (chosen)", bytes: 0, errors: [0.0; 2] },
     ]
+}
+
+fn table_goal(name: &'static str, axes: [Axis; 2], format: TexelFormat) -> DistributionGoal {
+    let bytes = u64::from(axes[0].size) * u64::from(axes[1].size) * u64::from(format.texel_bytes());
+    let errors = [Distribution::Beckmann, Distribution::Ggx]
+        .map(|distribution| table_error(&DistributionJob { distribution, axes: axes.clone(), format }));
+    DistributionGoal { name, bytes, errors }
+}
+
+fn row_goal(name: &'static str, size: u32) -> DistributionGoal {
+    let errors = [Distribution::Beckmann, Distribution::Ggx].map(|distribution| slope_row_error(distribution, size));
+    DistributionGoal { name, bytes: 4 * u64::from(size), errors }
 }
 
 /// Angles and logarithms of m at which tables of D are compared with it.

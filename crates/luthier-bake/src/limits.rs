@@ -4,7 +4,7 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, MATERIAL_WORDS, SIDE, SIDE_MAX};
 
 use crate::BakeError;
-use crate::plan::{Plan, PlannedLayers, TileList};
+use crate::plan::{Plan, PlannedLayers};
 use crate::settings::Shape;
 use crate::tile::apron;
 
@@ -49,7 +49,7 @@ pub(crate) fn too_many_tiles(kind: TableKind, layout: &AtlasLayout) -> BakeError
 
 /// Kind, layout and texel format of each table of a plan, in binding order.
 pub(crate) fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
-    let layout = |(kind, tiles): (TableKind, &TileList)| {
+    let layouts = plan.used().filter_map(|(kind, tiles)| {
         let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
         let (apron, count) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
         let layout = AtlasLayout { x, y, apron, columns: 1, tiles: count, base };
@@ -58,8 +58,8 @@ pub(crate) fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelF
             Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
             None => Err(too_many_tiles(kind, &layout)),
         })
-    };
-    plan.used().filter_map(layout).collect()
+    });
+    layouts.collect()
 }
 
 #[cfg(test)]

@@ -65,10 +65,10 @@ impl MapSource {
         let relief = Relief::Noise { seed, frequency, octaves };
         let field = Field::new(&relief, [NOISE_SIDE; 2]);
         let mut image = Image::zeros(NOISE_SIDE, NOISE_SIDE, 1);
-        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(NOISE_SIDE);
         for j in 0..NOISE_SIDE {
             for i in 0..NOISE_SIDE {
-                image.texel_mut(i, j)[0] = field.unit([at(i), at(j)]) as f32;
+                let uv = [i, j].map(|texel| (f64::from(texel) + 0.5) / f64::from(NOISE_SIDE));
+                image.texel_mut(i, j)[0] = field.unit(uv) as f32;
             }
         }
         Some(image)
@@ -82,10 +82,10 @@ pub fn height_normals(heights: &Image, height: f64) -> Image {
     // Texels are square.
     let side = 1.0 / f64::from(width);
     let mut normals = Image::zeros(width, rows, 3);
-    let at = |x: u32, y: u32| height * f64::from(heights.texel(x % width, y % rows)[0]);
     for y in 0..rows {
         for x in 0..width {
-            let neighbours = [at(x + width - 1, y), at(x + 1, y), at(x, y + rows - 1), at(x, y + 1)];
+            let neighbours = [[x + width - 1, y], [x + 1, y], [x, y + rows - 1], [x, y + 1]];
+            let neighbours = neighbours.map(|[x, y]| height * f64::from(heights.texel(x % width, y % rows)[0]));
             let normal = Flakes::of_heights(neighbours, [side; 2]).to_array();
             let texel = normal.map(|c| ((0.5 + 0.5 * c) * 255.0).round() as f32 / 255.0);
             normals.texel_mut(x, y).copy_from_slice(&texel);
@@ -96,12 +96,6 @@ pub fn height_normals(heights: &Image, height: f64) -> Image {
 
 /// The maps of a material: layers from the top down, then effects.
 pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
-    let picture = |slot, layer, picture: &PictureRef, texels| MaterialMap {
-        slot,
-        layer,
-        source: MapSource::Picture(picture.clone(), texels),
-        factor: None,
-    };
     let mut maps = Vec::new();
     for (i, layer) in material.layers.iter().enumerate() {
         let albedo = match &material.stack.layers[i].base {
@@ -109,31 +103,30 @@ pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
             _ => None,
         };
         maps.extend(layer.maps.named().map(|map| MaterialMap {
+            slot: map.slot,
+            layer: Some(i as u32),
+            source: MapSource::Picture(map.picture.clone(), map.texels()),
             factor: match map.slot {
                 MapSlot::Albedo => albedo,
                 MapSlot::BaseColor => layer.metallic.map(|surface| surface.base_color),
                 MapSlot::Metallic => layer.metallic.map(|surface| [surface.metallic; 3]),
                 _ => None,
             },
-            ..picture(map.slot, Some(i as u32), map.picture, map.texels())
         }));
     }
-    match material.effects.flakes.as_ref().map(|flakes| &flakes.source) {
-        Some(FlakeSource::NormalMap(normals)) => {
-            maps.push(picture(MapSlot::FlakeNormal, None, normals, TexelUse::Normal));
+    let flakes = material.effects.flakes.as_ref().and_then(|flakes| match &flakes.source {
+        FlakeSource::NormalMap(normals) => Some(MapSource::Picture(normals.clone(), TexelUse::Normal)),
+        FlakeSource::HeightMap { picture, height } => {
+            Some(MapSource::Heights { picture: picture.clone(), height: *height })
         }
-        Some(FlakeSource::HeightMap { picture, height }) => {
-            let source = MapSource::Heights { picture: picture.clone(), height: *height };
-            maps.push(MaterialMap { slot: MapSlot::FlakeNormal, layer: None, source, factor: None });
-        }
-        Some(FlakeSource::Cells { .. }) | None => {}
-    }
-    if let Some(patina) = &material.effects.patina {
-        let source = match &patina.map {
-            VariationSource::Image(picture) => MapSource::Picture(picture.clone(), TexelUse::Number),
-            &VariationSource::Noise { seed, frequency, octaves } => MapSource::Noise { seed, frequency, octaves },
-        };
-        maps.push(MaterialMap { slot: MapSlot::Patina, layer: None, source, factor: None });
+        FlakeSource::Cells { .. } => None,
+    });
+    let patina = material.effects.patina.as_ref().map(|patina| match &patina.map {
+        VariationSource::Image(picture) => MapSource::Picture(picture.clone(), TexelUse::Number),
+        &VariationSource::Noise { seed, frequency, octaves } => MapSource::Noise { seed, frequency, octaves },
+    });
+    for (slot, source) in [(MapSlot::FlakeNormal, flakes), (MapSlot::Patina, patina)] {
+        maps.extend(source.map(|source| MaterialMap { slot, layer: None, source, factor: None }));
     }
     maps
 }

@@ -75,9 +75,8 @@ pub(crate) fn settings(materials: &[Material]) -> Result<Settings, BakeError> {
 pub(crate) fn plan(materials: &[Material], settings: Settings, read_image: ImageReader<'_>) -> Result<Plan, BakeError> {
     let mut plan = Plan { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
     for materials in materials.chunks(SIDE_BY_SIDE) {
-        let part = |material: &Material| Part::new(material, &plan.settings, read_image);
-        let parts: Vec<Result<Part, BakeError>> = materials.par_iter().map(part).collect();
-        for part in parts {
+        let parts = materials.par_iter().map(|material| Part::new(material, &plan.settings, read_image));
+        for part in parts.collect::<Vec<Result<Part, BakeError>>>() {
             part?.enter(&mut plan);
         }
     }
@@ -137,16 +136,16 @@ impl Part {
         }
         for (i, layer) in stack.layers.iter().enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
-            let wanted = TableKind::ALL.map(|kind| {
+            let wanted = TableKind::ALL.into_iter().filter(|&kind| {
                 // Where some materials ask for D as a table, it is computed for the others.
                 let is_offered = kind != TableKind::Distribution || !settings.asked(kind).is_any();
                 material.bake.asks_for(kind) || is_offered && reads(model, kind, &records, i)
             });
-            let wants = |kind: TableKind| wanted[kind as usize];
-            if wants(TableKind::Fresnel) || wants(TableKind::Film) {
+            let wanted: Vec<TableKind> = wanted.collect();
+            if wanted.contains(&TableKind::Fresnel) || wanted.contains(&TableKind::Film) {
                 records[i].critical_cot_sq = interface.sampled(&color).critical_cot_sq();
             }
-            for kind in TableKind::ALL.into_iter().filter(|&kind| wants(kind)) {
+            for kind in wanted {
                 let Some(shape) = settings.shape(kind) else { continue };
                 let (fixed, record) = (settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);

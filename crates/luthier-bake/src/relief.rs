@@ -104,15 +104,11 @@ fn periodic(image: &Image, uv: [f64; 2]) -> f64 {
     let (x, y) = (u * w, v * h);
     let base = [libm::floor(x - 0.5), libm::floor(y - 0.5)];
     let fraction = [x - 0.5 - base[0], y - 0.5 - base[1]];
-    let texel = |i: f64, j: f64| {
-        let i = (i + w) as u32 % image.width;
-        let j = (j + h) as u32 % image.height;
-        f64::from(image.texel(i, j)[0])
-    };
-    let row = |j: f64| {
-        let (a, b) = (texel(base[0], j), texel(base[0] + 1.0, j));
+    let columns = [base[0], base[0] + 1.0].map(|i| (i + w) as u32 % image.width);
+    let rows = [base[1], base[1] + 1.0].map(|j| (j + h) as u32 % image.height);
+    let [top, bottom] = rows.map(|row| {
+        let [a, b] = columns.map(|column| f64::from(image.texel(column, row)[0]));
         a + (b - a) * fraction[0]
-    };
-    let (top, bottom) = (row(base[1]), row(base[1] + 1.0));
+    });
     top + (bottom - top) * fraction[1]
 }

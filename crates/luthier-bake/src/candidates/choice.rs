@@ -36,11 +36,12 @@ pub(crate) enum Refusal {
 
 /// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
 fn front(candidates: &[Candidate]) -> Vec<usize> {
-    let is_beaten = |i: usize| {
-        let mut others = candidates.iter().enumerate().filter(|(j, _)| *j != i);
-        others.any(|(j, other)| beats(other, &candidates[i]) && (j < i || !beats(&candidates[i], other)))
-    };
-    (0..candidates.len()).filter(|&i| !is_beaten(i)).collect()
+    (0..candidates.len()).filter(|&i| !is_beaten(candidates, i)).collect()
+}
+
+fn is_beaten(candidates: &[Candidate], i: usize) -> bool {
+    let mut others = candidates.iter().enumerate().filter(|(j, _)| *j != i);
+    others.any(|(j, other)| beats(other, &candidates[i]) && (j < i || !beats(&candidates[i], other)))
 }
 
 /// Whether a candidate is as good as another in each respect, or better.
@@ -62,44 +63,52 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
 /// [`Refusal`] when none holds: what comes nearest, and what would do.
 pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, Refusal> {
     if budget.limits_errors() {
-        return match cheapest(found, budget, fixed_bytes, &|c: &Candidate| budget.excess(&c.error) <= 1.0) {
-            Some(chosen) => Ok(chosen),
-            None => Err(nearest(found, budget, fixed_bytes)),
-        };
+        let chosen = cheapest(found, budget, fixed_bytes, &|c| holds(c, budget));
+        return chosen.ok_or_else(|| nearest(found, budget, fixed_bytes));
     }
     let mut limits: Vec<f64> = found.iter().flat_map(|f| f.candidates.iter().map(|c| c.error.max_abs)).collect();
     limits.sort_by(f64::total_cmp);
     limits.dedup();
     // The smallest limit that works: every larger one works too.
-    let works = |limit: f64| cheapest(found, budget, fixed_bytes, &|c: &Candidate| c.error.max_abs <= limit);
-    let first = limits.partition_point(|&limit| works(limit).is_none());
-    limits.get(first).and_then(|&limit| works(limit)).ok_or_else(|| nearest(found, budget, fixed_bytes))
+    let first = limits.partition_point(|&limit| within(found, budget, fixed_bytes, limit).is_none());
+    let chosen = limits.get(first).and_then(|&limit| within(found, budget, fixed_bytes, limit));
+    chosen.ok_or_else(|| nearest(found, budget, fixed_bytes))
+}
+
+/// The cheapest combination of candidates whose absolute errors are at most `max_abs`.
+fn within(found: &[Found], budget: &Budget, fixed_bytes: u64, max_abs: f64) -> Option<Vec<usize>> {
+    cheapest(found, budget, fixed_bytes, &|c| c.error.max_abs <= max_abs)
+}
+
+/// Whether the errors of a candidate hold a budget.
+fn holds(candidate: &Candidate, budget: &Budget) -> bool {
+    budget.excess(&candidate.error) <= 1.0
 }
 
 /// The cheapest candidate of each kind that holds; where none does, the one of the least excess.
 pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
-    let excess = |c: &Candidate| budget.excess(&c.error).max(1.0);
-    let of = |f: &Found| {
-        let best = |&i: &usize, &j: &usize| {
-            let (a, b) = (&f.candidates[i], &f.candidates[j]);
-            excess(a).total_cmp(&excess(b)).then(cheaper(a, b))
-        };
-        (0..f.candidates.len()).min_by(best).unwrap_or_default()
-    };
-    found.iter().map(of).collect()
+    let choices = found.iter().map(|f| {
+        let best = (0..f.candidates.len()).min_by(|&i, &j| {
+            let candidates = [i, j].map(|i| &f.candidates[i]);
+            let [a, b] = candidates.map(|c| budget.excess(&c.error).max(1.0));
+            a.total_cmp(&b).then(cheaper(candidates[0], candidates[1]))
+        });
+        best.unwrap_or_default()
+    });
+    choices.collect()
 }
 
 /// The candidates of a lock, where it has one of each kind and together they hold a budget.
 pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_bytes: u64) -> Option<Vec<usize>> {
-    let place = |found: &Found| {
+    let places = found.iter().map(|found| {
         let decision = lock.iter().find(|decision| decision.kind == found.kind)?;
         found.candidates.iter().position(|candidate| candidate.form == decision.candidate.form)
-    };
-    let places: Vec<usize> = found.iter().map(place).collect::<Option<_>>()?;
+    });
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
     let chosen: Vec<&Candidate> = found.iter().zip(&places).map(|(found, &place)| &found.candidates[place]).collect();
     let bytes = fixed_bytes + chosen.iter().map(|candidate| candidate.bytes).sum::<u64>();
     let cost = chosen.iter().map(|candidate| candidate.cost).sum::<f64>();
-    let holds = chosen.iter().all(|candidate| budget.excess(&candidate.error) <= 1.0)
+    let holds = chosen.iter().all(|candidate| holds(candidate, budget))
         && budget.max_bytes.is_none_or(|most| bytes <= most)
         && budget.max_cost.is_none_or(|most| cost <= most);
     (holds && !places.is_empty()).then_some(places)
@@ -140,34 +149,36 @@ fn cheapest(
         });
         partial = combined;
     }
-    let within = |(bytes, cost, _): &&(u64, f64, Vec<usize>)| {
+    let within = partial.into_iter().find(|(bytes, cost, _)| {
         budget.max_bytes.is_none_or(|max| *bytes <= max) && budget.max_cost.is_none_or(|max| *cost <= max)
-    };
-    partial.iter().find(within).map(|(_, _, chosen)| chosen.clone())
+    });
+    within.map(|(_, _, chosen)| chosen)
 }
 
 /// Why nothing holds, what comes nearest, and what would do.
 fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
     // A kind of which no candidate is good enough, whatever it weighs or costs.
     for (number, kind) in found.iter().enumerate() {
-        let excess = |c: &Candidate| budget.excess(&c.error);
-        let candidates = kind.candidates.iter().enumerate();
-        let best = candidates.min_by(|(_, a), (_, b)| excess(a).total_cmp(&excess(b)).then(cheaper(a, b)));
-        if let Some((choice, best)) = best.filter(|(_, c)| excess(c) > 1.0) {
+        let best =
+            kind.candidates.iter().enumerate().min_by(|(_, a), (_, b)| {
+                budget.excess(&a.error).total_cmp(&budget.excess(&b.error)).then(cheaper(a, b))
+            });
+        if let Some((choice, best)) = best.filter(|(_, c)| !holds(c, budget)) {
             let (mut limits, mut would) = (Vec::new(), Vec::new());
-            let mut limit = |name, limit: Option<f64>, error: Option<f64>| {
+            for (name, limit, error) in [
+                ("max_abs", budget.max_abs, Some(best.error.max_abs)),
+                ("max_rel", budget.max_rel, Some(best.error.max_rel)),
+                ("delta_e", budget.delta_e, best.error.delta_e),
+                ("max_lobe_err", budget.max_lobe_err, best.error.lobe),
+                ("max_albedo_err", budget.max_albedo_err, best.error.albedo),
+            ] {
                 if let (Some(limit), Some(error)) = (limit, error)
                     && error > limit
                 {
                     limits.push(name);
                     would.push(format!("{name} = {}", above(error)));
                 }
-            };
-            limit("max_abs", budget.max_abs, Some(best.error.max_abs));
-            limit("max_rel", budget.max_rel, Some(best.error.max_rel));
-            limit("delta_e", budget.delta_e, best.error.delta_e);
-            limit("max_lobe_err", budget.max_lobe_err, best.error.lobe);
-            limit("max_albedo_err", budget.max_albedo_err, best.error.albedo);
+            }
             let (form, errors) = (in_words(&best.form), errors_in_words(&best.error));
             return Refusal::Error {
                 nearest: (number, choice),
@@ -178,11 +189,9 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
         }
     }
     // Good enough, but not within bytes and cost: the fewest bytes, or the lowest cost.
-    let errors = Budget { max_bytes: None, max_cost: None, ..*budget };
-    let holds = |c: &Candidate| errors.excess(&c.error) <= 1.0;
     let least_cost: f64 = found
         .iter()
-        .map(|f| f.candidates.iter().filter(|c| holds(c)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
+        .map(|f| f.candidates.iter().filter(|c| holds(c, budget)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
         .sum();
     if budget.max_cost.is_some_and(|max| least_cost > max) {
         return Refusal::Whole {
@@ -192,7 +201,7 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
         };
     }
     let within_cost = Budget { max_bytes: None, ..*budget };
-    let least = cheapest(found, &within_cost, fixed_bytes, &holds).map_or(fixed_bytes, |chosen| {
+    let least = cheapest(found, &within_cost, fixed_bytes, &|c| holds(c, budget)).map_or(fixed_bytes, |chosen| {
         fixed_bytes + found.iter().zip(chosen).map(|(f, i)| f.candidates[i].bytes).sum::<u64>()
     });
     let kept = if fixed_bytes > 0 {
@@ -214,8 +223,7 @@ pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
     if !keep.contains(&chosen) {
         front.push((chosen, &found.candidates[chosen]));
     }
-    let key = |c: &Candidate| (c.bytes, c.cost, c.error.max_abs);
-    front.sort_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal));
+    front.sort_by(|(_, a), (_, b)| cheaper(a, b));
     Search {
         kind: found.kind,
         budget: *budget,

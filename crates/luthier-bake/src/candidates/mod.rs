@@ -129,8 +129,8 @@ pub(crate) fn measured<'p>(
         error.max_abs = error.max_abs.max(largest);
         error.max_rel = error.max_rel.max(largest / brightest);
         if let Some(worst) = &mut error.delta_e {
-            let rgb = |v: [f64; 4]| [v[0], v[1], v[2]];
-            *worst = worst.max(ciede2000(lab(rgb(found)), lab(rgb(expected))));
+            let [found, expected] = [found, expected].map(|[r, g, b, _]| lab([r, g, b]));
+            *worst = worst.max(ciede2000(found, expected));
         }
     }
     error

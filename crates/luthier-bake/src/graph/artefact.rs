@@ -14,8 +14,7 @@ pub struct Artefact {
 
 impl Artefact {
     pub(crate) fn new<T: Any + Send + Sync + Serialize>(value: T) -> Self {
-        let encode = |value: &dyn Any| postcard::to_stdvec(value.downcast_ref::<T>()?).ok();
-        Self { value: Box::new(value), encode }
+        Self { value: Box::new(value), encode: |value| postcard::to_stdvec(value.downcast_ref::<T>()?).ok() }
     }
 
     /// The result of bytes that [`Self::encode`] has made of a value of the type.

@@ -188,12 +188,10 @@ impl Graph {
         let inner = self.inner();
         let mut missing: BTreeSet<(Place, Key)> = BTreeSet::new();
         for (&place, jobs) in self.jobs.iter().rev() {
-            let is_needed = |key: Key| !inner.contains(&(place, key)) || missing.contains(&(place, key));
-            let idle = jobs.iter().filter(|(key, _)| !is_needed(**key));
-            idle.for_each(|(_, entry)| store.touch(&entry.task()));
-            let open: Vec<(Key, &Entry)> = (jobs.iter().map(|(key, entry)| (*key, entry)))
-                .filter(|(key, _)| is_needed(*key) && !results.0.contains_key(key))
-                .collect();
+            let (mut open, idle): (Vec<(Key, &Entry)>, Vec<_>) = (jobs.iter().map(|(key, entry)| (*key, entry)))
+                .partition(|(key, _)| !inner.contains(&(place, *key)) || missing.contains(&(place, *key)));
+            idle.into_iter().for_each(|(_, entry)| store.touch(&entry.task()));
+            open.retain(|(key, _)| !results.0.contains_key(key));
             let tasks: Vec<Task<'_>> = open.iter().map(|(_, entry)| entry.task()).collect();
             let fetched = store.get_all(&tasks);
             missing.retain(|(at, _)| *at != place);

@@ -137,30 +137,24 @@ pub(crate) fn decide(
     lock: &[Decision],
 ) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
-    let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(most_lobes(None), has_base, 1));
+        settings.take_lobes(shape(lobes_of(&fits, None), has_base, 1));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
     let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
-    let measured = |error: FitError| MeasuredError {
-        lobe: Some(error.lobe),
-        albedo: Some(error.albedo),
-        ..MeasuredError::default()
-    };
-    let candidate = |&(most, i): &(usize, usize)| {
+    let candidates = choices.iter().map(|&(most, i)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
-        let Shape { x, y, base, format } = shape(most_lobes(Some(most)), has_base, STEPS[i]);
+        let Shape { x, y, base, format } = shape(lobes_of(&fits, Some(most)), has_base, STEPS[i]);
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
         let bytes = layout.size().map(u64::from).iter().product::<u64>() * u64::from(format.texel_bytes());
         let form = CandidateForm::Table { x, y, format, base };
         Candidate { form, bytes, cost, error: measured(error) }
-    };
-    let found = Found::new(TableKind::Lobes, 0.0, choices.iter().map(candidate).collect());
+    });
+    let found = Found::new(TableKind::Lobes, 0.0, candidates.collect());
     let found = std::slice::from_ref(&found);
     let chosen = locked(found, lock, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
@@ -168,14 +162,25 @@ pub(crate) fn decide(
             Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
             Refusal::Whole { .. } => choices[0],
         };
-        let fits = |material: &Material| results.get::<Fits>(fit(material, true).key());
-        let error = |(number, material)| Some((number, measured(fits(material)?.of(Some(most)).errors[i])));
-        (refusal, materials.iter().enumerate().filter_map(error).collect())
+        let errors = materials.iter().enumerate().filter_map(|(number, material)| {
+            let fits: &Fits = results.get(fit(material, true).key())?;
+            Some((number, measured(fits.of(Some(most)).errors[i])))
+        });
+        (refusal, errors.collect())
     })?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
-    settings.take_lobes(shape(most_lobes(Some(most)), has_base, STEPS[i]));
+    settings.take_lobes(shape(lobes_of(&fits, Some(most)), has_base, STEPS[i]));
     Ok(Some(candidates::report(&found[0], chosen, budget)))
+}
+
+/// The most lobes that a material of some fits has, each with so many at most.
+fn lobes_of(fits: &[&Fits], most: Option<usize>) -> usize {
+    fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0)
+}
+
+fn measured(error: FitError) -> MeasuredError {
+    MeasuredError { lobe: Some(error.lobe), albedo: Some(error.albedo), ..MeasuredError::default() }
 }
 
 /// The fit of a material; with lobes of every number, where a search chooses among them.
@@ -320,13 +325,13 @@ impl Job for FitJob {
         let traced = Traced::new(stack, color, *varying, FitSettings::default());
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
-        let fit = |(most, excess)| {
-            let varied: Varied = traced.fit(most, excess);
-            Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
-        };
         let wanted: Vec<(usize, f64)> =
             if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
-        Artefact::new(Fits(wanted.into_iter().map(fit).collect()))
+        let fits = wanted.into_iter().map(|(most, excess)| {
+            let varied: Varied = traced.fit(most, excess);
+            Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
+        });
+        Artefact::new(Fits(fits.collect()))
     }
 
     fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
@@ -350,6 +355,11 @@ fn factor_name(varying: Varying) -> &'static str {
         Varying::Film(_) => "thickness of the film",
         Varying::Patina(_) => "patina",
     }
+}
+
+/// A row with so many lobes, and with light of a base, none where the row has no base, if tiles have a place for it.
+fn filled(row: Row, most: usize, has_base: bool) -> Row {
+    Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) }
 }
 
 #[derive(Debug)]
@@ -390,13 +400,11 @@ impl Job for LobesJob {
         let (lobes, tile) = varied.tile(self.tile);
         let (has_base, last) = (y.min < 0.0, y.max as usize);
         let most = (last + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
-        // Rows without a base have no light of it.
-        let filled = |row: Row| Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) };
         // Parts are side by side; the first and the last node of each stand there twice.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
             let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
-            let mut parts = filled(row).to_parts();
+            let mut parts = filled(row, most, has_base).to_parts();
             if let (Some(Varying::Patina(_)), Some([.., free])) = (varied.varying(), parts.last_mut()) {
                 *free = varied.bare_facets(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
             }
@@ -405,17 +413,15 @@ impl Job for LobesJob {
             }
         }
         let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
-        let read = |c: f64| {
-            let part = |j: u32| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8));
-            Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>(), has_base)
-        };
         let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
-        let energies = |part: usize| {
+        let errors = (0..most + 3).map(|part| {
             measure_scan(
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
-                    let [expected, sampled] = [filled(lobes.row_of(tile, c)), read(c)].map(|row| {
+                    let parts = (0..y.size).map(|j| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8)));
+                    let read = Row::of_parts(&parts.collect::<Vec<_>>(), has_base);
+                    let [expected, sampled] = [filled(lobes.row_of(tile, c), most, has_base), read].map(|row| {
                         let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });
@@ -423,23 +429,23 @@ impl Job for LobesJob {
                 },
                 |u| vec![x.decode(u[0]), part as f64],
             )
-        };
-        let error = (1..most + 3).map(energies).fold(energies(0), ErrorStats::with_worst_of);
+        });
+        let error = errors.reduce(ErrorStats::with_worst_of).unwrap_or_else(|| unreachable!("a row has energies"));
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
-        let azimuth = |axes: Axes| {
+        let azimuth = lobes.frame.axes.map(|axes: Axes| {
             let [cos, sin] = axes.azimuth(tile as f64);
             format!(
                 " seen {:.1} degrees from the axis of its lowest anisotropic surface",
                 libm::atan2(sin, cos).to_degrees()
             )
-        };
+        });
         let factors = varied.varying().map(|varying: Varying| match (varying, varying.factor(self.tile as f64)) {
             (Varying::Patina(_), amount) if amount > 1.0 => {
                 " with all layers, and none of the light of its patina".to_owned()
             }
             (_, factor) => format!(" with {factor:.4} of its {}", factor_name(varying)),
         });
-        let here = factors.or(lobes.frame.axes.map(azimuth)).unwrap_or_default();
+        let here = factors.or(azimuth).unwrap_or_default();
         let model = format!(
             "{} fitted to the simulated stack{here}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",

@@ -50,7 +50,7 @@ pub(super) fn kept(
 /// The reports of decisions of a lock on a plan that has taken them, where no budget is stated: none where a table is off by more than bakes aim at, and by more
 /// than when it was locked.
 pub(super) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decision]) -> Option<Vec<Search>> {
-    let report = |decision: &Decision| {
+    let reports = decisions.iter().map(|decision| {
         let Candidate { form, cost, error, .. } = &decision.candidate;
         let found = plan.worst(results, decision.kind, &[]);
         if found > error.max_abs.max(AIM) {
@@ -63,6 +63,6 @@ pub(super) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decisi
         };
         let candidate = Candidate { form: form.clone(), bytes: form.bytes(tiles), cost: *cost, error };
         Some(Search { kind: decision.kind, budget: DEFAULT_BUDGET, chosen: 0, front: vec![candidate], measured: 1 })
-    };
-    decisions.iter().map(report).collect()
+    });
+    reports.collect()
 }

@@ -86,17 +86,17 @@ impl Fixed {
 
     /// The decisions of the lock for the kinds that a bake without a stated budget searches, where it has one for each of them.
     fn locked(&self, options: &Options<'_>) -> Option<Vec<Decision>> {
-        let decision = |kind: TableKind| {
-            let is_fit = |decision: &&Decision| match &decision.candidate.form {
-                CandidateForm::ClosedForm => true,
-                CandidateForm::Table { format, .. } => options.formats.has(*format),
-            };
-            options.locked.iter().find(|decision| decision.kind == kind).filter(is_fit).cloned()
-        };
         let open = SEARCHED_BY_DEFAULT
             .into_iter()
             .filter(|kind| !self.plan.tiles[*kind as usize].tiles.is_empty() && !self.settings.asked(*kind).is_any());
-        let decisions: Vec<Decision> = open.map(decision).collect::<Option<_>>()?;
+        let decisions = open.map(|kind| {
+            let decision = options.locked.iter().find(|decision| decision.kind == kind)?;
+            match decision.candidate.form {
+                CandidateForm::Table { format, .. } if !options.formats.has(format) => None,
+                _ => Some(decision.clone()),
+            }
+        });
+        let decisions: Vec<Decision> = decisions.collect::<Option<_>>()?;
         (!decisions.is_empty()).then_some(decisions)
     }
 }
@@ -106,12 +106,12 @@ fn found(fixed: &Fixed, results: &Results, store: &dyn Store) -> Vec<Found> {
     let (budget, is_asked) = fixed.budget();
     let (plan, colors) = (&fixed.plan, budget.delta_e.is_some());
     let kinds: &[TableKind] = if is_asked { &TableKind::ALL } else { &SEARCHED_BY_DEFAULT };
-    let of = |&kind: &TableKind| {
+    let found = kinds.iter().filter_map(|&kind| {
         kept(plan, kind, is_asked, colors, store, &|| {
             if is_asked { candidates(plan, kind, results, colors) } else { by_default(plan, kind) }
         })
-    };
-    let mut found: Vec<Found> = kinds.iter().filter_map(of).collect();
+    });
+    let mut found: Vec<Found> = found.collect();
     found.iter_mut().for_each(|found| fitting(found, plan));
     found.retain(|found| !found.candidates.is_empty());
     found
@@ -183,15 +183,6 @@ pub(crate) fn plan(
     // One plan at a time: of many materials it is large.
     let mut last = Some(plan);
     let (mut chosen, mut refusal) = (Vec::new(), None);
-    let refuse = |refusal: Refusal, plan: &Plan, results: &Results, found: &[Found]| {
-        let Refusal::Error { nearest: (number, candidate), .. } = refusal else {
-            return refused(refusal, TableKind::Lobes, None, materials, options);
-        };
-        let Found { kind, candidates, .. } = &found[number];
-        let errors = kinds::of(*kind).errors(plan, results, &candidates[candidate].form);
-        let worst = worst_of(&errors, &budget).and_then(|tile| plan.reader(*kind, tile as u32));
-        refused(refusal, *kind, worst, materials, options)
-    };
     for _ in 0..ROUNDS {
         // What a refusal says would do is confirmed too, before it is said.
         refusal = None;
@@ -204,11 +195,8 @@ pub(crate) fn plan(
                 Ok(chosen) => chosen,
                 Err(error) => {
                     let unlimited = Budget { max_bytes: None, max_cost: None, ..budget };
-                    let Ok(would) = choose(&found, &unlimited, fixed_bytes) else {
-                        let plan = last.unwrap_or_else(|| unreachable!("there is a plan before each round"));
-                        return Err(refuse(error, &plan, &results, &found));
-                    };
                     refusal = Some(error);
+                    let Ok(would) = choose(&found, &unlimited, fixed_bytes) else { break };
                     would
                 }
             }
@@ -229,9 +217,15 @@ pub(crate) fn plan(
             break;
         }
     }
-    let plan = last.unwrap_or_else(|| unreachable!("there is a plan after each round"));
-    if let Some(error) = refusal {
-        return Err(refuse(error, &plan, &results, &found));
+    let plan = last.unwrap_or_else(|| unreachable!("there is a plan before and after each round"));
+    if let Some(refusal) = refusal {
+        let Refusal::Error { nearest: (number, candidate), .. } = refusal else {
+            return Err(refused(refusal, TableKind::Lobes, None, materials, options));
+        };
+        let Found { kind, candidates, .. } = &found[number];
+        let errors = kinds::of(*kind).errors(&plan, &results, &candidates[candidate].form);
+        let worst = worst_of(&errors, &budget).and_then(|tile| plan.reader(*kind, tile as u32));
+        return Err(refused(refusal, *kind, worst, materials, options));
     }
     searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| report(f, choice, &budget)));
     Ok(Planned { plan, results, searches })

@@ -55,7 +55,8 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     Some(Found::new(TableKind::Distribution, price(&axes(8.0, 512), TexelFormat::Rg16Float), candidates))
 }
 
-fn axes(exponent: f64, side: u32) -> [Axis; 2] {
+/// The axes of a square table: a power of the angle, and logarithms of alpha.
+pub(crate) fn axes(exponent: f64, side: u32) -> [Axis; 2] {
     [
         axis("theta_h", "rad", [0.0, FRAC_PI_2], side, Mapping::Power { exponent }),
         axis("alpha", "", [ALPHA_MIN, 1.0], side, Mapping::Logarithmic),

@@ -92,10 +92,6 @@ impl FacetGridJob {
                 self.at(u, self.efforts()[0], seed(texel))
             })
             .collect();
-        let probed = |axis: &Axis| {
-            let intervals = axis.intervals();
-            (1..=PROBED_INTERVALS).rev().find(|n| intervals.is_multiple_of(*n)).unwrap_or(1)
-        };
         let scan = Scan {
             points: [PROBES, PROBES],
             from: [x.encode(DOMAIN_COS_THETA), y.encode(DOMAIN_ALPHA)],
@@ -124,6 +120,11 @@ impl FacetGridJob {
         let [cos_theta, alpha] = [0, 1].map(|k: usize| self.axes[k].decode(u[k]));
         FacetStatistics::new(self.distribution, alpha, cos_theta, effort, seed)
     }
+}
+
+/// The number of intervals of an axis whose ends the error scan has too: the largest that divides those of the table.
+fn probed(axis: &Axis) -> u32 {
+    (1..=PROBED_INTERVALS).rev().find(|n| axis.intervals().is_multiple_of(*n)).unwrap_or(1)
 }
 
 /// Seed of the walks of a texel: neighbours get unrelated ones (Wang's integer hash).

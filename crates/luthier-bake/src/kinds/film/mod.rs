@@ -116,8 +116,8 @@ impl FilmJob {
         let rows: Vec<Vec<f32>> = (0..y.size)
             .into_par_iter()
             .map(|j| {
-                let at = |i| reflectance(&thickest, y.node(j), incident_cosine(cot_sq, x.node(i)));
-                (0..x.size).flat_map(|i| at(i).map(|c| c as f32)).collect()
+                let cosines = (0..x.size).map(|i| incident_cosine(cot_sq, x.node(i)));
+                cosines.flat_map(|cos| reflectance(&thickest, y.node(j), cos).map(|c| c as f32)).collect()
             })
             .collect();
         Image { width: x.size, height: y.size, channels: 3, data: rows.concat() }

@@ -36,15 +36,15 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
 /// The tiles of a plan on the finest grid.
 pub(super) fn tiles(plan: &Plan) -> Vec<Fine> {
     let grid = finest(3.0);
-    let tile = |(_, job): (usize, &FilmJob)| Fine {
+    let tiles = plan.jobs(TableKind::Film).map(|(_, job): (usize, &FilmJob)| Fine {
         kind: TableKind::Film,
         image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
         grid: grid.clone(),
         probes: job.probes(PROBES),
         channels: 3,
         slack: 0.0,
-    };
-    plan.jobs(TableKind::Film).map(tile).collect()
+    });
+    tiles.collect()
 }
 
 /// The finest tiles that are tried.

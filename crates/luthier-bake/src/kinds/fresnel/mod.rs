@@ -43,10 +43,9 @@ impl Kind for Table {
     fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError> {
         let mapping = ask.one("bake.fresnel.mapping", |b| b.fresnel.mapping)?.unwrap_or(FresnelMapping::Cosine);
         let size = ask.one("bake.fresnel.size", |b| b.fresnel.size)?.unwrap_or(128);
-        let cosine = |mapping| axis("cos_theta", "", [0.0, 1.0], size, mapping);
         let x = match mapping {
-            FresnelMapping::Cosine => cosine(Mapping::Linear),
-            FresnelMapping::SqrtCosine => cosine(Mapping::Power { exponent: 2.0 }),
+            FresnelMapping::Cosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Linear),
+            FresnelMapping::SqrtCosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Power { exponent: 2.0 }),
             FresnelMapping::Theta => axis("theta", "rad", [0.0, FRAC_PI_2], size, Mapping::Linear),
         };
         Ok(Shape::row(x, ask.format("bake.fresnel.format", |b| b.fresnel.format, TexelFormat::Rgba16Float)?))
@@ -117,30 +116,23 @@ impl Job for FresnelJob {
 impl FresnelJob {
     pub(crate) fn tile(&self) -> TileData {
         let curve = RowCurve::new(&self.interface, &self.color);
-        let reflectance = |cos_theta: f64| curve.at(cos_theta);
         let axis = &self.shape.axis;
-        let (atlas, truth) = self.shape.row(&reflectance, &SchlickBase::fit(&reflectance));
+        let (atlas, truth) = self.shape.row(&|cos| curve.at(cos), &SchlickBase::fit(&|cos| curve.at(cos)));
         let mut scan = Scan::whole([axis.intervals(), 0], [PER_CELL, 0]);
         if curve.critical_cot_sq > 0.0 {
-            // Coordinates below 0 are angles that are totally reflected, from the critical one to grazing.
             let beyond = f64::from(scan.points[0] / BEYOND) / f64::from(scan.points[0]);
             scan.points[0] += scan.points[0] / BEYOND;
             scan.from[0] = -beyond;
         }
-        let flattest = if axis.quantity == "theta" { axis.max } else { axis.min };
-        let value = |u: f64| if u < 0.0 { flattest } else { axis.decode(u) };
-        let incident = |u: f64| {
-            let at = incident_cosine(curve.critical_cot_sq, cos_theta(axis, value(u)));
-            if u < 0.0 { at * (1.0 - u / scan.from[0]) } else { at }
-        };
         let error = measure_scan(
             &scan,
             |u| {
-                let [r, g, b] = curve.sampled.rgb(incident(u[0]));
-                let read = atlas.sample(0, [value(u[0]), 0.0], WeightBits::Fixed(8));
+                let (value, incident) = curve.scanned(axis, u[0], scan.from[0]);
+                let [r, g, b] = curve.sampled.rgb(incident);
+                let read = atlas.sample(0, [value, 0.0], WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },
-            |u| vec![value(u[0])],
+            |u| vec![curve.scanned(axis, u[0], scan.from[0]).0],
         );
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
         let over = if curve.critical_cot_sq > 0.0 { ", over the cosine of the refracted direction" } else { "" };
@@ -173,6 +165,15 @@ impl RowCurve {
     /// The reflectance at a cosine of the row.
     pub(crate) fn at(&self, cos_theta: f64) -> Rgb {
         self.sampled.rgb(incident_cosine(self.critical_cot_sq, cos_theta))
+    }
+
+    /// The value of an axis at a coordinate of its error scan, and the cosine of incidence there. Coordinates below 0 stand for the totally
+    /// reflected angles, which no node has: `from` is grazing, 0 the critical angle.
+    fn scanned(&self, axis: &Axis, u: f64, from: f64) -> (f64, f64) {
+        let flattest = if axis.quantity == "theta" { axis.max } else { axis.min };
+        let value = if u < 0.0 { flattest } else { axis.decode(u) };
+        let incident = incident_cosine(self.critical_cot_sq, cos_theta(axis, value));
+        (value, if u < 0.0 { incident * (1.0 - u / from) } else { incident })
     }
 }
 

@@ -23,8 +23,6 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     let formats = plan.settings.allowed(&FORMATS);
     let shapes: Vec<(u32, TexelFormat)> =
         SIZES.iter().flat_map(|&size| formats.iter().map(move |&format| (size, format))).collect();
-    // Three look-ups, one for the cosine of each channel.
-    let price = |format| 3.0 * (2.0 + cost::read(format));
     let mut candidates = vec![Candidate {
         form: CandidateForm::ClosedForm,
         bytes: 0,
@@ -39,6 +37,11 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
         Candidate { bytes: form.bytes(jobs.len() as u32), cost: price(format), error, form }
     }));
     Some(Found::new(TableKind::Phase, price(TexelFormat::Rgba16Float), candidates))
+}
+
+/// The cost of three look-ups, one for the cosine of each channel.
+fn price(format: TexelFormat) -> f64 {
+    3.0 * (2.0 + cost::read(format))
 }
 
 /// The errors of rows in this form, by the numbers of their tiles.
