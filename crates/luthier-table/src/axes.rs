@@ -159,13 +159,11 @@ impl Quantity {
 
     /// Theta, alpha, index or thickness of a value.
     fn to_canonical(self, value: f64) -> f64 {
-        let angle = |cos: f64| libm::acos(cos.clamp(0.0, 1.0));
         let value = value.max(0.0);
-        let index = |sqrt_f0: f64| (1.0 + sqrt_f0) / (1.0 - sqrt_f0).max(2.0 / IOR_MAX);
         match self {
-            Self::CosTheta => angle(value),
-            Self::CosThetaSq => angle(value.sqrt()),
-            Self::SqrtCosTheta => angle(value * value),
+            Self::CosTheta => theta(value),
+            Self::CosThetaSq => theta(value.sqrt()),
+            Self::SqrtCosTheta => theta(value * value),
             // 1 - cos = 2 sin^2 of the half angle: the arc sine is exact at normal incidence, where the arc cosine is not.
             Self::SqrtOneMinusCosTheta => 2.0 * libm::asin((value / SQRT_2).min(FRAC_1_SQRT_2)),
             Self::Theta => value.min(FRAC_PI_2),
@@ -175,9 +173,9 @@ impl Quantity {
             Self::SqrtRoughness => (value * value) * (value * value),
             Self::Ior => value.max(1.0),
             Self::InverseIor => 1.0 / value.clamp(1.0 / IOR_MAX, 1.0),
-            Self::F0 => index(value.sqrt()),
-            Self::SqrtF0 => index(value),
-            Self::FourthRootF0 => index(value * value),
+            Self::F0 => ior(value.sqrt()),
+            Self::SqrtF0 => ior(value),
+            Self::FourthRootF0 => ior(value * value),
             Self::IorN | Self::IorK | Self::ThicknessNm => value,
         }
     }
@@ -365,6 +363,15 @@ impl FromStr for AxisSpec {
     }
 }
 
+fn theta(cos: f64) -> f64 {
+    libm::acos(cos.clamp(0.0, 1.0))
+}
+
+/// The index of a reflectance at normal incidence, given its root.
+fn ior(sqrt_f0: f64) -> f64 {
+    (1.0 + sqrt_f0) / (1.0 - sqrt_f0).max(2.0 / IOR_MAX)
+}
+
 fn finite(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|value: &f64| value.is_finite())
 }
@@ -435,14 +442,20 @@ impl Layout {
     }
 
     fn from_lowest([min_cos, min_alpha]: [f64; 2], [cos, alpha]: [Mapping; 2], nodes: Nodes) -> Self {
-        let axis = |quantity, min, mapping| AxisSpec { min, mapping, ..AxisSpec::whole(quantity, nodes) };
-        let angle = axis(Quantity::CosTheta, min_cos, cos);
-        Self { angle, slope: Some(axis(Quantity::Alpha, min_alpha, alpha)), transposed: false }
+        let angle = AxisSpec { min: min_cos, mapping: cos, ..AxisSpec::whole(Quantity::CosTheta, nodes) };
+        let slope = AxisSpec { min: min_alpha, mapping: alpha, ..AxisSpec::whole(Quantity::Alpha, nodes) };
+        Self { angle, slope: Some(slope), transposed: false }
     }
 
     /// The texel of a place along the axis of the direction and one along that of the micro-surface.
     pub(crate) fn texel(&self, along_angle: u32, along_slope: u32) -> [u32; 2] {
         if self.transposed { [along_slope, along_angle] } else { [along_angle, along_slope] }
+    }
+
+    /// Theta and alpha at coordinates; alpha is 0 where there is no such axis.
+    pub(crate) fn canonical(&self, u: [f64; 2]) -> [f64; 2] {
+        let slope = self.slope.map_or(0.0, |axis| axis.canonical_of_coordinate(u[1]));
+        [self.angle.canonical_of_coordinate(u[0]), slope]
     }
 
     /// Theta and alpha of a texel; alpha is 0 where there is no such axis.

@@ -195,15 +195,18 @@ impl DfgTable {
             let [from, to] = slope.ends([min_alpha, 1.0]);
             (scan.points[1], scan.nodes[1], scan.from[1], scan.to[1]) = (points, points, from, to);
         }
-        let canonical = |u: [f64; 2]| {
-            [angle.canonical_of_coordinate(u[0]), slope.map_or(0.0, |slope| slope.canonical_of_coordinate(u[1]))]
-        };
-        let compare = |[theta, alpha]: [f64; 2]| Comparison {
-            expected: exact(alpha, libm::cos(theta).max(0.0)),
-            sampled: self.read_at(texels, [theta, alpha]),
-        };
-        let named = |[theta, alpha]: [f64; 2]| vec![libm::cos(theta), alpha];
-        measure_scan(&scan, |u| compare(canonical(u)), |u| named(canonical(u)))
+        measure_scan(
+            &scan,
+            |u| {
+                let [theta, alpha] = self.layout.canonical(u);
+                let expected = exact(alpha, libm::cos(theta).max(0.0));
+                Comparison { expected, sampled: self.read_at(texels, [theta, alpha]) }
+            },
+            |u| {
+                let [theta, alpha] = self.layout.canonical(u);
+                vec![libm::cos(theta), alpha]
+            },
+        )
     }
 }
 

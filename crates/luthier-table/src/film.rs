@@ -45,6 +45,11 @@ impl FilmLayout {
         &self.axes
     }
 
+    /// Canonical values of both axes at coordinates.
+    fn canonical(&self, u: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k: usize| self.axes[k].canonical_of_coordinate(u[k]))
+    }
+
     /// Cosine and thickness of the canonical values of both axes.
     fn place(&self, canonical: [f64; 2]) -> [f64; 2] {
         let [theta, thickness_nm] =
@@ -112,16 +117,18 @@ impl FilmTable {
             nodes: self.size.map(|n| n - 1),
             refinements: REFINEMENTS,
         };
-        let canonical = |u: [f64; 2]| [0, 1].map(|k: usize| self.layout.axes[k].canonical_of_coordinate(u[k]));
-        let compare = |u: [f64; 2]| {
-            let at = canonical(u);
-            let position = [0, 1].map(|k: usize| self.layout.axes[k].position(at[k], self.size[k]));
-            let [r, g, b] = self.rgb(&wavelengths, self.layout.place(at));
-            let mut sampled = bilinear(texels, position, WEIGHTS);
-            sampled[3] = 0.0;
-            Comparison { expected: [r, g, b, 0.0], sampled }
-        };
-        measure_scan(&scan, compare, |u| self.layout.place(canonical(u)).to_vec())
+        measure_scan(
+            &scan,
+            |u| {
+                let at = self.layout.canonical(u);
+                let position = [0, 1].map(|k: usize| self.layout.axes[k].position(at[k], self.size[k]));
+                let [r, g, b] = self.rgb(&wavelengths, self.layout.place(at));
+                let mut sampled = bilinear(texels, position, WEIGHTS);
+                sampled[3] = 0.0;
+                Comparison { expected: [r, g, b, 0.0], sampled }
+            },
+            |u| self.layout.place(self.layout.canonical(u)).to_vec(),
+        )
     }
 
     /// Least and largest thickness of the table, nm.

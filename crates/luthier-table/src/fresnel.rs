@@ -42,6 +42,11 @@ impl FresnelLayout {
         &self.axes
     }
 
+    /// Canonical values of the axes at coordinates.
+    fn canonical(&self, u: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k: usize| self.axes[k].canonical_of_coordinate(u[k]))
+    }
+
     /// Cosine, n and k of the canonical values of the axes.
     fn place(&self, canonical: [f64; 3]) -> [f64; 3] {
         let mut place = [0.0; 3];
@@ -95,18 +100,17 @@ impl FresnelTable {
     /// and k of the table: absolute. Axis values of the worst point are the cosine, n and k.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
         let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
-        let compare = |canonical: [f64; 3]| {
-            let exact = Self::exact(self.layout.place(canonical));
-            let [sampled, ..] = self.read(texels, canonical);
-            Comparison { expected: [exact, 0.0, 0.0, 0.0], sampled: [sampled, 0.0, 0.0, 0.0] }
-        };
-        let canonical = |u: [f64; 3]| [0, 1, 2].map(|k: usize| self.layout.axes[k].canonical_of_coordinate(u[k]));
         slices::measure(
             SCAN_POINTS,
             ends,
             REFINEMENTS,
-            |u| compare(canonical(u)),
-            |u| self.layout.place(canonical(u)).to_vec(),
+            |u| {
+                let canonical = self.layout.canonical(u);
+                let exact = Self::exact(self.layout.place(canonical));
+                let [sampled, ..] = self.read(texels, canonical);
+                Comparison { expected: [exact, 0.0, 0.0, 0.0], sampled: [sampled, 0.0, 0.0, 0.0] }
+            },
+            |u| self.layout.place(self.layout.canonical(u)).to_vec(),
         )
     }
 

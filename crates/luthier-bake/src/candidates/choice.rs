@@ -159,10 +159,9 @@ fn cheapest(
 fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
     // A kind of which no candidate is good enough, whatever it weighs or costs.
     for (number, kind) in found.iter().enumerate() {
-        let best =
-            kind.candidates.iter().enumerate().min_by(|(_, a), (_, b)| {
-                budget.excess(&a.error).total_cmp(&budget.excess(&b.error)).then(cheaper(a, b))
-            });
+        let candidates = kind.candidates.iter().enumerate();
+        let best = candidates
+            .min_by(|(_, a), (_, b)| budget.excess(&a.error).total_cmp(&budget.excess(&b.error)).then(cheaper(a, b)));
         if let Some((choice, best)) = best.filter(|(_, c)| !holds(c, budget)) {
             let (mut limits, mut would) = (Vec::new(), Vec::new());
             for (name, limit, error) in [

@@ -151,11 +151,19 @@ pub fn measure_form(
         nodes: [SCAN_POINTS / 2; 2],
         refinements: REFINEMENTS,
     };
-    let place = |u: [f64; 2]| [0, 1].map(|k: usize| lowest[k] + (1.0 - lowest[k]) * u[k] * u[k]);
-    let compare = |[cos_theta, alpha]: [f64; 2]| {
-        let sums = [split_sum(distribution, masking, alpha, cos_theta), form(cos_theta, alpha)];
-        let [expected, sampled] = sums.map(|sum| [sum.bias, sum.albedo(), 0.0, 0.0]);
-        Comparison { expected, sampled }
-    };
-    measure_scan(&scan, |u| compare(place(u)), |u| place(u).to_vec())
+    measure_scan(
+        &scan,
+        |u| {
+            let [cos_theta, alpha] = place(lowest, u);
+            let sums = [split_sum(distribution, masking, alpha, cos_theta), form(cos_theta, alpha)];
+            let [expected, sampled] = sums.map(|sum| [sum.bias, sum.albedo(), 0.0, 0.0]);
+            Comparison { expected, sampled }
+        },
+        |u| place(lowest, u).to_vec(),
+    )
+}
+
+/// Cosine and alpha at coordinates, denser towards the lowest.
+fn place(lowest: [f64; 2], u: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k: usize| lowest[k] + (1.0 - lowest[k]) * u[k] * u[k])
 }

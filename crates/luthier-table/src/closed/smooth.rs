@@ -72,20 +72,17 @@ impl Grid {
         let bends: Vec<Vec<f64>> = columns[1..].iter().map(|column| second_differences(column)).collect();
         let mut coefficients = vec![0.0];
         coefficients.extend(least_squares(&bends, &second_differences(&loss)));
-        let lowest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-        let form = |i: usize| value(&columns, &coefficients, i);
-        let nodes = 0..loss.len();
-        let least_rest = lowest(&mut nodes.clone().map(|i| loss[i] - form(i)));
-        let most_rest = -lowest(&mut nodes.clone().map(|i| form(i) - loss[i]));
+        let forms: Vec<f64> = (0..loss.len()).map(|i| value(&columns, &coefficients, i)).collect();
+        let least_rest = least(loss.iter().zip(&forms).map(|(loss, form)| loss - form));
+        let most_rest = -least(loss.iter().zip(&forms).map(|(loss, form)| form - loss));
         // Rests to both sides alike, but no albedo above 1: the form would bend where it is clamped.
-        coefficients[0] = f64::max(0.5 * (least_rest + most_rest), LEAST_LOSS - lowest(&mut nodes.map(form)));
+        coefficients[0] = f64::max(0.5 * (least_rest + most_rest), LEAST_LOSS - least(forms.into_iter()));
         polynomial(degrees, &coefficients)
     }
 
     fn cosine(&self, degrees: [usize; 2], loss: &Rational) -> Rational {
         let albedos: Vec<f64> = self.variables.iter().map(|&[t, _, alpha]| 1.0 - loss.at([t, alpha])).collect();
         let columns = columns(self.variables.iter().map(|&[t, r, _]| Polynomial::powers(degrees, [t, r])));
-        let slope = |albedo: f64, rest: f64| 5.0 * albedo * (rest * rest) * (rest * rest);
         // The start: the cosine itself, where it counts.
         let rests: Vec<f64> =
             self.sums.iter().map(|sum| libm::pow((sum.bias / sum.albedo().max(1e-6)).clamp(0.0, 1.0), 0.2)).collect();
@@ -114,6 +111,15 @@ impl Grid {
     }
 }
 
+fn least(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::INFINITY, f64::min)
+}
+
+/// Derivative of the bias, `albedo * rest^5`, by the rest.
+fn slope(albedo: f64, rest: f64) -> f64 {
+    5.0 * albedo * (rest * rest) * (rest * rest)
+}
+
 fn polynomial(degrees: [usize; 2], coefficients: &[f64]) -> Rational {
     Rational {
         numerator: Polynomial::rounded(degrees, coefficients.iter().copied()),
@@ -139,10 +145,10 @@ fn value(columns: &[Vec<f64>], coefficients: &[f64], node: usize) -> f64 {
 /// Second differences of values at the nodes, along both axes.
 fn second_differences(values: &[f64]) -> Vec<f64> {
     let n = NODES as usize;
-    let along = |step: usize, across: usize| {
-        (1..n - 1).flat_map(move |i| (0..n).map(move |j| i * step + j * across)).map(move |i| (i, step))
-    };
-    along(1, n).chain(along(n, 1)).map(|(i, step)| values[i - step] - 2.0 * values[i] + values[i + step]).collect()
+    let places = [(1, n), (n, 1)]
+        .into_iter()
+        .flat_map(|(step, across)| (1..n - 1).flat_map(move |i| (0..n).map(move |j| (i * step + j * across, step))));
+    places.map(|(i, step)| values[i - step] - 2.0 * values[i] + values[i + step]).collect()
 }
 
 /// Factors of columns whose sum is nearest to the target: the normal equations by Cholesky's factors.

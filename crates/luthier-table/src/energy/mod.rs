@@ -237,18 +237,21 @@ impl EnergyTable {
 fn balance(size: [u32; 3], texels: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let [nx, ny, nz] = size.map(|n| n as usize);
     let strides = [1, nx, nx * ny];
-    let moved = |i: usize, c: usize| {
+    let mut balanced = texels.to_vec();
+    for (i, texel) in balanced.iter_mut().enumerate() {
         let at = [i % nx, i / nx % ny, i / nx / ny];
-        let here = texels[i][c];
-        let mut curvature = 0.0;
-        for ((at, n), stride) in at.into_iter().zip([nx, ny, nz]).zip(strides) {
-            if at > 0 && at + 1 < n {
-                curvature += texels[i - stride][c] - 2.0 * here + texels[i + stride][c];
+        for (c, value) in texel.iter_mut().enumerate() {
+            let here = *value;
+            let mut curvature = 0.0;
+            for ((at, n), stride) in at.into_iter().zip([nx, ny, nz]).zip(strides) {
+                if at > 0 && at + 1 < n {
+                    curvature += texels[i - stride][c] - 2.0 * here + texels[i + stride][c];
+                }
             }
+            *value = (here - curvature / 16.0).clamp(0.0, here.max(1.0));
         }
-        (here - curvature / 16.0).clamp(0.0, here.max(1.0))
-    };
-    (0..texels.len()).map(|i| (0..texels[i].len()).map(|c| moved(i, c)).collect()).collect()
+    }
+    balanced
 }
 
 #[cfg(test)]

@@ -173,22 +173,15 @@ impl EnergyPreset {
 
     /// The statements of a table, which lie one after the other in memory.
     pub fn tables(&self, file: &EnergyFile) -> Vec<EnergyTable> {
-        let table = |part: &Part| {
+        let tables = file.parts.iter().map(|part| {
             let layout = EnergyLayout::parse(part.axes, Nodes::Ends).unwrap_or_else(|error| unreachable!("{error}"));
-            let limits: Vec<[f64; 2]> = layout
-                .axes()
-                .iter()
-                .map(|axis| {
-                    let [slope, angle, index] = self.limits;
-                    if axis.quantity.is_slope() {
-                        slope
-                    } else if axis.quantity.is_angle() {
-                        angle
-                    } else {
-                        index
-                    }
-                })
-                .collect();
+            let [slope, angle, index] = self.limits;
+            let limits = layout.axes().iter().map(|axis| match axis.quantity {
+                quantity if quantity.is_slope() => slope,
+                quantity if quantity.is_angle() => angle,
+                _ => index,
+            });
+            let limits: Vec<[f64; 2]> = limits.collect();
             EnergyTable {
                 distribution: Distribution::Ggx,
                 masking: file.masking,
@@ -200,8 +193,8 @@ impl EnergyPreset {
                 balanced: false,
                 clear_within: self.clear_within,
             }
-        };
-        file.parts.iter().map(table).collect()
+        });
+        tables.collect()
     }
 
     /// A table of the renderer, baked.

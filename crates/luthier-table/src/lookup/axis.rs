@@ -54,37 +54,38 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
 
 /// Operations of the text of [`write()`]; none where there is none.
 pub(super) fn cost(axis: &AxisSpec) -> Option<Cost> {
-    let of = |multiply_adds, clamps, specials| Cost { multiply_adds, clamps, specials };
     let (quantity, is_within) = match axis.quantity {
-        Quantity::CosTheta | Quantity::Alpha => (of(0, 1, 0), true),
-        Quantity::CosThetaSq | Quantity::AlphaSq => (of(1, 1, 0), true),
-        Quantity::SqrtCosTheta | Quantity::Roughness => (of(0, 1, 1), true),
-        Quantity::SqrtRoughness => (of(0, 1, 2), true),
+        Quantity::CosTheta | Quantity::Alpha => (operations(0, 1, 0), true),
+        Quantity::CosThetaSq | Quantity::AlphaSq => (operations(1, 1, 0), true),
+        Quantity::SqrtCosTheta | Quantity::Roughness => (operations(0, 1, 1), true),
+        Quantity::SqrtRoughness => (operations(0, 1, 2), true),
         // The root, and an arc tangent as compilers write it: a quotient of minimum and maximum, a polynomial, two choices.
-        Quantity::Theta => (of(11, 5, 2), false),
-        Quantity::SqrtOneMinusCosTheta => (of(1, 1, 1), true),
+        Quantity::Theta => (operations(11, 5, 2), false),
+        Quantity::SqrtOneMinusCosTheta => (operations(1, 1, 1), true),
         _ => return None,
     };
     let is_whole = is_within && axis.min == 0.0 && axis.max == 1.0;
     // The shift and the scale are one product with a sum.
-    let part = if is_whole { Cost::default() } else { of(1, 1, 0) };
+    let part = if is_whole { Cost::default() } else { operations(1, 1, 0) };
     let mapping = match axis.mapping {
         Mapping::Linear | Mapping::Apart => part,
         Mapping::Power { exponent } => part + exponents_cost(exponent),
-        Mapping::Rational { .. } => part + of(2, 0, 1),
-        Mapping::Logarithmic => of(2, 1, 1),
+        Mapping::Rational { .. } => part + operations(2, 0, 1),
+        Mapping::Logarithmic => operations(2, 1, 1),
         Mapping::Periodic => return None,
     };
     let is_plain = axis.nodes == Nodes::CENTRES && !axis.descending;
-    Some(quantity + mapping + of(u32::from(!is_plain), 0, 0))
+    Some(quantity + mapping + operations(u32::from(!is_plain), 0, 0))
+}
+
+fn operations(multiply_adds: u32, clamps: u32, specials: u32) -> Cost {
+    Cost { multiply_adds, clamps, specials }
 }
 
 /// Operations of [`root`]: roots, or a logarithm, a product and an exponential.
 fn exponents_cost(exponent: f64) -> Cost {
-    match ROOTS.into_iter().position(|power| power == exponent) {
-        Some(count) => Cost { specials: count as u32, ..Cost::default() },
-        None => Cost { multiply_adds: 1, specials: 2, ..Cost::default() },
-    }
+    let roots = ROOTS.into_iter().position(|power| power == exponent);
+    roots.map_or(operations(1, 0, 2), |count| operations(0, 0, count as u32))
 }
 
 /// A quantity of a cosine, an alpha, or a part of a complex index, and whether it lies in 0..1; none of other quantities.

@@ -153,39 +153,38 @@ impl Kernels {
             .map(|phi| std::array::from_fn(|m| 2.0 * PI / AZIMUTHS as f64 * libm::cos(m as f64 * phi)))
             .collect();
         let pieces: Vec<[f64; 2]> = std::iter::once(&0.0).chain(cosines).zip(cosines).map(|(a, b)| [*a, *b]).collect();
-        // Nodes of each gap between ordinates, for a kernel that changes on a scale beside a peak, which is at an ordinate or at 0.
-        let about = |peak: f64, scale: f64| {
-            pieces.iter().flat_map(move |&[a, b]| {
-                let [near, far] = if a >= peak { [a, b] } else { [b, a] };
-                let reach = (far - near) / (scale + (near - peak).abs());
-                let rule = rules.for_reach_squared(reach * reach);
-                rule.iter().map(move |&(u, weight)| (near + u * (far - near), weight * (b - a)))
-            })
-        };
         for i in 0..n {
             let z = cosines[i];
             let sin = libm::sqrt((1.0 - z) * (1.0 + z));
-            // Mirrors are upright as closely as fibres are thin: light keeps its cosine, or turns it around where that is small.
-            let kept = about(z, sigma * (sin + sigma)).map(|(z, weight)| (z, weight, true));
-            let turned = about(0.0, sigma + z).map(|(z, weight)| (z, weight, false));
-            for (z_from, weight, is_same) in kept.chain(turned) {
-                let sin_from = libm::sqrt(((1.0 - z_from) * (1.0 + z_from)).max(0.0));
-                let signed = if is_same { z_from } else { -z_from };
-                let mut modes = [0.0; MODES];
-                for (cos_phi, weights) in cos_phis.iter().zip(&weights) {
-                    let length_sq = 2.0 - 2.0 * (z * signed + sin * sin_from * cos_phi);
-                    let cos_h_sq = ((z - signed) * (z - signed) / length_sq.max(f64::MIN_POSITIVE)).min(1.0);
-                    let value = 0.25 * fibre_distribution(sigma, cos_h_sq) * weight;
-                    modes.iter_mut().zip(weights).for_each(|(mode, w)| *mode += w * value);
-                }
-                let matrices = if is_same { &mut same } else { &mut opposite };
-                for (j, part) in interpolation(cosines, z_from) {
-                    matrices.iter_mut().zip(modes).for_each(|(matrix, mode)| matrix[(i, j)] += part * mode);
+            // Mirrors are upright as closely as fibres are thin: light keeps its cosine, or turns it around where that is small. The kernel
+            // changes on a scale beside a peak, which is at an ordinate or at 0.
+            let kept = (&mut same, z, sigma * (sin + sigma), 1.0);
+            let turned = (&mut opposite, 0.0, sigma + z, -1.0);
+            for (matrices, peak, scale, sign) in [kept, turned] {
+                let nodes = pieces.iter().flat_map(|&[a, b]| {
+                    let [near, far] = if a >= peak { [a, b] } else { [b, a] };
+                    let reach = (far - near) / (scale + (near - peak).abs());
+                    let rule = rules.for_reach_squared(reach * reach);
+                    rule.iter().map(move |&(u, weight)| (near + u * (far - near), weight * (b - a)))
+                });
+                for (z_from, weight) in nodes {
+                    let sin_from = libm::sqrt(((1.0 - z_from) * (1.0 + z_from)).max(0.0));
+                    let signed = sign * z_from;
+                    let mut modes = [0.0; MODES];
+                    for (cos_phi, weights) in cos_phis.iter().zip(&weights) {
+                        let length_sq = 2.0 - 2.0 * (z * signed + sin * sin_from * cos_phi);
+                        let cos_h_sq = ((z - signed) * (z - signed) / length_sq.max(f64::MIN_POSITIVE)).min(1.0);
+                        let value = 0.25 * fibre_distribution(sigma, cos_h_sq) * weight;
+                        modes.iter_mut().zip(weights).for_each(|(mode, w)| *mode += w * value);
+                    }
+                    for (j, part) in interpolation(cosines, z_from) {
+                        matrices.iter_mut().zip(modes).for_each(|(matrix, mode)| matrix[(i, j)] += part * mode);
+                    }
                 }
             }
             // Nothing is absorbed: what is scattered is what extinction takes away. Quadrature misses that by less than a half in a hundred.
-            let row = |matrices: &[Matrix]| (0..n).map(|j| matrices[0][(i, j)]).sum::<f64>();
-            let factor = projected_area(sigma, z) / (row(&same) + row(&opposite));
+            let [kept, turned] = [&same, &opposite].map(|matrices| (0..n).map(|j| matrices[0][(i, j)]).sum::<f64>());
+            let factor = projected_area(sigma, z) / (kept + turned);
             debug_assert!((factor - 1.0).abs() < 0.005, "{sigma} {z}: {factor}");
             for matrix in same.iter_mut().chain(&mut opposite) {
                 (0..n).for_each(|j| matrix[(i, j)] *= factor);

@@ -55,25 +55,29 @@ impl Shape {
 
 /// The lobe about the normal that shares most energy with a reflection: a golden-section search, for normal incidence.
 pub(super) fn fit_upright(target: &Target) -> Shape {
-    let loss = |ln_scale: f64| 1.0 - target.shared(Shape::upright(ln_scale).lobe(), 1.0);
     let golden = 0.5 * (libm::sqrt(5.0) - 1.0);
     // The scale is 2 alpha for smooth surfaces, and less than that for rough ones.
     let middle = libm::log(2.0 * target.alpha);
     let (mut from, mut to) = (middle - 1.6, middle + 0.8);
     let mut inner = [to - golden * (to - from), from + golden * (to - from)];
-    let mut values = inner.map(loss);
+    let mut values = inner.map(|ln_scale| upright_loss(target, ln_scale));
     while to - from > 1e-7 {
         if values[0] < values[1] {
             to = inner[1];
             inner = [to - golden * (to - from), inner[0]];
-            values = [loss(inner[0]), values[0]];
+            values = [upright_loss(target, inner[0]), values[0]];
         } else {
             from = inner[0];
             inner = [inner[1], from + golden * (to - from)];
-            values = [values[1], loss(inner[1])];
+            values = [values[1], upright_loss(target, inner[1])];
         }
     }
     Shape::upright(0.5 * (from + to))
+}
+
+/// The share of energy that an upright lobe misses.
+fn upright_loss(target: &Target, ln_scale: f64) -> f64 {
+    1.0 - target.shared(Shape::upright(ln_scale).lobe(), 1.0)
 }
 
 /// The shape that shares most energy with a reflection, found from another: the simplex search of Nelder and Mead 1965, twice.

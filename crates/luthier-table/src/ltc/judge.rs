@@ -140,9 +140,7 @@ pub(super) fn place(layout: &Layout, size: [u32; 2], texel: [u32; 2], offset: [f
         let [theta, alpha] = layout.at_texel(size, texel);
         [layout.angle.coordinate(theta), layout.slope.map_or(0.0, |slope| slope.coordinate(alpha))]
     });
-    let middle = [0, 1].map(|k: usize| 0.5 * (from[k] + to[k]));
-    let theta = layout.angle.canonical_of_coordinate(middle[0]);
-    [theta, layout.slope.map_or(0.0, |slope| slope.canonical_of_coordinate(middle[1]))]
+    layout.canonical([0, 1].map(|k: usize| 0.5 * (from[k] + to[k])))
 }
 
 /// Half the L1 distance of a lobe times its albedo from a reflection, over that one's albedo.
@@ -155,12 +153,12 @@ pub(super) fn difference((lobe, albedo): (Lobe, f64), target: &Target) -> f64 {
 fn over_rectangle(rule: &[(f64, f64)], [corner, u, v]: [DVec3; 3], f: impl Fn(DVec3) -> f64) -> f64 {
     const PATCHES: u32 = 32;
     let normal = u.cross(v);
-    let at = |i: u32, x: f64| (f64::from(i) + x) / f64::from(PATCHES);
     let mut sum = 0.0;
     for (i, j) in (0..PATCHES * PATCHES).map(|k| (k / PATCHES, k % PATCHES)) {
         for (x, weight_x) in rule {
             for (y, weight_y) in rule {
-                let p = corner + u * at(i, *x) + v * at(j, *y);
+                let [s, t] = [(i, x), (j, y)].map(|(patch, x)| (f64::from(patch) + x) / f64::from(PATCHES));
+                let p = corner + u * s + v * t;
                 let r_sq = p.length_squared();
                 let w = p / libm::sqrt(r_sq);
                 sum += weight_x * weight_y * f(w) * normal.dot(w).abs() / r_sq;

@@ -63,9 +63,10 @@ impl Lobe {
     /// The polygon is clipped at the horizon of the cosine, then Lambert's formula is exact (eq. 9 to 11); corners on either side of the
     /// surface are let through, as in the paper. A convex polygon; the sense of rotation does not matter.
     pub fn over_polygon(self, corners: &[DVec3]) -> f64 {
-        let transform = |w: &DVec3| DVec3::new(self.m11 * w.x + self.m13 * w.z, w.y, self.m31 * w.x + self.m33 * w.z);
-        let transformed: Vec<DVec3> = corners.iter().map(transform).collect();
-        let clipped: Vec<DVec3> = clip(&transformed).into_iter().map(DVec3::normalize_or_zero).collect();
+        let transformed =
+            corners.iter().map(|w| DVec3::new(self.m11 * w.x + self.m13 * w.z, w.y, self.m31 * w.x + self.m33 * w.z));
+        let clipped: Vec<DVec3> =
+            clip(&transformed.collect::<Vec<_>>()).into_iter().map(DVec3::normalize_or_zero).collect();
         let next = clipped.iter().cycle().skip(1);
         let sum: f64 = clipped.iter().zip(next).map(|(&a, &b)| edge(a, b)).sum();
         sum.abs() / (2.0 * PI)

@@ -49,20 +49,22 @@ impl SheenTable {
         let [a, s] = self.layout.order();
         let [angles, slopes] = [a, s].map(|k| self.size[k] - u32::from(offset[k] > 0.0));
         let rules = kernel_rules();
-        let at = |angle: u32, slope: u32| {
-            let [theta, sigma] = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
-            [libm::cos(theta).clamp(LOWEST, 1.0), sigma.clamp(LOWEST * LOWEST, 1.0)]
-        };
-        let cosines: Vec<f64> = (0..angles).map(|angle| at(angle, 0)[0]).collect();
+        let cosines: Vec<f64> = (0..angles).map(|angle| self.at([angle, 0], offset)[0]).collect();
         let ordinates = ordinates(&cosines);
         (0..slopes)
             .into_par_iter()
             .map(|slope| {
-                let sigma = at(0, slope)[1];
+                let sigma = self.at([0, slope], offset)[1];
                 let layer = FibreLayer::new(&rules, sigma, ordinates.clone());
                 cosines.iter().map(|cos| target(&layer, sigma, *cos)).collect()
             })
             .collect()
+    }
+
+    /// Cosine and cross section at a place along both axes.
+    fn at(&self, [angle, slope]: [u32; 2], offset: [f64; 2]) -> [f64; 2] {
+        let [theta, sigma] = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
+        [libm::cos(theta).clamp(LOWEST, 1.0), sigma.clamp(LOWEST * LOWEST, 1.0)]
     }
 
     /// Texels of three channels: a, b and the albedo.
@@ -126,11 +128,13 @@ impl SheenTable {
         for (target, angle, slope) in places.filter(|(target, ..)| target.albedo_dir >= min_albedo) {
             let at = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
             let [a, b, albedo, _] = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
-            let placed = |error: f64| PlacedError { error, cos_theta_o: target.cos_theta_o, alpha: target.alpha };
             // A table may leave out lobes that reflect too little.
             let entry = if a > 0.0 { [a, b] } else { [1.0, 0.0] };
-            differences.push(placed(difference((lobe(entry), albedo), target)));
-            albedos.push(placed((albedo - target.albedo_dir).abs()));
+            let errors = [difference((lobe(entry), albedo), target), (albedo - target.albedo_dir).abs()];
+            let &Target { cos_theta_o, alpha, .. } = target;
+            let [energy, albedo] = errors.map(|error| PlacedError { error, cos_theta_o, alpha });
+            differences.push(energy);
+            albedos.push(albedo);
         }
         [LtcError::of(differences), LtcError::of(albedos)]
     }
@@ -143,21 +147,22 @@ fn lobe([a, b]: [f64; 2]) -> Lobe {
 
 /// The a and b of the lobe that shares most energy with a reflection, from others; upright at normal incidence.
 fn fit(target: &Target, start: [f64; 2]) -> [f64; 2] {
-    let loss = |entries: [f64; 2]| 1.0 - target.shared(lobe(entries), 1.0);
     if target.cos_theta_o > 1.0 - 1e-9 {
-        let from = |a: f64, edge: f64| {
-            let [by] = minimise([edge], |[by]| loss([a * libm::exp(by), 0.0]));
+        let a = [-0.2, 0.05].into_iter().fold(start[0], |a, edge| {
+            let [by] = minimise([edge], |[by]| 1.0 - target.shared(lobe([a * libm::exp(by), 0.0]), 1.0));
             a * libm::exp(by)
-        };
-        return [from(from(start[0], -0.2), 0.05), 0.0];
+        });
+        return [a, 0.0];
     }
-    // Steps of b are in units of a: that is the width of the lobe.
-    let moved = |[a, b]: [f64; 2], by: [f64; 2]| {
-        let scaled = a * libm::exp(by[0]);
-        [scaled, scaled * (b / a + by[1])]
-    };
-    let from = |start: [f64; 2], edges: [f64; 2]| moved(start, minimise(edges, |by| loss(moved(start, by))));
-    from(from(start, [-0.2, -0.2]), [0.05, 0.05])
+    [[-0.2, -0.2], [0.05, 0.05]].into_iter().fold(start, |start, edges| {
+        moved(start, minimise(edges, |by| 1.0 - target.shared(lobe(moved(start, by)), 1.0)))
+    })
+}
+
+/// An a and a b after a step, whose second part is in units of a: a is the width of the lobe.
+fn moved([a, b]: [f64; 2], by: [f64; 2]) -> [f64; 2] {
+    let scaled = a * libm::exp(by[0]);
+    [scaled, scaled * (b / a + by[1])]
 }
 
 /// The table's cosines, those near the surface, and more where gaps are wide.

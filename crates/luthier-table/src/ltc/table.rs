@@ -115,7 +115,6 @@ impl LtcTable {
         }
         let sums = balance(&sums, 0.0);
         let mut norms = Image::zeros(self.size[0], self.size[1], 4);
-        let part = |texel: u32, size: u32| if size < 2 { 0.5 } else { f64::from(texel) / f64::from(size - 1) };
         for y in 0..self.size[1] {
             let length = part(y, self.size[1]);
             for x in 0..self.size[0] {
@@ -126,6 +125,11 @@ impl LtcTable {
         }
         norms
     }
+}
+
+/// Place of a texel between the first and the last, in 0..=1.
+fn part(texel: u32, size: u32) -> f64 {
+    if size < 2 { 0.5 } else { f64::from(texel) / f64::from(size - 1) }
 }
 
 impl LtcTexels {

@@ -84,17 +84,15 @@ impl Judge {
     fn new(distribution: Distribution, masking: Masking, lowest: [f64; 2]) -> Self {
         let surface = SplitSumSurface::new(distribution, masking);
         // Denser towards the lower ends, as the measurement of forms.
-        let at = |axis: usize, i: u32| {
-            let u = f64::from(i) / f64::from(POINTS - 1);
-            (lowest[axis] + (1.0 - lowest[axis]) * u * u).min(1.0)
-        };
-        let points = (0..POINTS)
-            .flat_map(|j| {
-                let alpha = at(1, j);
-                let row = surface.row(alpha);
-                (0..POINTS).map(move |i| ([libm::acos(at(0, i)), alpha], row.at(at(0, i))))
-            })
-            .collect();
+        let [cosines, alphas] = lowest.map(|lowest| {
+            let parts = (0..POINTS).map(|i| f64::from(i) / f64::from(POINTS - 1));
+            parts.map(|u| (lowest + (1.0 - lowest) * u * u).min(1.0)).collect::<Vec<f64>>()
+        });
+        let points = alphas.iter().flat_map(|&alpha| {
+            let row = surface.row(alpha);
+            cosines.iter().map(move |&cos| ([libm::acos(cos), alpha], row.at(cos)))
+        });
+        let points = points.collect();
         Self { distribution, masking, lowest, surface, points }
     }
 

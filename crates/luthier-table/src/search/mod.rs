@@ -79,8 +79,8 @@ pub fn search(
             .collect();
         // Squares come first, and of one size the least error.
         let mut order: Vec<usize> = (0..candidates.len()).collect();
-        let texels = |i: usize| candidates[i].size[0] * candidates[i].size[1];
-        order.sort_by(|&a, &b| texels(a).cmp(&texels(b)).then(errors[a].total_cmp(&errors[b])));
+        let texels: Vec<u32> = candidates.iter().map(|table| table.size[0] * table.size[1]).collect();
+        order.sort_by(|&a, &b| texels[a].cmp(&texels[b]).then(errors[a].total_cmp(&errors[b])));
         let is_last = next.is_none();
         let promising = order.into_iter().filter(|&i| is_last || errors[i] <= max_abs);
         for i in promising.take(if is_last { 1 } else { 6 }) {
