@@ -11,9 +11,9 @@ const MAX_VALUE_BYTES: usize = 1 << 20;
 
 /// Checks the rules of [`Metadata`].
 pub(crate) fn check(metadata: &[(String, String)]) -> Result<(), TextureError> {
-    let plain = |key: &str| key.bytes().all(|b| b.is_ascii_alphanumeric() || b".-_".contains(&b));
     for (i, (key, value)) in metadata.iter().enumerate() {
-        let reason = if key.is_empty() || key.len() > MAX_KEY_BYTES || !plain(key) {
+        let is_plain = key.bytes().all(|b| b.is_ascii_alphanumeric() || b".-_".contains(&b));
+        let reason = if key.is_empty() || key.len() > MAX_KEY_BYTES || !is_plain {
             "a key is 1 to 64 ASCII letters, digits, `.`, `_` or `-`"
         } else if metadata[..i].iter().any(|(earlier, _)| earlier == key) {
             "the key appears twice"

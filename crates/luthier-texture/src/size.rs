@@ -10,14 +10,10 @@ use crate::limits::{MAX_BYTES, MAX_SIDE};
 /// # Errors
 /// [`TextureError::Size`] beyond the limits, or when a side is 0.
 pub(crate) fn checked_bytes(width: u32, height: u32, texel_bytes: u32) -> Result<usize, TextureError> {
-    let side_ok = |side: u32| (1..=MAX_SIDE).contains(&side);
-    if !side_ok(width) || !side_ok(height) {
-        return Err(TextureError::Size { width, height });
-    }
-    let bytes = u64::from(width) * u64::from(height) * u64::from(texel_bytes);
-    if bytes > MAX_BYTES {
-        return Err(TextureError::Size { width, height });
-    }
+    let are_sides = [width, height].iter().all(|side| (1..=MAX_SIDE).contains(side));
+    // Sides within the limit keep the product within 64 bits.
+    let bytes = are_sides.then(|| u64::from(width) * u64::from(height) * u64::from(texel_bytes));
+    let bytes = bytes.filter(|bytes| *bytes <= MAX_BYTES).ok_or(TextureError::Size { width, height })?;
     Ok(bytes as usize)
 }
 

@@ -87,8 +87,8 @@ impl TexelLayout {
 }
 
 fn ten_bits(texel: u32) -> [f32; 4] {
-    let ten = |shift: u32| (texel >> shift & 1023) as f32 / 1023.0;
-    [ten(0), ten(10), ten(20), (texel >> 30) as f32 / 3.0]
+    let [r, g, b] = [0, 10, 20].map(|shift| (texel >> shift & 1023) as f32 / 1023.0);
+    [r, g, b, (texel >> 30) as f32 / 3.0]
 }
 
 impl fmt::Display for TexelLayout {

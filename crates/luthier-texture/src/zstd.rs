@@ -22,22 +22,18 @@ pub(crate) fn compress(bytes: &[u8]) -> Result<Vec<u8>, TextureError> {
 
 /// Decompresses one frame of exactly `expected` bytes. Memory follows what is decoded, not what is promised.
 pub(crate) fn decompress(mut source: &[u8], expected: usize) -> Result<Vec<u8>, TextureError> {
-    let wrong_length = || TextureError::malformed(Container::Ktx2, format!("zstd data is not {expected} bytes"));
     let mut decoder = FrameDecoder::new();
     decoder.set_max_window_size(MIN_WINDOW_BYTES.max(expected as u64));
     decoder.init(&mut source)?;
     let mut bytes = Vec::new();
-    while !decoder.is_finished() {
+    while !decoder.is_finished() && bytes.len() <= expected {
         decoder.decode_blocks(&mut source, BlockDecodingStrategy::UptoBytes(STEP_BYTES))?;
         if let Some(part) = decoder.collect() {
             bytes.extend_from_slice(&part);
         }
-        if bytes.len() > expected {
-            return Err(wrong_length());
-        }
     }
     if bytes.len() != expected || !source.is_empty() {
-        return Err(wrong_length());
+        return Err(TextureError::malformed(Container::Ktx2, format!("zstd data is not {expected} bytes")));
     }
     match (decoder.get_checksum_from_data(), decoder.get_calculated_checksum()) {
         (Some(stored), Some(actual)) if stored != actual => {

@@ -46,8 +46,10 @@ pub fn encode(image: &Image, names: &[&str], metadata: &Metadata) -> Result<Vec<
     if names.len() != channels {
         return Err(TextureError::Channels(image.channels));
     }
-    let plane = |c: usize| FlatSamples::F32(image.data.iter().skip(c).step_by(channels).copied().collect());
-    let planes = names.iter().enumerate().map(|(c, &name)| AnyChannel::new(name, plane(c)));
+    let planes = names.iter().enumerate().map(|(c, &name)| {
+        let values = image.data.iter().skip(c).step_by(channels).copied();
+        AnyChannel::new(name, FlatSamples::F32(values.collect()))
+    });
 
     let mut attributes = LayerAttributes::default();
     if !metadata.is_empty() {

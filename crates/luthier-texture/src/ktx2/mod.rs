@@ -77,9 +77,8 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
     if !is_map || count == 0 || count > texture.width.max(texture.height).ilog2() + 1 {
         return Err(TextureError::Length { found: texture.levels.len(), expected: 1 });
     }
-    let half = |side: u32, level: u32| (side >> level).max(1);
     for (level, bytes) in (0..).zip(&texture.levels) {
-        let (width, height) = (half(texture.width, level), half(texture.height, level));
+        let [width, height] = [texture.width, texture.height].map(|side| (side >> level).max(1));
         let expected = level_bytes(texture.format, width, height)? * texture.faces as usize;
         if bytes.len() != expected {
             return Err(TextureError::Length { found: bytes.len(), expected });
@@ -200,30 +199,28 @@ fn block_bytes(format: TexelFormat) -> usize {
 }
 
 fn table_layout(format: Format) -> Option<TexelLayout> {
-    let of = |samples, channels| Some(TexelLayout::of(samples, channels));
-    match format {
-        Format::R8_UNORM => of(Samples::Unorm8, 1),
-        Format::R8G8_UNORM => of(Samples::Unorm8, 2),
-        Format::R8G8B8_UNORM => of(Samples::Unorm8, 3),
-        Format::R8G8B8A8_UNORM => of(Samples::Unorm8, 4),
-        Format::R8G8B8A8_SRGB => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        Format::R8G8B8_SRGB => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 3) }),
-        Format::B8G8R8A8_UNORM => Some(TexelLayout { bgr: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        Format::A2B10G10R10_UNORM_PACK32 => of(Samples::Unorm10, 4),
-        Format::R16_UNORM => of(Samples::Unorm16, 1),
-        Format::R16G16_UNORM => of(Samples::Unorm16, 2),
-        Format::R16G16B16_UNORM => of(Samples::Unorm16, 3),
-        Format::R16G16B16A16_UNORM => of(Samples::Unorm16, 4),
-        Format::R16_SFLOAT => of(Samples::Half, 1),
-        Format::R16G16_SFLOAT => of(Samples::Half, 2),
-        Format::R16G16B16_SFLOAT => of(Samples::Half, 3),
-        Format::R16G16B16A16_SFLOAT => of(Samples::Half, 4),
-        Format::R32_SFLOAT => of(Samples::Float, 1),
-        Format::R32G32_SFLOAT => of(Samples::Float, 2),
-        Format::R32G32B32_SFLOAT => of(Samples::Float, 3),
-        Format::R32G32B32A32_SFLOAT => of(Samples::Float, 4),
-        _ => None,
-    }
+    let (samples, channels) = match format {
+        Format::R8_UNORM => (Samples::Unorm8, 1),
+        Format::R8G8_UNORM => (Samples::Unorm8, 2),
+        Format::R8G8B8_UNORM | Format::R8G8B8_SRGB => (Samples::Unorm8, 3),
+        Format::R8G8B8A8_UNORM | Format::R8G8B8A8_SRGB | Format::B8G8R8A8_UNORM => (Samples::Unorm8, 4),
+        Format::A2B10G10R10_UNORM_PACK32 => (Samples::Unorm10, 4),
+        Format::R16_UNORM => (Samples::Unorm16, 1),
+        Format::R16G16_UNORM => (Samples::Unorm16, 2),
+        Format::R16G16B16_UNORM => (Samples::Unorm16, 3),
+        Format::R16G16B16A16_UNORM => (Samples::Unorm16, 4),
+        Format::R16_SFLOAT => (Samples::Half, 1),
+        Format::R16G16_SFLOAT => (Samples::Half, 2),
+        Format::R16G16B16_SFLOAT => (Samples::Half, 3),
+        Format::R16G16B16A16_SFLOAT => (Samples::Half, 4),
+        Format::R32_SFLOAT => (Samples::Float, 1),
+        Format::R32G32_SFLOAT => (Samples::Float, 2),
+        Format::R32G32B32_SFLOAT => (Samples::Float, 3),
+        Format::R32G32B32A32_SFLOAT => (Samples::Float, 4),
+        _ => return None,
+    };
+    let srgb = matches!(format, Format::R8G8B8A8_SRGB | Format::R8G8B8_SRGB);
+    Some(TexelLayout { samples, channels, bgr: format == Format::B8G8R8A8_UNORM, srgb })
 }
 
 fn header(file: &[u8]) -> Result<Header, TextureError> {
@@ -307,8 +304,9 @@ fn descriptor_section(format: TexelFormat) -> Result<(Vec<u8>, u32), TextureErro
 
 /// Whether two descriptor sections mean the same texels.
 fn describes(found: &[u8], expected: &[u8]) -> bool {
-    let free = |i: usize| FREE_DFD_BYTES.iter().any(|range| range.contains(&i));
-    found.len() == expected.len() && found.iter().zip(expected).enumerate().all(|(i, (a, b))| a == b || free(i))
+    let mut bytes = found.iter().zip(expected).enumerate();
+    found.len() == expected.len()
+        && bytes.all(|(i, (a, b))| a == b || FREE_DFD_BYTES.iter().any(|range| range.contains(&i)))
 }
 
 /// Entries by section 3.11 of the specification, sorted by key: length, key, NUL, value, NUL, padding to 4 bytes.
@@ -333,19 +331,21 @@ fn key_value_section(metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
     Ok(section)
 }
 
+/// The fault of key/value data that end within an entry.
+const CUT_OFF: &str = "a key/value entry is cut off";
+
 /// Whether the key/value data hold whole entries, and rows go from the top down, which is what a file without a word of it means.
 fn check_orientation(mut section: &[u8]) -> Result<(), TextureError> {
-    let cut = || malformed("a key/value entry is cut off");
     while let Some((length, rest)) = section.split_first_chunk() {
         let length = u32::from_le_bytes(*length) as usize;
-        let entry = rest.get(..length).ok_or_else(cut)?;
+        let entry = rest.get(..length).ok_or_else(|| malformed(CUT_OFF))?;
         section = rest.get(length.next_multiple_of(4)..).unwrap_or_default();
         let key_end = entry.iter().position(|&b| b == 0).ok_or_else(|| malformed("a key does not end"))?;
         if &entry[..key_end] == b"KTXorientation" && !entry[key_end + 1..].starts_with(b"rd") {
             return Err(unsupported("rows from the bottom or columns from the right"));
         }
     }
-    if section.is_empty() { Ok(()) } else { Err(cut()) }
+    if section.is_empty() { Ok(()) } else { Err(malformed(CUT_OFF)) }
 }
 
 fn section(file: &[u8], offset: u64, length: u64) -> Result<&[u8], TextureError> {

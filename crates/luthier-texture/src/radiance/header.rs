@@ -117,28 +117,28 @@ fn numbers<const N: usize>(name: &str, value: &str, allowed: fn(f64) -> bool) ->
 
 /// `-Y 32 +X 64`: scanlines from the top, each from the left. The sign says which way a coordinate runs, the first axis is that of the scanlines.
 fn size(line: &str) -> Result<(Order, u32, u32), TextureError> {
-    let wrong = || {
+    ordered(line).ok_or_else(|| {
         let line: String = line.chars().take(64).collect();
         malformed(format!("the line of its size is `{line}`, where one such as `-Y 512 +X 1024` belongs"))
-    };
+    })
+}
+
+fn ordered(line: &str) -> Option<(Order, u32, u32)> {
     let words: Vec<&str> = line.split_whitespace().collect();
-    let [first, lines, second, texels] = words[..] else { return Err(wrong()) };
-    let (lines, texels): (u32, u32) = (lines.parse().map_err(|_| wrong())?, texels.parse().map_err(|_| wrong())?);
-    let down = |word: &str| match word {
-        "-Y" => Some(true),
-        "+Y" => Some(false),
-        _ => None,
+    let [first, lines, second, texels] = words[..] else { return None };
+    let (lines, texels): (u32, u32) = (lines.parse().ok()?, texels.parse().ok()?);
+    let columns = matches!(first, "+X" | "-X");
+    let (vertical, horizontal) = if columns { (second, first) } else { (first, second) };
+    let from_bottom = match vertical {
+        "-Y" => false,
+        "+Y" => true,
+        _ => return None,
     };
-    let right = |word: &str| match word {
-        "+X" => Some(true),
-        "-X" => Some(false),
-        _ => None,
+    let from_right = match horizontal {
+        "+X" => false,
+        "-X" => true,
+        _ => return None,
     };
-    if let (Some(down), Some(right)) = (down(first), right(second)) {
-        return Ok((Order { columns: false, from_bottom: !down, from_right: !right }, texels, lines));
-    }
-    if let (Some(right), Some(down)) = (right(first), down(second)) {
-        return Ok((Order { columns: true, from_bottom: !down, from_right: !right }, lines, texels));
-    }
-    Err(wrong())
+    let (width, height) = if columns { (lines, texels) } else { (texels, lines) };
+    Some((Order { columns, from_bottom, from_right }, width, height))
 }

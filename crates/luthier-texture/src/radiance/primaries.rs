@@ -48,8 +48,7 @@ impl Primaries {
 
     /// The matrix from these primaries to CIE XYZ, 1 of each being white of luminance 1.
     fn to_xyz(self) -> Option<Matrix> {
-        let column = |[x, y]: [f64; 2]| [x, y, 1.0 - x - y];
-        let columns = [self.red, self.green, self.blue].map(column);
+        let columns = [self.red, self.green, self.blue].map(|[x, y]| [x, y, 1.0 - x - y]);
         let unscaled: Matrix = [0, 1, 2].map(|row| columns.map(|column| column[row]));
         let scale = apply(&inverse(&unscaled)?, self.white_xyz()?);
         Some(unscaled.map(|row| [0, 1, 2].map(|k| row[k] * scale[k])))
@@ -102,10 +101,15 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 fn inverse(m: &Matrix) -> Option<Matrix> {
-    let at = |row: usize, column: usize| m[row % 3][column % 3];
-    let cofactor = |r: usize, c: usize| at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1);
-    let determinant: f64 = (0..3).map(|c| m[0][c] * cofactor(0, c)).sum();
-    (determinant.abs() > 1e-12).then(|| [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(c, r) / determinant)))
+    let determinant: f64 = (0..3).map(|c| m[0][c] * cofactor(m, 0, c)).sum();
+    (determinant.abs() > 1e-12).then(|| [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(m, c, r) / determinant)))
+}
+
+/// A cofactor, from the two rows and columns that follow in the cycle.
+fn cofactor(m: &Matrix, row: usize, column: usize) -> f64 {
+    let [a, b] = [1, 2].map(|k| m[(row + k) % 3]);
+    let [c, d] = [1, 2].map(|k| (column + k) % 3);
+    a[c] * b[d] - a[d] * b[c]
 }
 
 #[cfg(test)]
