@@ -71,9 +71,9 @@ pub(crate) fn solid_angles(size: u32) -> Vec<f64> {
         .flat_map(|y| (0..=size).map(move |x| [x, y].map(|i| 2.0 * f64::from(i) / f64::from(size) - 1.0)))
         .map(|[s, t]| libm::atan2(s * t, (1.0 + s * s + t * t).sqrt()))
         .collect();
-    let corner = |x: u32, y: u32| corners[(y * (size + 1) + x) as usize];
-    let texels = (0..size).flat_map(|y| (0..size).map(move |x| (x, y)));
-    texels.map(|(x, y)| corner(x + 1, y + 1) - corner(x, y + 1) - corner(x + 1, y) + corner(x, y)).collect()
+    let rows: Vec<&[f64]> = corners.chunks_exact(size as usize + 1).collect();
+    let pairs = rows.windows(2).flat_map(|rows| rows[0].windows(2).zip(rows[1].windows(2)));
+    pairs.map(|(upper, lower)| lower[1] - lower[0] - upper[1] + upper[0]).collect()
 }
 
 /// A unit direction for each texel of a face, row by row.

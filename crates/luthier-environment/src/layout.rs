@@ -75,7 +75,7 @@ impl Layout {
     /// at poles, where sums of such values are not exact, and take two points of Gauss's rule each.
     pub(crate) fn images(self, size: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Vec<Image> {
         let columns = self.columns(size);
-        let image = |face: usize| {
+        let images = (0..self.faces()).map(|face| {
             let mut image = Image::zeros(columns, size, 3);
             let shape = Image { data: Vec::new(), ..image.clone() };
             image.data.par_chunks_mut(3 * columns as usize).enumerate().for_each(|(y, row)| {
@@ -91,7 +91,7 @@ impl Layout {
                 }
             });
             image
-        };
-        (0..self.faces()).map(image).collect()
+        });
+        images.collect()
     }
 }

@@ -52,13 +52,13 @@ pub(crate) fn bilinear(map: &Image, [u, v]: [f64; 2]) -> [f64; 3] {
     let (left, top) = (x.floor(), y.floor());
     let (wx, wy) = (x - left, y - top);
     let (columns, last) = (i64::from(map.width), i64::from(map.height) - 1);
-    let column = |step: i64| 3 * (left as i64 + step).rem_euclid(columns) as usize;
-    let row = |step: i64| 3 * ((top as i64 + step).clamp(0, last) * columns) as usize;
-    let (near, far, above, below) = (column(0), column(1), row(0), row(1));
-    let at = |start: usize, c: usize| f64::from(map.data[start + c]);
+    let [near, far] = [0, 1].map(|step| 3 * (left as i64 + step).rem_euclid(columns) as usize);
+    let rows = [0, 1].map(|step| 3 * ((top as i64 + step).clamp(0, last) * columns) as usize);
     [0, 1, 2].map(|c| {
-        let upper = at(above + near, c) + wx * (at(above + far, c) - at(above + near, c));
-        let lower = at(below + near, c) + wx * (at(below + far, c) - at(below + near, c));
+        let [upper, lower] = rows.map(|row| {
+            let [a, b] = [near, far].map(|column| f64::from(map.data[row + column + c]));
+            a + wx * (b - a)
+        });
         upper + wy * (lower - upper)
     })
 }

@@ -24,16 +24,20 @@ pub struct Input {
 pub fn corpus(target: &Target) -> io::Result<Vec<Input>> {
     let mut inputs = Vec::new();
     for folder in folders(target) {
-        let named = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", folder.display()));
-        let mut paths = fs::read_dir(&folder)
-            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>())
-            .map_err(named)?;
-        paths.sort();
-        for path in paths {
-            let about = path.metadata().map_err(named)?;
-            if about.is_file() && about.len() <= LENGTH_MAX {
-                inputs.push(Input { bytes: fs::read(&path).map_err(named)?, path });
-            }
+        let found = inputs_in(&folder);
+        inputs.extend(found.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", folder.display())))?);
+    }
+    Ok(inputs)
+}
+
+fn inputs_in(folder: &Path) -> io::Result<Vec<Input>> {
+    let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+    paths.sort();
+    let mut inputs = Vec::new();
+    for path in paths {
+        let about = path.metadata()?;
+        if about.is_file() && about.len() <= LENGTH_MAX {
+            inputs.push(Input { bytes: fs::read(&path)?, path });
         }
     }
     Ok(inputs)

@@ -143,8 +143,7 @@ fn meeting(corners: [V; 3], origin: V, direction: V) -> Option<(f32, [f32; 2])> 
         let t = dot(to, direction) / length_sq;
         (along(to, -t, direction), t)
     });
-    let area = |i: usize, j: usize| dot(direction, cross(places[i].0, places[j].0));
-    let areas = [area(2, 1), area(0, 2), area(1, 0)];
+    let areas = [[2, 1], [0, 2], [1, 0]].map(|[i, j]: [usize; 2]| dot(direction, cross(places[i].0, places[j].0)));
     let sum: f32 = areas.iter().sum();
     let is_inside = areas.iter().all(|area| area / sum >= -2e-6);
     if !is_inside || sum == 0.0 {
@@ -183,24 +182,28 @@ impl Builder<'_> {
         if extent[axis] <= 0.0 || !extent[axis].is_finite() {
             return half;
         }
-        let bin = |i: u32| {
-            let share = (self.centres[i as usize][axis] - centres.low[axis]) / extent[axis];
-            ((share * BINS as f32) as usize).min(BINS - 1)
-        };
         let mut bins = [(Bounds::NONE, 0usize); BINS];
         for &i in order.iter() {
-            let (bounds, count) = &mut bins[bin(i)];
+            let (bounds, count) = &mut bins[self.bin(i, &centres, axis)];
             (*bounds, *count) = (bounds.with(self.bounds[i as usize]), *count + 1);
         }
-        let cost = |bins: &[(Bounds, usize)]| {
-            let all = bins.iter().fold((Bounds::NONE, 0), |(b, n), (bounds, count)| (b.with(*bounds), n + count));
-            all.0.area() * all.1 as f64
-        };
-        let is_cut = |at: usize| bins[..at].iter().any(|bin| bin.1 > 0) && bins[at..].iter().any(|bin| bin.1 > 0);
-        let costs = (1..BINS).filter(|&at| is_cut(at)).map(|at| (at, cost(&bins[..at]) + cost(&bins[at..])));
+        let costs = (1..BINS).filter_map(|at| Some((at, cost(&bins[..at])? + cost(&bins[at..])?)));
         let Some((at, _)) = costs.min_by(|a, b| a.1.total_cmp(&b.1)) else { return half };
         // Stable, so that the order of the file decides.
-        order.sort_by_key(|&i| bin(i) >= at);
-        order.iter().filter(|&&i| bin(i) < at).count()
+        order.sort_by_key(|&i| self.bin(i, &centres, axis) >= at);
+        order.iter().filter(|&&i| self.bin(i, &centres, axis) < at).count()
     }
+
+    /// The slab that has the centre of a triangle, along an axis of the box of centres.
+    fn bin(&self, triangle: u32, centres: &Bounds, axis: usize) -> usize {
+        let extent = centres.high[axis] - centres.low[axis];
+        let share = (self.centres[triangle as usize][axis] - centres.low[axis]) / extent;
+        ((share * BINS as f32) as usize).min(BINS - 1)
+    }
+}
+
+/// Half the area around the triangles of some slabs, times their number; none without triangles.
+fn cost(bins: &[(Bounds, usize)]) -> Option<f64> {
+    let all = bins.iter().fold((Bounds::NONE, 0), |(b, n), (bounds, count)| (b.with(*bounds), n + count));
+    (all.1 > 0).then(|| all.0.area() * all.1 as f64)
 }

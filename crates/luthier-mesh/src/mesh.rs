@@ -93,18 +93,18 @@ const FAR: f64 = 1e6;
 
 /// Moves the shown part to the origin and scales it.
 fn fit(soup: &mut Soup) -> Result<(), MeshError> {
-    let shown = || soup.triangles.iter().filter(|t| t.part == 0).flat_map(|t| t.corners);
-    let position = |i: u32| soup.vertices[i as usize].position.map(f64::from);
+    let shown = soup.triangles.iter().filter(|t| t.part == 0).flat_map(|t| t.corners);
+    let shown = shown.map(|i| soup.vertices[i as usize].position.map(f64::from));
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for at in shown().map(position) {
+    for at in shown.clone() {
         (0..3).for_each(|c| (low[c], high[c]) = (low[c].min(at[c]), high[c].max(at[c])));
     }
-    if shown().next().is_none() {
+    if shown.clone().next().is_none() {
         return Err(MeshError::Empty);
     }
     let centre = [0, 1, 2].map(|c| 0.5 * (low[c] + high[c]));
-    let length = |at: [f64; 3]| (0..3).map(|c| (at[c] - centre[c]) * (at[c] - centre[c])).sum::<f64>().sqrt();
-    let radius = shown().map(|i| length(position(i))).fold(0.0, f64::max);
+    let radii = shown.map(|at| (0..3).map(|c| (at[c] - centre[c]) * (at[c] - centre[c])).sum::<f64>().sqrt());
+    let radius = radii.fold(0.0, f64::max);
     for vertex in &mut soup.vertices {
         let scaled = [0, 1, 2].map(|c: usize| (f64::from(vertex.position[c]) - centre[c]) / radius);
         vertex.position = scaled.map(|v| v.clamp(-FAR, FAR) as f32);
@@ -114,11 +114,11 @@ fn fit(soup: &mut Soup) -> Result<(), MeshError> {
 
 /// The height of a plain part that is level and below the rest.
 fn floor(soup: &Soup) -> Option<f32> {
-    let heights = |is_shown: bool| {
+    let [shown, plain] = [true, false].map(|is_shown| {
         let triangles = soup.triangles.iter().filter(move |t| (t.part == 0) == is_shown);
         triangles.flat_map(|t| t.corners).map(|i| soup.vertices[i as usize].position[1])
-    };
-    let lowest = heights(true).fold(f32::INFINITY, f32::min);
-    let (low, high) = heights(false).fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+    });
+    let lowest = shown.fold(f32::INFINITY, f32::min);
+    let (low, high) = plain.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
     (low.is_finite() && high - low < 1e-4 && low <= lowest + 1e-4).then_some(low)
 }

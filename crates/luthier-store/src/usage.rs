@@ -40,8 +40,8 @@ pub struct KindUsage {
 impl Usage {
     /// All entries together.
     pub fn all(&self) -> KindUsage {
-        let add = |a: KindUsage, b: &KindUsage| KindUsage { entries: a.entries + b.entries, bytes: a.bytes + b.bytes };
-        self.kinds.values().fold(KindUsage::default(), add)
+        let kinds = self.kinds.values();
+        KindUsage { entries: kinds.clone().map(|kind| kind.entries).sum(), bytes: kinds.map(|kind| kind.bytes).sum() }
     }
 }
 

@@ -123,9 +123,9 @@ impl Environment {
     /// facets of a surface at normal incidence, by their cavities' masking.
     pub fn mirrored(&self, blur: Blur, alpha: f64, direction: [f64; 3]) -> [f64; 3] {
         let at = coordinates(direction);
-        let read = |k: usize| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at);
         let (low, weight) = place(alpha);
-        let (a, b) = (read(low), read((low + 1).min(ALPHAS.len())));
+        let [a, b] = [low, (low + 1).min(ALPHAS.len())]
+            .map(|k| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at));
         [0, 1, 2].map(|c| a[c] + weight * (b[c] - a[c]))
     }
 

@@ -38,7 +38,7 @@ impl Environment {
         }
         let cubes = self.cubes();
         let count = size.ilog2() - LAST.ilog2() + 1;
-        let level = |k: u32| {
+        let levels = (0..count).map(|k| {
             let (size, width) = (size >> k, Self::level_width(size, k));
             let images = if k == 0 {
                 self.first_level(layout, size)
@@ -47,8 +47,8 @@ impl Environment {
                 layout.images(size, |middle| kernel.mean(middle))
             };
             Level { width, images }
-        };
-        Ok((0..count).map(level).collect())
+        });
+        Ok(levels.collect())
     }
 
     /// The map itself: texels are means of what they cover; where an equirectangular map is finer than it, they are reads.

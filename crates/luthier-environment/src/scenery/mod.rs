@@ -123,7 +123,7 @@ struct Lamp {
 }
 
 fn lamps() -> Vec<Lamp> {
-    let lamp = |i: i64| {
+    let lamps = (0..100).map(|i| {
         let [azimuth, height, size, power, tint] = [1, 2, 3, 4, 5].map(|k| random(i, k, 7919));
         let (sin, cos) = libm::sincos(2.0 * std::f64::consts::PI * azimuth);
         let y = -0.05 + 0.75 * height * height;
@@ -132,8 +132,8 @@ fn lamps() -> Vec<Lamp> {
         let tint = mix([1.0, 0.6, 0.25], [0.8, 0.9, 1.0], tint);
         let radiance = tint.map(|c| c * (6.0 + 90.0 * power * power * power));
         Lamp { direction: [r * sin, y, r * cos], rim: libm::cos(angle), radiance }
-    };
-    (0..100).map(lamp).collect()
+    });
+    lamps.collect()
 }
 
 fn night_street(d: [f64; 3], lamps: &[Lamp]) -> [f64; 3] {

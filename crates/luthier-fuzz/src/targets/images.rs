@@ -89,9 +89,10 @@ pub(super) fn table(bytes: &[u8]) {
 pub(super) fn raw(bytes: &[u8]) {
     let Some((&[width, height, channels, kind, shift], file)) = bytes.split_first_chunk() else { return };
     let kinds = [Samples::Unorm8, Samples::Unorm10, Samples::Unorm16, Samples::Half, Samples::Float];
-    let side = |side: u8| u32::from(side).checked_shl((shift % 40).into()).unwrap_or(u32::MAX);
+    let [width, height] =
+        [width, height].map(|side| u32::from(side).checked_shl((shift % 40).into()).unwrap_or(u32::MAX));
     let samples = kinds[usize::from(kind) % kinds.len()];
-    if let Some(table) = read(tables::raw(file, side(width), side(height), (channels % 8).into(), samples)) {
+    if let Some(table) = read(tables::raw(file, width, height, (channels % 8).into(), samples)) {
         is_whole(&table.image);
     }
 }
@@ -135,6 +136,7 @@ pub fn with_sums(bytes: &[u8]) -> Vec<u8> {
 
 /// CRC-32 of ISO 3309, bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
-    let step = |sum: u32, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
-    !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), step))
+    !bytes.iter().fold(!0, |sum, byte| {
+        (0..8).fold(sum ^ u32::from(*byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
+    })
 }

@@ -56,17 +56,18 @@ impl<'a> Buffers<'a> {
                 (format!("number {index}"), Err("the file does not say where its bytes are".to_owned()))
             }
         };
-        let refused = |reason| MeshError::Buffer { uri: name.clone(), reason };
-        let bytes = bytes.map_err(refused)?;
-        let (has, wants) = (bytes.len(), buffer.byte_length);
-        if has < wants {
-            return Err(refused(format!("it has {has} bytes of {wants}")));
-        }
-        self.held.set(self.held.get() + has);
-        if self.held.get() > BYTES_MAX {
-            return Err(refused(format!("with it the buffers take more than {} MiB", BYTES_MAX >> 20)));
-        }
-        Ok(bytes)
+        let checked = bytes.and_then(|bytes| {
+            let (has, wants) = (bytes.len(), buffer.byte_length);
+            if has < wants {
+                return Err(format!("it has {has} bytes of {wants}"));
+            }
+            self.held.set(self.held.get() + has);
+            if self.held.get() > BYTES_MAX {
+                return Err(format!("with it the buffers take more than {} MiB", BYTES_MAX >> 20));
+            }
+            Ok(bytes)
+        });
+        checked.map_err(|reason| MeshError::Buffer { uri: name, reason })
     }
 }
 

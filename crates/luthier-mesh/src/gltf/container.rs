@@ -19,7 +19,6 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, MeshError> {
     let Some(rest) = bytes.strip_prefix(b"glTF") else {
         return Ok(Container { json: json(bytes)?, blob: None });
     };
-    let ends = || MeshError::Gltf("it ends in its header".to_owned());
     let version = word(rest, 0).ok_or_else(ends)?;
     if version != 2 {
         return Err(MeshError::Version(version.to_string()));
@@ -41,6 +40,10 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, MeshError> {
         }
     }
     Ok(Container { json, blob: None })
+}
+
+fn ends() -> MeshError {
+    MeshError::Gltf("it ends in its header".to_owned())
 }
 
 /// Text in UTF-8 that begins as an object does.

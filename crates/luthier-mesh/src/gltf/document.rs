@@ -142,10 +142,8 @@ impl Document {
     /// # Errors
     /// [`MeshError::Version`] for versions other than 2, [`MeshError::Gltf`] for text that is no glTF.
     pub(super) fn parse(json: &[u8]) -> Result<Self, MeshError> {
-        let invalid = |error: serde_json::Error| MeshError::Gltf(error.to_string());
-        let heading: Heading = serde_json::from_slice(json).map_err(invalid)?;
+        let heading: Heading = serde_json::from_slice(json).map_err(|error| invalid(&error))?;
         let Asset { version, min_version } = heading.asset.unwrap_or_default();
-        let said = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         if version.is_null() {
             return Err(MeshError::Gltf("it does not state its version (asset.version)".to_owned()));
         }
@@ -155,6 +153,15 @@ impl Document {
         if !min_version.is_null() && said(&min_version) != "2.0" {
             return Err(MeshError::Version(said(&min_version)));
         }
-        serde_json::from_slice(json).map_err(invalid)
+        serde_json::from_slice(json).map_err(|error| invalid(&error))
     }
+}
+
+fn invalid(error: &serde_json::Error) -> MeshError {
+    MeshError::Gltf(error.to_string())
+}
+
+/// A string without quotes, another value as JSON.
+fn said(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -39,13 +39,14 @@ pub(super) struct Placement {
 impl Placement {
     /// The placement of the first texture of a material that has one.
     pub(super) fn of(material: &Value) -> Option<Self> {
-        let placed = |texture: &&str| material.pointer(&format!("{texture}/extensions/KHR_texture_transform"));
-        let placed = TEXTURES.iter().find_map(placed)?;
-        let pair = |name: &str| <[f64; 2] as serde::Deserialize>::deserialize(&placed[name]).ok();
+        let mut places = TEXTURES.iter().map(|texture| format!("{texture}/extensions/KHR_texture_transform"));
+        let placed = places.find_map(|place| material.pointer(&place))?;
+        let [offset, scale] =
+            ["offset", "scale"].map(|name| <[f64; 2] as serde::Deserialize>::deserialize(&placed[name]).ok());
         Some(Self {
-            offset: pair("offset").unwrap_or([0.0; 2]),
+            offset: offset.unwrap_or([0.0; 2]),
             rotation: placed["rotation"].as_f64().unwrap_or(0.0),
-            scale: pair("scale").unwrap_or([1.0; 2]),
+            scale: scale.unwrap_or([1.0; 2]),
         })
     }
 

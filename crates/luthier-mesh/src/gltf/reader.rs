@@ -176,9 +176,6 @@ impl<'a> Reader<'a> {
         }
         let (used, triangles) = used(count, &turn.wound(triangles));
 
-        let fitting = |values: usize, what| {
-            if values == count { Ok(()) } else { Err(owner(what).refuse(format!("{values} for {count} positions"))) }
-        };
         let mut vertices = Vec::with_capacity(used.len());
         for &i in &used {
             let position = turn.point(positions[i]);
@@ -195,7 +192,7 @@ impl<'a> Reader<'a> {
         let mut flat = true;
         if let Some(accessor) = primitive.attributes.normals {
             let all = numbers.floats::<3>(accessor, owner("normals"))?;
-            fitting(all.len(), "normals")?;
+            owner("normals").check_count(all.len(), count)?;
             for (vertex, &i) in vertices.iter_mut().zip(&used) {
                 vertex.normal = unit(turn.normal(all[i])).unwrap_or([0.0; 3]);
             }
@@ -209,7 +206,7 @@ impl<'a> Reader<'a> {
         let mut has_tangent = vec![false; vertices.len()];
         if let Some(accessor) = primitive.attributes.tangents {
             let all = numbers.floats::<4>(accessor, owner("tangents"))?;
-            fitting(all.len(), "tangents")?;
+            owner("tangents").check_count(all.len(), count)?;
             for ((vertex, has), &i) in vertices.iter_mut().zip(&mut has_tangent).zip(&used) {
                 if let Some(tangent) = turn.tangent(all[i]) {
                     (vertex.tangent, *has) = (tangent, true);
@@ -220,7 +217,7 @@ impl<'a> Reader<'a> {
         let part = self.part(primitive)?;
         if let Some(accessor) = primitive.attributes.uvs {
             let all = numbers.floats::<2>(accessor, owner("texture coordinates"))?;
-            fitting(all.len(), "texture coordinates")?;
+            owner("texture coordinates").check_count(all.len(), count)?;
             let placement = self.placement(primitive, accessor);
             for (vertex, &i) in vertices.iter_mut().zip(&used) {
                 let uv = placement.map_or(all[i], |placement| placement.of_uv(all[i]));
@@ -297,8 +294,8 @@ fn triangles(corners: &[u32], mode: u32) -> Option<Vec<[u32; 3]>> {
     Some(match mode {
         LIST => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         STRIP => {
-            let wound = |(n, t): (usize, &[u32])| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
-            corners.windows(3).enumerate().map(wound).collect()
+            let windows = corners.windows(3).enumerate();
+            windows.map(|(n, t)| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }).collect()
         }
         FAN => corners.windows(2).skip(1).map(|t| [corners[0], t[0], t[1]]).collect(),
         _ => return None,

@@ -50,10 +50,12 @@ pub(super) struct Turn {
 
 impl Turn {
     pub(super) fn of(matrix: Matrix) -> Self {
-        let c = |column: usize, row: usize| matrix[column % 3][row % 3];
-        let cofactor = |i: usize, j: usize| c(i + 1, j + 1) * c(i + 2, j + 2) - c(i + 1, j + 2) * c(i + 2, j + 1);
-        let cofactors: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| cofactor(i, j)));
-        let determinant: f64 = (0..3).map(|j| c(0, j) * cofactors[0][j]).sum();
+        // Of the two columns and rows that follow in the cycle.
+        let cofactors: [[f64; 3]; 3] = std::array::from_fn(|i| {
+            let [a, b] = [1, 2].map(|k| matrix[(i + k) % 3]);
+            std::array::from_fn(|j| a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3])
+        });
+        let determinant: f64 = (0..3).map(|j| matrix[0][j] * cofactors[0][j]).sum();
         Self { matrix, cofactors, mirrors: determinant < 0.0 }
     }
 

@@ -27,15 +27,15 @@ impl Curve {
     /// Part of a circle. Angles count from the outside up; where they fall, the curve is hollow.
     pub(super) fn arc(centre: Point, radius: f64, [from, to]: [f64; 2], rows: u32) -> Self {
         let sign = if to > from { 1.0 } else { -1.0 };
-        let point = |i: u32| {
+        let points = (0..=rows).map(|i| {
             let angle = from + (to - from) * f64::from(i) / f64::from(rows);
             let (sin, cos) = libm::sincos(angle);
             // Poles are on the axis, not beside it.
             let r = centre[0] + radius * cos;
             let r = if r.abs() < 1e-9 { 0.0 } else { r };
             ([r, centre[1] + radius * sin], [sign * cos, sign * sin], radius * (angle - from).abs())
-        };
-        Self { points: (0..=rows).map(point).collect() }
+        });
+        Self { points: points.collect() }
     }
 
     /// The other side.

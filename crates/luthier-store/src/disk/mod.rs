@@ -146,10 +146,10 @@ impl DiskStore {
 
     /// Keeps the first error.
     fn note<T>(&self, result: Result<T, StoreError>) -> Option<T> {
-        let keep = |error| {
+        let noted = result.map_err(|error| {
             self.problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-        };
-        result.map_err(keep).ok()
+        });
+        noted.ok()
     }
 }
 
@@ -163,8 +163,8 @@ fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
 
 /// Marks an entry as used now, where the last mark is old.
 fn mark(path: &Path) {
-    let is_old = |time: SystemTime| time.elapsed().is_ok_and(|age| age > MARK_AGE);
-    let is_due = fs::metadata(path).and_then(|m| m.modified()).is_ok_and(is_old);
+    let marked = fs::metadata(path).and_then(|m| m.modified());
+    let is_due = marked.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > MARK_AGE));
     if is_due && let Ok(file) = File::options().append(true).open(path) {
         let _ = file.set_modified(SystemTime::now());
     }

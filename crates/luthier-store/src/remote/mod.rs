@@ -64,16 +64,15 @@ impl RemoteStore {
         prefix: Path,
         request_limit: Duration,
     ) -> Result<Self, RemoteError> {
-        let no_thread = |error: std::io::Error| RemoteError::Address { store: name.clone(), reason: error.to_string() };
-        let runtime = Builder::new_current_thread().enable_all().build().map_err(no_thread)?;
+        let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| no_thread(&name, &error))?;
         let handle = runtime.handle().clone();
         let (stop, stopped) = oneshot::channel();
-        let run = move || {
+        let thread = thread::Builder::new().name("luthier-store".to_owned()).spawn(move || {
             // Whether it was told to stop, or the store is gone.
             let _ = runtime.block_on(stopped);
             runtime.shutdown_background();
-        };
-        let thread = thread::Builder::new().name("luthier-store".to_owned()).spawn(run).map_err(no_thread)?;
+        });
+        let thread = thread.map_err(|error| no_thread(&name, &error))?;
         let transfers = Arc::new(Transfers::new(name, objects, prefix, request_limit));
         Ok(Self { transfers, runtime: handle, thread: Some((stop, thread)) })
     }
@@ -92,21 +91,25 @@ impl RemoteStore {
     fn fetch(&self, asked: &[(&str, Key)]) -> Vec<Option<Vec<u8>>> {
         let names: Vec<Path> = asked.iter().map(|&(kind, address)| self.transfers.name(kind, address)).collect();
         let objects = Transfers::fetch_all(&self.transfers, &self.runtime, names);
-        let result = |(&(kind, address), object): (&(&str, Key), Option<Vec<u8>>)| {
+        let results = asked.par_iter().zip(objects).map(|(&(kind, address), object)| {
             let object = object?;
             let result = unpack(address, &object).map(<[u8]>::to_vec);
             if result.is_none() {
                 self.transfers.distrust(kind, address);
             }
             result
-        };
-        asked.par_iter().zip(objects).map(result).collect()
+        });
+        results.collect()
     }
 
     /// Sends a result.
     fn send(&self, kind: &str, address: Key, result: &[u8]) {
         Transfers::send(&self.transfers, &self.runtime, self.transfers.name(kind, address), pack(address, result));
     }
+}
+
+fn no_thread(store: &str, error: &std::io::Error) -> RemoteError {
+    RemoteError::Address { store: store.to_owned(), reason: error.to_string() }
 }
 
 impl Store for RemoteStore {
@@ -119,15 +122,15 @@ impl Store for RemoteStore {
         let kept: Vec<usize> = (0..tasks.len()).filter(|&i| tasks[i].is_kept()).collect();
         for part in kept.chunks(FETCHED_AT_ONCE) {
             let asked: Vec<(&str, Key)> = part.iter().map(|&i| (tasks[i].kind().name(), tasks[i].address())).collect();
-            let decode = |(&i, result): (&usize, Option<Vec<u8>>)| {
+            let results = part.par_iter().zip(self.fetch(&asked)).map(|(&i, result)| {
                 let result = result?;
                 let artefact = tasks[i].decode(&result);
                 if artefact.is_none() {
                     self.transfers.distrust(tasks[i].kind().name(), tasks[i].address());
                 }
                 artefact.map(Arc::new)
-            };
-            let results: Vec<_> = part.par_iter().zip(self.fetch(&asked)).map(decode).collect();
+            });
+            let results: Vec<_> = results.collect();
             part.iter().zip(results).for_each(|(&i, result)| found[i] = result);
         }
         found

@@ -85,8 +85,10 @@ impl Transfers {
 
     /// Keeps in mind that an entry is not what its place says.
     pub(super) fn distrust(&self, kind: &str, address: Key) {
-        let damaged = || RemoteError::Damaged { store: self.store.clone(), name: self.name(kind, address).to_string() };
-        lock(&self.problem).get_or_insert_with(damaged);
+        lock(&self.problem).get_or_insert_with(|| RemoteError::Damaged {
+            store: self.store.clone(),
+            name: self.name(kind, address).to_string(),
+        });
     }
 
     /// Waits for uploads.
@@ -96,8 +98,8 @@ impl Transfers {
 
     /// Waits until no more bytes than these wait for their upload, or nothing is uploaded any more.
     fn wait_for(&self, bytes: usize) -> MutexGuard<'_, usize> {
-        let goes_on = |waiting: &mut usize| *waiting > bytes && self.is_in_use();
-        self.fewer.wait_while(lock(&self.waiting), goes_on).unwrap_or_else(PoisonError::into_inner)
+        let waited = self.fewer.wait_while(lock(&self.waiting), |waiting| *waiting > bytes && self.is_in_use());
+        waited.unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The objects of some names, in their order; `None` for those that are not there. Blocks.
