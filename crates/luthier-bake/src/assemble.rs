@@ -20,14 +20,14 @@ use crate::relief::ImageReader;
 use crate::search::{Planned, plan};
 use crate::settings::Settings;
 
-/// Tables, records and maps that a set of materials needs at run time.
+/// Tables, layer records and maps of a set of materials, ready for a shader.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baked {
     /// Atlases in binding order, at most one of each kind.
     pub atlases: Vec<Atlas>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
-    /// How the tables came by their sizes, mappings and formats, where these were searched for.
+    /// Reports of the searches for sizes, mappings and formats; empty where nothing was searched.
     pub searches: Vec<Search>,
 }
 
@@ -36,7 +36,7 @@ pub struct Baked {
 pub struct BakedMaterial {
     /// The reflectance model of its shader.
     pub model: ShadingModel,
-    /// How its tables came by their colour.
+    /// How the spectra in its tables became colours.
     pub color: ColorMode,
     /// Constants of the whole surface.
     pub constants: MaterialConstants,
@@ -47,7 +47,7 @@ pub struct BakedMaterial {
 }
 
 impl BakedMaterial {
-    /// Leaves every layer without tiles, as shaders have it that read no tables.
+    /// Removes the tile numbers of every layer, for shaders that read no tables.
     pub fn forget_tables(&mut self) {
         let bare = self.constants.patina.as_mut().map(|patina| &mut patina.bare);
         self.records.iter_mut().chain(bare).for_each(|record| record.tiles = Tiles::default());
@@ -59,7 +59,7 @@ impl BakedMaterial {
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.
     pub tables: Vec<(TableKind, AtlasLayout, TexelFormat)>,
-    /// The job of each tile, table by table: where these and `tables` are the same, so are the texels.
+    /// Key of the job of each tile, table by table. Two outlines with equal keys and equal `tables` have equal texels.
     pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
@@ -67,8 +67,11 @@ pub struct Outline {
     pub searches: Vec<Search>,
 }
 
-/// The outline of a bake of these materials: each material with the tiles that serve it, and the layout and texel format of each table, in
-/// binding order. The outline takes little computing, unless a material has a budget, whose candidates must be measured, or lobes.
+/// The outline of a bake: each material with its tile numbers, and the layout and texel format of each table, in
+/// binding order.
+///
+/// An outline is cheap to compute, with two exceptions: a budget, whose candidates must be measured, and the model
+/// `lobes`, which must be fitted.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -76,7 +79,8 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
     outline_with(materials, &Options::default(), read_image, &MemoryStore::default())
 }
 
-/// [`outline`] with options and a store, as [`bake_with`] takes them; without a search and without fits nothing is computed.
+/// [`outline`] with options and a store, as [`bake_with`] takes them. Without a search and without fits, nothing is
+/// computed.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -98,8 +102,10 @@ pub fn outline_with(
     })
 }
 
-/// The layers whose Fresnel rows would miss [`AIM`] in a bake of this material alone, and by how much they are off: those of interfaces that reflect
-/// totally what arrives flat, and of which no row over any cosine is smooth. Others are not looked at.
+/// Numbers and errors of the layers whose Fresnel rows would miss [`AIM`] in a bake of this material alone.
+///
+/// Only interfaces that reflect grazing light totally are looked at, and of these only the ones with a kink at the
+/// critical angle: no choice of axis makes their rows smooth.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -132,12 +138,12 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
 ///
 /// # Errors
-/// See [`BakeError`]. Nothing depends on the number of threads of the current rayon pool but the time it takes.
+/// See [`BakeError`]. The number of threads of the current rayon pool changes the time taken and nothing else.
 pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Baked, BakeError> {
     bake_with(materials, &Options::default(), read_image, observer, &MemoryStore::default())
 }
 
-/// [`bake`] with options. What the store has is not computed again; what is computed goes into it.
+/// [`bake`] with options. Results that the store holds are not computed again; new results go into the store.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -176,7 +182,8 @@ fn baked_materials(
     baked.collect()
 }
 
-/// The atlas of the tiles of a kind, whose results are forgotten one by one: of many materials they are as large as the atlas.
+/// The atlas of the tiles of a kind. Each result is forgotten once it is copied: the results of many materials take as
+/// much memory as the atlas.
 fn atlas(
     kind: TableKind,
     layout: AtlasLayout,
@@ -208,7 +215,8 @@ fn atlas(
     Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }
 }
 
-/// Copies the bytes of a tile, so many texels across, into those of an atlas of this width, a row of texels or blocks at a time.
+/// Copies the bytes of a tile that is `across` texels wide into those of an atlas of this width, a row of texels or
+/// blocks at a time.
 fn place_bytes(atlas: &mut [u8], width: u32, format: TexelFormat, [x, y]: [u32; 2], across: u32, bytes: &[u8]) {
     let [row, pitch, left] = [across, width, x].map(|texels| format.row_bytes(texels) as usize);
     let top = (y / format.block_side()) as usize;

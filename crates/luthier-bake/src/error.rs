@@ -96,7 +96,8 @@ pub enum BakeError {
         reason: String,
         /// The limit that would be met.
         hint: String,
-        /// The material that breaks it, or that states it: at the limit, or else at the layer. Empty where options alone have a limit on the whole bake.
+        /// Marks the material that breaks the limit, or that states it: at the key of the limit, else at the layer.
+        /// Empty for limits on the whole bake that come from options alone.
         diagnostics: Vec<Diagnostic>,
     },
     /// A limit that means nothing.
@@ -130,7 +131,7 @@ pub enum BakeError {
 }
 
 impl BakeError {
-    /// The material, by its number, and the key of its file that the error is about, as in [`luthier_material::Places`].
+    /// Number of the material at fault, and the key in its file, as in [`luthier_material::Places`].
     pub fn place(&self) -> Option<(usize, &str)> {
         match self {
             Self::DuplicateName { material, .. } => Some((*material, "name")),

@@ -15,13 +15,13 @@ pub(crate) fn check_buffer(records: &[PlannedLayers]) -> Result<(), BakeError> {
     if words > BUFFER_WORDS_MAX { Err(BakeError::TooManyLayers { materials, layers, words }) } else { Ok(()) }
 }
 
-/// Number of tiles of a size that a texture holds side by side and one below the other, if its sides are at most so long.
+/// Number of tiles across and down in a texture with sides of at most `side` texels.
 fn grid(tile: [u32; 2], side: u32) -> [u32; 2] {
     tile.map(|texels| side / texels)
 }
 
-/// Tiles of a layout side by side: one column while they fit into [`SIDE`], else as many as it takes, then into longer sides.
-/// None where no texture holds them.
+/// Number of columns of a layout's tiles: one while they fit into [`SIDE`], else as many as needed, then in longer
+/// sides. None where no texture holds them.
 pub(crate) fn columns(layout: &AtlasLayout) -> Option<u32> {
     let sides = std::iter::successors(Some(SIDE), |side| (*side < SIDE_MAX).then_some(side * 2));
     sides.into_iter().find_map(|side| {

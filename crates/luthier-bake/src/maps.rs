@@ -16,20 +16,20 @@ const NOISE_SIDE: u32 = 256;
 pub struct MaterialMap {
     /// Quantity that the map varies.
     pub slot: MapSlot,
-    /// The layer that it is of; `None` for those of the whole surface.
+    /// Number of the layer; `None` for maps of the whole surface.
     pub layer: Option<u32>,
-    /// Where it comes from.
+    /// Source of its values.
     pub source: MapSource,
-    /// Number of the file that it multiplies, see [`luthier_manifest::MapEntry`].
+    /// Constant of the material file that the map multiplies, see [`luthier_manifest::MapEntry`].
     pub factor: Option<[f64; 3]>,
 }
 
-/// Where a map comes from.
+/// Source of the values of a map.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MapSource {
     /// A picture and the meaning of its texels.
     Picture(PictureRef, TexelUse),
-    /// Heights in a picture: normals are made of them.
+    /// Heights in a picture, from which normals are made.
     Heights {
         /// The picture.
         picture: PictureRef,
@@ -75,8 +75,8 @@ impl MapSource {
     }
 }
 
-/// Normals of a height field that repeats, in RGB as [`MapSlot::Normal`] has them, in steps of 1/255 as a PNG holds them. `height` is that of
-/// white, as a share of the width.
+/// Normals of a periodic height field, in RGB as [`MapSlot::Normal`] stores them, rounded to steps of 1/255 as in a
+/// PNG. `height` is the height of white, as a share of the width.
 pub fn height_normals(heights: &Image, height: f64) -> Image {
     let (width, rows) = (heights.width, heights.height);
     // Texels are square.

@@ -10,16 +10,16 @@ use super::Found;
 /// Why no candidates hold a budget.
 #[derive(Debug, Error)]
 pub(crate) enum Refusal {
-    /// Of one kind no candidate is good enough.
+    /// No candidate of one kind is good enough.
     #[error("no table is good enough; nearest: {words}; `{hint}` would do")]
     Error {
-        /// Place of the kind among those that were found, and of the candidate that comes nearest.
+        /// Place of the kind among those found, and place of the nearest candidate in it.
         nearest: (usize, usize),
         /// Names of the limits that it exceeds.
         limits: Vec<&'static str>,
         /// The candidate in words.
         words: String,
-        /// Limits that would be met.
+        /// Limits that this candidate would hold.
         hint: String,
     },
     /// Candidates are good enough, but together too large or too slow.
@@ -34,7 +34,8 @@ pub(crate) enum Refusal {
     },
 }
 
-/// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
+/// The Pareto front: candidates that no other beats or equals in bytes, cost and absolute error at once. The first of
+/// equals stays.
 fn front(candidates: &[Candidate]) -> Vec<usize> {
     (0..candidates.len()).filter(|&i| !is_beaten(candidates, i)).collect()
 }
@@ -54,13 +55,13 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
     a.bytes.cmp(&b.bytes).then_with(|| a.cost.total_cmp(&b.cost).then(a.error.max_abs.total_cmp(&b.error.max_abs)))
 }
 
-/// One candidate for each kind: together of the fewest bytes, then the lowest cost, among those that hold. `fixed_bytes` are those of
-/// the tables that are not searched.
+/// One candidate for each kind. Together they hold the budget with the fewest bytes, then with the lowest cost.
+/// `fixed_bytes` is the size of the tables that are not searched.
 ///
-/// Where errors are not limited, the least absolute error that bytes and cost allow is the limit.
+/// Without a limit on errors, the limit is the least absolute error that bytes and cost allow.
 ///
 /// # Errors
-/// [`Refusal`] when none holds: what comes nearest, and what would do.
+/// [`Refusal`] when no combination holds. It names the nearest candidate and a limit that could be met.
 pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, Refusal> {
     if budget.limits_errors() {
         let chosen = cheapest(found, budget, fixed_bytes, &|c| holds(c, budget));
@@ -85,7 +86,7 @@ fn holds(candidate: &Candidate, budget: &Budget) -> bool {
     budget.excess(&candidate.error) <= 1.0
 }
 
-/// The cheapest candidate of each kind that holds; where none does, the one of the least excess.
+/// The cheapest candidate of each kind within the budget; the one that exceeds it least where none is.
 pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
     let choices = found.iter().map(|f| {
         let best = (0..f.candidates.len()).min_by(|&i, &j| {
@@ -98,7 +99,7 @@ pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
     choices.collect()
 }
 
-/// The candidates of a lock, where it has one of each kind and together they hold a budget.
+/// The candidates of a lock, if it has one of each kind and they hold the budget together.
 pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_bytes: u64) -> Option<Vec<usize>> {
     let places = found.iter().map(|found| {
         let decision = lock.iter().find(|decision| decision.kind == found.kind)?;
@@ -114,14 +115,15 @@ pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_
     (holds && !places.is_empty()).then_some(places)
 }
 
-/// The cheapest combination of candidates that hold, within bytes and cost.
+/// The cheapest combination of candidates that pass `holds`, within the limits on bytes and cost.
 fn cheapest(
     found: &[Found],
     budget: &Budget,
     fixed_bytes: u64,
     holds: &dyn Fn(&Candidate) -> bool,
 ) -> Option<Vec<usize>> {
-    // Of each kind, those that no other beats in both bytes and cost, by bytes.
+    // Pareto fronts in bytes and cost, combined kind by kind and sorted by bytes: a dominated part can never be in the
+    // cheapest whole.
     let mut partial: Vec<(u64, f64, Vec<usize>)> = vec![(fixed_bytes, 0.0, Vec::new())];
     for kind in found {
         let mut order: Vec<usize> = (0..kind.candidates.len()).filter(|&i| holds(&kind.candidates[i])).collect();
@@ -155,9 +157,9 @@ fn cheapest(
     within.map(|(_, _, chosen)| chosen)
 }
 
-/// Why nothing holds, what comes nearest, and what would do.
+/// The reason why no combination holds, the nearest candidate, and a limit that could be met.
 fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
-    // A kind of which no candidate is good enough, whatever it weighs or costs.
+    // First reason: one kind has no candidate with small enough errors, whatever its bytes and cost.
     for (number, kind) in found.iter().enumerate() {
         let candidates = kind.candidates.iter().enumerate();
         let best = candidates
@@ -187,7 +189,8 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
             };
         }
     }
-    // Good enough, but not within bytes and cost: the fewest bytes, or the lowest cost.
+    // Second reason: the errors are small enough, but bytes or cost are too high. Reported is the least of the two that
+    // errors allow.
     let least_cost: f64 = found
         .iter()
         .map(|f| f.candidates.iter().filter(|c| holds(c, budget)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
@@ -232,7 +235,8 @@ pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
     }
 }
 
-/// A round number that is not less.
+/// The value rounded up to two digits. The factor keeps a value that is round already from being raised by its last
+/// bit.
 fn above(value: f64) -> String {
     let step = libm::pow(10.0, libm::floor(libm::log10(value)) - 1.0);
     format!("{:.1e}", libm::ceil(value / step * (1.0 - 1e-9)) * step)

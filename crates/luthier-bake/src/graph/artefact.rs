@@ -17,7 +17,7 @@ impl Artefact {
         Self { value: Box::new(value), encode: |value| postcard::to_stdvec(value.downcast_ref::<T>()?).ok() }
     }
 
-    /// The result of bytes that [`Self::encode`] has made of a value of the type.
+    /// Reads the bytes of [`Self::encode`] back; `None` for bytes of another type.
     pub(crate) fn decode<T: Any + Send + Sync + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<Self> {
         match postcard::take_from_bytes::<T>(bytes) {
             Ok((value, [])) => Some(Self::new(value)),

@@ -10,7 +10,9 @@ use serde_json::Value;
 
 use super::{Artefact, Inputs, Job, JobKind, Key, Results, Store, Task, address};
 
-/// A pure function that is no part of a bake, whose values a store keeps by their inputs. `revision` changes whenever the same inputs give another value than before.
+/// A pure function outside the graph. A store keeps its values by their inputs.
+///
+/// `revision` changes whenever equal inputs give another value than before.
 #[derive(Debug, Clone, Copy)]
 pub struct Function {
     /// Kind of its values in stores.

@@ -53,7 +53,8 @@ impl Kind for Table {
     }
 }
 
-/// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
+/// Four channels if slopes are read: by Granier and Heidrich's model, or by a material that requests the table. Else
+/// the thickness alone.
 fn default_format(materials: &[Material]) -> TexelFormat {
     let reads_slopes =
         (materials.iter()).any(|m| m.model().reads_some(TableKind::Phase) || m.bake.asks_for(TableKind::Thickness));

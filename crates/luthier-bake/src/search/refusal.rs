@@ -8,13 +8,14 @@ use crate::BakeError;
 use crate::candidates::Refusal;
 use crate::options::Options;
 
-/// The number with the error that exceeds a budget most.
+/// Number of the tile or material whose error exceeds a budget most.
 pub(super) fn worst_of(errors: &[(usize, MeasuredError)], budget: &Budget) -> Option<usize> {
     let worst = errors.iter().max_by(|(_, a), (_, b)| budget.excess(a).total_cmp(&budget.excess(b)));
     worst.map(|(number, _)| *number)
 }
 
-/// The refusal of a budget: what no tables of a kind are good enough for, a layer of a material or all of it, and the material that states the limit.
+/// The refusal of a budget, with the kind whose tables are not good enough, the layer or material that is worst, and
+/// the material that states the limit.
 pub(super) fn refused(
     refusal: Refusal,
     kind: TableKind,

@@ -16,7 +16,7 @@ const SIDES: [u32; 3] = [32, 64, 128];
 const EXPONENTS: [f64; 2] = [4.0, 8.0];
 const FORMATS: [TexelFormat; 2] = [TexelFormat::R16Float, TexelFormat::Rg16Float];
 
-/// Cost of the closed form: of Beckmann, the dearer (an exponential, two divisions, six products).
+/// Cost of the closed form of Beckmann, the dearer of the two (an exponential, two divisions, six products).
 const CLOSED_FORM: f64 = 3.0 * cost::QUARTER_RATE + 6.0;
 
 /// Cost of the angle from cosine and sine: a root, two divisions, a polynomial.

@@ -31,10 +31,10 @@ use crate::settings::{Ask, Asked, Shape, axis};
 use crate::tile::{TileData, color_in_words, lone_tile};
 use crate::{BakeError, json};
 
-/// Points of the error scan in a cell that has a critical angle, along the cosine.
+/// Points of the error scan along the cosine, in a cell with a critical angle.
 const KINK_POINTS: u32 = 8;
 
-/// The alphas there: roughness wears the kink away.
+/// Alphas of the error scan in such a cell: roughness wears the kink away.
 const KINK_ALPHAS: [f64; 4] = [DOMAIN_ALPHA, 0.03, 0.1, 0.3];
 
 /// FGD tables.
@@ -87,7 +87,8 @@ impl Kind for Table {
     }
 }
 
-/// The values of a tile on the grid where they are computed: what its table settings do not enter.
+/// The values of a tile on the grid of their computation. Settings of the table are no inputs, so all sizes and formats
+/// share them.
 #[derive(Debug, Clone)]
 pub(crate) struct FgdTruthJob {
     pub(crate) interface: Interface,
@@ -103,11 +104,12 @@ pub(crate) struct FgdTruthJob {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct FgdTruth {
     pub(crate) image: Image,
-    /// Axis values, and the function there.
+    /// Axis values, and the values of the function there.
     pub(crate) probes: Vec<([f64; 2], [f64; 4])>,
-    /// Axis values around critical angles, and the function there.
+    /// Axis values around critical angles, and the values of the function there.
     pub(crate) kinks: Vec<([f64; 2], [f64; 4])>,
-    /// Error of the function itself: light that crossed, and wavelengths left out. The worst of all may meet.
+    /// Error of the function itself: the sum of the largest errors of crossed light and of left-out wavelengths, which
+    /// may meet.
     pub(crate) slack: f64,
     /// Root mean square of the error of the function itself.
     pub(crate) slack_rms: f64,
@@ -149,7 +151,7 @@ impl FgdTruthJob {
         FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() }
     }
 
-    /// The cosines below which all light is totally reflected, at the wavelengths that have one.
+    /// Critical cosines: below them all light is totally reflected. One for each wavelength that has such an angle.
     fn critical_cosines(&self) -> Vec<f64> {
         let cosines = self.color.nodes().into_iter().filter_map(|node| {
             let at = self.interface.at(node.wavelength_nm, 0);
@@ -159,7 +161,8 @@ impl FgdTruthJob {
         cosines.collect()
     }
 
-    /// Coordinates around the critical angles, where smooth tables are worst: in every cell that has one, and beside it.
+    /// Coordinates around the critical angles, where smooth tables are worst: in every cell with such an angle, and
+    /// beside it.
     fn kinks(&self) -> Vec<[f64; 2]> {
         let [x, y] = &self.grid;
         let critical = self.critical_cosines();
@@ -227,7 +230,7 @@ impl FgdTruthJob {
 #[derive(Debug, Clone)]
 pub(crate) struct FgdJob {
     pub(crate) truth: FgdTruthJob,
-    /// cos_theta and alpha of the tile; other nodes than those of the grid are interpolated.
+    /// cos_theta and alpha of the tile. Nodes that the grid lacks are interpolated.
     pub(crate) axes: [Axis; 2],
     pub(crate) format: TexelFormat,
 }

@@ -27,7 +27,7 @@ pub(super) fn candidates(plan: &Plan, results: &Results, colors: bool) -> Option
     Some(Found::new(TableKind::Fgd, fixed_cost, found))
 }
 
-/// The tiles of a plan on the grid where they are computed.
+/// The tiles of a plan on the grid of their computation.
 pub(super) fn tiles(plan: &Plan, results: &Results) -> Vec<Fine> {
     let tiles = plan.jobs(TableKind::Fgd).map(|(_, job): (usize, &FgdJob)| {
         let FgdTruth { image, mut probes, kinks, slack, .. } = results.part::<FgdTruth>(&job.truth).clone();

@@ -29,7 +29,7 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     }
     let fixed_cost = grids::price(&finest(2.0), TexelFormat::Rgba16Float);
     let found = grids::candidates(&tiles, axes(), &plan.settings.allowed(&FORMATS), colors);
-    // Errors of film tiles are steep ridges along grazing angles, between the points of a search.
+    // Errors of film tiles are steep ridges along grazing angles. The points of a search miss their tops.
     Some(Found { is_whole: false, ..Found::new(TableKind::Film, fixed_cost, found) })
 }
 
@@ -47,7 +47,7 @@ pub(super) fn tiles(plan: &Plan) -> Vec<Fine> {
     tiles.collect()
 }
 
-/// The finest tiles that are tried.
+/// Axes of the finest tiles that are tried.
 fn finest(exponent: f64) -> [Axis; 2] {
     [
         axis("cos_theta", "", [0.0, 1.0], 96, Mapping::Power { exponent }),

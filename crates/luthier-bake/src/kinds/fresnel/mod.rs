@@ -27,13 +27,14 @@ use crate::{BakeError, json};
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 16;
 
-/// Points of the scan for each point that is added where all light is totally reflected.
+/// Points of the scan for each added point in the range of total reflection.
 const BEYOND: u32 = 8;
 
 /// Cosines at which the coefficient of the dip is fitted: squares of equal steps.
 const FIT_POINTS: u32 = 64;
 
-/// Steps of the search for that coefficient; each takes a third off the range of 32.
+/// Steps of the search for that coefficient. Each takes a third off the range, which starts at 32: the last is about
+/// 7e-5 wide.
 const FIT_STEPS: u32 = 32;
 
 /// Fresnel tables.
@@ -149,10 +150,11 @@ impl FresnelJob {
     }
 }
 
-/// Curve of a row: the reflectance over the cosine of incidence, or where light is totally reflected over that of the refracted direction.
+/// The reflectance of a row, over the cosine of incidence. Under total reflection, it is over the cosine of the
+/// refracted direction.
 pub(crate) struct RowCurve {
     sampled: Sampled,
-    /// 0 over the cosine of incidence.
+    /// 0 if the axis is the cosine of incidence.
     pub(crate) critical_cot_sq: f64,
 }
 
@@ -167,8 +169,8 @@ impl RowCurve {
         self.sampled.rgb(incident_cosine(self.critical_cot_sq, cos_theta))
     }
 
-    /// The value of an axis at a coordinate of its error scan, and the cosine of incidence there. Coordinates below 0 stand for the totally
-    /// reflected angles, which no node has: `from` is grazing, 0 the critical angle.
+    /// The value of an axis at a coordinate of its error scan, and the cosine of incidence there. Coordinates below 0
+    /// stand for totally reflected angles, which have no node: `from` is grazing, 0 the critical angle.
     fn scanned(&self, axis: &Axis, u: f64, from: f64) -> (f64, f64) {
         let flattest = if axis.quantity == "theta" { axis.max } else { axis.min };
         let value = if u < 0.0 { flattest } else { axis.decode(u) };
@@ -183,12 +185,12 @@ pub(crate) fn cos_theta(axis: &Axis, value: f64) -> f64 {
 }
 
 impl RowShape {
-    /// The rows of a table.
+    /// The shape of a table's rows.
     pub(crate) fn of(shape: &Shape) -> Self {
         Self { axis: shape.x.clone(), format: shape.format, base: shape.base }
     }
 
-    /// A row of a reflectance over the cosine, as an atlas of its own, and its values at the nodes.
+    /// The row of a reflectance as an atlas of its own, and its values at the nodes.
     pub(crate) fn row(&self, reflectance: &dyn Fn(f64) -> Rgb, base: &SchlickBase) -> (Atlas, Image) {
         let mut truth = Image::zeros(self.axis.size, 1, 3);
         for i in 0..self.axis.size {
@@ -202,7 +204,7 @@ impl RowShape {
         (atlas, truth)
     }
 
-    /// The row of what Schlick's form misses, and the coefficients behind it.
+    /// The row of differences to Schlick's form, and the coefficients behind it.
     fn over_schlick(&self, truth: &Image, base: &SchlickBase) -> Atlas {
         let size = self.axis.size;
         let rounded = base.quantised(self.format);
@@ -216,7 +218,8 @@ impl RowShape {
         let missed = balance(&missed, f64::NEG_INFINITY);
         let max = self.format.unorm_max().unwrap_or(1.0);
         let span = SchlickBase::span(self.format);
-        // The next code above, so that every remainder is within reach of the texels; below half a code of it there is none.
+        // Rounded up to the next code, so that texels reach every difference. Differences below half a code are
+        // dropped.
         let scale = [0, 1, 2].map(|c: usize| {
             let largest = missed.texels().map(|t| f64::from(t[c]).abs()).fold(0.0, f64::max);
             let codes = largest / (span - 1.0) * max;
@@ -252,8 +255,8 @@ impl RowShape {
 
 /// Fits of [`SchlickBase`].
 pub(crate) trait Fit {
-    /// The closed form with the reflectance at normal and at grazing incidence, whose largest error over the cosine is least. `scale` is
-    /// left at 1.
+    /// The closed form with the exact values at normal and at grazing incidence, and the least largest error between.
+    /// `scale` is left at 1.
     fn fit(reflectance: &dyn Fn(f64) -> Rgb) -> Self;
 }
 
@@ -275,7 +278,7 @@ impl Fit for SchlickBase {
         let edge = [0, 1, 2].map(|c: usize| {
             let worst =
                 |edge: f64| points.iter().map(|(dip, missed)| (missed[c] - edge * dip).abs()).fold(0.0, f64::max);
-            // The largest error is convex in the coefficient.
+            // The largest error is convex in the coefficient, so thirds of the range can be cut off.
             let (mut low, mut high) = (-Self::EDGE_MAX, Self::EDGE_MAX);
             for _ in 0..FIT_STEPS {
                 let third = (high - low) / 3.0;

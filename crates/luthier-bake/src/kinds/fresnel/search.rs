@@ -11,7 +11,7 @@ use crate::candidates::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form
 use crate::plan::Plan;
 use crate::settings::{Asked, axis};
 
-/// Nodes of a row: four to the octave, and those that make 384 bytes of texels of 4 and 8 bytes.
+/// Nodes of a row: four sizes to the octave, and the sizes of rows of 384 bytes with texels of 4 and 8 bytes.
 pub(crate) const SIZES: [u32; 33] = [
     2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 16, 19, 23, 27, 32, 38, 45, 48, 54, 64, 76, 93, 96, 108, 128, 152, 181, 215, 256,
     304, 362, 431, 512,
@@ -50,7 +50,8 @@ const PER_CELL: u32 = 5;
 /// More texels are tried while the error falls by a tenth within an octave.
 const STALLED: f64 = 0.9;
 
-/// Function that the row of one interface holds, from nodes at cubes of equal steps.
+/// The reflectance of one interface, from nodes at cubes of equal steps: they are dense at grazing angles, where it is
+/// steep.
 pub(crate) struct Truth {
     nodes: Vec<Rgb>,
     pub(crate) fit: SchlickBase,
@@ -91,13 +92,14 @@ impl Truth {
     }
 }
 
-/// Rows that candidates are measured on, the hardest of a plan: enough for the worst to be among them.
+/// Number of rows that candidates are measured on, the hardest of a plan. These are enough for the worst to be among
+/// them.
 const HARDEST: usize = 64;
 
-/// Equal steps of the root of the cosine by which rows are compared.
+/// Number of equal steps of the root of the cosine by which rows are ranked.
 const STEPS: u32 = 64;
 
-/// How much linear interpolation between [`STEPS`] misses.
+/// Largest error of linear interpolation between [`STEPS`], in the middle of a step.
 fn hardness(job: &FresnelJob) -> f64 {
     let curve = RowCurve::new(&job.interface, &job.color);
     let halves = (0..=2 * STEPS).map(|half| f64::from(half) / f64::from(2 * STEPS));
@@ -109,7 +111,7 @@ fn hardness(job: &FresnelJob) -> f64 {
     missed.fold(0.0, f64::max)
 }
 
-/// The rows of a plan by the numbers of their tiles; where they are many, the hardest first.
+/// The rows of a plan with the numbers of their tiles. Many rows are sorted, the hardest first.
 fn rows(plan: &Plan) -> Vec<(usize, &FresnelJob)> {
     let rows: Vec<(usize, &FresnelJob)> = plan.jobs(TableKind::Fresnel).collect();
     if rows.len() <= HARDEST {
@@ -153,7 +155,7 @@ pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredE
     rows(plan).par_iter().take(HARDEST).map(|(tile, job)| (*tile, Truth::new(job).error(&shape, true))).collect()
 }
 
-/// The affordable candidates for the rows that are served by some of them, and which rows are not.
+/// The affordable candidates for the rows that some of them serve, and the numbers of the rows that none serves.
 pub(super) fn served(plan: &Plan) -> Option<Found> {
     let rows = rows(plan);
     let all = of_rows(plan, &truths(&rows).iter().collect::<Vec<_>>(), rows.len(), false)?.affordable();
@@ -175,7 +177,7 @@ pub(super) fn served(plan: &Plan) -> Option<Found> {
     Some(Found { left_out, is_whole: rows.len() <= HARDEST, ..found })
 }
 
-/// The candidates of all `rows`, measured on these.
+/// The candidates of a plan with so many `rows`, measured on these truths.
 fn of_rows(plan: &Plan, truths: &[&Truth], rows: usize, colors: bool) -> Option<Found> {
     let asked = plan.settings.asked(TableKind::Fresnel);
     let given = RowShape::of(plan.settings.fixed(TableKind::Fresnel));
