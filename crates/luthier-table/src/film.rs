@@ -1,4 +1,4 @@
-//! Tables of thin-film iridescence: the colour that an interface reflects, over angle and thickness.
+//! Tables of thin-film iridescence: the reflected colour of an interface, over angle and thickness.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ pub struct FilmLayout {
 }
 
 impl FilmLayout {
-    /// Two axes separated by a comma, the one across first, in the grammar of [`AxisSpec`].
+    /// Parses two axes separated by a comma, the one across first, in the grammar of [`AxisSpec`].
     ///
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::FilmAxes`] unless there is one of the direction and one of the thickness.
@@ -65,8 +65,10 @@ impl fmt::Display for FilmLayout {
     }
 }
 
-/// A table of the reflectance of a plane interface under a thin film, in linear Rec.709: a statement, from which its texels follow. For facets
-/// the cosine is that against the half vector.
+/// A table of the reflectance of a plane interface under a thin film, in linear Rec.709. Its fields state the table;
+/// the texels follow from them.
+///
+/// For facets the cosine is that against the half vector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmTable {
     /// Index above.
@@ -86,10 +88,12 @@ pub struct FilmTable {
 }
 
 impl FilmTable {
-    /// The texels of three channels, as a shader reads them: the exact sum of all interference (Airy) at every wavelength of [`Color`], moved by a
+    /// The texels of three channels, as a shader reads them.
+    ///
+    /// The values are the exact sum of all interference (Airy) at every wavelength of [`Color`]. They are moved by a
     /// sixteenth of their second differences, so that reads between them err to both sides alike, then rounded.
     ///
-    /// Steps of 5 nm bound the thickness: up to 5 um the integral is within 1e-3 of one in steps of 1 nm.
+    /// The spectral steps of 5 nm limit the thickness: up to 5 um the integral is within 1e-3 of one in steps of 1 nm.
     pub fn bake(&self) -> Image {
         let [width, height] = self.size;
         let wavelengths = self.color.nodes();
@@ -105,8 +109,8 @@ impl FilmTable {
         self.stored.quantise(&balance(&Image { width, height, channels: 3, data }, f64::NEG_INFINITY))
     }
 
-    /// The error of reads (bilinear, 8-bit weights) from texels of this statement, over cosines from the given one on and all thicknesses: absolute, of
-    /// every channel. Axis values of the worst point are the cosine and the thickness.
+    /// The absolute error of reads (bilinear, 8-bit weights) from these texels, in every channel, over cosines from the
+    /// given one on and all thicknesses. Axis values of the worst point are the cosine and the thickness.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
         let wavelengths = self.color.nodes();
         let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
@@ -137,7 +141,7 @@ impl FilmTable {
         axis.map_or([0.0; 2], |axis| [axis.min, axis.max])
     }
 
-    /// The largest error of all channels of reads from texels of this statement, as a function of cosine and thickness.
+    /// The largest error of all channels of a read from these texels, as a function of cosine and thickness.
     pub fn errors(&self, texels: &Image) -> impl Fn(f64, f64) -> f64 {
         let wavelengths = self.color.nodes();
         move |cos_theta, thickness_nm| {

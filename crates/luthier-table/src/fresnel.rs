@@ -22,7 +22,7 @@ pub struct FresnelLayout {
 }
 
 impl FresnelLayout {
-    /// Three axes separated by commas, the fastest first, in the grammar of [`AxisSpec`].
+    /// Parses three axes separated by commas, the fastest first, in the grammar of [`AxisSpec`].
     ///
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::FresnelAxes`] unless there is one of the direction, one of n and one of k.
@@ -69,8 +69,10 @@ impl fmt::Display for FresnelLayout {
     }
 }
 
-/// A table of the reflectance of a smooth surface of index n + ik in air, for unpolarised light: a statement, from which its texels follow. For facets
-/// the cosine is that against the half vector.
+/// A table of the reflectance of a smooth surface of index n + ik in air, for unpolarised light. Its fields state the
+/// table; the texels follow from them.
+///
+/// For facets the cosine is that against the half vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FresnelTable {
     /// Axes and nodes.
@@ -96,8 +98,8 @@ impl FresnelTable {
         self.stored.quantise(&Image { width, height: rows * slices, channels: 1, data })
     }
 
-    /// The error of reads from texels of this statement (linear along each axis, weights of 8 bits), over cosines from the given one on and all n
-    /// and k of the table: absolute. Axis values of the worst point are the cosine, n and k.
+    /// The absolute error of reads (linear along each axis, weights of 8 bits) from these texels, over cosines from the
+    /// given one on and all n and k of the table. Axis values of the worst point are the cosine, n and k.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
         let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
         slices::measure(
@@ -114,7 +116,7 @@ impl FresnelTable {
         )
     }
 
-    /// The reflectance that reads give for a cosine, n and k.
+    /// The reflectance as read from the texels for a cosine, n and k.
     pub fn sample(&self, texels: &Image, [cos_theta, n, k]: [f64; 3]) -> f64 {
         let canonical = self.layout.axes.map(|axis| match axis.quantity {
             Quantity::IorN => n,

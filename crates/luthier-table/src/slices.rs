@@ -20,8 +20,8 @@ pub(crate) fn read(texels: &Image, position: [f64; 3], [_, rows, slices]: [u32; 
     [0, 1, 2, 3].map(|c: usize| near[c] + (far[c] - near[c]) * t)
 }
 
-/// The error over a box of coordinates: a scan of so many points along each axis, then a climb from the worst ones of the worst slice.
-/// `named` gives the values of the axes at a coordinate.
+/// The error over a box of coordinates: a scan of `points` points along each axis, then a climb from the worst ones of
+/// the worst slice. `named` gives the values of the axes at a coordinate.
 pub(crate) fn measure(
     points: u32,
     ends: [[f64; 2]; 3],

@@ -6,14 +6,14 @@ use luthier_lut::Image;
 
 use crate::Stored;
 
-/// Container in which a renderer takes its table.
+/// File format of a renderer's table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EnergyContainer {
     /// A C array of floats with six digits, as Cycles' `shader.tables` has them: one line per row, an empty line between slices.
     CArray,
     /// 16-bit words in decimal, separated by commas on one line, to be included between the braces of an array.
     Words,
-    /// Texels and nothing else, little-endian.
+    /// Bare texels, little-endian.
     Raw,
 }
 

@@ -7,8 +7,9 @@ use luthier_lut::Mapping;
 use super::float;
 use crate::{AxisSpec, Cost, Nodes, Quantity};
 
-/// `let NAME = ...;`: the coordinate in 0..1 at which a texture of `size` texels along this axis is read, the WGSL of
-/// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis or one of a real index or a thickness.
+/// Writes `let NAME = ...;`, the coordinate in 0..1 at which a texture of `size` texels along this axis is read: the
+/// WGSL of [`Layout::position`](crate::Layout::position) over the size. None for a periodic axis, a real index or a
+/// thickness.
 pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, size: u32) -> Option<()> {
     let (quantity, is_within) = quantity(out, axis.quantity, input)?;
     let AxisSpec { min, max, .. } = *axis;
@@ -33,7 +34,7 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
         }
         Mapping::Periodic => return None,
     };
-    // Where the first and the last texel are read, or would be: ends of an ascending axis.
+    // Coordinates of the ends of an ascending axis: the first texel's, and the distance to the last texel's.
     let n = f64::from(size);
     let [first, span] = match axis.nodes {
         Nodes::Ends => [0.5 / n, (n - 1.0) / n],
@@ -52,7 +53,7 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
     Some(())
 }
 
-/// Operations of the text of [`write()`]; none where there is none.
+/// Operations of the text of [`write()`]; none if it writes none.
 pub(super) fn cost(axis: &AxisSpec) -> Option<Cost> {
     let (quantity, is_within) = match axis.quantity {
         Quantity::CosTheta | Quantity::Alpha => (operations(0, 1, 0), true),
@@ -88,7 +89,8 @@ fn exponents_cost(exponent: f64) -> Cost {
     roots.map_or(operations(1, 0, 2), |count| operations(0, 0, count as u32))
 }
 
-/// A quantity of a cosine, an alpha, or a part of a complex index, and whether it lies in 0..1; none of other quantities.
+/// A quantity of a cosine, an alpha or a part of a complex index, and whether it lies in 0..1. None for other
+/// quantities.
 fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String, bool)> {
     if matches!(quantity, Quantity::IorN | Quantity::IorK) {
         return Some((input.to_owned(), false));
@@ -112,7 +114,7 @@ fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String
 /// Exponents whose roots are square roots: none, one, two, three.
 const ROOTS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// The root of an expression in 0..1 by square roots where the exponent is a power of two up to 8, else by a power.
+/// The root of an expression in 0..1: by square roots if the exponent is a power of two up to 8, else by a power.
 fn root(part: &str, exponent: f64) -> String {
     match ROOTS.into_iter().position(|power| power == exponent) {
         Some(count) => format!("{}{part}{}", "sqrt(".repeat(count), ")".repeat(count)),

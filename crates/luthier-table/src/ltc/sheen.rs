@@ -15,7 +15,7 @@ use crate::{Layout, Nodes, Stored};
 
 /// Lowest cosine, and lowest roughness, as in the paper.
 const LOWEST: f64 = 0.01;
-/// Ordinates beside those of the table: light near the surface.
+/// Ordinates beside the table's, for light near the surface.
 const ORDINATES: [f64; 11] = [0.001, 0.003, 0.006, 0.01, 0.015, 0.02, 0.026, 0.04, 0.048, 0.056, 0.08];
 /// Widest gap between ordinates.
 const GAP: f64 = 0.035;
@@ -24,8 +24,9 @@ const AZIMUTHS: u32 = 48;
 
 /// A table of sheen by linearly transformed cosines (Zeltner, Burley and Chiang 2022, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines").
 ///
-/// Sheen is the reflection of a layer of fibres along the normal, of unit thickness and density, without absorption; their cross section is the square
-/// of the roughness. The inverse matrix is [a 0 b; 0 a 0; 0 0 1], with x towards the side of the viewer.
+/// Sheen is the reflection of a layer of fibres along the normal, of unit thickness and density, without absorption.
+/// The cross section of the fibres is the square of the roughness. The inverse matrix is [a 0 b; 0 a 0; 0 0 1], with x
+/// towards the side of the viewer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheenTable {
     /// Axes and nodes.
@@ -37,8 +38,8 @@ pub struct SheenTable {
 }
 
 impl SheenTable {
-    /// The layout of the paper's table: 32 x 32 floats, the cosine across, the roughness down, ends at texel centres. Blender's Cycles reads the three channels
-    /// as planes, one after the other.
+    /// The layout of the paper's table: 32 x 32 floats, the cosine across, the roughness down, ends at texel centres.
+    /// Blender's Cycles reads the three channels as planes, one after the other.
     pub fn of_engines() -> Self {
         let layout = Layout::parse("cos_theta,roughness", Nodes::Ends).unwrap_or_else(|error| unreachable!("{error}"));
         Self { layout, size: [32, 32], stored: Stored::Float }
@@ -69,13 +70,14 @@ impl SheenTable {
 
     /// Texels of three channels: a, b and the albedo.
     ///
-    /// Albedo and reflection come by adding and doubling, where the paper samples random walks (of at most 16 bounces). Of all lobes of this form the one that
-    /// shares most energy with the reflection is taken, from rough to smooth; the paper minimises the third power of the difference. Deterministic, whatever the
-    /// number of threads.
+    /// Albedo and reflection come by adding and doubling; the paper samples random walks of at most 16 bounces. The
+    /// lobe is the one of this form that shares most energy with the reflection, found from rough to smooth; the paper
+    /// minimises the third power of the difference. Deterministic, whatever the number of threads.
     ///
-    /// Energy differs by 0.030 in the median and 0.21 at worst where the albedo is 0.01 or more; that of the paper's own table by 0.031 and 0.44. The
-    /// albedo follows random walks within their noise of 0.002; the paper's is too low by up to 0.23 for thin fibres at grazing angles, which scatter
-    /// light more than 16 times. The example `judge_sheen` measures these.
+    /// Where the albedo is at least 0.01, energy differs by 0.030 in the median and 0.21 at worst; in the paper's own
+    /// table by 0.031 and 0.44. The albedo follows random walks within their noise of 0.002. The paper's is too low by
+    /// up to 0.23 for thin fibres at grazing angles, which scatter light more than 16 times. The example `judge_sheen`
+    /// measures these.
     pub fn bake(&self) -> Image {
         let [a, s] = self.layout.order();
         let targets = self.targets([0.0; 2]);
@@ -106,13 +108,14 @@ impl SheenTable {
         self.stored.quantise(&image)
     }
 
-    /// Differences of energy at texels where the albedo is `min_albedo` at least, as [`LtcTable::error_at_texels`](super::LtcTable::error_at_texels) has
-    /// them, and absolute errors of the albedo. The slope parameter of places is the cross section. At least one texel must have that albedo.
+    /// Differences of energy at texels with an albedo of at least `min_albedo`, as in
+    /// [`LtcTable::error_at_texels`](super::LtcTable::error_at_texels), and absolute errors of the albedo. The slope
+    /// parameter of places is the cross section. At least one texel must have that albedo.
     pub fn error_at_texels(&self, texels: &Image, min_albedo: f64) -> [LtcError; 2] {
         self.error(texels, min_albedo, [0.0; 2])
     }
 
-    /// As [`Self::error_at_texels`], half-way between texels, of bilinear reads with weights of 8 bits.
+    /// As [`Self::error_at_texels`], half-way between texels, for bilinear reads with weights of 8 bits.
     pub fn error_between_texels(&self, texels: &Image, min_albedo: f64) -> [LtcError; 2] {
         self.error(texels, min_albedo, [0.5; 2])
     }
@@ -145,7 +148,8 @@ fn lobe([a, b]: [f64; 2]) -> Lobe {
     Lobe { m11: 1.0, m31: 0.0, m13: b / a, m33: 1.0 / a }
 }
 
-/// The a and b of the lobe that shares most energy with a reflection, from others; upright at normal incidence.
+/// The a and b of the lobe that shares most energy with a reflection, searched from `start`. At normal incidence the
+/// lobe is upright.
 fn fit(target: &Target, start: [f64; 2]) -> [f64; 2] {
     if target.cos_theta_o > 1.0 - 1e-9 {
         let a = [-0.2, 0.05].into_iter().fold(start[0], |a, edge| {
@@ -159,17 +163,17 @@ fn fit(target: &Target, start: [f64; 2]) -> [f64; 2] {
     })
 }
 
-/// An a and a b after a step, whose second part is in units of a: a is the width of the lobe.
+/// An a and a b after a step. The step of b is in units of a, which is the width of the lobe.
 fn moved([a, b]: [f64; 2], by: [f64; 2]) -> [f64; 2] {
     let scaled = a * libm::exp(by[0]);
     [scaled, scaled * (b / a + by[1])]
 }
 
-/// The table's cosines, those near the surface, and more where gaps are wide.
+/// The cosines of the table and those near the surface, with more where gaps are wide.
 pub(super) fn ordinates(cosines: &[f64]) -> Vec<f64> {
     let mut all: Vec<f64> = cosines.iter().copied().chain(ORDINATES).chain([1.0]).collect();
     all.sort_by(f64::total_cmp);
-    // Cosines of axes are the same number but for rounding.
+    // Merges cosines that differ by rounding only.
     all.dedup_by(|b, a| *b - *a < 1e-4);
     let mut filled = vec![all[0]];
     for pair in all.windows(2) {
