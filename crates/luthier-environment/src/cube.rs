@@ -15,7 +15,7 @@ pub(crate) struct Cube {
 }
 
 impl Cube {
-    /// The cube of a map, of an even size: each texel the mean of what it covers.
+    /// The cube of a map, of an even size. Each texel is the mean of the area that it covers.
     pub(crate) fn of_map(map: &Image, size: u32) -> Self {
         let integral = Integral::new(map);
         Self::new(size, |face| integral.face(face, size))

@@ -1,8 +1,9 @@
 //! Means of an equirectangular map over the texels of a cube.
 //!
-//! The integral over an area is one along its border (Green's theorem, in azimuth and height). A border is cut where it crosses the middles of rows and
-//! columns, between which the map is linear. Heights of the cuts are exact, and neighbours share their borders: no light is lost or counted twice.
-//! Between two cuts the azimuth counts as linear in the height, by which neighbours exchange some light.
+//! The integral over an area is one along its border (Green's theorem, in azimuth and height). A border is cut where it
+//! crosses the middles of rows and columns; between two cuts the map is linear. Heights of the cuts are exact, and
+//! neighbours share their borders: no light is lost or counted twice. The azimuth counts as linear in the height
+//! between two cuts, which moves some light between neighbours.
 
 use std::f64::consts::PI;
 
@@ -14,10 +15,10 @@ use crate::faces::direction;
 /// An integral along a border over the height: RGB, and that of radiance 1.
 type Line = [f64; 4];
 
-/// A map, ready to be integrated. It is read as everywhere: linearly between the middles of its texels; columns go round, rows end.
+/// A map, ready to be integrated. It is linear between the middles of its texels; columns go round, rows end.
 pub(crate) struct Integral<'a> {
     map: &'a Image,
-    /// For each row, radiance from its left end to the middle of each column, from column -1 on.
+    /// For each row, the integral of radiance from its left end to the middle of each column, from column -1 on.
     sums: Vec<[f64; 3]>,
     /// Cosine and sine of the azimuth of the middle of each column.
     azimuths: Vec<[f64; 2]>,
@@ -32,7 +33,7 @@ struct Height {
     moment: f64,
 }
 
-/// A place of a border. Columns and rows are counted in texels from the middle of the first.
+/// A place on a border. Columns and rows count in texels from the middle of the first.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     column: f64,
@@ -87,7 +88,8 @@ impl<'a> Integral<'a> {
             })
             .collect();
         let corners: Vec<&[Corner]> = corners.chunks_exact(side).collect();
-        // The ends of the map meet in the middle of faces, between texels: lines belong to the left half or to the right one.
+        // The ends of the map meet in the middle of faces, between texels. A line therefore belongs to the left or to
+        // the right half.
         let level: Vec<Line> = (0..side * size)
             .into_par_iter()
             .map(|i| {
@@ -132,7 +134,8 @@ impl<'a> Integral<'a> {
         (theta / PI * f64::from(self.map.height) - 0.5, height)
     }
 
-    /// The place of a corner, seen from the right or from the left half of its face.
+    /// The place of a corner, seen from the right or from the left half of its face: at the seam, the column is one end
+    /// of the map or the other.
     fn seen(&self, corner: &Corner, is_right: bool) -> Place {
         let mut place = corner.place;
         if corner.direction[0] == 0.0 && corner.direction[2] > 0.0 {
@@ -141,8 +144,8 @@ impl<'a> Integral<'a> {
         place
     }
 
-    /// The integral along the straight line between two corners of a texel, in the right or the left half of its face. Along it neither columns nor rows
-    /// turn back.
+    /// The integral along the straight line between two corners of a texel, in the right or the left half of its face.
+    /// Along the line neither columns nor rows turn back.
     fn line(&self, from: &Corner, to: &Corner, is_right: bool) -> Line {
         let [mut a, mut b] = [from, to].map(|corner| self.seen(corner, is_right));
         let (from, to) = (from.direction, to.direction);
@@ -164,7 +167,7 @@ impl<'a> Integral<'a> {
         let rows = Walk::new(a.row, b.row, self.map.height).map(|row| {
             let height = self.rows[row as usize];
             let share = crossing(from, step, height.cos_theta);
-            // A meridian has one azimuth; that of the ends of the map is known only here.
+            // A meridian has one azimuth. At the seam of the map, only the columns of its ends tell which one.
             let column =
                 if a.column == b.column { a.column } else { self.column([0, 1, 2].map(|c| from[c] + share * step[c])) };
             (share, Place { column, row: f64::from(row), height })
@@ -184,13 +187,13 @@ impl<'a> Integral<'a> {
         sum
     }
 
-    /// Adds what lies between two places that are neighbours.
+    /// Adds the integral between two neighbouring places.
     fn add(&self, sum: &mut Line, a: &Place, b: &Place) {
         let last = self.map.height - 1;
         let rise = b.height.cos_theta - a.height.cos_theta;
         let above = (0.5 * (a.row + b.row)).floor();
         let row = above.clamp(0.0, f64::from(last)) as u32;
-        // What of it is of the row below.
+        // The share of the row below.
         let share = if above < 0.0 || row == last {
             0.0
         } else {
@@ -199,7 +202,7 @@ impl<'a> Integral<'a> {
         let middle = 0.5 * (a.column + b.column);
         let left = middle.floor();
         let [start, half, end] = [a.column, middle, b.column].map(|column| column - left);
-        // Simpson's rule, exact for the squares of places that sums of a linear function have.
+        // Simpson's rule, exact for squares of places: the integrals of a linear function.
         let (first, second) =
             ((start + 4.0 * half + end) / 6.0, (start * start + 4.0 * half * half + end * end) / 12.0);
         let rows = [(row, rise - share), (row + 1, share)];
@@ -216,7 +219,7 @@ impl<'a> Integral<'a> {
     }
 }
 
-/// Whole numbers from 0 to below a count between two others, from one to the other.
+/// Whole numbers from 0 to below a count, between two numbers and in their order.
 struct Walk {
     low: u32,
     high: u32,
@@ -247,7 +250,7 @@ impl Iterator for Walk {
     }
 }
 
-/// Where, in 0 to 1, the direction along a straight line has this cosine to +y, if it has it once.
+/// The place, in 0 to 1, on a straight line at which the direction has this cosine to +y, if it has it once.
 fn crossing(from: [f64; 3], step: [f64; 3], cos_theta: f64) -> f64 {
     let dot = crate::vector::dot;
     let cos_sq = cos_theta * cos_theta;

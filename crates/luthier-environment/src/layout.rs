@@ -1,4 +1,4 @@
-//! Textures of directions: their shapes, texels and levels.
+//! Textures of directions: shapes, texels and levels.
 
 use luthier_lut::Image;
 use rayon::prelude::*;
@@ -17,14 +17,15 @@ pub enum Layout {
 /// One level of a texture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// Standard deviation of the blur along each of two axes, radians; a lobe `exp((cos - 1) / width^2)`.
+    /// Width of the lobe `exp((cos - 1) / width^2)`: the standard deviation of the blur along each of two axes,
+    /// radians.
     pub width: f64,
     /// The faces of a cube, or one map. RGB.
     pub images: Vec<Image>,
 }
 
 impl Layout {
-    /// Mean over all directions of images of this layout, RGB.
+    /// Mean over all directions of the images of this layout, RGB.
     pub fn mean(self, images: &[Image]) -> [f64; 3] {
         let (mut sum, mut total) = ([0.0; 3], 0.0);
         for image in images {
@@ -71,8 +72,9 @@ impl Layout {
         }
     }
 
-    /// Images of a smooth function of unit directions: its means over texels. Those of a cube are as good as its values in the middle. Rows of a map end
-    /// at poles, where sums of such values are not exact, and take two points of Gauss's rule each.
+    /// Images of a smooth function of unit directions: its means over texels. For texels of a cube the value in the
+    /// middle is exact enough. Rows of a map end at poles, where sums of middles are not exact, so each texel takes two
+    /// points of Gauss's rule.
     pub(crate) fn images(self, size: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Vec<Image> {
         let columns = self.columns(size);
         let images = (0..self.faces()).map(|face| {

@@ -7,7 +7,7 @@ use crate::soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};
 use crate::tangents;
 use crate::vector::{cross, dot, sub};
 
-/// Triangles in a tree of boxes, with what rays and shaders want of them.
+/// Triangles in a tree of boxes, with the data that rays and shaders need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     vertices: Vec<Vertex>,
@@ -20,8 +20,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Triangles made ready: those of part 0 moved and scaled into the unit sphere about the origin, which they touch, and the others with them;
-    /// tangents where there are none; a tree of boxes; how open each vertex is to its surroundings.
+    /// Prepares triangles for pictures. Part 0 is moved and scaled to fill the unit sphere about the origin, and the
+    /// other parts move with it. Missing tangents, a tree of boxes and the openness of each vertex are computed.
     ///
     /// # Errors
     /// [`MeshError::Empty`] without a triangle of part 0, [`MeshError::TooLarge`].
@@ -45,8 +45,8 @@ impl Mesh {
         &self.vertices
     }
 
-    /// How open each vertex is: the share of a cosine-weighted hemisphere that no triangle hides. Plain parts hide nothing from the shown part:
-    /// they have a colour of their own, which is in its surroundings.
+    /// Openness of each vertex: the share of a cosine-weighted hemisphere that no triangle hides. Plain parts hide
+    /// nothing from the shown part, because their own colour is part of its surroundings.
     pub fn openness(&self) -> &[f32] {
         &self.openness
     }
@@ -77,7 +77,7 @@ impl Mesh {
             .nearest(origin, direction, f32::INFINITY, |i| Some(self.triangles[i as usize].positions(&self.vertices)))
     }
 
-    /// Height of a level floor: the plane that holds a plain part which lies below all that is shown.
+    /// Height of a level floor: a plain part in one level plane, below everything shown.
     pub fn floor(&self) -> Option<f32> {
         self.floor
     }
@@ -88,7 +88,7 @@ fn has_area([a, b, c]: [[f32; 3]; 3]) -> bool {
     dot(normal, normal) > 0.0
 }
 
-/// Plain parts are no further away than this.
+/// Largest coordinate of plain parts.
 const FAR: f64 = 1e6;
 
 /// Moves the shown part to the origin and scales it.
@@ -112,7 +112,7 @@ fn fit(soup: &mut Soup) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// The height of a plain part that is level and below the rest.
+/// The height of the plain part, if it is level and below the rest.
 fn floor(soup: &Soup) -> Option<f32> {
     let [shown, plain] = [true, false].map(|is_shown| {
         let triangles = soup.triangles.iter().filter(move |t| (t.part == 0) == is_shown);

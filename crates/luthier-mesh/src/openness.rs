@@ -1,4 +1,4 @@
-//! How open the vertices of a mesh are to their surroundings.
+//! Openness of the vertices of a mesh to their surroundings.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use crate::bvh::Bvh;
 use crate::soup::{Triangle, Vertex};
 use crate::vector::{V, across, along, cross};
 
-/// Rays of all vertices together: about half a second.
+/// Rays of all vertices together: they take about half a second.
 const RAYS: usize = 1 << 19;
 
 /// The openness of each vertex, from rays in fixed directions with the density of the cosine.

@@ -1,4 +1,4 @@
-//! Triangles as files have them.
+//! Triangles as read from files.
 
 /// The most triangles of a mesh.
 pub const TRIANGLES_MAX: usize = 1 << 19;
@@ -10,7 +10,8 @@ pub struct Vertex {
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Unit tangent across the normal, along which `u` grows, and the sign of the bitangent: `sign cross(normal, tangent)` is where `v` falls.
+    /// Unit tangent across the normal, in the direction of growing `u`, and the sign of the bitangent: `v` falls along
+    /// `sign cross(normal, tangent)`.
     pub tangent: [f32; 4],
     /// Texture coordinates; the top left of a picture is 0, 0.
     pub uv: [f32; 2],
@@ -21,11 +22,11 @@ pub struct Vertex {
 pub struct Triangle {
     /// Numbers of the vertices.
     pub corners: [u32; 3],
-    /// 0 takes the material that is shown; from 1 on, a colour of [`Soup::plain`].
+    /// 0 takes the shown material; numbers from 1 on are colours of [`Soup::plain`].
     pub part: u32,
 }
 
-/// Triangles before they are made ready.
+/// Triangles before they are prepared for pictures.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Soup {
     /// All corners. Tangents count where [`Soup::has_tangents`] is set.

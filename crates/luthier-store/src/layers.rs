@@ -1,10 +1,11 @@
-//! Stores one above the other: the first is the nearest.
+//! Stores one above the other, the nearest first.
 
 use std::sync::Arc;
 
 use luthier_bake::{Artefact, Store, Task};
 
-/// Stores one above the other, the nearest first. A result that a store has is kept by those above it, too; a new one by all.
+/// Stores one above the other, the nearest first. A result found in one store is kept by those above it; a new result
+/// is kept by all.
 #[derive(Clone, Copy)]
 pub struct Layers<'a>(pub &'a [&'a dyn Store]);
 

@@ -1,4 +1,4 @@
-//! How much a store holds, and what is removed when that is too much.
+//! Size of a store, and removal of entries beyond its limit.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -12,13 +12,14 @@ use luthier_bake::Key;
 use crate::disk::{DiskStore, OBJECTS, StoreError, TEMPORARY, at};
 use crate::entry::unpack;
 
-/// File with the bytes of all entries, as the last process that wrote some left it.
+/// File with the number of bytes of all entries, as the last writing process left it.
 const USAGE: &str = "usage";
 
-/// File that is locked while that file is brought up to date, and entries are removed.
+/// File that is locked while [`USAGE`] is updated and entries are removed.
 const LOCK: &str = "lock";
 
-/// Share of the limit that is left after entries were removed, in percent.
+/// Share of the limit that stays when entries are removed, in percent. The margin keeps the next bake from removing
+/// again.
 const KEPT: u64 = 90;
 
 /// Entries of a store, and their bytes.
@@ -50,7 +51,7 @@ impl Usage {
 pub struct Verified {
     /// Entries that are whole.
     pub whole: u64,
-    /// Entries that were damaged, and have been removed.
+    /// Damaged entries, which have been removed.
     pub damaged: Vec<PathBuf>,
 }
 
@@ -81,7 +82,7 @@ impl DiskStore {
     /// Reads all entries, and removes those that are damaged.
     ///
     /// # Errors
-    /// [`StoreError`] where the folder cannot be listed, or an entry not be read or removed.
+    /// [`StoreError`] if the folder cannot be listed, or an entry cannot be read or removed.
     pub fn verify(&self) -> Result<Verified, StoreError> {
         let mut verified = Verified::default();
         for Found { path, address, .. } in self.found()? {
@@ -100,7 +101,7 @@ impl DiskStore {
         Ok(verified)
     }
 
-    /// Removes all entries; returns what there was.
+    /// Removes all entries, and returns what there was.
     ///
     /// # Errors
     /// [`StoreError`] where the folder cannot be listed, or an entry not be removed.
@@ -114,8 +115,8 @@ impl DiskStore {
         Ok(usage)
     }
 
-    /// Adds up what this process has written, and removes entries where the store has grown beyond its limit: those first that were not used for the
-    /// longest time. To be called when a bake is done.
+    /// Counts the bytes that this process has written, and removes entries beyond the limit, the least recently used
+    /// first. To be called at the end of a bake.
     ///
     /// # Errors
     /// [`StoreError`] where files of the store cannot be read, written or removed.
@@ -184,7 +185,7 @@ impl DiskStore {
     }
 }
 
-/// Removes an entry, unless another process did.
+/// Removes an entry, if it is still there.
 fn remove(path: &Path) -> Result<(), StoreError> {
     match fs::remove_file(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),

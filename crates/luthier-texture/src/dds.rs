@@ -1,5 +1,5 @@
-//! DDS (DirectDraw Surface): the first image of a file of uncompressed texels, to read. With the DX10 header by its DXGI format, without
-//! it by FourCC or bit masks (Microsoft, "Programming Guide for DDS").
+//! DDS (DirectDraw Surface), to read: the first image of a file of uncompressed texels. Texel formats come from the
+//! DXGI format of a DX10 header, else from FourCC or bit masks (Microsoft, "Programming Guide for DDS").
 
 use luthier_lut::Image;
 

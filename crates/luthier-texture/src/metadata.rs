@@ -2,8 +2,8 @@
 
 use crate::TextureError;
 
-/// Statements of a file about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
-/// `-`, and distinct; values hold no NUL and are at most 1 MiB.
+/// Statements of a file about itself: keys and values, sorted by key in the file. Keys are distinct, and 1 to 64 ASCII
+/// letters, digits, `.`, `_` and `-`. Values hold no NUL and are at most 1 MiB.
 pub type Metadata = Vec<(String, String)>;
 
 const MAX_KEY_BYTES: usize = 64;

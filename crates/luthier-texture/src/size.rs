@@ -5,7 +5,7 @@ use luthier_lut::Image;
 use crate::error::TextureError;
 use crate::limits::{MAX_BYTES, MAX_SIDE};
 
-/// The bytes that an image takes, `texel_bytes` to a texel as it is stored.
+/// The bytes of an image with `texel_bytes` to a stored texel.
 ///
 /// # Errors
 /// [`TextureError::Size`] beyond the limits, or when a side is 0.
@@ -17,7 +17,7 @@ pub(crate) fn checked_bytes(width: u32, height: u32, texel_bytes: u32) -> Result
     Ok(bytes as usize)
 }
 
-/// Checks that an image is what its fields say, and within the limits.
+/// Checks that the fields of an image fit together, and are within the limits.
 pub(crate) fn check_image(image: &Image) -> Result<(), TextureError> {
     if !(1..=4).contains(&image.channels) {
         return Err(TextureError::Channels(image.channels));

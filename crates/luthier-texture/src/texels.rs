@@ -1,4 +1,4 @@
-//! Layouts of texels in files of other makers: number type, channels, order.
+//! Layouts of texels in files of other programs: number type, channels, order.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// Distance of neighbouring values next to 1: what rounding costs at most is half of it.
+    /// Distance of neighbouring values next to 1. Rounding errs by at most half of it.
     pub fn step(self) -> f64 {
         match self {
             Self::Unorm8 => 1.0 / 255.0,
@@ -48,7 +48,7 @@ pub(crate) struct TexelLayout {
     pub(crate) channels: u32,
     /// Blue first.
     pub(crate) bgr: bool,
-    /// sRGB-encoded, but for alpha.
+    /// sRGB-encoded, except alpha.
     pub(crate) srgb: bool,
 }
 
@@ -57,12 +57,12 @@ impl TexelLayout {
         Self { samples, channels, bgr: false, srgb: false }
     }
 
-    /// Three channels of ten bits and one of two take four bytes, as four of eight do.
+    /// Bytes of a texel. Three channels of ten bits and one of two take four bytes, as four of eight do.
     pub(crate) fn texel_bytes(self) -> u32 {
         self.channels * self.samples.bytes()
     }
 
-    /// The values in bytes, little-endian; a last texel that is cut off does not count.
+    /// The values of some bytes, little-endian. A last texel that is cut off does not count.
     pub(crate) fn image(self, width: u32, height: u32, bytes: &[u8]) -> Image {
         let mut data: Vec<f32> = match self.samples {
             Samples::Unorm8 => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),

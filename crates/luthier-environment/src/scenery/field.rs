@@ -3,7 +3,7 @@
 use super::patterns::{clouds, mix, noise, random, smooth};
 use crate::vector::{dot, unit};
 
-/// Where the sun is.
+/// Direction of the sun.
 const SUN: [f64; 3] = [-0.52, 0.62, 0.58];
 
 pub(super) fn clear_day(d: [f64; 3]) -> [f64; 3] {

@@ -1,4 +1,5 @@
-//! Surroundings with detail, by formulas of the project's own: for tests, measurements, and whoever has no picture at hand.
+//! Surroundings with detail, from the project's own formulas, for tests and measurements, and for use without a
+//! picture.
 
 mod field;
 mod patterns;
@@ -32,10 +33,10 @@ luthier_lut::named! {
 }
 
 impl Scenery {
-    /// A map with this many rows, each texel the mean of sixteen points.
+    /// The map with this many rows. Each texel is the mean of sixteen points.
     ///
     /// # Errors
-    /// [`EnvironmentError`] for other than 2 to 4096 rows.
+    /// [`EnvironmentError`] for fewer than 2 or more than 4096 rows.
     pub fn map(self, rows: u32) -> Result<Image, EnvironmentError> {
         if !(2..=4096).contains(&rows) {
             return Err(setting("rows", rows.to_string(), "2 to 4096"));
@@ -55,7 +56,7 @@ impl Scenery {
         Ok(map)
     }
 
-    /// An environment with this many rows.
+    /// The environment with this many rows.
     ///
     /// # Errors
     /// As [`Scenery::map`].
@@ -86,7 +87,7 @@ fn cloudy_sun(d: [f64; 3]) -> [f64; 3] {
     let bright = 0.7 + 1.6 * libm::exp(6.0 * (cosine - 1.0));
     let cloud = [bright; 3];
     let glow = 2.0 * libm::exp(120.0 * (cosine - 1.0));
-    // Through the thinner parts of a cloud.
+    // It shines through the thinner parts of a cloud.
     let disc = 180.0 * smooth(0.9985, 0.9988, cosine) * (1.0 - 0.6 * cover);
     let shine = [1.0, 0.93, 0.8].map(|c| c * (glow + disc));
     let base = mix(sky, cloud, cover);

@@ -1,8 +1,8 @@
-//! Random numbers, noise and shapes that surroundings are made of.
+//! Random numbers, noise and shapes of surroundings.
 
 use crate::vector::{cross, dot};
 
-/// A number in 0..1 for three whole numbers: PCG's output function (Jarzynski and Olano 2020), thrice.
+/// A number in 0..1 for three whole numbers: PCG's output function (Jarzynski and Olano 2020), three times.
 pub(super) fn random(x: i64, y: i64, z: i64) -> f64 {
     let hash = [x, y, z].into_iter().fold(0, |hash: u32, v| {
         let state = (hash ^ v as u32).wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
@@ -42,7 +42,7 @@ pub(super) fn smooth(from: f64, to: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Whether a ray from the middle of a room meets a rectangle on a wall: its middle, half sides along two axes.
+/// The meeting of a ray from the middle of a room and a rectangle, in half sides from its middle.
 pub(super) fn meets(d: [f64; 3], middle: [f64; 3], along: [f64; 3], across: [f64; 3]) -> Option<[f64; 2]> {
     let normal = cross(along, across);
     let facing = dot(d, normal);

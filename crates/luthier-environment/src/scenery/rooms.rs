@@ -1,4 +1,4 @@
-//! Rooms: boxes about the point from which they are seen, with things on their walls. Walls are lit by the lamps of the room.
+//! Rooms: boxes about the viewer, with things on their walls. The lamps of a room light its walls.
 
 use super::patterns::{clouds, meets, mix, noise, random, smooth};
 use crate::vector::{dot, unit};
@@ -30,7 +30,7 @@ impl Room {
     }
 }
 
-/// A lamp as walls are lit by it: its place and its intensity over pi.
+/// A lamp for the walls: its place and its intensity over pi.
 struct Glow {
     at: V,
     color: V,
@@ -65,7 +65,7 @@ fn softbox([u, v]: [f64; 2], radiance: V) -> V {
 }
 
 pub(super) fn softbox_studio(d: V) -> V {
-    // So that a white patch which faces the camera is nearly white.
+    // Scaled so that a white patch facing the camera is nearly white.
     scaled(softboxes(d), 1.7)
 }
 

@@ -2,7 +2,7 @@
 
 use luthier_mesh::{Mesh, TRIANGLES_MAX, soup};
 
-/// Triangles of the largest mesh that is made ready: larger ones would take the time that others need.
+/// Triangles of the largest mesh that is prepared. Larger ones would take the time of the others.
 const READY_MAX: usize = 1 << 12;
 
 /// A glTF file; the buffers beside it are the file itself.

@@ -1,10 +1,10 @@
-//! Numbers in the buffers of a glTF file. Whatever the file says of them is checked before they are read.
+//! Numbers in the buffers of a glTF file. Every statement about them is checked before they are read.
 
 use super::buffers::Buffers;
 use super::document::{Accessor, Document};
 use crate::{MeshError, TRIANGLES_MAX};
 
-/// Elements of the longest accessor that is read.
+/// Most elements of an accessor.
 const ELEMENTS_MAX: usize = 3 * TRIANGLES_MAX;
 
 /// Types of numbers, by their codes.
@@ -54,7 +54,7 @@ impl Kind {
     }
 }
 
-/// Whose numbers are read.
+/// Owner of the numbers that are read, for messages.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Owner<'a> {
     /// The numbers, such as positions.
@@ -84,7 +84,7 @@ impl<'a> Numbers<'a> {
         self.document.accessors.get(index).ok_or_else(|| owner.refuse(format!("accessor {index} is not there")))
     }
 
-    /// The numbers of an accessor, so many to an element; shorter types that are normalised become 0..1 or -1..1.
+    /// The numbers of an accessor, `N` to an element. Shorter types that are normalised become 0..1 or -1..1.
     pub(super) fn floats<const N: usize>(self, index: usize, owner: Owner<'_>) -> Result<Vec<[f32; N]>, MeshError> {
         let accessor = self.accessor(index, owner)?;
         if components(&accessor.shape) != Some(N) {
@@ -110,7 +110,7 @@ impl<'a> Numbers<'a> {
         whole(kind, &self.elements(accessor, kind.size(), owner)?).map_err(|reason| owner.refuse(reason))
     }
 
-    /// The bytes of all elements, without gaps. Without a buffer view they are zeros; sparse elements are put in.
+    /// The bytes of all elements, without gaps. They are zeros without a buffer view; sparse elements replace some.
     fn elements(self, accessor: &Accessor, size: usize, owner: Owner<'_>) -> Result<Vec<u8>, MeshError> {
         let count = accessor.count;
         if count > ELEMENTS_MAX {

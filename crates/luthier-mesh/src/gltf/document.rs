@@ -1,5 +1,5 @@
-//! The text of a glTF 2.0 file, as far as luthier reads it: meshes, the nodes that hold them, and the numbers that these are made of.
-//! All else is passed over, whatever it is.
+//! The text of a glTF 2.0 file, as far as luthier reads it: meshes, the nodes that hold them, and their numbers. All
+//! else is skipped, whatever it is.
 
 use std::collections::BTreeMap;
 
@@ -64,7 +64,7 @@ pub(super) struct Primitive {
     pub(super) extensions: Extensions,
 }
 
-/// Accessors by what they hold; those of other names are passed over.
+/// Accessors by their content; other names are skipped.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Attributes {
@@ -125,7 +125,7 @@ pub(super) struct Buffer {
     pub(super) extensions: Extensions,
 }
 
-/// The part of the text that says which version the rest is in.
+/// The version of a text.
 #[derive(Debug, Deserialize)]
 struct Heading {
     asset: Option<Asset>,

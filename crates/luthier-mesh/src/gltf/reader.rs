@@ -13,13 +13,14 @@ use crate::normals;
 use crate::soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};
 use crate::vector::{cross, sub, unit};
 
-/// Levels of nodes below a scene.
+/// Most levels of nodes below a scene.
 const DEPTH_MAX: usize = 64;
 
-/// Nodes of a scene, counted as often as they are met.
+/// Most nodes of a scene, each counted as often as it is reached.
 const NODES_MAX: usize = 1 << 16;
 
-/// Vertices and corners that are looked at, those that no triangle uses included, which meshes may share.
+/// Most vertices and corners that are read, unused ones included. Meshes may share them, so their number is not limited
+/// by the size of the file.
 const LOOKS_MAX: usize = 128 * TRIANGLES_MAX;
 
 /// Contents of a glTF file.
@@ -27,7 +28,7 @@ const LOOKS_MAX: usize = 128 * TRIANGLES_MAX;
 pub struct File {
     /// Its triangles.
     pub soup: Soup,
-    /// Parts of it that are not shown, or not as they stand in the file: a phrase each, each once.
+    /// Parts of the file that are not shown, or shown otherwise: a phrase each, without repetition.
     pub left_out: Vec<String>,
 }
 
@@ -77,7 +78,7 @@ impl<'a> Reader<'a> {
         File { soup: self.soup, left_out: self.left_out.into_iter().map(Cow::into_owned).collect() }
     }
 
-    /// The default scene, or the first; without scenes, all nodes; without nodes, all meshes.
+    /// Reads the default scene, or the first. Without scenes, reads all nodes; without nodes, all meshes.
     pub(super) fn scene(&mut self) -> Result<(), MeshError> {
         let document = self.numbers.document;
         let nodes = &document.nodes;
@@ -231,7 +232,7 @@ impl<'a> Reader<'a> {
         self.add(&Piece { vertices, has_tangent, triangles, flat, part })
     }
 
-    /// The placement of textures, where texture coordinates are whole numbers: these have their scale in it.
+    /// The placement of textures, if texture coordinates are whole numbers: such a placement contains their scale.
     fn placement(&mut self, primitive: &Primitive, uvs: usize) -> Option<Placement> {
         let document = self.numbers.document;
         let placement = Placement::of(document.materials.get(primitive.material?)?)?;
@@ -242,7 +243,7 @@ impl<'a> Reader<'a> {
         Some(placement)
     }
 
-    /// The number of a colour of plain parts, or 0.
+    /// The number of a part by its plain colour, or 0.
     fn part(&mut self, primitive: &Primitive) -> Result<u32, MeshError> {
         let material = primitive.material.and_then(|index| self.numbers.document.materials.get(index));
         let Some(color) = plain_color(material)? else { return Ok(0) };
@@ -281,7 +282,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The type of numbers that have fractions.
+/// The type code of floats.
 const FLOAT: u32 = 5126;
 
 /// Modes of primitives.
@@ -289,7 +290,7 @@ const LIST: u32 = 4;
 const STRIP: u32 = 5;
 const FAN: u32 = 6;
 
-/// The triangles of a list, a strip or a fan; nothing for another mode.
+/// The triangles of a list, a strip or a fan; `None` for other modes.
 fn triangles(corners: &[u32], mode: u32) -> Option<Vec<[u32; 3]>> {
     Some(match mode {
         LIST => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
@@ -302,7 +303,7 @@ fn triangles(corners: &[u32], mode: u32) -> Option<Vec<[u32; 3]>> {
     })
 }
 
-/// The vertices that triangles use, of so many, and the triangles by their places among these.
+/// The numbers of the vertices that triangles use, and the triangles by places in this list.
 fn used(count: usize, triangles: &[[u32; 3]]) -> (Vec<usize>, Vec<[u32; 3]>) {
     let mut places = vec![None; count];
     for &corner in triangles.iter().flatten() {

@@ -1,7 +1,8 @@
 //! A model that shows what materials do: a ball of two shells with a cut, on a stand with rims, over a plain floor.
 //!
-//! The ball has the texture coordinates of a sphere. What is turned has tangents around the axis; the faces of the cut have them outwards. Lengths are
-//! in units of the file, in which the floor is at height 0 and the ball has a radius of 0.8.
+//! The ball has the texture coordinates of a sphere. Turned surfaces have tangents around the axis; the faces of the
+//! cut have outward tangents. Lengths are in units of the file: the floor is at height 0 and the ball has a radius of
+//! 0.8.
 
 mod lathe;
 mod write;
@@ -11,7 +12,7 @@ use std::f64::consts::PI;
 use crate::{Mesh, soup};
 use lathe::{Curve, OUTER, Part};
 
-/// The model as binary glTF: what [`glb`] makes, so that other programs can have the file.
+/// The model as binary glTF, as [`glb`] makes it. It is stored so that other programs can use the file.
 pub const GLB: &[u8] = include_bytes!("../../assets/model.glb");
 
 /// Albedo of the floor, linear.
@@ -32,7 +33,7 @@ pub fn mesh() -> Mesh {
     Mesh::new(file.soup).expect("a test makes it")
 }
 
-/// The bytes of the model, made anew: the same on every platform.
+/// Builds the bytes of the model, which are equal on every platform.
 pub fn glb() -> Vec<u8> {
     let mut shown = Part::default();
     shell(&mut shown);
@@ -44,7 +45,7 @@ pub fn glb() -> Vec<u8> {
 
 /// The outer ball, its hollow, and the faces of the cut.
 fn shell(part: &mut Part) {
-    // From where the collar of the stand hides it.
+    // Begins where the collar of the stand hides it.
     let below = Curve::arc([0.0, MIDDLE], OUTER, [-0.42 * PI, cut_angle(OUTER)], 15);
     part.turned(&[below], [-PI, PI], 64);
     let closed = [CUT[1], CUT[0] + 2.0 * PI];

@@ -21,20 +21,22 @@ use address::Address;
 pub use error::RemoteError;
 use transfers::Transfers;
 
-/// A request and all its retries take no longer.
+/// Longest duration of a request with all its retries.
 const REQUEST_LIMIT: Duration = Duration::from_secs(30);
 
-/// Entries that are fetched before they are decoded, so that their bytes are not all in memory at once.
+/// Most entries that are fetched before they are decoded: more would hold too many bytes in memory.
 const FETCHED_AT_ONCE: usize = 256;
 
-/// Results of jobs in a store that machines share: S3 and what speaks its protocol, Google Cloud Storage, Azure, or HTTP with WebDAV.
+/// Results of jobs in a store that machines share: S3 and its compatible services, Google Cloud Storage, Azure, or HTTP
+/// with WebDAV.
 ///
-/// An object is an entry as on disk, with its address and the hash of its result: an object that is damaged or in the place of another one is refused, and
-/// its job runs again. Uploads run beside the bake. A store never makes a bake fail: after the first request that fails, or that takes too long, it is out of
-/// use for good. [`Self::problem`] has the reason. It belongs below a store on disk, in [`Layers`](crate::Layers).
+/// An object is an entry as on disk, with its address and the hash of its result. A damaged or misplaced object is
+/// refused, and its job runs again. Uploads run beside the bake. A store never makes a bake fail: after the first
+/// request that fails or takes too long, it is not used any more, and [`Self::problem`] returns the reason. It belongs
+/// below a store on disk, in [`Layers`](crate::Layers).
 pub struct RemoteStore {
     transfers: Arc<Transfers>,
-    /// Where requests run: one thread for all.
+    /// Runtime of all requests: one thread.
     runtime: Handle,
     thread: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
 }
@@ -44,7 +46,7 @@ impl RemoteStore {
     /// endpoints come from the variables that other programs read, too: AWS_ACCESS_KEY_ID, AWS_ENDPOINT_URL, GOOGLE_SERVICE_ACCOUNT, AZURE_STORAGE_ACCOUNT_NAME.
     ///
     /// # Errors
-    /// [`RemoteError`] where this is no such address. Credentials that cannot be read are no error: the store is out of use then.
+    /// [`RemoteError`] if this is no such address. Unreadable credentials are not an error; the store is then not used.
     pub fn open(url: &str) -> Result<Self, RemoteError> {
         let Address { name, objects, prefix } = Address::parse(url)?;
         match objects {
@@ -68,7 +70,7 @@ impl RemoteStore {
         let handle = runtime.handle().clone();
         let (stop, stopped) = oneshot::channel();
         let thread = thread::Builder::new().name("luthier-store".to_owned()).spawn(move || {
-            // Whether it was told to stop, or the store is gone.
+            // Returns when the store is told to stop, or is dropped.
             let _ = runtime.block_on(stopped);
             runtime.shutdown_background();
         });
@@ -82,7 +84,7 @@ impl RemoteStore {
         self.transfers.wait();
     }
 
-    /// The thing that went wrong, once: why the store is out of use, else the first damaged entry.
+    /// The first problem, returned once: why the store is not used any more, else the first damaged entry.
     pub fn problem(&self) -> Option<RemoteError> {
         self.transfers.take_problem()
     }
@@ -151,7 +153,7 @@ impl Drop for RemoteStore {
         self.close();
         if let Some((stop, thread)) = self.thread.take() {
             drop(stop);
-            // It has nothing left to do; that it panicked would have been seen.
+            // The thread has nothing left to do. A panic of it would have been seen.
             let _ = thread.join();
         }
     }

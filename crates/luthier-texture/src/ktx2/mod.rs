@@ -1,8 +1,9 @@
-//! KTX2 (Khronos KTX file format 2.0): one level, or levels of maps and cubes to write; zstd-supercompressed or plain, with a basic data format descriptor.
+//! KTX2 (Khronos KTX file format 2.0): one level, or to write also the levels of maps and cubes, with zstd or plain,
+//! with a basic data format descriptor.
 //!
-//! Textures of bakes have the key `KTXwriter` and no other: Khronos' validator warns about every key that the specification does not list,
-//! whatever its prefix, so that a file with one would not pass `ktx validate --warnings-as-errors`. Tables that travel alone say what they are
-//! in keys of their own ([`Levels::metadata`]).
+//! Textures of bakes have the key `KTXwriter` and no other. Khronos' validator warns about every unlisted key, whatever
+//! its prefix, so a file with one would not pass `ktx validate --warnings-as-errors`. Tables that travel alone describe
+//! themselves in keys of their own ([`Levels::metadata`]).
 
 use ::ktx2::dfd::{Basic, Block};
 use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionScheme};
@@ -16,8 +17,8 @@ use crate::{Metadata, Samples, Texture, TextureError, metadata, zstd};
 /// Value of the `KTXwriter` entry.
 const WRITER: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
 
-/// Bytes of the descriptor section that may differ from ours without changing what the texels mean: colour primaries,
-/// alpha flags, and the plane sizes, which some writers leave 0 under supercompression.
+/// Bytes of the descriptor section that may differ from ours without a change of meaning: colour primaries, alpha
+/// flags, and the plane sizes, which some writers leave 0 under supercompression.
 const FREE_DFD_BYTES: [std::ops::Range<usize>; 3] = [13..14, 15..16, 20..28];
 
 /// A KTX2 file of a texture: header, level index, descriptor, the writer's name, zstd texels.
@@ -28,7 +29,7 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
     write(&Levels::one(texture), Some(SupercompressionScheme::Zstandard))
 }
 
-/// A KTX2 file of a texture with the texels as they are, for readers without a decoder of zstd.
+/// A KTX2 file of a texture with uncompressed texels, for readers without a decoder of zstd.
 ///
 /// # Errors
 /// As [`encode`].
@@ -36,11 +37,12 @@ pub fn encode_plain(texture: &Texture) -> Result<Vec<u8>, TextureError> {
     write(&Levels::one(texture), None)
 }
 
-/// A KTX2 file of a map or a cube with levels, the smallest first, as the specification wants them; with zstd or without.
+/// A KTX2 file of a map or a cube with levels, with zstd or without. The smallest level comes first, as the
+/// specification requires.
 ///
 /// # Errors
-/// As [`encode`]; [`TextureError::Length`] for faces of another number than 1 or 6, or more levels than halve the sides; and
-/// [`TextureError::Metadata`].
+/// As [`encode`]; [`TextureError::Length`] for a number of faces other than 1 or 6, or for more levels than the sides
+/// can be halved; and [`TextureError::Metadata`].
 pub fn encode_levels(levels: &Levels<'_>, is_compressed: bool) -> Result<Vec<u8>, TextureError> {
     write(levels, is_compressed.then_some(SupercompressionScheme::Zstandard))
 }
@@ -50,7 +52,7 @@ pub fn encode_levels(levels: &Levels<'_>, is_compressed: bool) -> Result<Vec<u8>
 pub struct Levels<'a> {
     /// Format of the texels.
     pub format: TexelFormat,
-    /// Texels across, of the largest level; each level has half of those of the one before.
+    /// Texels across, of the largest level. Each level has half the sides of the one before.
     pub width: u32,
     /// Texels down.
     pub height: u32,
@@ -58,7 +60,7 @@ pub struct Levels<'a> {
     pub faces: u32,
     /// The faces of each level one after another, the largest level first.
     pub levels: Vec<std::borrow::Cow<'a, [u8]>>,
-    /// Statements of the file about itself beside its writer; their keys begin with a small letter.
+    /// Statements of the file about itself, beside its writer. Their keys begin with a small letter.
     pub metadata: Metadata,
 }
 
@@ -96,8 +98,8 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
         None => texture.levels.clone(),
     };
 
-    // Descriptor and key/value entries are multiples of 4 bytes. Levels lie at multiples of 4 and of the bytes of a block of texels,
-    // but for supercompressed ones, which need no alignment.
+    // Descriptor and key/value entries are multiples of 4 bytes. Plain levels lie at multiples of 4 and of the bytes of
+    // a block of texels; supercompressed levels need no alignment.
     let descriptor_at = Header::LENGTH + LevelIndex::LENGTH * stored.len();
     let key_values_at = descriptor_at + descriptor.len();
     let key_values_end = key_values_at + key_values.len();
@@ -138,8 +140,8 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
     Ok([&header.as_bytes(), index.concat().as_slice(), &descriptor, &key_values, &body].concat())
 }
 
-/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Of the key/value data only the orientation
-/// is looked at.
+/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Of the key/value data only
+/// the orientation counts.
 ///
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::Zstd`] for damaged files, [`TextureError::Unsupported`] for other
@@ -161,8 +163,8 @@ pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
     Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes })
 }
 
-/// Reads the largest level of a two-dimensional KTX2 file of uncompressed texels by any maker, with zstd or no supercompression. The
-/// format is taken from the header: the descriptor is not looked at, because some writers get it wrong.
+/// Reads the largest level of a two-dimensional KTX2 file of uncompressed texels by any maker, with zstd or no
+/// supercompression. The header states the format. The descriptor does not count, because some writers get it wrong.
 ///
 /// # Errors
 /// As [`decode`].
@@ -235,7 +237,7 @@ fn header(file: &[u8]) -> Result<Header, TextureError> {
     })
 }
 
-/// The texels of the first level, which is the largest.
+/// The texels of the first level, the largest.
 fn first_level(file: &[u8], header: &Header, expected: usize) -> Result<Vec<u8>, TextureError> {
     let level = section(file, Header::LENGTH as u64, LevelIndex::LENGTH as u64)?;
     let level = LevelIndex::from_bytes(level.first_chunk().ok_or_else(|| malformed("the level index is missing"))?);
@@ -293,7 +295,7 @@ fn check_shape(header: &Header) -> Result<(), TextureError> {
     }
 }
 
-/// The descriptor section (its length, then one basic block) and the size that the header states for endian conversion.
+/// The descriptor section (its length, then one basic block), and the type size of the header for endian conversion.
 fn descriptor_section(format: TexelFormat) -> Result<(Vec<u8>, u32), TextureError> {
     let (basic, type_size) = Basic::from_format(vulkan_format(format))
         .map_err(|_| unsupported(format!("{format} texels, for which there is no descriptor")))?;
@@ -334,7 +336,8 @@ fn key_value_section(metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
 /// The fault of key/value data that end within an entry.
 const CUT_OFF: &str = "a key/value entry is cut off";
 
-/// Whether the key/value data hold whole entries, and rows go from the top down, which is what a file without a word of it means.
+/// Checks that the key/value data hold whole entries, and that rows go from the top down. A file that does not state it
+/// means the same.
 fn check_orientation(mut section: &[u8]) -> Result<(), TextureError> {
     while let Some((length, rest)) = section.split_first_chunk() {
         let length = u32::from_le_bytes(*length) as usize;

@@ -1,4 +1,4 @@
-//! Which channels of an OpenEXR file are its colours.
+//! Choice of the channels of an OpenEXR file that are its colours.
 
 use ::exr::meta::header::Header;
 
@@ -7,7 +7,7 @@ use ::exr::meta::header::Header;
 pub(super) struct Colors {
     /// Numbers of the channels of red, green and blue; one number three times for grey.
     pub(super) places: [usize; 3],
-    /// The layer, where another one has colours, too.
+    /// Name of the layer, for a note, if another layer has colours too.
     pub(super) told: Option<String>,
 }
 
@@ -17,11 +17,11 @@ impl Colors {
     }
 }
 
-/// Names of layers that hold the picture as a whole, as renderers and stereo cameras name them; the first counts most.
+/// Names of layers that hold the whole picture, as renderers and stereo cameras name them. The first counts most.
 const WHOLE: [&str; 6] = ["combined", "beauty", "rgba", "rgb", "color", "left"];
 
-/// The colours of a part: those without a layer, or else of a layer that holds the whole picture, or else of the first one. Names of
-/// channels are R, G, B, or Y alone; their layers stand before a dot.
+/// The colours of a part: channels without a layer, else of a layer that holds the whole picture, else of the first
+/// layer. Channels are named R, G, B, or Y alone, after their layer and a dot.
 pub(super) fn colors(header: &Header) -> Option<Colors> {
     let names: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
     let split: Vec<(&str, &str)> = names.iter().map(|name| name.rsplit_once('.').unwrap_or(("", name))).collect();

@@ -1,4 +1,4 @@
-//! Pictures that were read, with notes.
+//! Pictures as read, with notes.
 
 use luthier_lut::Image;
 
@@ -7,6 +7,6 @@ use luthier_lut::Image;
 pub struct Picture {
     /// Three channels, linear Rec.709.
     pub image: Image,
-    /// A sentence for each thing of the file that was converted or left out.
+    /// A sentence for each part of the file that was converted or left out.
     pub notes: Vec<String>,
 }

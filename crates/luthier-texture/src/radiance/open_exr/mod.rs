@@ -87,10 +87,10 @@ fn part(headers: &[Header]) -> Result<(usize, Colors), TextureError> {
     )))
 }
 
-/// Channels that an error lists.
+/// Most channels that an error lists.
 const LISTED: usize = 24;
 
-/// The display window, and where the data window lies in it.
+/// The display window, and the data window in it.
 struct Window {
     size: [i64; 2],
     display: IntegerBounds,
@@ -121,7 +121,7 @@ impl Window {
         [(data.0, display.0), (data.1, display.1)].map(|(data, display)| i64::from(data) - i64::from(display))
     }
 
-    /// Puts a row of one channel where it is seen.
+    /// Writes the visible part of a row of one channel.
     fn put(&self, image: &mut Image, at: [usize; 2], place: usize, kind: SampleType, bytes: &[u8]) {
         let [x, y] = self.offset();
         let (x, y) = (x + at[0] as i64, y + at[1] as i64);
@@ -173,7 +173,7 @@ fn notes(header: &Header, window: &Window, colors: &Colors) -> Vec<String> {
     notes
 }
 
-/// Brings colours of other primaries to Rec.709, and says so.
+/// Brings colours of other primaries to Rec.709, and returns a note about it.
 fn to_rec709(header: &Header, colors: &Colors, image: &mut Image) -> Result<Option<String>, TextureError> {
     let Some(stated) = header.shared_attributes.chromaticities.filter(|_| !colors.is_grey()) else { return Ok(None) };
     let [red, green, blue, white] =
