@@ -55,6 +55,18 @@ impl BakedMaterial {
 }
 
 /// Outline of a bake: its tables, tiles and materials, without texels.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// let mut copy = glass.clone();
+/// copy.name = "copy".to_owned();
+/// let outline = luthier_bake::outline(&[glass, copy], &|_, _| Err("no images".into()))?;
+/// // Equal interfaces share a tile.
+/// assert_eq!((outline.materials.len(), outline.keys[0].len()), (2, 1));
+/// # Ok::<(), luthier_bake::BakeError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.

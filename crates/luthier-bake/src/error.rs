@@ -6,6 +6,15 @@ use luthier_material::Diagnostic;
 use thiserror::Error;
 
 /// Why a set of materials cannot be baked.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// let errors = luthier_bake::check(&[glass.clone(), glass], &Default::default()).unwrap_err();
+/// assert!(errors[0].to_string().starts_with("two materials are named `glass`"));
+/// assert_eq!(errors[0].place(), Some((1, "name")));
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BakeError {

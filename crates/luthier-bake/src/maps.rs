@@ -25,6 +25,15 @@ pub struct MaterialMap {
 }
 
 /// Source of the values of a map.
+///
+/// ```
+/// use luthier_bake::MapSource;
+///
+/// let noise = MapSource::Noise { seed: 7, frequency: 4.0, octaves: 3 };
+/// let texels = noise.texels().expect("noise has texels");
+/// assert!(texels.data.iter().all(|value| (0.0..=1.0).contains(value)));
+/// assert!(noise.label().contains("seed 7"));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum MapSource {
     /// A picture and the meaning of its texels.

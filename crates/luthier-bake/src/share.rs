@@ -13,6 +13,17 @@ use crate::search::{Fixed, plan};
 use crate::{BakeError, planner};
 
 /// Jobs that a bake would run.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// use luthier_bake::{MemoryStore, Options, missing};
+///
+/// let missing = missing(&[glass], &Options::default(), &|_, _| unreachable!(), &MemoryStore::default())?;
+/// assert!(missing.is_all && missing.jobs.keys().any(|kind| kind.name() == "fresnel"));
+/// # Ok::<(), luthier_bake::BakeError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Missing {
     /// Number of jobs by kind.

@@ -6,6 +6,17 @@ use rayon::prelude::*;
 use crate::{faces, panorama};
 
 /// Shapes of a texture of directions.
+///
+/// ```
+/// use luthier_environment::{Environment, Layout, Sky};
+///
+/// let environment = Environment::sky(&Sky::uniform([0.25; 3]))?;
+/// for layout in [Layout::Cube, Layout::Equirect] {
+///     let [red, ..] = layout.mean(&environment.irradiance_level(layout));
+///     assert!((red - 0.25).abs() < 1e-6);
+/// }
+/// # Ok::<(), luthier_environment::EnvironmentError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// Six faces, along +x, -x, +y, -y, +z, -z.

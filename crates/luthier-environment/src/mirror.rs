@@ -3,6 +3,16 @@
 use std::f64::consts::PI;
 
 /// Slope distribution of a rough mirror.
+///
+/// ```
+/// use luthier_environment::{ALPHAS, Blur, Environment, Sky};
+///
+/// let environment = Environment::sky(&Sky::uniform([0.25; 3]))?;
+/// let [red, ..] = environment.mirrored(Blur::Ggx, 0.5, [0.0, 1.0, 0.0]);
+/// assert!((red - 0.25).abs() < 1e-6);
+/// assert_eq!(environment.chain(Blur::Ggx).len(), ALPHAS.len());
+/// # Ok::<(), luthier_environment::EnvironmentError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blur {
     /// Trowbridge-Reitz.

@@ -8,6 +8,14 @@ use crate::vector::{dot, unit};
 ///
 /// The gradient is the quadratic in the height `y` of the direction that passes through the three colours at -1, 0 and
 /// 1. A soft light is a von Mises-Fisher lobe. [`crate::Environment::sky`] makes a map of it.
+///
+/// ```
+/// use luthier_environment::Sky;
+///
+/// let sky = Sky { zenith: [1.0; 3], ..Sky::uniform([0.0; 3]) };
+/// assert_eq!(sky.radiance([0.0, 1.0, 0.0]), [1.0; 3]);
+/// assert_eq!(sky.radiance([1.0, 0.0, 0.0]), [0.0; 3]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sky {
     /// Radiance straight down.
@@ -21,6 +29,15 @@ pub struct Sky {
 }
 
 /// A light with a soft edge: radiance `radiance exp(sharpness (cos - 1))` at an angle to its centre.
+///
+/// ```
+/// use luthier_environment::{Sky, SoftLight};
+///
+/// let mut sky = Sky::uniform([0.0; 3]);
+/// sky.lights[0] = SoftLight { direction: [0.0, 0.0, 1.0], sharpness: 100.0, radiance: [2.0; 3] };
+/// assert_eq!(sky.radiance([0.0, 0.0, 1.0]), [2.0; 3]);
+/// assert!(sky.radiance([0.0, 0.0, -1.0])[0] < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftLight {
     /// Direction to the centre of the light, of any length.

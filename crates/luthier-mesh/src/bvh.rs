@@ -27,6 +27,15 @@ pub struct Node {
 ///
 /// A cut is the one of the least surface area (MacDonald and Booth 1990) among sixteen slabs of the widest axis of the
 /// centres. The tree depends on its triangles alone.
+///
+/// ```
+/// use luthier_mesh::Bvh;
+///
+/// let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let (bvh, _) = Bvh::new(&[triangle]);
+/// let meeting = bvh.nearest([0.25, 0.25, 2.0], [0.0, 0.0, -1.0], 10.0, |_| Some(triangle)).unwrap();
+/// assert!((meeting.t - 2.0).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,

@@ -3,6 +3,14 @@
 use thiserror::Error;
 
 /// Reason why a file is not a mesh that can be shown.
+///
+/// ```
+/// use luthier_mesh::{MeshError, soup};
+///
+/// let text = br#"{"asset": {"version": "1.0"}}"#;
+/// let error = soup(text, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap_err();
+/// assert!(matches!(error, MeshError::Version(version) if version == "1.0"));
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MeshError {

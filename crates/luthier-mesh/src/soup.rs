@@ -27,6 +27,18 @@ pub struct Triangle {
 }
 
 /// Triangles before they are prepared for pictures.
+///
+/// ```
+/// use luthier_mesh::{Mesh, Soup, Triangle, Vertex};
+///
+/// let corners = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]];
+/// let blank = Vertex { position: [0.0; 3], normal: [0.0, 0.0, 1.0], tangent: [0.0; 4], uv: [0.0; 2] };
+/// let vertices = corners.map(|position| Vertex { position, ..blank }).to_vec();
+/// let triangles = vec![Triangle { corners: [0, 1, 2], part: 0 }];
+/// let mesh = Mesh::new(Soup { vertices, triangles, ..Soup::default() })?;
+/// assert!(mesh.vertices().iter().all(|vertex| vertex.position[0].abs() < 1.0)); // fitted into the unit sphere
+/// # Ok::<(), luthier_mesh::MeshError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Soup {
     /// All corners. Tangents count where [`Soup::has_tangents`] is set.

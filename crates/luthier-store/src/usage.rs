@@ -23,6 +23,20 @@ const LOCK: &str = "lock";
 const KEPT: u64 = 90;
 
 /// Entries of a store, and their bytes.
+///
+/// ```
+/// use luthier_bake::Key;
+/// use luthier_store::{DEFAULT_LIMIT, DiskStore};
+///
+/// # let folder = std::env::temp_dir().join(format!("luthier-store-usage-{}", std::process::id()));
+/// let store = DiskStore::open(&folder, DEFAULT_LIMIT)?;
+/// store.put_bytes("note", Key::of(b"inputs"), b"result");
+/// assert_eq!(store.usage()?.kinds["note"].entries, 1);
+/// assert_eq!(store.clear()?.all().entries, 1);
+/// assert_eq!(store.usage()?.all().entries, 0);
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # Ok::<(), luthier_store::StoreError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Usage {
     /// By kind of job.
@@ -47,6 +61,19 @@ impl Usage {
 }
 
 /// Result of a check of all entries.
+///
+/// ```
+/// use luthier_bake::Key;
+/// use luthier_store::{DEFAULT_LIMIT, DiskStore};
+///
+/// # let folder = std::env::temp_dir().join(format!("luthier-store-verified-{}", std::process::id()));
+/// let store = DiskStore::open(&folder, DEFAULT_LIMIT)?;
+/// store.put_bytes("note", Key::of(b"inputs"), b"result");
+/// let verified = store.verify()?;
+/// assert_eq!((verified.whole, verified.damaged.len()), (1, 0));
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # Ok::<(), luthier_store::StoreError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Verified {
     /// Entries that are whole.

@@ -405,6 +405,17 @@ impl AxisSpec {
 }
 
 /// Layout of a table: the axes along its sides.
+///
+/// ```
+/// use luthier_table::{Layout, Nodes};
+///
+/// let layout = Layout::parse("cos_theta,roughness", Nodes::CENTRES)?;
+/// let [theta, alpha] = layout.at_texel([4, 4], [3, 1]);
+/// assert!((theta - 0.875_f64.acos()).abs() < 1e-12);
+/// assert_eq!(alpha, 0.375 * 0.375); // alpha = roughness^2
+/// assert_eq!(layout.to_string(), "cos_theta,roughness");
+/// # Ok::<(), luthier_table::AxesError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
     /// The axis of the direction.

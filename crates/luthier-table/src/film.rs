@@ -69,6 +69,19 @@ impl fmt::Display for FilmLayout {
 /// the texels follow from them.
 ///
 /// For facets the cosine is that against the half vector.
+///
+/// ```
+/// use luthier_optics::{color::Color, num_complex::Complex64};
+/// use luthier_table::{FilmLayout, FilmTable, Nodes, Stored};
+///
+/// let layout = FilmLayout::parse("cos_theta,thickness_nm=0..500", Nodes::Ends)?;
+/// let (film, below) = (Complex64::new(1.33, 0.0), Complex64::ONE);
+/// let soap = FilmTable { above: 1.0, film, below, color: Color::Spectral, layout, size: [4, 6], stored: Stored::Half };
+/// let texels = soap.bake();
+/// assert_eq!(soap.thicknesses(), [0.0, 500.0]);
+/// assert!(texels.texel(3, 0)[1] < 1e-3); // no film reflects nothing at normal incidence
+/// # Ok::<(), luthier_table::AxesError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmTable {
     /// Index above.

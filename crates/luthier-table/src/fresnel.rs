@@ -73,6 +73,16 @@ impl fmt::Display for FresnelLayout {
 /// table; the texels follow from them.
 ///
 /// For facets the cosine is that against the half vector.
+///
+/// ```
+/// use luthier_table::{FresnelLayout, FresnelTable, Nodes, Stored};
+///
+/// let layout = FresnelLayout::parse("cos_theta,ior_n,ior_k", Nodes::Ends)?;
+/// let table = FresnelTable { layout, size: [8, 32, 32], stored: Stored::Half };
+/// let glass = table.sample(&table.bake(), [1.0, 1.5, 0.0]);
+/// assert!((glass - 0.04).abs() < 0.01);
+/// # Ok::<(), luthier_table::AxesError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FresnelTable {
     /// Axes and nodes.

@@ -23,6 +23,14 @@ pub enum Container {
 }
 
 /// The split-sum table of an engine.
+///
+/// ```
+/// use luthier_table::{Bindings, Preset};
+///
+/// let table = Preset::named("babylon").unwrap().table();
+/// assert_eq!(table.bytes(), 256 * 256 * 4);
+/// assert!(table.wgsl(Bindings::default()).unwrap().contains("fn luthier_dfg("));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Preset {
     /// Name on command lines.

@@ -42,6 +42,11 @@ impl fmt::Display for Container {
 }
 
 /// Why a texture cannot be written or a file cannot be read.
+///
+/// ```
+/// let error = luthier_texture::ktx2::decode(b"a few bytes").unwrap_err();
+/// assert_eq!(error.to_string(), "not a valid KTX2 file: it ends within the header");
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TextureError {

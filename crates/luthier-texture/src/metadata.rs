@@ -4,6 +4,16 @@ use crate::TextureError;
 
 /// Statements of a file about itself: keys and values, sorted by key in the file. Keys are distinct, and 1 to 64 ASCII
 /// letters, digits, `.`, `_` and `-`. Values hold no NUL and are at most 1 MiB.
+///
+/// ```
+/// use luthier_lut::Image;
+/// use luthier_texture::exr;
+///
+/// let metadata = vec![("model".to_owned(), "Fresnel".to_owned())];
+/// let image = Image { width: 1, height: 1, channels: 1, data: vec![0.5] };
+/// assert_eq!(exr::decode(&exr::encode(&image, &["Y"], &metadata)?)?, (image, metadata));
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 pub type Metadata = Vec<(String, String)>;
 
 const MAX_KEY_BYTES: usize = 64;

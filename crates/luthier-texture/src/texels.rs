@@ -6,6 +6,13 @@ use half::f16;
 use luthier_lut::Image;
 
 /// How one value is stored.
+///
+/// ```
+/// use luthier_texture::Samples;
+///
+/// assert_eq!(Samples::Unorm8.step(), 1.0 / 255.0);
+/// assert!(Samples::Half.step() > Samples::Unorm16.step());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Samples {
     /// A byte over 255.

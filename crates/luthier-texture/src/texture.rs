@@ -6,6 +6,15 @@ use crate::TextureError;
 use crate::size::checked_bytes;
 
 /// A texture for a device.
+///
+/// ```
+/// use luthier_lut::TexelFormat;
+/// use luthier_texture::Texture;
+///
+/// let texture = Texture { format: TexelFormat::R16Float, width: 1, height: 1, bytes: vec![0x00, 0x3c] };
+/// assert_eq!(texture.image()?.data, [1.0]);
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     /// Format of the texels.

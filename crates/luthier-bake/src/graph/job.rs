@@ -15,6 +15,14 @@ use crate::tile::TileData;
 const REVISION: u32 = 5;
 
 /// SHA-256 of a job's inputs.
+///
+/// ```
+/// use luthier_bake::Key;
+///
+/// let key = Key::of(b"abc");
+/// assert!(key.to_string().starts_with("ba7816bf8f01cfea")); // FIPS 180-2, appendix B.1
+/// assert_eq!(Key::parse(&key.to_string()), Some(key));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key([u8; 32]);
 

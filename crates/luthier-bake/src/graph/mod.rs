@@ -21,6 +21,22 @@ use crate::error::BakeError;
 use crate::tile::TileData;
 
 /// Receiver of progress reports, from any thread. It may end a bake early, and cannot change its results.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// use luthier_bake::{BakeError, JobKind, Observer};
+///
+/// struct Stop;
+/// impl Observer for Stop {
+///     fn planned(&self, _: usize) {}
+///     fn finished(&self, _: JobKind) {}
+///     fn batch(&self, _: JobKind, _: bool) {}
+///     fn is_cancelled(&self) -> bool { true }
+/// }
+/// assert!(matches!(luthier_bake::bake(&[glass], &|_, _| unreachable!(), &Stop), Err(BakeError::Cancelled)));
+/// ```
 pub trait Observer: Sync {
     /// Reports the number of jobs that will run.
     fn planned(&self, jobs: usize);

@@ -79,6 +79,17 @@ pub trait Store: Sync {
 }
 
 /// A store in memory.
+///
+/// ```
+/// use luthier_bake::{Function, MemoryStore};
+///
+/// let store = MemoryStore::default();
+/// Function { kind: "square", revision: 1 }.keep(&serde_json::json!(3), &store, 9_u32);
+/// store.sweep(); // The result was kept since the last call: it stays.
+/// assert_eq!(store.len(), 1);
+/// store.sweep();
+/// assert!(store.is_empty());
+/// ```
 #[derive(Default)]
 pub struct MemoryStore {
     kept: Mutex<BTreeMap<Key, Kept>>,

@@ -24,6 +24,16 @@ const IRRADIANCE_HEIGHT: u32 = 32;
 ///
 /// The top of the map is +y, its middle looks along -z, as the default camera does. Blurred copies are made at their
 /// first use, per slope distribution. They depend on the map only.
+///
+/// ```
+/// use luthier_environment::{Environment, Sky};
+///
+/// let sky = Sky { zenith: [1.0; 3], ..Sky::uniform([0.0; 3]) };
+/// let environment = Environment::sky(&sky)?;
+/// let [up, down] = [1.0, -1.0].map(|y| environment.diffuse([0.0, y, 0.0])[1]);
+/// assert!(up > 0.4 && down < 0.1);
+/// # Ok::<(), luthier_environment::EnvironmentError>(())
+/// ```
 #[derive(Debug)]
 pub struct Environment {
     /// The map, then each half as high as the one before.

@@ -16,6 +16,15 @@ use crate::vector::{dot, unit};
 
 luthier_lut::named! {
     /// Surroundings made of formulas and fixed random numbers.
+    ///
+    /// ```
+    /// use luthier_environment::Scenery;
+    ///
+    /// let map = Scenery::NightStreet.map(16)?;
+    /// assert_eq!((map.width, map.height), (32, 16));
+    /// assert_eq!(Scenery::from_name("night-street"), Some(Scenery::NightStreet));
+    /// # Ok::<(), luthier_environment::EnvironmentError>(())
+    /// ```
     pub enum Scenery("scenery") {
         /// A sun of three degrees among soft clouds, over a field.
         CloudySun = "cloudy-sun",

@@ -118,6 +118,13 @@ fn bits(image: &Image) -> Vec<u32> {
 }
 
 /// A PNG file with correct checksums of its chunks; other bytes as they are.
+///
+/// ```
+/// let whole = luthier_texture::png::encode_rgb(1, 1, &[0; 3]).unwrap();
+/// let mut broken = whole.clone();
+/// broken[29] ^= 1; // the checksum of the header
+/// assert_eq!(luthier_fuzz::with_sums(&broken), whole);
+/// ```
 pub fn with_sums(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     let mut at = SIGNATURE.len();

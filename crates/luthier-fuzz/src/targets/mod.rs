@@ -9,6 +9,13 @@ mod toml;
 pub use images::with_sums;
 
 /// A parser, its inputs and its checks.
+///
+/// ```
+/// let target = luthier_fuzz::target("png").unwrap();
+/// let inputs = luthier_fuzz::corpus(target).unwrap();
+/// assert!(!inputs.is_empty());
+/// inputs.iter().for_each(|input| (target.run)(&input.bytes));
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
     /// Name of the target and of its folder in the corpus.

@@ -24,6 +24,15 @@ const NODES_MAX: usize = 1 << 16;
 const LOOKS_MAX: usize = 128 * TRIANGLES_MAX;
 
 /// Contents of a glTF file.
+///
+/// ```
+/// use luthier_mesh::{model, soup};
+///
+/// let file = soup(model::GLB, &|_| Err(std::io::ErrorKind::NotFound.into()))?;
+/// assert_eq!(file.soup.plain.len(), 1); // the floor
+/// assert!(file.soup.has_uv && file.left_out.is_empty());
+/// # Ok::<(), luthier_mesh::MeshError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct File {
     /// Its triangles.

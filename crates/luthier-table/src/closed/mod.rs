@@ -32,6 +32,14 @@ const REFINEMENTS: u32 = 10;
 /// albedo = 1 - loss, bias = albedo (1 - z)^5, scale = albedo - bias.
 ///
 /// Cosines and alphas below the floor are read as the floor.
+///
+/// ```
+/// use luthier_optics::{split_sum::Masking, stack::Distribution};
+/// use luthier_table::ClosedForm;
+///
+/// let fitted = ClosedForm::fit(Distribution::Ggx, Masking::SmithCorrelated, 0.05, 0.1, 0.1);
+/// assert!(fitted.held && fitted.form.error_at(0.5, 0.5) < 0.05);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedForm {
     /// Slope distribution.

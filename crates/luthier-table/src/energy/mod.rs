@@ -94,6 +94,15 @@ impl EnergyValue {
 }
 
 /// A table of energy compensation. Its fields state the table; the texels follow from them.
+///
+/// ```
+/// use luthier_table::{EnergyPreset, EnergyTable};
+///
+/// let cycles = EnergyPreset::named("cycles").unwrap();
+/// let table = EnergyTable { size: [4, 4, 1], ..cycles.tables(&cycles.files[0])[0].clone() };
+/// let texels = table.bake();
+/// assert!(texels.data.iter().all(|albedo| (0.0..=1.0).contains(albedo)));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyTable {
     /// Slope distribution.

@@ -10,6 +10,16 @@ use glam::DVec3;
 /// 0 m33], scaled so that the entry in the middle is 1. x points to the side of the viewer, z along the normal; the
 /// mirror direction therefore has a negative x. The determinant is positive. The integral of the density over all
 /// directions is 1.
+///
+/// ```
+/// use glam::DVec3;
+/// use luthier_table::Lobe;
+///
+/// assert!((Lobe::COSINE.pdf_solid_angle(DVec3::Z) - std::f64::consts::FRAC_1_PI).abs() < 1e-15);
+/// // A huge square overhead fills the cosine's hemisphere.
+/// let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(1e6 * x, 1e6 * y, 1.0));
+/// assert!((Lobe::COSINE.over_polygon(&corners) - 1.0).abs() < 1e-5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobe {
     /// Row 1, column 1 of the inverse.

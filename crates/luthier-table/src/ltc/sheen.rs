@@ -27,6 +27,14 @@ const AZIMUTHS: u32 = 48;
 /// Sheen is the reflection of a layer of fibres along the normal, of unit thickness and density, without absorption.
 /// The cross section of the fibres is the square of the roughness. The inverse matrix is [a 0 b; 0 a 0; 0 0 1], with x
 /// towards the side of the viewer.
+///
+/// ```
+/// use luthier_table::SheenTable;
+///
+/// let texels = SheenTable { size: [3, 3], ..SheenTable::of_engines() }.bake();
+/// let [grazing, normal] = [0, 2].map(|x| texels.texel(x, 2)[2]);
+/// assert!(grazing > normal); // sheen shows at grazing angles
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheenTable {
     /// Axes and nodes.

@@ -48,6 +48,17 @@ pub fn encode_levels(levels: &Levels<'_>, is_compressed: bool) -> Result<Vec<u8>
 }
 
 /// Texels of a map or a cube, level by level.
+///
+/// ```
+/// use luthier_lut::TexelFormat;
+/// use luthier_texture::ktx2::{Levels, encode_levels};
+///
+/// let levels = vec![vec![255; 16].into(), vec![255; 4].into()];
+/// let (format, metadata) = (TexelFormat::Rgba8Unorm, Vec::new());
+/// let file = encode_levels(&Levels { format, width: 2, height: 2, faces: 1, levels, metadata }, false)?;
+/// assert_eq!(file[40..44], 2_u32.to_le_bytes()); // levelCount of the header
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Levels<'a> {
     /// Format of the texels.

@@ -16,6 +16,15 @@ use crate::size::checked_bytes;
 use crate::{TextureError, png};
 
 /// A picture, and the statements of its file about it.
+///
+/// ```
+/// use luthier_texture::{Container, picture, png};
+///
+/// let decoded = picture::decode(&png::encode_rgb(1, 1, &[255, 0, 51])?)?;
+/// assert_eq!((decoded.container, decoded.picture.channels), (Container::Png, 3));
+/// assert_eq!(decoded.picture.stored(2), 0.2);
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decoded {
     /// Its samples, not linearised.

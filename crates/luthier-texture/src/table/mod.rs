@@ -17,6 +17,14 @@ use crate::texels::{Samples, TexelLayout};
 use crate::{TextureError, dds, exr, ktx2, png, radiance};
 
 /// A table as read from a file.
+///
+/// ```
+/// use luthier_texture::{Samples, table};
+///
+/// let table = table::raw(&[0, 255], 2, 1, 1, Samples::Unorm8)?;
+/// assert_eq!((table.image.data, table.format.as_str()), (vec![0.0, 1.0], "raw r8unorm"));
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// Its values, 1 to 4 channels in the order R, G, B, A.
