@@ -20,14 +20,14 @@ use crate::relief::ImageReader;
 use crate::search::{Planned, plan};
 use crate::settings::Settings;
 
-/// Tables, records and maps that a set of materials needs at run time.
+/// Tables, layer records and maps of a set of materials, ready for a shader.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baked {
     /// Atlases in binding order, at most one of each kind.
     pub atlases: Vec<Atlas>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
-    /// How the tables came by their sizes, mappings and formats, where these were searched for.
+    /// Reports of the searches for sizes, mappings and formats; empty where nothing was searched.
     pub searches: Vec<Search>,
 }
 
@@ -36,7 +36,7 @@ pub struct Baked {
 pub struct BakedMaterial {
     /// The reflectance model of its shader.
     pub model: ShadingModel,
-    /// How its tables came by their colour.
+    /// How the spectra in its tables became colours.
     pub color: ColorMode,
     /// Constants of the whole surface.
     pub constants: MaterialConstants,
@@ -47,7 +47,7 @@ pub struct BakedMaterial {
 }
 
 impl BakedMaterial {
-    /// Leaves every layer without tiles, as shaders have it that read no tables.
+    /// Removes the tile numbers of every layer, for shaders that read no tables.
     pub fn forget_tables(&mut self) {
         let bare = self.constants.patina.as_mut().map(|patina| &mut patina.bare);
         self.records.iter_mut().chain(bare).for_each(|record| record.tiles = Tiles::default());
@@ -55,11 +55,23 @@ impl BakedMaterial {
 }
 
 /// Outline of a bake: its tables, tiles and materials, without texels.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// let mut copy = glass.clone();
+/// copy.name = "copy".to_owned();
+/// let outline = luthier_bake::outline(&[glass, copy], &|_, _| Err("no images".into()))?;
+/// // Equal interfaces share a tile.
+/// assert_eq!((outline.materials.len(), outline.keys[0].len()), (2, 1));
+/// # Ok::<(), luthier_bake::BakeError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.
     pub tables: Vec<(TableKind, AtlasLayout, TexelFormat)>,
-    /// The job of each tile, table by table: where these and `tables` are the same, so are the texels.
+    /// Key of the job of each tile, table by table. Two outlines with equal keys and equal `tables` have equal texels.
     pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
@@ -67,8 +79,11 @@ pub struct Outline {
     pub searches: Vec<Search>,
 }
 
-/// The outline of a bake of these materials: each material with the tiles that serve it, and the layout and texel format of each table, in
-/// binding order. The outline takes little computing, unless a material has a budget, whose candidates must be measured, or lobes.
+/// The outline of a bake: each material with its tile numbers, and the layout and texel format of each table, in
+/// binding order.
+///
+/// An outline is cheap to compute, with two exceptions: a budget, whose candidates must be measured, and the model
+/// `lobes`, which must be fitted.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -76,7 +91,8 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
     outline_with(materials, &Options::default(), read_image, &MemoryStore::default())
 }
 
-/// [`outline`] with options and a store, as [`bake_with`] takes them; without a search and without fits nothing is computed.
+/// [`outline`] with options and a store, as [`bake_with`] takes them. Without a search and without fits, nothing is
+/// computed.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -98,16 +114,17 @@ pub fn outline_with(
     })
 }
 
-/// The layers whose Fresnel rows would miss [`AIM`] in a bake of this material alone, and by how much they are off: those of interfaces that reflect
-/// totally what arrives flat, and of which no row over any cosine is smooth. Others are not looked at.
+/// Numbers and errors of the layers whose Fresnel rows would miss [`AIM`] in a bake of this material alone.
+///
+/// Only interfaces that reflect grazing light totally are looked at, and of these only the ones with a kink at the
+/// critical angle: no choice of axis makes their rows smooth.
 ///
 /// # Errors
 /// See [`BakeError`].
 pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<Vec<(usize, f64)>, BakeError> {
-    let is_kinked = |layer: usize| {
-        Interface::of(&material.reflecting_stack(), layer).is_some_and(|i| i.has_kink(&material.color()))
-    };
-    let layers: Vec<usize> = (0..material.stack.layers.len()).filter(|&layer| is_kinked(layer)).collect();
+    let (stack, color) = (material.reflecting_stack(), material.color());
+    let layers = (0..stack.layers.len()).filter(|&i| Interface::of(&stack, i).is_some_and(|i| i.has_kink(&color)));
+    let layers: Vec<usize> = layers.collect();
     let materials = std::slice::from_ref(material);
     if layers.is_empty() || !budget(materials, &Budget::default())?.of_texels().is_empty() {
         return Ok(Vec::new());
@@ -123,22 +140,22 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
         results,
     )?;
     let rows = &plan.tiles[TableKind::Fresnel as usize].tiles;
-    let error = |layer: usize| {
+    let errors = layers.into_iter().filter_map(|layer| {
         let (_, key) = rows.get(plan.records[0].layers[layer].tiles[TableKind::Fresnel]? as usize)?;
         Some((layer, results.find(*key)?.error.max_abs_err))
-    };
-    Ok(layers.into_iter().filter_map(error).filter(|(_, error)| *error > AIM).collect())
+    });
+    Ok(errors.filter(|(_, error)| *error > AIM).collect())
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
 ///
 /// # Errors
-/// See [`BakeError`]. Nothing depends on the number of threads of the current rayon pool but the time it takes.
+/// See [`BakeError`]. The number of threads of the current rayon pool changes the time taken and nothing else.
 pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Baked, BakeError> {
     bake_with(materials, &Options::default(), read_image, observer, &MemoryStore::default())
 }
 
-/// [`bake`] with options. What the store has is not computed again; what is computed goes into it.
+/// [`bake`] with options. Results that the store holds are not computed again; new results go into the store.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -155,10 +172,10 @@ pub fn bake_with(
     let Plan { settings, graph, tiles, records } = plan;
     let mut results = graph.run(observer, store, results)?;
     let is_asked = !options.search || !budget(materials, &options.budget)?.of_texels().is_empty();
-    let aim = |kind: TableKind| (!is_asked && is_left(&settings, kind)).then_some(AIM);
     let mut atlases = Vec::with_capacity(layouts.len());
     for (kind, layout, format) in layouts {
-        atlases.push(atlas(kind, layout, format, &tiles[kind as usize], &mut results, aim(kind)));
+        let aim = (!is_asked && is_left(&settings, kind)).then_some(AIM);
+        atlases.push(atlas(kind, layout, format, &tiles[kind as usize], &mut results, aim));
     }
     Ok(Baked { atlases, materials: baked_materials(materials, records, &settings, &results), searches })
 }
@@ -169,18 +186,16 @@ fn baked_materials(
     settings: &Settings,
     results: &Results,
 ) -> Vec<BakedMaterial> {
-    let lobes = |m: &Material| m.model().is_fitted().then(|| lobes::record(m, settings, results));
-    let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
-        model: m.model(),
-        color: color_mode(m),
-        constants: constants(m, planned.bare, lobes(m)),
-        records: planned.layers,
-        maps: maps(m),
-    };
-    materials.par_iter().zip(records).map(baked).collect()
+    let baked = materials.par_iter().zip(records).map(|(m, planned)| {
+        let lobes = m.model().is_fitted().then(|| lobes::record(m, settings, results));
+        let (constants, color) = (constants(m, planned.bare, lobes), color_mode(m));
+        BakedMaterial { model: m.model(), color, constants, records: planned.layers, maps: maps(m) }
+    });
+    baked.collect()
 }
 
-/// The atlas of the tiles of a kind, whose results are forgotten one by one: of many materials they are as large as the atlas.
+/// The atlas of the tiles of a kind. Each result is forgotten once it is copied: the results of many materials take as
+/// much memory as the atlas.
 fn atlas(
     kind: TableKind,
     layout: AtlasLayout,
@@ -212,7 +227,8 @@ fn atlas(
     Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }
 }
 
-/// Copies the bytes of a tile, so many texels across, into those of an atlas of this width, a row of texels or blocks at a time.
+/// Copies the bytes of a tile that is `across` texels wide into those of an atlas of this width, a row of texels or
+/// blocks at a time.
 fn place_bytes(atlas: &mut [u8], width: u32, format: TexelFormat, [x, y]: [u32; 2], across: u32, bytes: &[u8]) {
     let [row, pitch, left] = [across, width, x].map(|texels| format.row_bytes(texels) as usize);
     let top = (y / format.block_side()) as usize;

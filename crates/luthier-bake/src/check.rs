@@ -7,7 +7,7 @@ use luthier_material::Material;
 use crate::options::{Options, budget};
 use crate::{BakeError, planner};
 
-/// Refuses a set of materials for its names, settings and limits before anything is computed. Images are not read.
+/// Refuses a set of materials for its names, settings and limits, before anything is computed. Images are not read.
 ///
 /// # Errors
 /// All that is wrong, at least one.

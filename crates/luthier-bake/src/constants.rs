@@ -9,7 +9,7 @@ use luthier_optics::stack::Stack;
 
 use crate::veil::veil;
 
-/// The constants of a material; `bare` is the layer below its patina, `lobes` are those that were fitted.
+/// The constants of a material. `bare` is the record of the layer below its patina, `lobes` the fitted numbers.
 pub(crate) fn constants(
     material: &Material,
     bare: Option<LayerRecord>,
@@ -33,7 +33,7 @@ pub(crate) fn constants(
     }
 }
 
-/// One lobe has one exponent: that of the green wavelength.
+/// Exponent of the one lobe of all channels, at the green wavelength.
 fn exponent(stack: &Stack, [_, green_nm, _]: [f64; 3]) -> f64 {
     Coefficients::of(&Monochrome::new(stack, green_nm, 1)).exponent
 }

@@ -6,6 +6,15 @@ use luthier_material::Diagnostic;
 use thiserror::Error;
 
 /// Why a set of materials cannot be baked.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// let errors = luthier_bake::check(&[glass.clone(), glass], &Default::default()).unwrap_err();
+/// assert!(errors[0].to_string().starts_with("two materials are named `glass`"));
+/// assert_eq!(errors[0].place(), Some((1, "name")));
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BakeError {
@@ -96,7 +105,8 @@ pub enum BakeError {
         reason: String,
         /// The limit that would be met.
         hint: String,
-        /// The material that breaks it, or that states it: at the limit, or else at the layer. Empty where options alone have a limit on the whole bake.
+        /// Marks the material that breaks the limit, or that states it: at the key of the limit, else at the layer.
+        /// Empty for limits on the whole bake that come from options alone.
         diagnostics: Vec<Diagnostic>,
     },
     /// A limit that means nothing.
@@ -130,7 +140,7 @@ pub enum BakeError {
 }
 
 impl BakeError {
-    /// The material, by its number, and the key of its file that the error is about, as in [`luthier_material::Places`].
+    /// Number of the material at fault, and the key in its file, as in [`luthier_material::Places`].
     pub fn place(&self) -> Option<(usize, &str)> {
         match self {
             Self::DuplicateName { material, .. } => Some((*material, "name")),

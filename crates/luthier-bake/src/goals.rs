@@ -1,4 +1,4 @@
-//! Errors and sizes that searches reach against the fixed tables of the literature, for `docs/pages/budgets.md`.
+//! Figures for `docs/pages/budgets.md`: errors and sizes of searched tables against the fixed tables of the literature.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use crate::candidates::{Found, WEIGHTS, choose, measured};
 use crate::graph::{MemoryStore, Results, Silent};
 use crate::kinds::distribution::DistributionJob;
+use crate::kinds::distribution::search::axes;
 use crate::kinds::fgd::{FgdJob, FgdTruth};
 use crate::kinds::fresnel::search::{self as fresnel, FORMATS, Truth};
 use crate::kinds::fresnel::{FresnelJob, RowShape};
@@ -27,7 +28,8 @@ use crate::{BakeError, planner};
 /// Bytes of Elek's rows: 128 texels of three bytes.
 pub const ROW_BYTES: u64 = 384;
 
-/// Rows in a format that devices of core WebGPU may lack, for comparison: a material may ask for it, no search takes it.
+/// Rows in a format that devices of core WebGPU may lack, for comparison. A material may request it; no search takes
+/// it.
 const BEYOND_CORE: [(RowBase, TexelFormat); 2] =
     [(RowBase::Zero, TexelFormat::Rgba16Unorm), (RowBase::Schlick, TexelFormat::Rgba16Unorm)];
 
@@ -36,22 +38,23 @@ const BEYOND_CORE: [(RowBase, TexelFormat); 2] =
 pub struct RowGoal {
     /// Name of the tile.
     pub name: String,
-    /// Elek's: 128 texels, uniform in the cosine, RGB of 8 bits, values as they are at the nodes.
+    /// Error of Elek's row: 128 texels, uniform in the cosine, RGB of 8 bits, node values not adjusted for
+    /// interpolation.
     pub elek: f64,
-    /// The row of [`Goals::row`].
+    /// Error of the row of [`Goals::row`].
     pub found: f64,
 }
 
-/// The least gain of a family of rows within [`ROW_BYTES`], at its best mapping.
+/// A family of rows within [`ROW_BYTES`] at its best mapping, and its least gain over Elek's rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Family {
     /// Base below the texels.
     pub base: RowBase,
     /// Format of the texels.
     pub format: TexelFormat,
-    /// The axis of the best.
+    /// Axis of the best row.
     pub axis: Axis,
-    /// Elek's error over this row's, the least of all interfaces that reflect anything.
+    /// Elek's error over the error of this row: the least ratio of all interfaces that reflect anything.
     pub least_gain: f64,
 }
 
@@ -62,14 +65,14 @@ pub struct AlbedoGoal {
     pub name: String,
     /// Error as sampled, against the function at the points of the scan.
     pub sampled: f64,
-    /// Error of the function itself: light that crossed, wavelengths left out.
+    /// Uncertainty of the function itself, from crossed light and left-out wavelengths.
     pub uncertainty: f64,
 }
 
-/// A way to have D, and its largest error over the peak, Beckmann and GGX, for m in 0.001..1 and all angles.
+/// A representation of D, and its largest error over the peak for Beckmann and GGX, at all angles and m in 0.001..1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistributionGoal {
-    /// Name of the way.
+    /// Name of the representation.
     pub name: &'static str,
     /// Bytes for one distribution.
     pub bytes: u64,
@@ -80,7 +83,7 @@ pub struct DistributionGoal {
 /// Candidate that a budget on Fresnel rows alone chooses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// `max_abs`.
+    /// The budget `max_abs`.
     pub max_abs: f64,
     /// Candidate that the budget chooses, or words on the nearest.
     pub chosen: Result<Candidate, String>,
@@ -89,17 +92,17 @@ pub struct Step {
 /// All goals of `docs/pages/budgets.md`, as measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {
-    /// The rows within [`ROW_BYTES`] whose least gain is largest.
+    /// The family with the largest least gain, within [`ROW_BYTES`].
     pub row: Family,
     /// Errors of these rows.
     pub rows: Vec<RowGoal>,
-    /// The best of each base and format.
+    /// The best row of each base and format.
     pub families: Vec<Family>,
-    /// Budgets on rows.
+    /// Choices for a row of budgets.
     pub steps: Vec<Step>,
     /// Albedo tiles.
     pub albedos: Vec<AlbedoGoal>,
-    /// Ways to have D.
+    /// Representations of D.
     pub distributions: Vec<DistributionGoal>,
 }
 
@@ -117,19 +120,19 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .into_par_iter()
         .filter_map(|(base, format)| {
             let size = (ROW_BYTES / u64::from(format.texel_bytes())) as u32 - base.header_texels();
-            let family = |mapping: Mapping| {
+            // The fitted maps: exponents in twentieths from 1 to 4, bends in twentieths to 1.
+            let powers = (20..=80).map(|e| Mapping::Power { exponent: f64::from(e) / 20.0 });
+            let bends = (1..=20).map(|b| Mapping::Rational { bend: f64::from(b) / 20.0 });
+            let families = powers.chain(bends).map(|mapping| {
                 let shape = RowShape { axis: axis("cos_theta", "", [0.0, 1.0], size, mapping), format, base };
                 let gains = rows.iter().zip(&elek).filter(|(_, elek)| **elek > 0.0);
                 let gains = gains.map(|(truth, elek)| elek / truth.error(&shape, false).max_abs);
                 Family { base, format, least_gain: gains.fold(f64::INFINITY, f64::min), axis: shape.axis }
-            };
-            // The fitted maps: exponents in twentieths from 1 to 4, bends in twentieths to 1.
-            let powers = (20..=80).map(|e| Mapping::Power { exponent: f64::from(e) / 20.0 });
-            let bends = (1..=20).map(|b| Mapping::Rational { bend: f64::from(b) / 20.0 });
-            powers.chain(bends).map(family).reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
+            });
+            families.reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
         })
         .collect();
-    // What ships is of core WebGPU.
+    // Only formats of core WebGPU ship.
     let core = families.iter().filter(|f| !BEYOND_CORE.contains(&(f.base, f.format)));
     let best = core.cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });
     let Some(row) = best else { return Err(BakeError::Empty) };
@@ -138,7 +141,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .iter()
         .zip(&elek)
         .filter_map(|((name, key), &elek)| {
-            // As the bake would measure it.
+            // Measured as the bake does, with a climb to the worst point.
             let job: &FresnelJob = plan.graph.get(*key)?;
             let found = FresnelJob { shape: shape.clone(), ..job.clone() }.tile().error.max_abs_err;
             Some(RowGoal { name: name.clone(), elek, found })
@@ -194,7 +197,7 @@ fn albedos(plan: &Plan, results: &Results) -> Vec<AlbedoGoal> {
     goals.collect()
 }
 
-/// The error of a tile on the grid where it is computed, without what the function may be off itself.
+/// The error of a tile on the grid of its computation, without the uncertainty of the function itself.
 fn sampled_error(truth: &FgdTruth, grid: &[Axis; 2]) -> MeasuredError {
     let atlas = lone_tile(TableKind::Fgd, &[&grid[0], &grid[1]], TexelFormat::Rgba16Float, &truth.image);
     let points = truth.probes.iter().map(|(at, value)| (at, *value));
@@ -202,28 +205,29 @@ fn sampled_error(truth: &FgdTruth, grid: &[Axis; 2]) -> MeasuredError {
 }
 
 fn distributions() -> Vec<DistributionGoal> {
-    let angle = |exponent, size| axis("theta_h", "rad", [0.0, FRAC_PI_2], size, Mapping::Power { exponent });
-    let log = |size| axis("alpha", "", [ALPHA_MIN, 1.0], size, Mapping::Logarithmic);
-    let linear = axis("alpha", "", [0.0, 1.0], 512, Mapping::Linear);
-    let of = |name, axes: [Axis; 2], format: TexelFormat| {
-        let bytes = u64::from(axes[0].size) * u64::from(axes[1].size) * u64::from(format.texel_bytes());
-        let error = |distribution| table_error(&DistributionJob { distribution, axes: axes.clone(), format });
-        DistributionGoal { name, bytes, errors: [error(Distribution::Beckmann), error(Distribution::Ggx)] }
-    };
-    let slopes = |name, size: u32| DistributionGoal {
-        name,
-        bytes: 4 * u64::from(size),
-        errors: [Distribution::Beckmann, Distribution::Ggx].map(|d| slope_row_error(d, size)),
-    };
+    let [angle, _] = axes(8.0, 512);
+    let linear = [angle, axis("alpha", "", [0.0, 1.0], 512, Mapping::Linear)];
     vec![
-        of("u^8, linear m, 512 x 512 halves (Elek)", [angle(8.0, 512), linear], TexelFormat::R16Float),
-        of("u^8, log m, 512 x 512 split roots (fixed default)", [angle(8.0, 512), log(512)], TexelFormat::Rg16Float),
-        of("u^8, log m, 128 x 128 split roots", [angle(8.0, 128), log(128)], TexelFormat::Rg16Float),
-        of("u^4, log m, 128 x 128 split roots", [angle(4.0, 128), log(128)], TexelFormat::Rg16Float),
-        slopes("row over tan/(m + tan), 256 split roots", 256),
-        slopes("row over tan/(m + tan), 4096 split roots", 4096),
+        table_goal("u^8, linear m, 512 x 512 halves (Elek)", linear, TexelFormat::R16Float),
+        table_goal("u^8, log m, 512 x 512 split roots (fixed default)", axes(8.0, 512), TexelFormat::Rg16Float),
+        table_goal("u^8, log m, 128 x 128 split roots", axes(8.0, 128), TexelFormat::Rg16Float),
+        table_goal("u^4, log m, 128 x 128 split roots", axes(4.0, 128), TexelFormat::Rg16Float),
+        row_goal("row over tan/(m + tan), 256 split roots", 256),
+        row_goal("row over tan/(m + tan), 4096 split roots", 4096),
         DistributionGoal { name: "closed form (chosen)", bytes: 0, errors: [0.0; 2] },
     ]
+}
+
+fn table_goal(name: &'static str, axes: [Axis; 2], format: TexelFormat) -> DistributionGoal {
+    let bytes = u64::from(axes[0].size) * u64::from(axes[1].size) * u64::from(format.texel_bytes());
+    let errors = [Distribution::Beckmann, Distribution::Ggx]
+        .map(|distribution| table_error(&DistributionJob { distribution, axes: axes.clone(), format }));
+    DistributionGoal { name, bytes, errors }
+}
+
+fn row_goal(name: &'static str, size: u32) -> DistributionGoal {
+    let errors = [Distribution::Beckmann, Distribution::Ggx].map(|distribution| slope_row_error(distribution, size));
+    DistributionGoal { name, bytes: 4 * u64::from(size), errors }
 }
 
 /// Angles and logarithms of m at which tables of D are compared with it.
@@ -254,7 +258,8 @@ fn table_error(job: &DistributionJob) -> f64 {
     peak_error(job.distribution, |theta, m| atlas.sample(0, [theta, m], WEIGHTS)[0])
 }
 
-/// D of Beckmann and of GGX scales: `pi m^2 D cos^4` depends on tan/m alone. A row of its sixteenth root, and the division by `cos^4` in the shader.
+/// Error of a row of slopes. D of Beckmann and of GGX scales: `pi m^2 D cos^4` depends on tan/m alone. The row holds
+/// its sixteenth root, and the shader divides by `cos^4`.
 fn slope_row_error(distribution: Distribution, size: u32) -> f64 {
     let encoding = Encoding::SplitSixteenthRoot;
     let mut row = Image::zeros(size, 1, 1);

@@ -3,7 +3,7 @@
 use luthier_lut::{Axis, Image};
 use luthier_optics::interpolation::cubic_stencil;
 
-/// The image of a function at other nodes: cubic between those of a grid.
+/// Image of a function at other nodes, by cubics between the nodes of a grid.
 pub(crate) fn resampled(image: &Image, grid: &[Axis; 2], axes: &[Axis; 2]) -> Image {
     let mut out = Image::zeros(axes[0].size, axes[1].size, image.channels);
     for j in 0..axes[1].size {
@@ -16,7 +16,7 @@ pub(crate) fn resampled(image: &Image, grid: &[Axis; 2], axes: &[Axis; 2]) -> Im
     out
 }
 
-/// Cubics through the four nearest nodes along each axis (Lagrange); on a node its value.
+/// Value by cubics through the four nearest nodes along each axis (Lagrange). A node returns its own value.
 pub(crate) fn cubic(image: &Image, grid: &[Axis; 2], values: [f64; 2]) -> [f64; 4] {
     let [(i, x), (j, y)] = [0, 1].map(|k: usize| cubic_stencil(grid[k].index(values[k]), grid[k].size as usize));
     let mut out = [0.0; 4];

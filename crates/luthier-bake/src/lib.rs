@@ -3,17 +3,17 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! [`bake`] plans one job per distinct table tile, runs the graph on the rayon pool, and assembles one atlas per kind with
-//! the layer records that refer to its tiles. A job is a pure function of its inputs; its [`Key`] is the hash of these, so
-//! equal interfaces of different materials share a tile, and the bytes depend on nothing else: not on threads, build
-//! profile or platform.
+//! [`bake`] plans one job per distinct table tile, runs the graph on the rayon pool, and assembles one atlas per kind.
+//! Layer records refer to the tiles by number. A job is a pure function of its inputs; its [`Key`] is the hash of
+//! these. Equal interfaces of different materials therefore share a tile, and the bytes depend on neither threads,
+//! build profile nor platform.
 //!
-//! Simplifications: albedos are tabulated at the nominal thickness of films, reflectances over all of their thickness where it
-//! varies; anisotropic surfaces enter with the geometric mean of their slope parameters, except in lobes.
+//! Simplifications: albedos are tabulated at the nominal thickness of a film, reflectances over its whole range of
+//! thickness. Anisotropic surfaces enter with the geometric mean of their slope parameters, except in lobes.
 //!
 //! # Rooms
 //!
-//! Each uses those above it, none below.
+//! Each room uses those above it, none below.
 //!
 //! - `error`, `json`, `grid`, `tile`: refusals, the text of keys, functions on grids, tiles.
 //! - `graph`: jobs, their results, and stores of these.

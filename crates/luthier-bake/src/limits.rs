@@ -4,7 +4,7 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, MATERIAL_WORDS, SIDE, SIDE_MAX};
 
 use crate::BakeError;
-use crate::plan::{Plan, PlannedLayers, TileList};
+use crate::plan::{Plan, PlannedLayers};
 use crate::settings::Shape;
 use crate::tile::apron;
 
@@ -15,13 +15,13 @@ pub(crate) fn check_buffer(records: &[PlannedLayers]) -> Result<(), BakeError> {
     if words > BUFFER_WORDS_MAX { Err(BakeError::TooManyLayers { materials, layers, words }) } else { Ok(()) }
 }
 
-/// Number of tiles of a size that a texture holds side by side and one below the other, if its sides are at most so long.
+/// Number of tiles across and down in a texture with sides of at most `side` texels.
 fn grid(tile: [u32; 2], side: u32) -> [u32; 2] {
     tile.map(|texels| side / texels)
 }
 
-/// Tiles of a layout side by side: one column while they fit into [`SIDE`], else as many as it takes, then into longer sides.
-/// None where no texture holds them.
+/// Number of columns of a layout's tiles: one while they fit into [`SIDE`], else as many as needed, then in longer
+/// sides. None where no texture holds them.
 pub(crate) fn columns(layout: &AtlasLayout) -> Option<u32> {
     let sides = std::iter::successors(Some(SIDE), |side| (*side < SIDE_MAX).then_some(side * 2));
     sides.into_iter().find_map(|side| {
@@ -49,7 +49,7 @@ pub(crate) fn too_many_tiles(kind: TableKind, layout: &AtlasLayout) -> BakeError
 
 /// Kind, layout and texel format of each table of a plan, in binding order.
 pub(crate) fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
-    let layout = |(kind, tiles): (TableKind, &TileList)| {
+    let layouts = plan.used().filter_map(|(kind, tiles)| {
         let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
         let (apron, count) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
         let layout = AtlasLayout { x, y, apron, columns: 1, tiles: count, base };
@@ -58,8 +58,8 @@ pub(crate) fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelF
             Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
             None => Err(too_many_tiles(kind, &layout)),
         })
-    };
-    plan.used().filter_map(layout).collect()
+    });
+    layouts.collect()
 }
 
 #[cfg(test)]

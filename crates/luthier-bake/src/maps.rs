@@ -16,20 +16,29 @@ const NOISE_SIDE: u32 = 256;
 pub struct MaterialMap {
     /// Quantity that the map varies.
     pub slot: MapSlot,
-    /// The layer that it is of; `None` for those of the whole surface.
+    /// Number of the layer; `None` for maps of the whole surface.
     pub layer: Option<u32>,
-    /// Where it comes from.
+    /// Source of its values.
     pub source: MapSource,
-    /// Number of the file that it multiplies, see [`luthier_manifest::MapEntry`].
+    /// Constant of the material file that the map multiplies, see [`luthier_manifest::MapEntry`].
     pub factor: Option<[f64; 3]>,
 }
 
-/// Where a map comes from.
+/// Source of the values of a map.
+///
+/// ```
+/// use luthier_bake::MapSource;
+///
+/// let noise = MapSource::Noise { seed: 7, frequency: 4.0, octaves: 3 };
+/// let texels = noise.texels().expect("noise has texels");
+/// assert!(texels.data.iter().all(|value| (0.0..=1.0).contains(value)));
+/// assert!(noise.label().contains("seed 7"));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum MapSource {
     /// A picture and the meaning of its texels.
     Picture(PictureRef, TexelUse),
-    /// Heights in a picture: normals are made of them.
+    /// Heights in a picture, from which normals are made.
     Heights {
         /// The picture.
         picture: PictureRef,
@@ -65,27 +74,27 @@ impl MapSource {
         let relief = Relief::Noise { seed, frequency, octaves };
         let field = Field::new(&relief, [NOISE_SIDE; 2]);
         let mut image = Image::zeros(NOISE_SIDE, NOISE_SIDE, 1);
-        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(NOISE_SIDE);
         for j in 0..NOISE_SIDE {
             for i in 0..NOISE_SIDE {
-                image.texel_mut(i, j)[0] = field.unit([at(i), at(j)]) as f32;
+                let uv = [i, j].map(|texel| (f64::from(texel) + 0.5) / f64::from(NOISE_SIDE));
+                image.texel_mut(i, j)[0] = field.unit(uv) as f32;
             }
         }
         Some(image)
     }
 }
 
-/// Normals of a height field that repeats, in RGB as [`MapSlot::Normal`] has them, in steps of 1/255 as a PNG holds them. `height` is that of
-/// white, as a share of the width.
+/// Normals of a periodic height field, in RGB as [`MapSlot::Normal`] stores them, rounded to steps of 1/255 as in a
+/// PNG. `height` is the height of white, as a share of the width.
 pub fn height_normals(heights: &Image, height: f64) -> Image {
     let (width, rows) = (heights.width, heights.height);
     // Texels are square.
     let side = 1.0 / f64::from(width);
     let mut normals = Image::zeros(width, rows, 3);
-    let at = |x: u32, y: u32| height * f64::from(heights.texel(x % width, y % rows)[0]);
     for y in 0..rows {
         for x in 0..width {
-            let neighbours = [at(x + width - 1, y), at(x + 1, y), at(x, y + rows - 1), at(x, y + 1)];
+            let neighbours = [[x + width - 1, y], [x + 1, y], [x, y + rows - 1], [x, y + 1]];
+            let neighbours = neighbours.map(|[x, y]| height * f64::from(heights.texel(x % width, y % rows)[0]));
             let normal = Flakes::of_heights(neighbours, [side; 2]).to_array();
             let texel = normal.map(|c| ((0.5 + 0.5 * c) * 255.0).round() as f32 / 255.0);
             normals.texel_mut(x, y).copy_from_slice(&texel);
@@ -96,12 +105,6 @@ pub fn height_normals(heights: &Image, height: f64) -> Image {
 
 /// The maps of a material: layers from the top down, then effects.
 pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
-    let picture = |slot, layer, picture: &PictureRef, texels| MaterialMap {
-        slot,
-        layer,
-        source: MapSource::Picture(picture.clone(), texels),
-        factor: None,
-    };
     let mut maps = Vec::new();
     for (i, layer) in material.layers.iter().enumerate() {
         let albedo = match &material.stack.layers[i].base {
@@ -109,31 +112,30 @@ pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
             _ => None,
         };
         maps.extend(layer.maps.named().map(|map| MaterialMap {
+            slot: map.slot,
+            layer: Some(i as u32),
+            source: MapSource::Picture(map.picture.clone(), map.texels()),
             factor: match map.slot {
                 MapSlot::Albedo => albedo,
                 MapSlot::BaseColor => layer.metallic.map(|surface| surface.base_color),
                 MapSlot::Metallic => layer.metallic.map(|surface| [surface.metallic; 3]),
                 _ => None,
             },
-            ..picture(map.slot, Some(i as u32), map.picture, map.texels())
         }));
     }
-    match material.effects.flakes.as_ref().map(|flakes| &flakes.source) {
-        Some(FlakeSource::NormalMap(normals)) => {
-            maps.push(picture(MapSlot::FlakeNormal, None, normals, TexelUse::Normal));
+    let flakes = material.effects.flakes.as_ref().and_then(|flakes| match &flakes.source {
+        FlakeSource::NormalMap(normals) => Some(MapSource::Picture(normals.clone(), TexelUse::Normal)),
+        FlakeSource::HeightMap { picture, height } => {
+            Some(MapSource::Heights { picture: picture.clone(), height: *height })
         }
-        Some(FlakeSource::HeightMap { picture, height }) => {
-            let source = MapSource::Heights { picture: picture.clone(), height: *height };
-            maps.push(MaterialMap { slot: MapSlot::FlakeNormal, layer: None, source, factor: None });
-        }
-        Some(FlakeSource::Cells { .. }) | None => {}
-    }
-    if let Some(patina) = &material.effects.patina {
-        let source = match &patina.map {
-            VariationSource::Image(picture) => MapSource::Picture(picture.clone(), TexelUse::Number),
-            &VariationSource::Noise { seed, frequency, octaves } => MapSource::Noise { seed, frequency, octaves },
-        };
-        maps.push(MaterialMap { slot: MapSlot::Patina, layer: None, source, factor: None });
+        FlakeSource::Cells { .. } => None,
+    });
+    let patina = material.effects.patina.as_ref().map(|patina| match &patina.map {
+        VariationSource::Image(picture) => MapSource::Picture(picture.clone(), TexelUse::Number),
+        &VariationSource::Noise { seed, frequency, octaves } => MapSource::Noise { seed, frequency, octaves },
+    });
+    for (slot, source) in [(MapSlot::FlakeNormal, flakes), (MapSlot::Patina, patina)] {
+        maps.extend(source.map(|source| MaterialMap { slot, layer: None, source, factor: None }));
     }
     maps
 }

@@ -1,4 +1,4 @@
-//! How a bake is to be made, beside what the materials say.
+//! Options of a bake, beside the settings of its materials.
 
 use luthier_lut::{FormatSet, RowBase, TexelFormat};
 use luthier_manifest::{Budget, Decision};
@@ -6,19 +6,32 @@ use luthier_material::Material;
 
 use crate::BakeError;
 
-/// How a bake is to be made, beside what the materials say.
+/// Options of a bake, beside the settings of its materials.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// use luthier_bake::{MemoryStore, Options, outline_with};
+///
+/// let options = Options { search: false, ..Options::default() };
+/// let outline = outline_with(&[glass], &options, &|_, _| Err("no images".into()), &MemoryStore::default())?;
+/// let (_, rows, _) = &outline.tables[0]; // Fresnel rows
+/// assert_eq!((rows.x.size, outline.searches.len()), (128, 0));
+/// # Ok::<(), luthier_bake::BakeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options<'a> {
-    /// Limits, each in place of those that materials state.
+    /// Limits. Each replaces the limit of the materials.
     pub budget: Budget,
-    /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
-    /// are not looked at.
+    /// Whether to search for the sizes, mappings and formats that no material decides. Without a search they are fixed
+    /// defaults, and budgets do not count.
     pub search: bool,
-    /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
+    /// Base and format of Fresnel rows, in place of a search. Size and axis come from the materials, or are fixed.
     pub rows: Option<(RowBase, TexelFormat)>,
-    /// Texel formats that a search may take; those of core WebGPU unless the target is known.
+    /// Texel formats that a search may take: the formats of core WebGPU, unless the target is known.
     pub formats: FormatSet,
-    /// Whether an outline fits lobes, which takes seconds: their number decides tables and shaders. A bake always does.
+    /// Whether an outline fits lobes, whose number decides tables and shaders. A fit takes seconds; a bake always fits.
     pub fits: bool,
     /// Decisions of an earlier search, which stay as long as they hold the budget.
     pub locked: &'a [Decision],
@@ -30,10 +43,10 @@ impl Default for Options<'_> {
     }
 }
 
-/// The limits of the materials, the tightest of each; those of the options in their place.
+/// The tightest limits of the materials; a limit of the options replaces them.
 ///
 /// # Errors
-/// [`BakeError::BudgetValue`] of a limit that means nothing.
+/// [`BakeError::BudgetValue`] of a limit that is not a positive number.
 pub(crate) fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
     let stated = materials.iter().map(|material| material.budget).fold(Budget::default(), |a, b| a.tighter(&b));
     let budget = Budget {

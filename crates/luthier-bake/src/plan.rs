@@ -13,12 +13,12 @@ use crate::settings::Settings;
 pub(crate) struct TileList {
     pub(crate) tiles: Vec<(String, Key)>,
     numbers: BTreeMap<Key, u32>,
-    /// Whether look-ups mix tiles that follow each other, which are then one below the other.
+    /// Whether look-ups mix successive tiles, which then lie one below the other.
     pub(crate) has_runs: bool,
 }
 
 impl TileList {
-    /// The number of a tile, which is new unless it is there already.
+    /// The number of a tile: a new one, unless its key is known.
     pub(crate) fn tile(&mut self, key: Key, name: String) -> u32 {
         *self.numbers.entry(key).or_insert_with(|| {
             self.tiles.push((name, key));
@@ -42,7 +42,7 @@ pub(crate) struct Plan {
 #[derive(Debug)]
 pub(crate) struct PlannedLayers {
     pub(crate) layers: Vec<LayerRecord>,
-    /// The layer below a patina where none has grown.
+    /// The layer below a patina, as it is without patina.
     pub(crate) bare: Option<LayerRecord>,
 }
 
@@ -58,7 +58,7 @@ impl Plan {
         tiles.filter_map(|(tile, (_, key))| Some((tile, self.graph.get(*key)?)))
     }
 
-    /// The first that reads a tile: numbers of the material and of the layer.
+    /// The first reader of a tile: numbers of the material and of the layer.
     pub(crate) fn reader(&self, kind: TableKind, tile: u32) -> Option<(usize, Option<usize>)> {
         self.records.iter().enumerate().find_map(|(number, PlannedLayers { layers, bare })| {
             let layer = layers.iter().position(|layer| layer.tiles[kind] == Some(tile));

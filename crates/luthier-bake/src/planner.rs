@@ -16,12 +16,12 @@ use crate::relief::ImageReader;
 use crate::settings::{Ask, Asked, Settings};
 use crate::{BakeError, limits};
 
-/// How the tables of a material come by their colour: spectrally, unless its file asks otherwise.
+/// How the tables of a material turn spectra into colours: spectrally, unless its file asks otherwise.
 pub(crate) fn color_mode(material: &Material) -> ColorMode {
     material.bake.color.unwrap_or_default()
 }
 
-/// Materials that are planned side by side: few beside all that a large bake has.
+/// Number of materials that are planned at once. It bounds memory: a large bake has many more.
 const SIDE_BY_SIDE: usize = 256;
 
 /// The plan of one material.
@@ -46,16 +46,16 @@ struct Wanted {
 enum Reader {
     /// The record of a layer.
     Layer(usize),
-    /// The record of the layer below a patina where none has grown.
+    /// The record of the layer below a patina, as it is without patina.
     Bare,
-    /// A look-up in the tile before.
+    /// A look-up in the tile before it.
     Run,
 }
 
-/// The settings that the materials ask for, where they agree, and fixed defaults for the rest.
+/// The settings on which the materials agree, and fixed defaults for the rest.
 ///
 /// # Errors
-/// [`BakeError::Conflict`] where they do not.
+/// [`BakeError::Conflict`] where materials ask for different values.
 pub(crate) fn settings(materials: &[Material]) -> Result<Settings, BakeError> {
     let mut fixed = Vec::with_capacity(TableKind::ALL.len());
     for kind in TableKind::ALL {
@@ -75,9 +75,8 @@ pub(crate) fn settings(materials: &[Material]) -> Result<Settings, BakeError> {
 pub(crate) fn plan(materials: &[Material], settings: Settings, read_image: ImageReader<'_>) -> Result<Plan, BakeError> {
     let mut plan = Plan { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
     for materials in materials.chunks(SIDE_BY_SIDE) {
-        let part = |material: &Material| Part::new(material, &plan.settings, read_image);
-        let parts: Vec<Result<Part, BakeError>> = materials.par_iter().map(part).collect();
-        for part in parts {
+        let parts = materials.par_iter().map(|material| Part::new(material, &plan.settings, read_image));
+        for part in parts.collect::<Vec<Result<Part, BakeError>>>() {
             part?.enter(&mut plan);
         }
     }
@@ -96,7 +95,7 @@ impl Part {
             match reader {
                 Reader::Layer(i) => layers[i].tiles[kind] = tile,
                 Reader::Bare => bare.iter_mut().for_each(|record| record.tiles[kind] = tile),
-                // The jobs of a run are those of no other material, or all of another's: their tiles follow each other.
+                // Two materials share all jobs of a run or none: its tiles follow each other.
                 Reader::Run => list.has_runs = true,
             }
         }
@@ -116,7 +115,8 @@ impl Part {
         Ok(part)
     }
 
-    /// The records of a stack of a material; names of tiles are the material's and the label of the layer below a patina, then the layer's number.
+    /// The records of a stack of a material. A tile is named after the material, then `bare` (a label for the layer
+    /// below a patina), then the number of the layer.
     fn records(
         &mut self,
         material: &Material,
@@ -128,7 +128,7 @@ impl Part {
     ) -> Result<Vec<LayerRecord>, BakeError> {
         let (color, model) = (material.color(), material.model());
         let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
-        // Models that do not show it have the base's colour under white light, as an albedo.
+        // Other models show the base's colour under white light, as an albedo.
         if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {
             last.reradiation = extras.last().and_then(|extras| extras.reradiation);
             if let Some(rows) = last.reradiation {
@@ -137,16 +137,16 @@ impl Part {
         }
         for (i, layer) in stack.layers.iter().enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
-            let wanted = TableKind::ALL.map(|kind| {
-                // Where some materials ask for D as a table, it is computed for the others.
+            let wanted = TableKind::ALL.into_iter().filter(|&kind| {
+                // If a material requests D as a table, layers without a request compute it.
                 let is_offered = kind != TableKind::Distribution || !settings.asked(kind).is_any();
                 material.bake.asks_for(kind) || is_offered && reads(model, kind, &records, i)
             });
-            let wants = |kind: TableKind| wanted[kind as usize];
-            if wants(TableKind::Fresnel) || wants(TableKind::Film) {
+            let wanted: Vec<TableKind> = wanted.collect();
+            if wanted.contains(&TableKind::Fresnel) || wanted.contains(&TableKind::Film) {
                 records[i].critical_cot_sq = interface.sampled(&color).critical_cot_sq();
             }
-            for kind in TableKind::ALL.into_iter().filter(|&kind| wants(kind)) {
+            for kind in wanted {
                 let Some(shape) = settings.shape(kind) else { continue };
                 let (fixed, record) = (settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);

@@ -1,4 +1,4 @@
-//! Layer records: what a shader needs of each layer.
+//! Layer records: the numbers of each layer for shaders.
 
 use luthier_layers::layers::ALPHA_MIN;
 use luthier_layers::layers::{Below, Layers};
@@ -13,20 +13,20 @@ use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
 use num_complex::Complex64;
 
-/// Least modulus of a relative index: at normal incidence on a lesser one Fresnel's formulas in single precision are 0/0.
+/// Least modulus of a relative index. Below it, Fresnel's formulas in single precision are 0/0 at normal incidence.
 const INDEX_MIN: f64 = 1e-3;
 
-/// A relative index that single precision can square twice: both parts at most [`INDEX_MAX`], and not next to nothing. What reflects all
-/// the light does so still, within 4e-3.
+/// Clamps a relative index, so that single precision can square it twice: both parts at most [`INDEX_MAX`], and not
+/// both next to nothing. A total reflector still reflects all light, within 4e-3.
 fn storable(ior: Complex64) -> (f64, f64) {
     let (n, k) = (ior.re.min(INDEX_MAX), ior.im.min(INDEX_MAX));
     (if n.max(k) < INDEX_MIN { INDEX_MIN } else { n }, k)
 }
 
-/// Optical depth beyond which nothing comes through, in any precision; without it a shader would meet infinities.
+/// Largest optical depth. Nothing comes through it in any precision; a larger one would be infinite in a shader.
 const DEPTH_MAX: f64 = 1e4;
 
-/// Parts of its model that a material chooses, as far as the model has a choice, and the colour of curves.
+/// Parts of a model that a material chooses, as far as the model offers a choice, and the colour mode of curves.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Parts {
     pub(crate) masking: Masking,
@@ -49,7 +49,7 @@ impl Parts {
         }
     }
 
-    /// Writes down what the shader of an interface needs of them.
+    /// Writes the choices, and the curve of an approximate reflectance, into the record of an interface.
     fn write(&self, interface: &Interface, record: &mut LayerRecord) {
         (record.masking, record.reflectance) = (self.masking, self.reflectance);
         record.internal_reflection = self.internal_reflection;

@@ -10,10 +10,10 @@ use sha2::{Digest, Sha256};
 
 use crate::BakeError;
 
-/// Reads an image that a material names: material file, path as written there.
+/// Reads an image that a material names. Its arguments are the material file and the reference in it.
 pub type ImageReader<'a> = &'a (dyn Fn(&str, &PictureRef) -> Result<Image, String> + Sync);
 
-/// Where a field comes from.
+/// Source of a field.
 #[derive(Debug, Clone)]
 pub(crate) enum Relief {
     /// Fractal Perlin noise on a torus.
@@ -49,7 +49,7 @@ impl Relief {
     }
 }
 
-/// A relief with values in 0..1. Noise is stretched to them over the points (i/width, j/height).
+/// A relief with values in 0..1. Noise is stretched to this range over the points (i/width, j/height).
 pub(crate) struct Field<'a> {
     relief: &'a Relief,
     octaves: Octaves,
@@ -87,7 +87,7 @@ impl<'a> Field<'a> {
         match self.relief {
             Relief::Image(image) => periodic(image, [u, v]),
             Relief::Noise { frequency, .. } => {
-                // A square that repeats is a torus in four dimensions.
+                // A periodic square is a torus in four dimensions: noise sampled along it repeats without a seam.
                 let (cu, su) = (libm::cos(2.0 * PI * u), libm::sin(2.0 * PI * u));
                 let (cv, sv) = (libm::cos(2.0 * PI * v), libm::sin(2.0 * PI * v));
                 let radius = frequency / (2.0 * PI);
@@ -97,22 +97,18 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Bilinear in an image that repeats; texel centres at (i + 1/2) / size.
+/// Bilinear read of a periodic image; texel centres are at (i + 1/2) / size.
 fn periodic(image: &Image, uv: [f64; 2]) -> f64 {
     let (w, h) = (f64::from(image.width), f64::from(image.height));
     let [u, v] = uv.map(|t| t - libm::floor(t));
     let (x, y) = (u * w, v * h);
     let base = [libm::floor(x - 0.5), libm::floor(y - 0.5)];
     let fraction = [x - 0.5 - base[0], y - 0.5 - base[1]];
-    let texel = |i: f64, j: f64| {
-        let i = (i + w) as u32 % image.width;
-        let j = (j + h) as u32 % image.height;
-        f64::from(image.texel(i, j)[0])
-    };
-    let row = |j: f64| {
-        let (a, b) = (texel(base[0], j), texel(base[0] + 1.0, j));
+    let columns = [base[0], base[0] + 1.0].map(|i| (i + w) as u32 % image.width);
+    let rows = [base[1], base[1] + 1.0].map(|j| (j + h) as u32 % image.height);
+    let [top, bottom] = rows.map(|row| {
+        let [a, b] = columns.map(|column| f64::from(image.texel(column, row)[0]));
         a + (b - a) * fraction[0]
-    };
-    let (top, bottom) = (row(base[1]), row(base[1] + 1.0));
+    });
     top + (bottom - top) * fraction[1]
 }

@@ -34,7 +34,7 @@ impl Shape {
         [self.x.clone(), y]
     }
 
-    /// The shape of a candidate; none where values are computed.
+    /// The shape of a candidate; none for a closed form.
     fn of(form: &CandidateForm) -> Option<Self> {
         match form.clone() {
             CandidateForm::ClosedForm => None,
@@ -43,7 +43,7 @@ impl Shape {
     }
 }
 
-/// Parts of the shape of a kind that the materials decide themselves: no search touches them.
+/// Parts of the shape of a kind that materials decide. No search changes them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Asked {
     pub(crate) size: bool,
@@ -73,24 +73,24 @@ impl Asked {
 /// Shapes of the tables of every kind.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
-    /// Without a search.
+    /// The shapes without a search.
     fixed: [Shape; TableKind::ALL.len()],
-    /// None where values are computed.
+    /// None for kinds that shaders compute.
     shapes: [Option<Shape>; TableKind::ALL.len()],
     asked: [Asked; TableKind::ALL.len()],
     /// Formats that tables may have, see [`crate::Options::formats`].
     pub(crate) formats: FormatSet,
-    /// The number of lobes that a search takes at most; none without a search, where each material has as many as it needs.
+    /// Most lobes, if a search decides them; without a search each material has as many as it needs.
     pub(crate) lobes: Option<usize>,
 }
 
 impl Settings {
-    /// These shapes, as far as no search finds others.
+    /// Settings with these shapes, until a search finds others.
     pub(crate) fn new(fixed: [Shape; TableKind::ALL.len()], asked: [Asked; TableKind::ALL.len()]) -> Self {
         Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None }
     }
 
-    /// The shape of the tables of a kind; none where values are computed.
+    /// The shape of the tables of a kind; none for kinds that shaders compute.
     pub(crate) fn shape(&self, kind: TableKind) -> Option<&Shape> {
         self.shapes[kind as usize].as_ref()
     }
@@ -105,24 +105,24 @@ impl Settings {
         self.asked[kind as usize]
     }
 
-    /// The formats of a list that a search may take.
+    /// The formats of a list that the target can read.
     pub(crate) fn allowed(&self, formats: &[TexelFormat]) -> Vec<TexelFormat> {
         formats.iter().copied().filter(|format| self.formats.has(*format)).collect()
     }
 
-    /// Tables of a kind in the form of a candidate.
+    /// Takes the form of a candidate for the tables of a kind.
     pub(crate) fn apply(&mut self, kind: TableKind, form: &CandidateForm) {
         self.shapes[kind as usize] = Shape::of(form);
     }
 
-    /// Tiles of lobes of this shape.
+    /// Takes a shape for tiles of lobes.
     pub(crate) fn take_lobes(&mut self, shape: Shape) {
         let kind = TableKind::Lobes as usize;
         self.fixed[kind] = shape;
         self.shapes[kind] = Some(self.fixed[kind].clone());
     }
 
-    /// Fresnel rows of this form: nothing is left to search for.
+    /// Takes a base and format for Fresnel rows, and leaves nothing to search for.
     pub(crate) fn take_rows(&mut self, (base, format): (RowBase, TexelFormat)) {
         let rows = TableKind::Fresnel as usize;
         self.fixed[rows] = Shape { base, format, ..self.fixed[rows].clone() };
@@ -140,7 +140,7 @@ pub(crate) fn axis(quantity: &str, unit: &str, [min, max]: [f64; 2], size: u32, 
 pub(crate) struct Ask<'a>(pub(crate) &'a [Material]);
 
 impl Ask<'_> {
-    /// The value that all materials which give one agree on.
+    /// The value of a setting, if all materials that state one agree.
     pub(crate) fn one<T: PartialEq + Debug>(
         &self,
         setting: &'static str,

@@ -1,4 +1,4 @@
-//! A bake that many machines make: each computes a share of the jobs into a store, and the bake that follows finds the results there.
+//! A bake on many machines: each computes a share of the jobs into a store, and the final bake finds the results there.
 
 use std::collections::BTreeMap;
 
@@ -13,21 +13,33 @@ use crate::search::{Fixed, plan};
 use crate::{BakeError, planner};
 
 /// Jobs that a bake would run.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// use luthier_bake::{MemoryStore, Options, missing};
+///
+/// let missing = missing(&[glass], &Options::default(), &|_, _| unreachable!(), &MemoryStore::default())?;
+/// assert!(missing.is_all && missing.jobs.keys().any(|kind| kind.name() == "fresnel"));
+/// # Ok::<(), luthier_bake::BakeError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Missing {
     /// Number of jobs by kind.
     pub jobs: BTreeMap<JobKind, usize>,
-    /// Whether these are all: what a search under a stated budget will try, and the tiles of lobes that are not fitted yet, is not known before.
+    /// Whether the counts are complete. Trials of a search under a stated budget, and tiles of lobes that are not
+    /// fitted yet, cannot be counted beforehand.
     pub is_all: bool,
 }
 
-/// Whether a job needs no fit of another material.
+/// Whether a job neither is a fit nor depends on one.
 fn is_apart(job: &dyn Job) -> bool {
     job.kind() != JobKind::tile(TableKind::Lobes) && job.kind() != lobes::FIT
 }
 
-/// The jobs of a plan that a bake runs whatever the fits say: with the shapes that a search tries first, or under a stated budget those
-/// that all its candidates need.
+/// The jobs that a bake runs whatever the fits return: with the shapes that a search tries first, or under a stated
+/// budget the truths that all candidates need.
 fn certain(
     fixed: &Fixed,
     materials: &[Material],
@@ -43,8 +55,10 @@ fn certain(
     })
 }
 
-/// Runs a share of the jobs of a bake, for the store alone. The shares together are all jobs but those that a search adds under a stated budget, and the tiles of
-/// lobes, which take next to nothing.
+/// Runs a share of the jobs of a bake, and keeps their results in the store alone.
+///
+/// The shares together are all jobs but two kinds: jobs that a search adds under a stated budget, and tiles of lobes,
+/// which take next to no time.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -65,7 +79,7 @@ pub fn bake_share(
     Ok(())
 }
 
-/// The jobs that a bake would run, because the store does not have their results.
+/// Counts the jobs that a bake would run, because the store lacks their results.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -81,7 +95,7 @@ pub fn missing(
     let mut jobs =
         certain(&fixed, materials, options, read_image, store)?.only(is_apart).count_missing(store, &mut results);
     if jobs.is_empty() && fits.is_empty() {
-        // Nothing is computed but what a search refuses: the plan is that of the bake.
+        // All truths are stored, so the search computes nothing large: this plan is the bake's own.
         let planned = plan(materials, options, read_image, &Silent, store)?;
         let mut results = planned.results;
         return Ok(Missing { jobs: planned.plan.graph.count_missing(store, &mut results), is_all: true });

@@ -1,4 +1,4 @@
-//! Tiles: values, and texels that make linear filtering err evenly.
+//! Tiles: values, and texels that spread the error of linear filtering evenly.
 
 use luthier_lut::{
     Atlas, AtlasLayout, Axis, Encoding, ErrorStats, Image, Mapping, RowBase, TableKind, TexelFormat, Values, balance,
@@ -31,12 +31,13 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
     Atlas { kind, layout, format, tiles: Vec::new(), truth: truth.clone(), texels, bytes }
 }
 
-/// Texels repeated around a tile of such axes: neighbours of nodes at its rim, where it repeats, or where others than its own lie beside it.
+/// Width of the border of repeated texels around a tile with such axes. Filtering at the rim reads it, where the tile
+/// repeats or where a foreign tile lies beside it.
 pub(crate) fn apron<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> u32 {
     u32::from(axes.into_iter().any(|axis| matches!(axis.mapping, Mapping::Periodic | Mapping::Apart)))
 }
 
-/// Words on how the colour of a tile was made, for its description.
+/// Description of the colour mode of a tile.
 pub(crate) fn color_in_words(color: &Color) -> String {
     match color {
         Color::Spectral => "spectral, CIE 1931 under D65, linear Rec.709".to_owned(),
@@ -44,9 +45,10 @@ pub(crate) fn color_in_words(color: &Color) -> String {
     }
 }
 
-/// The texels that ship for the values of one tile: encoded, balanced, quantised; as bytes, and as read from these.
+/// The texels that ship for the values of one tile: encoded, balanced, quantised. Returned as bytes, and as a shader
+/// reads them.
 ///
-/// Values that are not negative stay so.
+/// Balancing keeps nonnegative values nonnegative.
 pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> (Vec<u8>, Image) {
     let roots = Encoding::of(kind, format).to_root(truth);
     let balanced = match kind.facts().values {

@@ -13,8 +13,8 @@ const SPECTRUM_TOLERANCE: f64 = 1e-3;
 /// Where spectra are compared to decide which wavelengths are left out.
 const SPECTRUM_COS_THETA: [f64; 3] = [1.0, 0.6, 0.2];
 
-/// Internal reflectance in colour, and the luminance of what is lost on the way up beyond what is lost on the way down; nothing
-/// where no layer covers a diffuse base.
+/// Internal reflectance in colour, and the luminance of the upward loss beyond the downward loss. Both are 0 if no
+/// layer covers a diffuse base.
 pub(crate) fn veil(stack: &Stack, color: &Color) -> (Rgb, f64) {
     let covered = stack.layers.iter().position(|layer| matches!(layer.base, Base::Diffuse(_)));
     let Some(base @ 1..) = covered else { return ([0.0; 3], 0.0) };
@@ -22,7 +22,7 @@ pub(crate) fn veil(stack: &Stack, color: &Color) -> (Rgb, f64) {
     let (mut internal, mut loss) = ([0.0; 3], [0.0; 3]);
     for node in wavelengths(stack, base, color) {
         for c in 0..3 {
-            // The albedo of the base is no matter, and channels that differ in nothing else are computed once.
+            // The albedo of the base does not matter. `Memory` computes channels that differ in nothing else once.
             let mut one = Monochrome::new(stack, node.wavelength_nm, c);
             one.layers[base].below = MonochromeBelow::Diffuse { albedo: 0.0, sigma: 0.0 };
             if let Some(veil) = memory.prepared(&one).veil() {
@@ -34,7 +34,7 @@ pub(crate) fn veil(stack: &Stack, color: &Color) -> (Rgb, f64) {
     (internal, luminance(loss))
 }
 
-/// Wavelengths that suffice for the layers above the base; one if nothing is dispersive.
+/// Wavelengths that suffice for the layers above the base: a single one if nothing is dispersive.
 fn wavelengths(stack: &Stack, base: usize, color: &Color) -> Vec<WavelengthNode> {
     let nodes = color.nodes();
     let interfaces: Vec<Interface> = (0..base).filter_map(|i| Interface::of(stack, i)).collect();

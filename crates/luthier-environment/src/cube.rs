@@ -15,7 +15,7 @@ pub(crate) struct Cube {
 }
 
 impl Cube {
-    /// The cube of a map, of an even size: each texel the mean of what it covers.
+    /// The cube of a map, of an even size. Each texel is the mean of the area that it covers.
     pub(crate) fn of_map(map: &Image, size: u32) -> Self {
         let integral = Integral::new(map);
         Self::new(size, |face| integral.face(face, size))
@@ -25,28 +25,28 @@ impl Cube {
     pub(crate) fn halved(&self) -> Self {
         let size = self.size / 2;
         let weights = solid_angles(self.size);
-        let mean = |face: usize, [x, y]: [u32; 2]| {
-            let (mut sum, mut total) = ([0.0; 3], 0.0);
-            for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| [2 * x + i, 2 * y + j]) {
-                let weight = weights[(y * self.size + x) as usize];
-                let texel = self.faces[face].texel(x, y);
-                total += weight;
-                (0..3).for_each(|c| sum[c] += weight * f64::from(texel[c]));
-            }
-            sum.map(|v| v / total)
-        };
         Self::new(size, |face| {
-            (0..size).flat_map(|y| (0..size).map(move |x| [x, y])).map(|at| mean(face, at)).collect()
+            let means = (0..size).flat_map(|y| (0..size).map(move |x| [x, y])).map(|[x, y]| {
+                let (mut sum, mut total) = ([0.0; 3], 0.0);
+                for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| [2 * x + i, 2 * y + j]) {
+                    let weight = weights[(y * self.size + x) as usize];
+                    let texel = self.faces[face].texel(x, y);
+                    total += weight;
+                    (0..3).for_each(|c| sum[c] += weight * f64::from(texel[c]));
+                }
+                sum.map(|v| v / total)
+            });
+            means.collect()
         })
     }
 
     /// The cube of the values of each face, row by row.
     fn new(size: u32, values: impl Fn(usize) -> Vec<[f64; 3]>) -> Self {
-        let face = |face| {
+        let faces = (0..6).map(|face| {
             let data = values(face).into_iter().flatten().map(|v| v as f32).collect();
             Image { width: size, height: size, channels: 3, data }
-        };
-        Self { size, faces: (0..6).map(face).collect() }
+        });
+        Self { size, faces: faces.collect() }
     }
 
     /// Its faces.

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use crate::vector::{dot, unit};
 
-/// A direction (not unit) of a point of a face, both coordinates -1 to 1 from the top left. The faces look along +x, -x, +y, -y, +z, -z.
+/// The direction (not unit) of a point of a face. Both coordinates run from -1 to 1 from the top left. The faces look
+/// along +x, -x, +y, -y, +z, -z.
 pub(crate) fn direction(face: usize, [s, t]: [f64; 2]) -> [f64; 3] {
     match face {
         0 => [1.0, -t, -s],
@@ -17,19 +18,19 @@ pub(crate) fn direction(face: usize, [s, t]: [f64; 2]) -> [f64; 3] {
     }
 }
 
-/// A cap around directions, as large as all.
+/// A cap around a direction: its half angle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cap {
     sin: f64,
     is_narrow: bool,
-    /// Cosine of the least angle to the middle of a face at which the cap misses the face.
+    /// Cosine of the least angle between the middles of cap and face at which the cap misses the face.
     cos_missed: f64,
 }
 
 impl Cap {
     /// The cap of directions within an angle.
     pub(crate) fn new(angle: f64) -> Self {
-        // Corners of a face lean by less than 0.96.
+        // The corner of a face is less than 0.96 from its middle.
         Self { sin: libm::sin(angle), is_narrow: angle < 0.5 * PI, cos_missed: libm::cos((angle + 0.96).min(PI)) }
     }
 
@@ -43,7 +44,7 @@ impl Cap {
         let [columns, rows] = [[1.0, 0.0], [0.0, 1.0]].map(|at| {
             let beside = direction(face, at);
             let side = dot(middle, [0, 1, 2].map(|c| beside[c] - out[c]));
-            // The cap as it is seen along the other axis.
+            // Sine of the cap's angle, seen along the other axis.
             let sine = self.sin / (side * side + depth * depth).sqrt();
             if !self.is_narrow || sine >= 1.0 {
                 return 0..size;
@@ -66,14 +67,14 @@ fn centre(texel: u32, size: u32) -> f64 {
 
 /// Solid angles of the texels of a face, row by row.
 pub(crate) fn solid_angles(size: u32) -> Vec<f64> {
-    // Of the rectangle between the middle of the face and a corner.
+    // Solid angles of the rectangles between the middle of the face and each corner; texels are differences of four.
     let corners: Vec<f64> = (0..=size)
         .flat_map(|y| (0..=size).map(move |x| [x, y].map(|i| 2.0 * f64::from(i) / f64::from(size) - 1.0)))
         .map(|[s, t]| libm::atan2(s * t, (1.0 + s * s + t * t).sqrt()))
         .collect();
-    let corner = |x: u32, y: u32| corners[(y * (size + 1) + x) as usize];
-    let texels = (0..size).flat_map(|y| (0..size).map(move |x| (x, y)));
-    texels.map(|(x, y)| corner(x + 1, y + 1) - corner(x, y + 1) - corner(x + 1, y) + corner(x, y)).collect()
+    let rows: Vec<&[f64]> = corners.chunks_exact(size as usize + 1).collect();
+    let pairs = rows.windows(2).flat_map(|rows| rows[0].windows(2).zip(rows[1].windows(2)));
+    pairs.map(|(upper, lower)| lower[1] - lower[0] - upper[1] + upper[0]).collect()
 }
 
 /// A unit direction for each texel of a face, row by row.

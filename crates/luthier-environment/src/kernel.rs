@@ -1,4 +1,4 @@
-//! The lobe that levels are blurred by.
+//! The blurring lobe of levels.
 
 use std::f64::consts::PI;
 
@@ -6,15 +6,17 @@ use crate::cube::Cube;
 use crate::faces::{Cap, solid_angles, texel_direction};
 use crate::vector::dot;
 
-/// Exponent at which a lobe ends: all but a third of a thousandth of it lies within.
+/// Exponent at which a lobe ends: all but a third of a thousandth of it lies inside.
 const END: f64 = 8.0;
 
-/// Steps of the table of `exp(-x)` from 0 to the end, between which it is linear within 5e-7.
+/// Steps of the table of `exp(-x)` from 0 to the end. Between them, linear interpolation is within 5e-7.
 const STEPS: usize = 4096;
 
-/// A von Mises-Fisher lobe `exp((cos - 1) / width^2)` over the texels of a cube, each of which counts as light from its middle.
+/// A von Mises-Fisher lobe `exp((cos - 1) / width^2)` over the texels of a cube. Each texel counts as light from its
+/// middle.
 ///
-/// Texels of the levels and of their cube are half as wide as the lobe, which sums over either follow within a thousandth: a level has the mean of its cube.
+/// Texels of the levels and of their cube are half as wide as the lobe. Sums over either follow it within a thousandth,
+/// so a level has the mean of its cube.
 pub(crate) struct Kernel<'a> {
     source: &'a Cube,
     /// For each texel of the cube, face by face.
@@ -24,13 +26,13 @@ pub(crate) struct Kernel<'a> {
     variance: f64,
     /// `exp(-x)` at the ends of all steps.
     falloff: Vec<f64>,
-    /// Where the lobe ends.
+    /// End of the lobe.
     cap: Cap,
 }
 
 impl<'a> Kernel<'a> {
-    /// A lobe for levels whose texels have a side of `texel` radians. Texture units blur by their texels when they read (a sixth of the squared side
-    /// along an axis), and so do the texels of the cube (a twelfth): the lobe is narrower by as much.
+    /// A lobe for levels with texels of `texel` radians. Texture units blur by their texels when they read (a sixth of
+    /// the squared side along an axis), and so do the texels of the cube (a twelfth). The lobe is narrower by as much.
     pub(crate) fn new(source: &'a Cube, width: f64, texel: f64) -> Self {
         let of_all = width * width;
         let variance = (of_all - source.texel() * source.texel() / 12.0 - texel * texel / 6.0).max(0.25 * of_all);

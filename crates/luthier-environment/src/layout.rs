@@ -1,4 +1,4 @@
-//! Textures of directions: their shapes, texels and levels.
+//! Textures of directions: shapes, texels and levels.
 
 use luthier_lut::Image;
 use rayon::prelude::*;
@@ -6,6 +6,17 @@ use rayon::prelude::*;
 use crate::{faces, panorama};
 
 /// Shapes of a texture of directions.
+///
+/// ```
+/// use luthier_environment::{Environment, Layout, Sky};
+///
+/// let environment = Environment::sky(&Sky::uniform([0.25; 3]))?;
+/// for layout in [Layout::Cube, Layout::Equirect] {
+///     let [red, ..] = layout.mean(&environment.irradiance_level(layout));
+///     assert!((red - 0.25).abs() < 1e-6);
+/// }
+/// # Ok::<(), luthier_environment::EnvironmentError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// Six faces, along +x, -x, +y, -y, +z, -z.
@@ -17,14 +28,15 @@ pub enum Layout {
 /// One level of a texture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// Standard deviation of the blur along each of two axes, radians; a lobe `exp((cos - 1) / width^2)`.
+    /// Width of the lobe `exp((cos - 1) / width^2)`: the standard deviation of the blur along each of two axes,
+    /// radians.
     pub width: f64,
     /// The faces of a cube, or one map. RGB.
     pub images: Vec<Image>,
 }
 
 impl Layout {
-    /// Mean over all directions of images of this layout, RGB.
+    /// Mean over all directions of the images of this layout, RGB.
     pub fn mean(self, images: &[Image]) -> [f64; 3] {
         let (mut sum, mut total) = ([0.0; 3], 0.0);
         for image in images {
@@ -71,11 +83,12 @@ impl Layout {
         }
     }
 
-    /// Images of a smooth function of unit directions: its means over texels. Those of a cube are as good as its values in the middle. Rows of a map end
-    /// at poles, where sums of such values are not exact, and take two points of Gauss's rule each.
+    /// Images of a smooth function of unit directions: its means over texels. For texels of a cube the value in the
+    /// middle is exact enough. Rows of a map end at poles, where sums of middles are not exact, so each texel takes two
+    /// points of Gauss's rule.
     pub(crate) fn images(self, size: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Vec<Image> {
         let columns = self.columns(size);
-        let image = |face: usize| {
+        let images = (0..self.faces()).map(|face| {
             let mut image = Image::zeros(columns, size, 3);
             let shape = Image { data: Vec::new(), ..image.clone() };
             image.data.par_chunks_mut(3 * columns as usize).enumerate().for_each(|(y, row)| {
@@ -91,7 +104,7 @@ impl Layout {
                 }
             });
             image
-        };
-        (0..self.faces()).map(image).collect()
+        });
+        images.collect()
     }
 }

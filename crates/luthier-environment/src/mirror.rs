@@ -1,8 +1,18 @@
-//! The lobe by which a rough mirror blurs its surrounding, as a fixed set of directions.
+//! The blurring lobe of a rough mirror, as a fixed set of directions.
 
 use std::f64::consts::PI;
 
-/// A slope distribution that reflections of the environment are blurred by.
+/// Slope distribution of a rough mirror.
+///
+/// ```
+/// use luthier_environment::{ALPHAS, Blur, Environment, Sky};
+///
+/// let environment = Environment::sky(&Sky::uniform([0.25; 3]))?;
+/// let [red, ..] = environment.mirrored(Blur::Ggx, 0.5, [0.0, 1.0, 0.0]);
+/// assert!((red - 0.25).abs() < 1e-6);
+/// assert_eq!(environment.chain(Blur::Ggx).len(), ALPHAS.len());
+/// # Ok::<(), luthier_environment::EnvironmentError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blur {
     /// Trowbridge-Reitz.
@@ -11,8 +21,8 @@ pub enum Blur {
     Beckmann,
 }
 
-/// Slope parameters of the blurred maps, half an octave apart. Rougher than 1 there is nothing; between 0 (the map itself)
-/// and the first, and between neighbours, maps are mixed.
+/// Slope parameters of the blurred maps, half an octave apart. 1 is the roughest. Maps are mixed between neighbours,
+/// and between 0 (the map itself) and the first.
 pub const ALPHAS: [f64; 13] = [
     1.0 / 64.0,
     1.0 / 45.254_834,
@@ -32,7 +42,7 @@ pub const ALPHAS: [f64; 13] = [
 /// pi (3 - sqrt 5).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
-/// Samples of a lobe: more where it is wide, and its maps small.
+/// Number of samples of a lobe: wide lobes need more, and their maps are small.
 fn samples(alpha: f64) -> u32 {
     match alpha {
         ..0.1 => 128,
@@ -41,12 +51,13 @@ fn samples(alpha: f64) -> u32 {
     }
 }
 
-/// Rows of the map blurred with `alpha`: bilinear reads lose 2% of the peak of a lobe, and more below alpha = 1/32.
+/// Rows of the map blurred with `alpha`. Bilinear reads lose 2% of the peak of a lobe, and more below alpha = 1/32.
 pub(crate) fn level_height(alpha: f64) -> u32 {
     ((8.0 / alpha).ceil() as u32).next_power_of_two().clamp(16, 256)
 }
 
-/// Index of the map for a slope parameter, and the weight of the next map. Index 0 is the unblurred map, k is `ALPHAS[k - 1]`.
+/// Index of the map for a slope parameter, and the weight of the next map. Index 0 is the unblurred map; k is `ALPHAS[k
+/// - 1]`.
 pub(crate) fn place(alpha: f64) -> (usize, f64) {
     if alpha < ALPHAS[0] {
         return (0, alpha.max(0.0) / ALPHAS[0]);
@@ -56,8 +67,8 @@ pub(crate) fn place(alpha: f64) -> (usize, f64) {
     (1 + octaves.floor() as usize, octaves - octaves.floor())
 }
 
-/// Facets of a surface at normal incidence (n = v = r) that mirror the light towards the eye, weighed by the cavities' masking min(1, 2
-/// cos_theta_i), as in `luthier_eval`. Weights sum to 1.
+/// Facets of a surface at normal incidence (n = v = r) that mirror light to the eye, weighed by the cavities' masking
+/// min(1, 2 cos_theta_i), as in `luthier_eval`. Weights sum to 1.
 pub(crate) struct Lobe {
     pub(crate) samples: Vec<Sample>,
 }
@@ -66,13 +77,13 @@ pub(crate) struct Sample {
     /// Unit; +z is the mirrored direction.
     pub(crate) direction: [f64; 3],
     pub(crate) weight: f64,
-    /// Level of the map whose texels are as large as the share of this sample.
+    /// Level of the map with texels as large as this sample's share.
     pub(crate) level: f64,
 }
 
 impl Lobe {
-    /// The lobe for a map with this many rows: facets along a spiral that turns by the golden angle (Vogel 1979), each at
-    /// the middle of an equal share of D cos_theta_h. At n = v the density over mirrored directions is then D / 4.
+    /// The lobe for a map with this many rows: facets along a spiral that turns by the golden angle (Vogel 1979), each
+    /// at the middle of an equal share of D cos_theta_h. The density over mirrored directions is then D / 4 at n = v.
     pub(crate) fn new(blur: Blur, alpha: f64, rows: u32) -> Self {
         let texel = (PI / f64::from(rows)) * (PI / f64::from(rows));
         let count = samples(alpha);

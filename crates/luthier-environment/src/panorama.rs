@@ -14,7 +14,7 @@ pub(crate) fn direction(u: f64, v: f64) -> [f64; 3] {
     [sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi]
 }
 
-/// Point of the map for a unit direction.
+/// The point of the map for a unit direction.
 pub(crate) fn coordinates([x, y, z]: [f64; 3]) -> [f64; 2] {
     let u = 0.5 + libm::atan2(x, -z) / (2.0 * PI);
     [u, libm::atan2((x * x + z * z).sqrt(), y) / PI]
@@ -30,7 +30,7 @@ fn height_at(map: &Image, rows: f64) -> f64 {
     libm::cos(PI * rows / f64::from(map.height))
 }
 
-/// Two directions in the middle of the column of a texel: the places of Gauss's rule in the height of its row.
+/// Two directions in the middle of the column of a texel, at the places of Gauss's rule in the height of its row.
 pub(crate) fn gauss_directions(map: &Image, x: u32, y: u32) -> [[f64; 3]; 2] {
     let [top, bottom] = [y, y + 1].map(|y| height_at(map, f64::from(y)));
     let u = (f64::from(x) + 0.5) / f64::from(map.width);
@@ -46,24 +46,24 @@ pub(crate) fn solid_angle(map: &Image, y: u32) -> f64 {
     2.0 * PI / f64::from(map.width) * (top - bottom)
 }
 
-/// Bilinear read of an RGB map around a direction's coordinates. Columns go round, rows end.
+/// Bilinear read of an RGB map at a direction's coordinates. Columns go round, rows end.
 pub(crate) fn bilinear(map: &Image, [u, v]: [f64; 2]) -> [f64; 3] {
     let (x, y) = (u * f64::from(map.width) - 0.5, v * f64::from(map.height) - 0.5);
     let (left, top) = (x.floor(), y.floor());
     let (wx, wy) = (x - left, y - top);
     let (columns, last) = (i64::from(map.width), i64::from(map.height) - 1);
-    let column = |step: i64| 3 * (left as i64 + step).rem_euclid(columns) as usize;
-    let row = |step: i64| 3 * ((top as i64 + step).clamp(0, last) * columns) as usize;
-    let (near, far, above, below) = (column(0), column(1), row(0), row(1));
-    let at = |start: usize, c: usize| f64::from(map.data[start + c]);
+    let [near, far] = [0, 1].map(|step| 3 * (left as i64 + step).rem_euclid(columns) as usize);
+    let rows = [0, 1].map(|step| 3 * ((top as i64 + step).clamp(0, last) * columns) as usize);
     [0, 1, 2].map(|c| {
-        let upper = at(above + near, c) + wx * (at(above + far, c) - at(above + near, c));
-        let lower = at(below + near, c) + wx * (at(below + far, c) - at(below + near, c));
+        let [upper, lower] = rows.map(|row| {
+            let [a, b] = [near, far].map(|column| f64::from(map.data[row + column + c]));
+            a + wx * (b - a)
+        });
         upper + wy * (lower - upper)
     })
 }
 
-/// The map with `height` rows and twice as many columns, each texel the mean of what it covers, by solid angle.
+/// The map with `height` rows and twice as many columns. Each texel is the mean of its area, by solid angle.
 pub(crate) fn shrunk(map: &Image, height: u32) -> Image {
     let mut small = Image::zeros(2 * height, height, 3);
     let columns: Vec<_> = (0..small.width).map(|x| overlaps(x, small.width, map.width)).collect();
@@ -88,7 +88,7 @@ pub(crate) fn shrunk(map: &Image, height: u32) -> Image {
     small
 }
 
-/// Cells of a fine division that a cell of a coarse one covers, and from where to where, in fine cells.
+/// Cells of a fine division that a cell of a coarse one covers, and the covered range of each, in fine cells.
 fn overlaps(cell: u32, coarse: u32, fine: u32) -> Vec<(u32, [f64; 2])> {
     let scale = f64::from(fine) / f64::from(coarse);
     let (from, to) = (f64::from(cell) * scale, f64::from(cell + 1) * scale);

@@ -4,28 +4,45 @@ use crate::EnvironmentError;
 use crate::error::setting;
 use crate::vector::{dot, unit};
 
-/// A smooth surrounding made of a formula: a vertical gradient and two soft lights. Radiance, linear RGB; +y is up.
+/// A smooth sky by formula: a vertical gradient and two soft lights. Radiance, linear RGB; +y is up.
 ///
-/// The gradient is the quadratic in the height `y` of the direction that takes the three colours at -1, 0 and 1. A soft
-/// light is a von Mises-Fisher lobe. [`crate::Environment::sky`] makes a map of it.
+/// The gradient is the quadratic in the height `y` of the direction that passes through the three colours at -1, 0 and
+/// 1. A soft light is a von Mises-Fisher lobe. [`crate::Environment::sky`] makes a map of it.
+///
+/// ```
+/// use luthier_environment::Sky;
+///
+/// let sky = Sky { zenith: [1.0; 3], ..Sky::uniform([0.0; 3]) };
+/// assert_eq!(sky.radiance([0.0, 1.0, 0.0]), [1.0; 3]);
+/// assert_eq!(sky.radiance([1.0, 0.0, 0.0]), [0.0; 3]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sky {
-    /// Straight down.
+    /// Radiance straight down.
     pub ground: [f32; 3],
     /// Radiance at the horizon.
     pub horizon: [f32; 3],
-    /// Straight up.
+    /// Radiance straight up.
     pub zenith: [f32; 3],
-    /// Lights large enough to be seen in reflections.
+    /// Lights, large enough to be seen in reflections.
     pub lights: [SoftLight; 2],
 }
 
 /// A light with a soft edge: radiance `radiance exp(sharpness (cos - 1))` at an angle to its centre.
+///
+/// ```
+/// use luthier_environment::{Sky, SoftLight};
+///
+/// let mut sky = Sky::uniform([0.0; 3]);
+/// sky.lights[0] = SoftLight { direction: [0.0, 0.0, 1.0], sharpness: 100.0, radiance: [2.0; 3] };
+/// assert_eq!(sky.radiance([0.0, 0.0, 1.0]), [2.0; 3]);
+/// assert!(sky.radiance([0.0, 0.0, -1.0])[0] < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftLight {
-    /// Direction to the centre of the light; need not be unit.
+    /// Direction to the centre of the light, of any length.
     pub direction: [f32; 3],
-    /// Concentration, 1 to 1e4; about `1 / spread^2` with the spread in radians.
+    /// Concentration, 1 to 1e4: about `1 / spread^2` with the spread in radians.
     pub sharpness: f32,
     /// Radiance at the centre of the light.
     pub radiance: [f32; 3],

@@ -1,11 +1,11 @@
-//! Inputs that are checked in: `corpus/TARGET/`, a file each, and files that the repository has for other ends.
+//! Checked-in inputs: `corpus/TARGET/`, a file each, and files that the repository has for other purposes.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use crate::Target;
 
-/// Bytes of the longest input that tests change: a longer one would take the time that others need.
+/// Bytes of the longest input that tests change. Longer ones would take the time of the others.
 const LENGTH_MAX: u64 = 16 << 10;
 
 /// An input of the corpus.
@@ -17,23 +17,27 @@ pub struct Input {
     pub bytes: Vec<u8>,
 }
 
-/// The inputs of a target: its own by name, then those of its other folders, without what is too long.
+/// The inputs of a target: its own by name, then those of its other folders. Long files are left out.
 ///
 /// # Errors
-/// Those of the system, with the path. Every target has a folder.
+/// Errors of the system, with the path. Every target has a folder.
 pub fn corpus(target: &Target) -> io::Result<Vec<Input>> {
     let mut inputs = Vec::new();
     for folder in folders(target) {
-        let named = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", folder.display()));
-        let mut paths = fs::read_dir(&folder)
-            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>())
-            .map_err(named)?;
-        paths.sort();
-        for path in paths {
-            let about = path.metadata().map_err(named)?;
-            if about.is_file() && about.len() <= LENGTH_MAX {
-                inputs.push(Input { bytes: fs::read(&path).map_err(named)?, path });
-            }
+        let found = inputs_in(&folder);
+        inputs.extend(found.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", folder.display())))?);
+    }
+    Ok(inputs)
+}
+
+fn inputs_in(folder: &Path) -> io::Result<Vec<Input>> {
+    let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+    paths.sort();
+    let mut inputs = Vec::new();
+    for path in paths {
+        let about = path.metadata()?;
+        if about.is_file() && about.len() <= LENGTH_MAX {
+            inputs.push(Input { bytes: fs::read(&path)?, path });
         }
     }
     Ok(inputs)

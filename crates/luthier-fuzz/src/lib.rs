@@ -3,11 +3,11 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! [`TARGETS`] lists the targets. [`corpus`] has the inputs that are checked in for one. [`MEMORY_MAX`] holds for the whole program: the
-//! crate's allocator refuses more, and the program aborts.
+//! [`TARGETS`] lists the targets. [`corpus`] returns the checked-in inputs of one. The crate's allocator refuses more
+//! than [`MEMORY_MAX`] for the whole program, and the program aborts.
 //!
-//! Out of scope: what is computed from a valid input (fits, tables, shaders), values of single options of a command line, and messages between
-//! a command and its own child processes.
+//! Out of scope: computations on a valid input (fits, tables, shaders), values of single options of a command line, and
+//! messages between a command and its own child processes.
 
 mod corpus;
 mod targets;
@@ -21,8 +21,8 @@ pub const MEMORY_MAX: usize = 512 << 20;
 #[global_allocator]
 static ALLOCATOR: cap::Cap<std::alloc::System> = cap::Cap::new(std::alloc::System, MEMORY_MAX);
 
-/// Calls a function that may hold `bytes` more than what the program holds now: where it asks for more, the program aborts. Other threads
-/// count, too.
+/// Calls a function that may hold `bytes` more than the program holds now. If it asks for more, the program aborts.
+/// Other threads count too.
 pub fn holding<T>(bytes: usize, call: impl FnOnce() -> T) -> T {
     let limit = ALLOCATOR.limit();
     let narrowed = ALLOCATOR.set_limit(ALLOCATOR.allocated().saturating_add(bytes));

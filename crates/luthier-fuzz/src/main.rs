@@ -1,4 +1,5 @@
-//! The engine that searches by coverage: libFuzzer on the target that `LUTHIER_FUZZ_TARGET` names. `scripts/fuzz.sh` builds and runs it.
+//! The engine that searches for inputs by coverage: libFuzzer on the target named in `LUTHIER_FUZZ_TARGET`.
+//! `scripts/fuzz.sh` builds and runs it.
 //!
 //! For the name `list` it prints the targets and ends: name, parser, inputs, checks and further folders, between tabs.
 

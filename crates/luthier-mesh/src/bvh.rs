@@ -5,7 +5,7 @@ use crate::vector::{V, along, cross, dot, sub};
 /// Triangles of a leaf at most.
 const LEAF_MAX: usize = 4;
 
-/// Slabs of the box of centres among which a cut is chosen.
+/// Number of slabs of the box of centres; cuts lie between two of them.
 const BINS: usize = 16;
 
 /// A box, in depth-first order: the first child of an inner node follows it.
@@ -15,7 +15,7 @@ pub struct Node {
     pub low: [f32; 3],
     /// Upper corner.
     pub high: [f32; 3],
-    /// The node to go on with where the ray misses the box, or after a leaf; the number of nodes at the end.
+    /// The next node if the ray misses the box, or after a leaf; the number of nodes at the end.
     pub next: u32,
     /// First triangle of a leaf.
     pub first: u32,
@@ -23,8 +23,19 @@ pub struct Node {
     pub count: u32,
 }
 
-/// A tree of boxes. Cuts are those of the least surface area (MacDonald and Booth 1990), among sixteen slabs of the widest axis of the centres.
-/// A tree depends on its triangles alone.
+/// A tree of boxes about triangles.
+///
+/// A cut is the one of the least surface area (MacDonald and Booth 1990) among sixteen slabs of the widest axis of the
+/// centres. The tree depends on its triangles alone.
+///
+/// ```
+/// use luthier_mesh::Bvh;
+///
+/// let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let (bvh, _) = Bvh::new(&[triangle]);
+/// let meeting = bvh.nearest([0.25, 0.25, 2.0], [0.0, 0.0, -1.0], 10.0, |_| Some(triangle)).unwrap();
+/// assert!((meeting.t - 2.0).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,
@@ -75,7 +86,7 @@ struct Builder<'a> {
 }
 
 impl Bvh {
-    /// The tree of triangles, and the order in which its leaves have them.
+    /// The tree of triangles, and the order of the triangles in its leaves.
     pub fn new(corners: &[[[f32; 3]; 3]]) -> (Self, Vec<u32>) {
         let bounds: Vec<Bounds> = corners.iter().map(|corners| Bounds::of(corners)).collect();
         let centres: Vec<V> = bounds.iter().map(|b| [0, 1, 2].map(|c| 0.5 * b.low[c] + 0.5 * b.high[c])).collect();
@@ -92,7 +103,8 @@ impl Bvh {
         &self.nodes
     }
 
-    /// The nearest triangle that a ray meets between 0 and `farthest`, of those that `counts` lets pass. `corner` gives the corners of a triangle.
+    /// The nearest triangle that a ray meets between 0 and `farthest`. `corners` returns the corners of a triangle, or
+    /// `None` to let the ray pass through it.
     pub fn nearest(
         &self,
         origin: [f32; 3],
@@ -130,12 +142,14 @@ fn meets(node: &Node, origin: V, inverse: V, limit: f32) -> bool {
         near = near.max(a.min(b));
         far = far.min(a.max(b));
     }
-    // Slabs are rounded: a little more, so that no ray slips through.
+    // Rounding may make slabs too small: a little more, so that no ray slips through.
     near <= far * 1.000_001 + 1e-9
 }
 
-/// Distance and weights where a line meets a triangle. The corners are seen across the line: edges that triangles have in common have areas that differ in
-/// sign alone, so that no line slips through between them, as with Woop et al. 2013.
+/// Distance and weights at the meeting of a line and a triangle.
+///
+/// The corners are seen across the line. Edges that triangles share have areas that differ in sign alone, so no line
+/// slips through between them (Woop et al. 2013).
 fn meeting(corners: [V; 3], origin: V, direction: V) -> Option<(f32, [f32; 2])> {
     let length_sq = dot(direction, direction);
     let places = corners.map(|corner| {
@@ -143,8 +157,7 @@ fn meeting(corners: [V; 3], origin: V, direction: V) -> Option<(f32, [f32; 2])> 
         let t = dot(to, direction) / length_sq;
         (along(to, -t, direction), t)
     });
-    let area = |i: usize, j: usize| dot(direction, cross(places[i].0, places[j].0));
-    let areas = [area(2, 1), area(0, 2), area(1, 0)];
+    let areas = [[2, 1], [0, 2], [1, 0]].map(|[i, j]: [usize; 2]| dot(direction, cross(places[i].0, places[j].0)));
     let sum: f32 = areas.iter().sum();
     let is_inside = areas.iter().all(|area| area / sum >= -2e-6);
     if !is_inside || sum == 0.0 {
@@ -155,7 +168,7 @@ fn meeting(corners: [V; 3], origin: V, direction: V) -> Option<(f32, [f32; 2])> 
 }
 
 impl Builder<'_> {
-    /// Appends the nodes of some triangles, whose first has this number in the order of leaves.
+    /// Appends the nodes of some triangles. `first` is the number of the first one in the order of leaves.
     fn build(&mut self, order: &mut [u32], first: u32) {
         let bounds = order.iter().fold(Bounds::NONE, |sum, &i| sum.with(self.bounds[i as usize]));
         let place = self.nodes.len();
@@ -171,7 +184,7 @@ impl Builder<'_> {
         self.nodes[place].next = self.nodes.len() as u32;
     }
 
-    /// Parts triangles in two; the number of those in the first.
+    /// Parts triangles in two, and returns the number of those in the first part.
     fn cut(&self, order: &mut [u32]) -> usize {
         let half = order.len() / 2;
         let centres = order.iter().fold(Bounds::NONE, |sum, &i| {
@@ -183,24 +196,28 @@ impl Builder<'_> {
         if extent[axis] <= 0.0 || !extent[axis].is_finite() {
             return half;
         }
-        let bin = |i: u32| {
-            let share = (self.centres[i as usize][axis] - centres.low[axis]) / extent[axis];
-            ((share * BINS as f32) as usize).min(BINS - 1)
-        };
         let mut bins = [(Bounds::NONE, 0usize); BINS];
         for &i in order.iter() {
-            let (bounds, count) = &mut bins[bin(i)];
+            let (bounds, count) = &mut bins[self.bin(i, &centres, axis)];
             (*bounds, *count) = (bounds.with(self.bounds[i as usize]), *count + 1);
         }
-        let cost = |bins: &[(Bounds, usize)]| {
-            let all = bins.iter().fold((Bounds::NONE, 0), |(b, n), (bounds, count)| (b.with(*bounds), n + count));
-            all.0.area() * all.1 as f64
-        };
-        let is_cut = |at: usize| bins[..at].iter().any(|bin| bin.1 > 0) && bins[at..].iter().any(|bin| bin.1 > 0);
-        let costs = (1..BINS).filter(|&at| is_cut(at)).map(|at| (at, cost(&bins[..at]) + cost(&bins[at..])));
+        let costs = (1..BINS).filter_map(|at| Some((at, cost(&bins[..at])? + cost(&bins[at..])?)));
         let Some((at, _)) = costs.min_by(|a, b| a.1.total_cmp(&b.1)) else { return half };
-        // Stable, so that the order of the file decides.
-        order.sort_by_key(|&i| bin(i) >= at);
-        order.iter().filter(|&&i| bin(i) < at).count()
+        // A stable sort: the order of the file decides among equals.
+        order.sort_by_key(|&i| self.bin(i, &centres, axis) >= at);
+        order.iter().filter(|&&i| self.bin(i, &centres, axis) < at).count()
     }
+
+    /// The slab that has the centre of a triangle, along an axis of the box of centres.
+    fn bin(&self, triangle: u32, centres: &Bounds, axis: usize) -> usize {
+        let extent = centres.high[axis] - centres.low[axis];
+        let share = (self.centres[triangle as usize][axis] - centres.low[axis]) / extent;
+        ((share * BINS as f32) as usize).min(BINS - 1)
+    }
+}
+
+/// Half the area around the triangles of some slabs, times their number; none without triangles.
+fn cost(bins: &[(Bounds, usize)]) -> Option<f64> {
+    let all = bins.iter().fold((Bounds::NONE, 0), |(b, n), (bounds, count)| (b.with(*bounds), n + count));
+    (all.1 > 0).then(|| all.0.area() * all.1 as f64)
 }

@@ -2,17 +2,25 @@
 
 use thiserror::Error;
 
-/// Why a file is no mesh that can be shown.
+/// Reason why a file is not a mesh that can be shown.
+///
+/// ```
+/// use luthier_mesh::{MeshError, soup};
+///
+/// let text = br#"{"asset": {"version": "1.0"}}"#;
+/// let error = soup(text, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap_err();
+/// assert!(matches!(error, MeshError::Version(version) if version == "1.0"));
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// Bytes that are no glTF.
+    /// Bytes that are not glTF.
     #[error("no glTF 2.0 file: {0}")]
     Gltf(String),
     /// Another version of glTF.
     #[error("glTF {0}, of which nothing is read: export the mesh as glTF 2.0")]
     Version(String),
-    /// An extension without which the file means something else.
+    /// A required extension that is not supported.
     #[error("the file needs the extension {0}, which is not supported: export the mesh without it")]
     Extension(String),
     /// A compression of the numbers.
@@ -26,7 +34,7 @@ pub enum MeshError {
         /// The mistake in it.
         reason: String,
     },
-    /// Numbers that are not as glTF has them.
+    /// Numbers that break the rules of glTF.
     #[error("{what} of mesh `{mesh}`: {reason}")]
     Accessor {
         /// The numbers, such as positions.
@@ -36,17 +44,17 @@ pub enum MeshError {
         /// The mistake in them.
         reason: String,
     },
-    /// Nothing to show.
+    /// No triangle to show.
     #[error(
         "the file has no triangles that take a material: parts whose glTF material is named `plain` keep a colour of their own"
     )]
     Empty,
-    /// More than pictures of materials are made for.
+    /// More triangles than pictures of materials are made for.
     #[error("{count} triangles; at most {limit} are shown: export a coarser mesh")]
     TooLarge {
         /// Triangles of the file.
         count: usize,
-        /// The most that are taken.
+        /// The limit.
         limit: usize,
     },
 }

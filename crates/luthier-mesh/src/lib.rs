@@ -3,15 +3,15 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! [`soup`] reads a glTF file, [`Mesh::new`] makes what it holds ready for rays: fitted into the unit sphere, with tangents, a tree of boxes
-//! and the openness of each vertex. [`model`] is a mesh of the project's own.
+//! [`soup`] reads a glTF file. [`Mesh::new`] prepares its triangles for rays: fitted into the unit sphere, with
+//! tangents, a tree of boxes and the openness of each vertex. [`model`] is a mesh of the project's own.
 //!
-//! Simplifications: textures, materials, lights and cameras of a file are not read, but for the colour of parts whose material is named `plain`;
-//! openness is a number of a vertex, between vertices it is linear.
+//! Simplifications: textures, materials, lights and cameras of a file are not read, except the colour of parts with a
+//! material named `plain`. Openness is a number of a vertex, and linear between vertices.
 //!
 //! # Rooms
 //!
-//! Each uses those above it, none below.
+//! Each room uses those above it, none below.
 //!
 //! - `vector`, `error`, `soup`, `bvh`: vectors, refusals, triangles, and a tree of boxes around them.
 //! - `normals`, `tangents`, `openness`: what vertices lack.

@@ -7,7 +7,7 @@ use crate::soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};
 use crate::tangents;
 use crate::vector::{cross, dot, sub};
 
-/// Triangles in a tree of boxes, with what rays and shaders want of them.
+/// Triangles in a tree of boxes, with the data that rays and shaders need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     vertices: Vec<Vertex>,
@@ -20,8 +20,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Triangles made ready: those of part 0 moved and scaled into the unit sphere about the origin, which they touch, and the others with them;
-    /// tangents where there are none; a tree of boxes; how open each vertex is to its surroundings.
+    /// Prepares triangles for pictures. Part 0 is moved and scaled to fill the unit sphere about the origin, and the
+    /// other parts move with it. Missing tangents, a tree of boxes and the openness of each vertex are computed.
     ///
     /// # Errors
     /// [`MeshError::Empty`] without a triangle of part 0, [`MeshError::TooLarge`].
@@ -45,8 +45,8 @@ impl Mesh {
         &self.vertices
     }
 
-    /// How open each vertex is: the share of a cosine-weighted hemisphere that no triangle hides. Plain parts hide nothing from the shown part:
-    /// they have a colour of their own, which is in its surroundings.
+    /// Openness of each vertex: the share of a cosine-weighted hemisphere that no triangle hides. Plain parts hide
+    /// nothing from the shown part, because their own colour is part of its surroundings.
     pub fn openness(&self) -> &[f32] {
         &self.openness
     }
@@ -77,7 +77,7 @@ impl Mesh {
             .nearest(origin, direction, f32::INFINITY, |i| Some(self.triangles[i as usize].positions(&self.vertices)))
     }
 
-    /// Height of a level floor: the plane that holds a plain part which lies below all that is shown.
+    /// Height of a level floor: a plain part in one level plane, below everything shown.
     pub fn floor(&self) -> Option<f32> {
         self.floor
     }
@@ -88,23 +88,23 @@ fn has_area([a, b, c]: [[f32; 3]; 3]) -> bool {
     dot(normal, normal) > 0.0
 }
 
-/// Plain parts are no further away than this.
+/// Largest coordinate of plain parts.
 const FAR: f64 = 1e6;
 
 /// Moves the shown part to the origin and scales it.
 fn fit(soup: &mut Soup) -> Result<(), MeshError> {
-    let shown = || soup.triangles.iter().filter(|t| t.part == 0).flat_map(|t| t.corners);
-    let position = |i: u32| soup.vertices[i as usize].position.map(f64::from);
+    let shown = soup.triangles.iter().filter(|t| t.part == 0).flat_map(|t| t.corners);
+    let shown = shown.map(|i| soup.vertices[i as usize].position.map(f64::from));
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for at in shown().map(position) {
+    for at in shown.clone() {
         (0..3).for_each(|c| (low[c], high[c]) = (low[c].min(at[c]), high[c].max(at[c])));
     }
-    if shown().next().is_none() {
+    if shown.clone().next().is_none() {
         return Err(MeshError::Empty);
     }
     let centre = [0, 1, 2].map(|c| 0.5 * (low[c] + high[c]));
-    let length = |at: [f64; 3]| (0..3).map(|c| (at[c] - centre[c]) * (at[c] - centre[c])).sum::<f64>().sqrt();
-    let radius = shown().map(|i| length(position(i))).fold(0.0, f64::max);
+    let radii = shown.map(|at| (0..3).map(|c| (at[c] - centre[c]) * (at[c] - centre[c])).sum::<f64>().sqrt());
+    let radius = radii.fold(0.0, f64::max);
     for vertex in &mut soup.vertices {
         let scaled = [0, 1, 2].map(|c: usize| (f64::from(vertex.position[c]) - centre[c]) / radius);
         vertex.position = scaled.map(|v| v.clamp(-FAR, FAR) as f32);
@@ -112,13 +112,13 @@ fn fit(soup: &mut Soup) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// The height of a plain part that is level and below the rest.
+/// The height of the plain part, if it is level and below the rest.
 fn floor(soup: &Soup) -> Option<f32> {
-    let heights = |is_shown: bool| {
+    let [shown, plain] = [true, false].map(|is_shown| {
         let triangles = soup.triangles.iter().filter(move |t| (t.part == 0) == is_shown);
         triangles.flat_map(|t| t.corners).map(|i| soup.vertices[i as usize].position[1])
-    };
-    let lowest = heights(true).fold(f32::INFINITY, f32::min);
-    let (low, high) = heights(false).fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+    });
+    let lowest = shown.fold(f32::INFINITY, f32::min);
+    let (low, high) = plain.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
     (low.is_finite() && high - low < 1e-4 && low <= lowest + 1e-4).then_some(low)
 }

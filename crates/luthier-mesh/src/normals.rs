@@ -3,10 +3,11 @@
 use crate::soup::Vertex;
 use crate::vector::{V, along, angle, cross, sub, unit};
 
-/// A vertex that no triangle with an area touches is not seen; its normal is any.
+/// Normal of a vertex without a triangle of any area. It is not visible, so any will do.
 const ANY: V = [0.0, 1.0, 0.0];
 
-/// Gives a normal to each vertex that has 0 in its place: the mean of the normals of the triangles that touch it, weighed by their angles there.
+/// Computes the normals of vertices that have 0 in their place: the mean of the normals of the triangles that touch
+/// them, weighed by their angles there.
 pub(crate) fn complete(vertices: &mut [Vertex], triangles: &[[u32; 3]]) {
     let mut sums = vec![[0.0; 3]; vertices.len()];
     for triangle in triangles {

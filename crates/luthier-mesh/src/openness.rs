@@ -1,4 +1,4 @@
-//! How open the vertices of a mesh are to their surroundings.
+//! Openness of the vertices of a mesh to their surroundings.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use crate::bvh::Bvh;
 use crate::soup::{Triangle, Vertex};
 use crate::vector::{V, across, along, cross};
 
-/// Rays of all vertices together: about half a second.
+/// Rays of all vertices together: they take about half a second.
 const RAYS: usize = 1 << 19;
 
 /// The openness of each vertex, from rays in fixed directions with the density of the cosine.
@@ -19,23 +19,23 @@ pub(crate) fn openness(vertices: &[Vertex], triangles: &[Triangle], bvh: &Bvh) -
     for triangle in triangles {
         triangle.corners.iter().for_each(|&i| part[i as usize] = triangle.part);
     }
-    let open = |(vertex, part): (&Vertex, u32)| {
+    let shares = vertices.par_iter().zip(part).map(|(vertex, part)| {
         let n = vertex.normal;
         let t = across(n);
         let b = cross(n, t);
         let origin = along(vertex.position, 2e-3, n);
-        // The shown part hides from all, plain parts from plain ones.
-        let hides = |i: u32| {
-            let triangle = triangles[i as usize];
-            (part > 0 || triangle.part == 0).then(|| triangle.positions(vertices))
-        };
         let open = directions.iter().filter(|d| {
             let direction = [0, 1, 2].map(|c| d[0] * t[c] + d[1] * b[c] + d[2] * n[c]);
-            bvh.nearest(origin, direction, f32::INFINITY, hides).is_none()
+            // The shown part hides from all, plain parts from plain ones.
+            let hidden = bvh.nearest(origin, direction, f32::INFINITY, |i| {
+                let triangle = triangles[i as usize];
+                (part > 0 || triangle.part == 0).then(|| triangle.positions(vertices))
+            });
+            hidden.is_none()
         });
         open.count() as f32 / count as f32
-    };
-    vertices.par_iter().zip(part).map(open).collect()
+    });
+    shares.collect()
 }
 
 /// Hammersley's points, mapped to the hemisphere.

@@ -1,4 +1,4 @@
-//! Triangles as files have them.
+//! Triangles as read from files.
 
 /// The most triangles of a mesh.
 pub const TRIANGLES_MAX: usize = 1 << 19;
@@ -10,7 +10,8 @@ pub struct Vertex {
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Unit tangent across the normal, along which `u` grows, and the sign of the bitangent: `sign cross(normal, tangent)` is where `v` falls.
+    /// Unit tangent across the normal, in the direction of growing `u`, and the sign of the bitangent: `v` falls along
+    /// `sign cross(normal, tangent)`.
     pub tangent: [f32; 4],
     /// Texture coordinates; the top left of a picture is 0, 0.
     pub uv: [f32; 2],
@@ -21,11 +22,23 @@ pub struct Vertex {
 pub struct Triangle {
     /// Numbers of the vertices.
     pub corners: [u32; 3],
-    /// 0 takes the material that is shown; from 1 on, a colour of [`Soup::plain`].
+    /// 0 takes the shown material; numbers from 1 on are colours of [`Soup::plain`].
     pub part: u32,
 }
 
-/// Triangles before they are made ready.
+/// Triangles before they are prepared for pictures.
+///
+/// ```
+/// use luthier_mesh::{Mesh, Soup, Triangle, Vertex};
+///
+/// let corners = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]];
+/// let blank = Vertex { position: [0.0; 3], normal: [0.0, 0.0, 1.0], tangent: [0.0; 4], uv: [0.0; 2] };
+/// let vertices = corners.map(|position| Vertex { position, ..blank }).to_vec();
+/// let triangles = vec![Triangle { corners: [0, 1, 2], part: 0 }];
+/// let mesh = Mesh::new(Soup { vertices, triangles, ..Soup::default() })?;
+/// assert!(mesh.vertices().iter().all(|vertex| vertex.position[0].abs() < 1.0)); // fitted into the unit sphere
+/// # Ok::<(), luthier_mesh::MeshError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Soup {
     /// All corners. Tangents count where [`Soup::has_tangents`] is set.

@@ -3,8 +3,9 @@
 use crate::soup::{Soup, Vertex};
 use crate::vector::{V, across, along, angle, dot, sub, unit};
 
-/// Gives tangents to the vertices that have none: directions in which `u` grows, weighed by the angles at the corner, as MikkTSpace does it. A vertex
-/// between triangles of both orientations of the texture becomes two. Without texture coordinates, tangents are any across the normal.
+/// Computes missing tangents: directions of growing `u`, weighed by the angles at the corner, as in MikkTSpace. A
+/// vertex between triangles of both orientations of the texture becomes two. Without texture coordinates, tangents are
+/// any direction across the normal.
 pub(crate) fn complete(soup: &mut Soup) {
     soup.has_tangents.resize(soup.vertices.len(), false);
     let count = soup.vertices.len();
@@ -24,11 +25,11 @@ pub(crate) fn complete(soup: &mut Soup) {
             touched[i as usize][side] = true;
         }
     }
-    // The second of a vertex that both touch.
+    // Number of the second vertex, of a vertex that triangles of both orientations touch.
     let mut mirrored = vec![None; count];
     for i in 0..count {
         if soup.has_tangents[i] {
-            // Across the normal, whatever the file has rounded.
+            // Made exactly across the normal: files round.
             let [x, y, z, sign] = soup.vertices[i].tangent;
             soup.vertices[i].tangent = tangent(&soup.vertices[i], [x, y, z], usize::from(sign < 0.0));
             continue;
@@ -62,7 +63,7 @@ fn orientation([a, b, c]: [&Vertex; 3]) -> f32 {
     -(b[0] * c[1] - b[1] * c[0])
 }
 
-/// The unit direction in which `u` grows; none where the texture has no area.
+/// The unit direction of growing `u`; 0 if the texture has no area.
 fn direction(corners: [&Vertex; 3]) -> V {
     let [a, b, c] = corners;
     let (ab, ac) = (sub(b.position, a.position), sub(c.position, a.position));

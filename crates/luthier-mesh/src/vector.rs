@@ -19,7 +19,7 @@ pub(crate) fn along(a: V, t: f32, b: V) -> V {
     [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]]
 }
 
-/// A unit vector of this direction; `None` where there is none.
+/// The unit vector of this direction; `None` if it has none.
 pub(crate) fn unit(v: V) -> Option<V> {
     // In double precision, so that lengths near the ends of the range have squares.
     let v = v.map(f64::from);

@@ -1,4 +1,4 @@
-//! An entry as bytes: whose result it is, and a hash that finds damage.
+//! An entry as bytes: address, and a hash that finds damage.
 
 use luthier_bake::Key;
 
@@ -18,7 +18,7 @@ pub(crate) fn pack(address: Key, result: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The result in an entry; `None` where the entry is damaged, of another address, or of another form.
+/// The result in an entry; `None` if the entry is damaged, of another address, or of another form.
 pub(crate) fn unpack(address: Key, bytes: &[u8]) -> Option<&[u8]> {
     let (header, result) = bytes.split_at_checked(HEADER)?;
     let expected = [MAGIC.as_slice(), address.bytes(), Key::of(result).bytes()].concat();

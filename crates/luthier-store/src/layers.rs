@@ -1,10 +1,23 @@
-//! Stores one above the other: the first is the nearest.
+//! Stores one above the other, the nearest first.
 
 use std::sync::Arc;
 
 use luthier_bake::{Artefact, Store, Task};
 
-/// Stores one above the other, the nearest first. A result that a store has is kept by those above it, too; a new one by all.
+/// Stores one above the other, the nearest first. A result found in one store is kept by those above it; a new result
+/// is kept by all.
+///
+/// ```
+/// use luthier_bake::{Function, MemoryStore, Store};
+/// use luthier_store::Layers;
+///
+/// let (near, far) = (MemoryStore::default(), MemoryStore::default());
+/// let (answer, inputs) = (Function { kind: "answer", revision: 1 }, Default::default());
+/// answer.keep(&inputs, &far, 42_u32);
+/// let stores: [&dyn Store; 2] = [&near, &far];
+/// assert_eq!(answer.recall::<u32>(&inputs, &Layers(&stores)), Some(42));
+/// assert_eq!(near.len(), 1); // kept by the nearer store too
+/// ```
 #[derive(Clone, Copy)]
 pub struct Layers<'a>(pub &'a [&'a dyn Store]);
 

@@ -1,4 +1,4 @@
-//! How much a store holds, and what is removed when that is too much.
+//! Size of a store, and removal of entries beyond its limit.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -12,16 +12,31 @@ use luthier_bake::Key;
 use crate::disk::{DiskStore, OBJECTS, StoreError, TEMPORARY, at};
 use crate::entry::unpack;
 
-/// File with the bytes of all entries, as the last process that wrote some left it.
+/// File with the number of bytes of all entries, as the last writing process left it.
 const USAGE: &str = "usage";
 
-/// File that is locked while that file is brought up to date, and entries are removed.
+/// File that is locked while [`USAGE`] is updated and entries are removed.
 const LOCK: &str = "lock";
 
-/// Share of the limit that is left after entries were removed, in percent.
+/// Share of the limit that stays when entries are removed, in percent. The margin keeps the next bake from removing
+/// again.
 const KEPT: u64 = 90;
 
 /// Entries of a store, and their bytes.
+///
+/// ```
+/// use luthier_bake::Key;
+/// use luthier_store::{DEFAULT_LIMIT, DiskStore};
+///
+/// # let folder = std::env::temp_dir().join(format!("luthier-store-usage-{}", std::process::id()));
+/// let store = DiskStore::open(&folder, DEFAULT_LIMIT)?;
+/// store.put_bytes("note", Key::of(b"inputs"), b"result");
+/// assert_eq!(store.usage()?.kinds["note"].entries, 1);
+/// assert_eq!(store.clear()?.all().entries, 1);
+/// assert_eq!(store.usage()?.all().entries, 0);
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # Ok::<(), luthier_store::StoreError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Usage {
     /// By kind of job.
@@ -40,17 +55,30 @@ pub struct KindUsage {
 impl Usage {
     /// All entries together.
     pub fn all(&self) -> KindUsage {
-        let add = |a: KindUsage, b: &KindUsage| KindUsage { entries: a.entries + b.entries, bytes: a.bytes + b.bytes };
-        self.kinds.values().fold(KindUsage::default(), add)
+        let kinds = self.kinds.values();
+        KindUsage { entries: kinds.clone().map(|kind| kind.entries).sum(), bytes: kinds.map(|kind| kind.bytes).sum() }
     }
 }
 
 /// Result of a check of all entries.
+///
+/// ```
+/// use luthier_bake::Key;
+/// use luthier_store::{DEFAULT_LIMIT, DiskStore};
+///
+/// # let folder = std::env::temp_dir().join(format!("luthier-store-verified-{}", std::process::id()));
+/// let store = DiskStore::open(&folder, DEFAULT_LIMIT)?;
+/// store.put_bytes("note", Key::of(b"inputs"), b"result");
+/// let verified = store.verify()?;
+/// assert_eq!((verified.whole, verified.damaged.len()), (1, 0));
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # Ok::<(), luthier_store::StoreError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Verified {
     /// Entries that are whole.
     pub whole: u64,
-    /// Entries that were damaged, and have been removed.
+    /// Damaged entries, which have been removed.
     pub damaged: Vec<PathBuf>,
 }
 
@@ -81,7 +109,7 @@ impl DiskStore {
     /// Reads all entries, and removes those that are damaged.
     ///
     /// # Errors
-    /// [`StoreError`] where the folder cannot be listed, or an entry not be read or removed.
+    /// [`StoreError`] if the folder cannot be listed, or an entry cannot be read or removed.
     pub fn verify(&self) -> Result<Verified, StoreError> {
         let mut verified = Verified::default();
         for Found { path, address, .. } in self.found()? {
@@ -100,7 +128,7 @@ impl DiskStore {
         Ok(verified)
     }
 
-    /// Removes all entries; returns what there was.
+    /// Removes all entries, and returns what there was.
     ///
     /// # Errors
     /// [`StoreError`] where the folder cannot be listed, or an entry not be removed.
@@ -114,8 +142,8 @@ impl DiskStore {
         Ok(usage)
     }
 
-    /// Adds up what this process has written, and removes entries where the store has grown beyond its limit: those first that were not used for the
-    /// longest time. To be called when a bake is done.
+    /// Counts the bytes that this process has written, and removes entries beyond the limit, the least recently used
+    /// first. To be called at the end of a bake.
     ///
     /// # Errors
     /// [`StoreError`] where files of the store cannot be read, written or removed.
@@ -184,7 +212,7 @@ impl DiskStore {
     }
 }
 
-/// Removes an entry, unless another process did.
+/// Removes an entry, if it is still there.
 fn remove(path: &Path) -> Result<(), StoreError> {
     match fs::remove_file(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),

@@ -8,7 +8,7 @@ use luthier_lut::{Axis, Mapping};
 use serde::Serialize;
 use thiserror::Error;
 
-/// Words that name no axes.
+/// Why a text names no axes.
 #[derive(Debug, Error, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AxesError {
@@ -22,7 +22,8 @@ pub enum AxesError {
         "`{0}`: a table has an axis of the angle and at most one of the roughness, such as \"cos_theta,roughness\""
     )]
     Axes(String),
-    /// Axes other than one of the micro-surface, at most one of the direction, and one of the index where the function has it.
+    /// Axes other than one of the micro-surface, at most one of the direction, and one of the index if the function
+    /// depends on it.
     #[error(
         "`{0}`: a table of energy has an axis of the roughness, at most one of the angle, and one of the index for dielectrics, such as \"roughness,cos_theta,ior\""
     )]
@@ -99,7 +100,7 @@ impl Quantity {
     /// Quantities of the index.
     pub const INDICES: [Self; 5] = [Self::Ior, Self::InverseIor, Self::F0, Self::SqrtF0, Self::FourthRootF0];
 
-    /// Its name in an axis; those of the half vector's angle may also end in `_h`.
+    /// Its name in an axis. Names of the half vector's angle may also end in `_h`.
     pub fn name(self) -> &'static str {
         match self {
             Self::CosTheta => "cos_theta",
@@ -122,17 +123,17 @@ impl Quantity {
         }
     }
 
-    /// Whether it is of the direction.
+    /// Whether it is a quantity of the direction.
     pub fn is_angle(self) -> bool {
         Self::ANGLES.contains(&self)
     }
 
-    /// Whether it is of the micro-surface.
+    /// Whether it is a quantity of the micro-surface.
     pub fn is_slope(self) -> bool {
         Self::SLOPES.contains(&self)
     }
 
-    /// Whether it is of the index.
+    /// Whether it is a quantity of the index.
     pub fn is_index(self) -> bool {
         Self::INDICES.contains(&self)
     }
@@ -157,16 +158,14 @@ impl Quantity {
         }
     }
 
-    /// Theta, alpha, index or thickness of a value.
+    /// The canonical value (theta, alpha, index or thickness) of a value of this quantity.
     fn to_canonical(self, value: f64) -> f64 {
-        let angle = |cos: f64| libm::acos(cos.clamp(0.0, 1.0));
         let value = value.max(0.0);
-        let index = |sqrt_f0: f64| (1.0 + sqrt_f0) / (1.0 - sqrt_f0).max(2.0 / IOR_MAX);
         match self {
-            Self::CosTheta => angle(value),
-            Self::CosThetaSq => angle(value.sqrt()),
-            Self::SqrtCosTheta => angle(value * value),
-            // 1 - cos = 2 sin^2 of the half angle: the arc sine is exact at normal incidence, where the arc cosine is not.
+            Self::CosTheta => theta(value),
+            Self::CosThetaSq => theta(value.sqrt()),
+            Self::SqrtCosTheta => theta(value * value),
+            // 1 - cos = 2 sin^2 of the half angle. The arc sine is exact at normal incidence, the arc cosine is not.
             Self::SqrtOneMinusCosTheta => 2.0 * libm::asin((value / SQRT_2).min(FRAC_1_SQRT_2)),
             Self::Theta => value.min(FRAC_PI_2),
             Self::Roughness => value * value,
@@ -175,14 +174,14 @@ impl Quantity {
             Self::SqrtRoughness => (value * value) * (value * value),
             Self::Ior => value.max(1.0),
             Self::InverseIor => 1.0 / value.clamp(1.0 / IOR_MAX, 1.0),
-            Self::F0 => index(value.sqrt()),
-            Self::SqrtF0 => index(value),
-            Self::FourthRootF0 => index(value * value),
+            Self::F0 => ior(value.sqrt()),
+            Self::SqrtF0 => ior(value),
+            Self::FourthRootF0 => ior(value * value),
             Self::IorN | Self::IorK | Self::ThicknessNm => value,
         }
     }
 
-    /// The value of a theta, an alpha, an index or a thickness.
+    /// The value of this quantity for a canonical value.
     pub fn of_canonical(self, canonical: f64) -> f64 {
         let sqrt_f0 = ((canonical - 1.0) / (canonical + 1.0)).max(0.0);
         match self {
@@ -211,14 +210,14 @@ impl Quantity {
 pub enum Nodes {
     /// `i / (n - 1)`: the first and the last texel hold both ends of the axis, and a look-up maps 0..1 to their centres.
     Ends,
-    /// `(i + offset) / n`, clamped to 0..1: texel centres at 0.5, which a look-up reads without more ado.
+    /// `(i + offset) / n`, clamped to 0..1. With texel centres (0.5), a look-up reads at the coordinate itself.
     Offset(f64),
 }
 
 impl Nodes {
     /// Texel centres.
     pub const CENTRES: Self = Self::Offset(0.5);
-    /// Texel centres and ends, and what mistakes make of them: half a texel off to both sides, and a whole one.
+    /// Texel centres and ends, and frequent mistakes: half a texel off to either side, and a whole one.
     pub const MISTAKEN: [Self; 6] =
         [Self::CENTRES, Self::Ends, Self::Offset(0.0), Self::Offset(1.0), Self::Offset(1.5), Self::Offset(-0.5)];
 
@@ -245,7 +244,7 @@ impl Nodes {
 pub struct AxisSpec {
     /// Quantity of the axis.
     pub quantity: Quantity,
-    /// Value at coordinate 0, before it is turned around.
+    /// Value at coordinate 0, before a falling axis is turned around.
     pub min: f64,
     /// Value at coordinate 1.
     pub max: f64,
@@ -255,17 +254,18 @@ pub struct AxisSpec {
     pub descending: bool,
     /// Positions of its nodes.
     pub nodes: Nodes,
-    /// Lowest value: lower ones are evaluated as this one.
+    /// Lowest value. Lower values are evaluated as this one.
     pub floor: f64,
-    /// Highest value: higher ones are evaluated as this one.
+    /// Highest value. Higher values are evaluated as this one.
     pub ceiling: f64,
 }
 
-/// The lowest cosine that counts where texels are balanced at grazing angles.
+/// The lowest cosine that counts when texels are balanced at grazing angles.
 const GRAZING: f64 = 0.01;
 
 impl AxisSpec {
-    /// The whole range of a quantity, linear and ascending; indices up to 3, complex ones 0.05 to 5 and 0 to 10, films up to 1200 nm.
+    /// The whole range of a quantity, linear and ascending. Indices end at 3, complex ones run from 0.05 to 5 and from
+    /// 0 to 10, films end at 1200 nm.
     pub fn whole(quantity: Quantity, nodes: Nodes) -> Self {
         let (min, max) = match quantity {
             Quantity::Theta => (0.0, FRAC_PI_2),
@@ -296,8 +296,9 @@ impl AxisSpec {
         self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
     }
 
-    /// Theta or alpha up to which reads are of this texel alone: the end of the axis at normal incidence or at the roughest surface, or a cosine of
-    /// [`GRAZING`], where nodes are texel centres and the texel is the one beside that end.
+    /// Canonical value up to which reads return this texel alone. It is the end of the axis at normal incidence or at
+    /// the roughest surface, or a cosine of [`GRAZING`]. None unless nodes are texel centres and the texel lies beside
+    /// that end.
     pub(crate) fn beyond(&self, texel: u32, size: u32) -> Option<f64> {
         if self.nodes != Nodes::CENTRES || size < 2 {
             return None;
@@ -312,7 +313,7 @@ impl AxisSpec {
         }
     }
 
-    /// The value as it reads in the axis' own words, and the coordinate of a theta, alpha, index or thickness, ascending or not.
+    /// The value as the axis words it, and the coordinate of a canonical value, ascending or not.
     pub fn coordinate(&self, canonical: f64) -> f64 {
         self.axis().encode(self.quantity.of_canonical(canonical))
     }
@@ -323,17 +324,17 @@ impl AxisSpec {
         [a.min(b), a.max(b)]
     }
 
-    /// Coordinates from normal incidence down to a cosine; the whole axis where it is not of the direction.
+    /// Coordinates from normal incidence down to a cosine; the whole axis of other quantities.
     pub(crate) fn ends_from_cosine(&self, min_cos: f64) -> [f64; 2] {
         if self.quantity.is_angle() { self.ends([0.0, libm::acos(min_cos.clamp(0.0, 1.0))]) } else { [0.0, 1.0] }
     }
 
-    /// Axes separated by commas, all with the same positions of nodes.
+    /// Parses axes separated by commas, all with these positions of nodes.
     pub(crate) fn parse_all(text: &str, nodes: Nodes) -> Result<Vec<Self>, AxesError> {
         text.split(',').map(|axis| Ok(Self { nodes, ..axis.parse()? })).collect()
     }
 
-    /// Theta, alpha, index or thickness at a coordinate, ascending or not.
+    /// The canonical value at a coordinate, ascending or not.
     pub fn canonical_of_coordinate(&self, u: f64) -> f64 {
         self.quantity.to_canonical(self.axis().decode(u))
     }
@@ -363,6 +364,15 @@ impl FromStr for AxisSpec {
     fn from_str(text: &str) -> Result<Self, AxesError> {
         Self::parse(text.trim()).ok_or_else(|| AxesError::Axis(text.to_owned()))
     }
+}
+
+fn theta(cos: f64) -> f64 {
+    libm::acos(cos.clamp(0.0, 1.0))
+}
+
+/// The index of a reflectance at normal incidence, given its root.
+fn ior(sqrt_f0: f64) -> f64 {
+    (1.0 + sqrt_f0) / (1.0 - sqrt_f0).max(2.0 / IOR_MAX)
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -395,6 +405,17 @@ impl AxisSpec {
 }
 
 /// Layout of a table: the axes along its sides.
+///
+/// ```
+/// use luthier_table::{Layout, Nodes};
+///
+/// let layout = Layout::parse("cos_theta,roughness", Nodes::CENTRES)?;
+/// let [theta, alpha] = layout.at_texel([4, 4], [3, 1]);
+/// assert!((theta - 0.875_f64.acos()).abs() < 1e-12);
+/// assert_eq!(alpha, 0.375 * 0.375); // alpha = roughness^2
+/// assert_eq!(layout.to_string(), "cos_theta,roughness");
+/// # Ok::<(), luthier_table::AxesError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
     /// The axis of the direction.
@@ -406,7 +427,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of `--axes`: one or two axes, across first, separated by a comma.
+    /// Parses the layout of `--axes`: one or two axes separated by a comma, the one across first.
     ///
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::Axes`] unless there is one of the direction and at most one
@@ -435,24 +456,30 @@ impl Layout {
     }
 
     fn from_lowest([min_cos, min_alpha]: [f64; 2], [cos, alpha]: [Mapping; 2], nodes: Nodes) -> Self {
-        let axis = |quantity, min, mapping| AxisSpec { min, mapping, ..AxisSpec::whole(quantity, nodes) };
-        let angle = axis(Quantity::CosTheta, min_cos, cos);
-        Self { angle, slope: Some(axis(Quantity::Alpha, min_alpha, alpha)), transposed: false }
+        let angle = AxisSpec { min: min_cos, mapping: cos, ..AxisSpec::whole(Quantity::CosTheta, nodes) };
+        let slope = AxisSpec { min: min_alpha, mapping: alpha, ..AxisSpec::whole(Quantity::Alpha, nodes) };
+        Self { angle, slope: Some(slope), transposed: false }
     }
 
-    /// The texel of a place along the axis of the direction and one along that of the micro-surface.
+    /// The texel at a place along the axis of the direction and a place along the axis of the micro-surface.
     pub(crate) fn texel(&self, along_angle: u32, along_slope: u32) -> [u32; 2] {
         if self.transposed { [along_slope, along_angle] } else { [along_angle, along_slope] }
     }
 
-    /// Theta and alpha of a texel; alpha is 0 where there is no such axis.
+    /// Theta and alpha at coordinates; alpha is 0 without such an axis.
+    pub(crate) fn canonical(&self, u: [f64; 2]) -> [f64; 2] {
+        let slope = self.slope.map_or(0.0, |axis| axis.canonical_of_coordinate(u[1]));
+        [self.angle.canonical_of_coordinate(u[0]), slope]
+    }
+
+    /// Theta and alpha of a texel; alpha is 0 without such an axis.
     pub fn at_texel(&self, size: [u32; 2], texel: [u32; 2]) -> [f64; 2] {
         let [a, s] = self.order();
         let slope = self.slope.map_or(0.0, |axis| axis.canonical(texel[s], size[s]));
         [self.angle.canonical(texel[a], size[a]), slope]
     }
 
-    /// Position at which a shader that knows this layout reads, in texels.
+    /// Position, in texels, at which a shader with this layout reads.
     pub fn position(&self, size: [u32; 2], [theta, alpha]: [f64; 2]) -> [f64; 2] {
         let [a, s] = self.order();
         let mut position = [0.5; 2];

@@ -1,4 +1,4 @@
-//! Tables of the split sum: what they state, their texels, their error.
+//! Tables of the split sum: their statements, their texels, their error.
 
 use luthier_lut::{Comparison, ErrorStats, Image, Scan, WeightBits, balance, bilinear, measure_scan};
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
@@ -15,7 +15,8 @@ const SCAN_POINTS: u32 = 96;
 /// Halvings of the climb to the worst error.
 const REFINEMENTS: u32 = 8;
 
-/// A table of the split sum of image-based lighting (Karis 2013): a statement, from which its texels follow.
+/// A table of the split sum of image-based lighting (Karis 2013). Its fields state the table; the texels follow from
+/// them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DfgTable {
     /// Slope distribution.
@@ -30,27 +31,32 @@ pub struct DfgTable {
     pub size: [u32; 2],
     /// Number type of the texels.
     pub stored: Stored,
-    /// The closed form to which the texels are added, where they hold what it lacks; for channels of the split sum.
+    /// The closed form under the texels, which then hold its rest; for channels of the split sum.
     pub base: Option<Base>,
 }
 
 impl DfgTable {
-    /// The content of each channel at an alpha and a cosine, by quadrature; 0 from the last channel on.
+    /// The content of each channel at an alpha and a cosine, by quadrature. Missing channels are 0.
     pub fn at(&self, alpha: f64, cos_theta: f64) -> [f64; 4] {
         let needs = Needs::of(&self.values);
         self.contents(&Parts::exact(needs, self.distribution, self.masking, alpha, cos_theta))
     }
 
-    /// The texels, as a shader reads them: values at the nodes, moved by a sixteenth of their second differences, so that reads between them err
-    /// to both sides alike, then rounded. Where the last node is a texel centre, so that reads beyond it are constant, its value is the mean of those
-    /// there and at a cosine or alpha of 1, and where light grazes at a cosine of 0.01. Values are within 2e-6 (GGX and cloth) or 2e-4 (Beckmann), cloth where it is below 1; beyond relatively.
-    /// Deterministic, whatever the number of threads.
+    /// The texels, as a shader reads them.
+    ///
+    /// Values at the nodes are moved by a sixteenth of their second differences, so that reads between them err to both
+    /// sides alike, then rounded. Reads beyond a last node at a texel centre are constant: its value is the mean of the
+    /// values there and at the end of the axis (a cosine or alpha of 1, at grazing angles a cosine of 0.01).
+    ///
+    /// Values are within 2e-6 (GGX and cloth) or 2e-4 (Beckmann); values of cloth above 1 relatively. Deterministic,
+    /// whatever the number of threads.
     pub fn bake(&self) -> Image {
         let surface = Needs::of(&self.values).split_sum.then(|| SplitSumSurface::new(self.distribution, self.masking));
         self.bake_from(surface.as_ref())
     }
 
-    /// As [`Self::bake`], from the surface of this distribution and masking term; none where no value needs a split sum.
+    /// As [`Self::bake`], from the surface of this distribution and masking term. No surface is needed if no content
+    /// needs a split sum.
     pub(crate) fn bake_from(&self, surface: Option<&SplitSumSurface>) -> Image {
         let [width, height] = self.size;
         let [angles, slopes] = self.layout.order();
@@ -71,7 +77,7 @@ impl DfgTable {
                     let across = beyond_row.as_ref().map(|row| self.texel_of(row, cos));
                     let end = self.layout.angle.beyond(along, self.size[angles]);
                     let ahead = end.map(|theta| self.texel_of(&row, libm::cos(theta).max(0.0)));
-                    // Halfway to what the end holds, so that both err alike.
+                    // Halfway to the value at the end, so that the node and the end err alike.
                     let [across, ahead] = [across, ahead].map(|other| other.unwrap_or(here));
                     std::array::from_fn(|c| here[c] + 0.5 * (across[c] - here[c]) + 0.5 * (ahead[c] - here[c]))
                 });
@@ -90,8 +96,10 @@ impl DfgTable {
         self.stored.quantise(&balance(&image, floor))
     }
 
-    /// The error of reads (bilinear, 8-bit weights) from texels of this statement, over cosines and alphas from the given ones on: absolute, of
-    /// every channel, against quadrature. The search for the largest climbs in every channel by itself.
+    /// The absolute error of reads (bilinear, 8-bit weights) from these texels against quadrature, in every channel,
+    /// over cosines and alphas from the given ones on.
+    ///
+    /// The search for the largest error climbs in every channel by itself.
     pub fn error(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> ErrorStats {
         let all = self.error_against(texels, [min_cos, min_alpha], SCAN_POINTS, |alpha, cos| self.at(alpha, cos));
         if self.values.len() < 2 {
@@ -103,7 +111,7 @@ impl DfgTable {
         })
     }
 
-    /// As [`Self::error`], of each channel apart: cloth errs by far the most.
+    /// As [`Self::error`], for each channel apart: cloth errs by far the most.
     pub fn channel_errors(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> Vec<ErrorStats> {
         self.values
             .iter()
@@ -116,7 +124,7 @@ impl DfgTable {
             .collect()
     }
 
-    /// The content of each channel for a split sum, where no value needs more.
+    /// The content of each channel for a split sum, if no content needs more.
     pub(crate) fn of_split_sum(&self, sum: SplitSum) -> [f64; 4] {
         self.contents(&sum.into())
     }
@@ -137,8 +145,8 @@ impl DfgTable {
         self.beside(contents, form, |content, form| base.texel(content, form))
     }
 
-    /// The content of each channel as a shader reads it from the texels (bilinear, 8-bit weights) and adds the base, if any; 0 from the last channel
-    /// on.
+    /// The content of each channel as a shader reads it from the texels (bilinear, 8-bit weights), with the base added,
+    /// if any. Missing channels are 0.
     pub fn read(&self, texels: &Image, cos_theta: f64, alpha: f64) -> [f64; 4] {
         self.read_at(texels, [libm::acos(cos_theta), alpha])
     }
@@ -148,7 +156,7 @@ impl DfgTable {
         self.read_beside(texels, [theta, alpha], form.unwrap_or_default())
     }
 
-    /// As [`Self::read`], where the base has a split sum that is known.
+    /// As [`Self::read`], with the known split sum of the base.
     pub(crate) fn read_beside(&self, texels: &Image, at: [f64; 2], form: SplitSum) -> [f64; 4] {
         let texel = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
         let mut contents = [0.0; 4];
@@ -157,7 +165,7 @@ impl DfgTable {
         self.beside(contents, self.of_split_sum(form), |texel, form| base.content(texel, form))
     }
 
-    /// Channels of the split sum beside those of the base; other channels as they are.
+    /// Combines channels of the split sum with the base. Other channels stay.
     fn beside(&self, mut contents: [f64; 4], form: [f64; 4], of: impl Fn(f64, f64) -> f64) -> [f64; 4] {
         for (c, value) in self.values.iter().enumerate() {
             if value.is_split_sum() {
@@ -188,22 +196,25 @@ impl DfgTable {
     ) -> ErrorStats {
         let Layout { angle, slope, .. } = self.layout;
         let [from, to] = angle.ends_from_cosine(min_cos);
-        // Nodes too, of which the first and last are the ends of the axes: errors are largest there.
+        // Scans the nodes too. The first and last are the ends of the axes, where errors are largest.
         let nodes = [points, 0];
         let mut scan = Scan { points: [points, 1], from: [from, 0.5], to: [to, 0.5], nodes, refinements: REFINEMENTS };
         if let Some(slope) = slope {
             let [from, to] = slope.ends([min_alpha, 1.0]);
             (scan.points[1], scan.nodes[1], scan.from[1], scan.to[1]) = (points, points, from, to);
         }
-        let canonical = |u: [f64; 2]| {
-            [angle.canonical_of_coordinate(u[0]), slope.map_or(0.0, |slope| slope.canonical_of_coordinate(u[1]))]
-        };
-        let compare = |[theta, alpha]: [f64; 2]| Comparison {
-            expected: exact(alpha, libm::cos(theta).max(0.0)),
-            sampled: self.read_at(texels, [theta, alpha]),
-        };
-        let named = |[theta, alpha]: [f64; 2]| vec![libm::cos(theta), alpha];
-        measure_scan(&scan, |u| compare(canonical(u)), |u| named(canonical(u)))
+        measure_scan(
+            &scan,
+            |u| {
+                let [theta, alpha] = self.layout.canonical(u);
+                let expected = exact(alpha, libm::cos(theta).max(0.0));
+                Comparison { expected, sampled: self.read_at(texels, [theta, alpha]) }
+            },
+            |u| {
+                let [theta, alpha] = self.layout.canonical(u);
+                vec![libm::cos(theta), alpha]
+            },
+        )
     }
 }
 

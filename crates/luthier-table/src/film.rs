@@ -1,4 +1,4 @@
-//! Tables of thin-film iridescence: the colour that an interface reflects, over angle and thickness.
+//! Tables of thin-film iridescence: the reflected colour of an interface, over angle and thickness.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ pub struct FilmLayout {
 }
 
 impl FilmLayout {
-    /// Two axes separated by a comma, the one across first, in the grammar of [`AxisSpec`].
+    /// Parses two axes separated by a comma, the one across first, in the grammar of [`AxisSpec`].
     ///
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::FilmAxes`] unless there is one of the direction and one of the thickness.
@@ -45,6 +45,11 @@ impl FilmLayout {
         &self.axes
     }
 
+    /// Canonical values of both axes at coordinates.
+    fn canonical(&self, u: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k: usize| self.axes[k].canonical_of_coordinate(u[k]))
+    }
+
     /// Cosine and thickness of the canonical values of both axes.
     fn place(&self, canonical: [f64; 2]) -> [f64; 2] {
         let [theta, thickness_nm] =
@@ -60,8 +65,23 @@ impl fmt::Display for FilmLayout {
     }
 }
 
-/// A table of the reflectance of a plane interface under a thin film, in linear Rec.709: a statement, from which its texels follow. For facets
-/// the cosine is that against the half vector.
+/// A table of the reflectance of a plane interface under a thin film, in linear Rec.709. Its fields state the table;
+/// the texels follow from them.
+///
+/// For facets the cosine is that against the half vector.
+///
+/// ```
+/// use luthier_optics::{color::Color, num_complex::Complex64};
+/// use luthier_table::{FilmLayout, FilmTable, Nodes, Stored};
+///
+/// let layout = FilmLayout::parse("cos_theta,thickness_nm=0..500", Nodes::Ends)?;
+/// let (film, below) = (Complex64::new(1.33, 0.0), Complex64::ONE);
+/// let soap = FilmTable { above: 1.0, film, below, color: Color::Spectral, layout, size: [4, 6], stored: Stored::Half };
+/// let texels = soap.bake();
+/// assert_eq!(soap.thicknesses(), [0.0, 500.0]);
+/// assert!(texels.texel(3, 0)[1] < 1e-3); // no film reflects nothing at normal incidence
+/// # Ok::<(), luthier_table::AxesError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmTable {
     /// Index above.
@@ -81,10 +101,12 @@ pub struct FilmTable {
 }
 
 impl FilmTable {
-    /// The texels of three channels, as a shader reads them: the exact sum of all interference (Airy) at every wavelength of [`Color`], moved by a
+    /// The texels of three channels, as a shader reads them.
+    ///
+    /// The values are the exact sum of all interference (Airy) at every wavelength of [`Color`]. They are moved by a
     /// sixteenth of their second differences, so that reads between them err to both sides alike, then rounded.
     ///
-    /// Steps of 5 nm bound the thickness: up to 5 um the integral is within 1e-3 of one in steps of 1 nm.
+    /// The spectral steps of 5 nm limit the thickness: up to 5 um the integral is within 1e-3 of one in steps of 1 nm.
     pub fn bake(&self) -> Image {
         let [width, height] = self.size;
         let wavelengths = self.color.nodes();
@@ -100,8 +122,8 @@ impl FilmTable {
         self.stored.quantise(&balance(&Image { width, height, channels: 3, data }, f64::NEG_INFINITY))
     }
 
-    /// The error of reads (bilinear, 8-bit weights) from texels of this statement, over cosines from the given one on and all thicknesses: absolute, of
-    /// every channel. Axis values of the worst point are the cosine and the thickness.
+    /// The absolute error of reads (bilinear, 8-bit weights) from these texels, in every channel, over cosines from the
+    /// given one on and all thicknesses. Axis values of the worst point are the cosine and the thickness.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
         let wavelengths = self.color.nodes();
         let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
@@ -112,16 +134,18 @@ impl FilmTable {
             nodes: self.size.map(|n| n - 1),
             refinements: REFINEMENTS,
         };
-        let canonical = |u: [f64; 2]| [0, 1].map(|k: usize| self.layout.axes[k].canonical_of_coordinate(u[k]));
-        let compare = |u: [f64; 2]| {
-            let at = canonical(u);
-            let position = [0, 1].map(|k: usize| self.layout.axes[k].position(at[k], self.size[k]));
-            let [r, g, b] = self.rgb(&wavelengths, self.layout.place(at));
-            let mut sampled = bilinear(texels, position, WEIGHTS);
-            sampled[3] = 0.0;
-            Comparison { expected: [r, g, b, 0.0], sampled }
-        };
-        measure_scan(&scan, compare, |u| self.layout.place(canonical(u)).to_vec())
+        measure_scan(
+            &scan,
+            |u| {
+                let at = self.layout.canonical(u);
+                let position = [0, 1].map(|k: usize| self.layout.axes[k].position(at[k], self.size[k]));
+                let [r, g, b] = self.rgb(&wavelengths, self.layout.place(at));
+                let mut sampled = bilinear(texels, position, WEIGHTS);
+                sampled[3] = 0.0;
+                Comparison { expected: [r, g, b, 0.0], sampled }
+            },
+            |u| self.layout.place(self.layout.canonical(u)).to_vec(),
+        )
     }
 
     /// Least and largest thickness of the table, nm.
@@ -130,7 +154,7 @@ impl FilmTable {
         axis.map_or([0.0; 2], |axis| [axis.min, axis.max])
     }
 
-    /// The largest error of all channels of reads from texels of this statement, as a function of cosine and thickness.
+    /// The largest error of all channels of a read from these texels, as a function of cosine and thickness.
     pub fn errors(&self, texels: &Image) -> impl Fn(f64, f64) -> f64 {
         let wavelengths = self.color.nodes();
         move |cos_theta, thickness_nm| {

@@ -22,7 +22,7 @@ pub struct FresnelLayout {
 }
 
 impl FresnelLayout {
-    /// Three axes separated by commas, the fastest first, in the grammar of [`AxisSpec`].
+    /// Parses three axes separated by commas, the fastest first, in the grammar of [`AxisSpec`].
     ///
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::FresnelAxes`] unless there is one of the direction, one of n and one of k.
@@ -40,6 +40,11 @@ impl FresnelLayout {
     /// The axes across, down, and from slice to slice.
     pub fn axes(&self) -> &[AxisSpec; 3] {
         &self.axes
+    }
+
+    /// Canonical values of the axes at coordinates.
+    fn canonical(&self, u: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k: usize| self.axes[k].canonical_of_coordinate(u[k]))
     }
 
     /// Cosine, n and k of the canonical values of the axes.
@@ -64,8 +69,20 @@ impl fmt::Display for FresnelLayout {
     }
 }
 
-/// A table of the reflectance of a smooth surface of index n + ik in air, for unpolarised light: a statement, from which its texels follow. For facets
-/// the cosine is that against the half vector.
+/// A table of the reflectance of a smooth surface of index n + ik in air, for unpolarised light. Its fields state the
+/// table; the texels follow from them.
+///
+/// For facets the cosine is that against the half vector.
+///
+/// ```
+/// use luthier_table::{FresnelLayout, FresnelTable, Nodes, Stored};
+///
+/// let layout = FresnelLayout::parse("cos_theta,ior_n,ior_k", Nodes::Ends)?;
+/// let table = FresnelTable { layout, size: [8, 32, 32], stored: Stored::Half };
+/// let glass = table.sample(&table.bake(), [1.0, 1.5, 0.0]);
+/// assert!((glass - 0.04).abs() < 0.01);
+/// # Ok::<(), luthier_table::AxesError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FresnelTable {
     /// Axes and nodes.
@@ -91,26 +108,25 @@ impl FresnelTable {
         self.stored.quantise(&Image { width, height: rows * slices, channels: 1, data })
     }
 
-    /// The error of reads from texels of this statement (linear along each axis, weights of 8 bits), over cosines from the given one on and all n
-    /// and k of the table: absolute. Axis values of the worst point are the cosine, n and k.
+    /// The absolute error of reads (linear along each axis, weights of 8 bits) from these texels, over cosines from the
+    /// given one on and all n and k of the table. Axis values of the worst point are the cosine, n and k.
     pub fn error(&self, texels: &Image, min_cos: f64) -> ErrorStats {
         let ends = self.layout.axes.map(|axis| axis.ends_from_cosine(min_cos));
-        let compare = |canonical: [f64; 3]| {
-            let exact = Self::exact(self.layout.place(canonical));
-            let [sampled, ..] = self.read(texels, canonical);
-            Comparison { expected: [exact, 0.0, 0.0, 0.0], sampled: [sampled, 0.0, 0.0, 0.0] }
-        };
-        let canonical = |u: [f64; 3]| [0, 1, 2].map(|k: usize| self.layout.axes[k].canonical_of_coordinate(u[k]));
         slices::measure(
             SCAN_POINTS,
             ends,
             REFINEMENTS,
-            |u| compare(canonical(u)),
-            |u| self.layout.place(canonical(u)).to_vec(),
+            |u| {
+                let canonical = self.layout.canonical(u);
+                let exact = Self::exact(self.layout.place(canonical));
+                let [sampled, ..] = self.read(texels, canonical);
+                Comparison { expected: [exact, 0.0, 0.0, 0.0], sampled: [sampled, 0.0, 0.0, 0.0] }
+            },
+            |u| self.layout.place(self.layout.canonical(u)).to_vec(),
         )
     }
 
-    /// The reflectance that reads give for a cosine, n and k.
+    /// The reflectance as read from the texels for a cosine, n and k.
     pub fn sample(&self, texels: &Image, [cos_theta, n, k]: [f64; 3]) -> f64 {
         let canonical = self.layout.axes.map(|axis| match axis.quantity {
             Quantity::IorN => n,

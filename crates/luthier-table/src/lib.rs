@@ -3,19 +3,21 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! A [`DfgTable`] states a function, axes, values and texels; [`DfgTable::bake`] fills it, [`DfgTable::error`] measures what a sampler reads from
-//! it, [`search`] finds the smallest. [`Preset`]s are the statements of engines. [`ClosedForm::fit`] finds a form without a table: two quotients of polynomials and
-//! a fifth power. [`search_beside_form`] finds the cheapest form that a table of so many bytes brings within an error. [`DfgTable::wgsl`] and [`ClosedForm::wgsl`] write the function that a shader calls, `luthier_dfg`.
+//! A [`DfgTable`] states a function, axes, contents and texels. [`DfgTable::bake`] fills it, [`DfgTable::error`]
+//! measures the reads of a sampler, and [`search`] finds the smallest table. [`Preset`]s are the tables of engines.
+//! [`ClosedForm::fit`] finds a form without a table: two quotients of polynomials and a fifth power.
+//! [`search_beside_form`] finds the cheapest form that holds an error together with a table of limited bytes.
+//! [`DfgTable::wgsl`] and [`ClosedForm::wgsl`] write the shader function `luthier_dfg`.
 //!
-//! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
-//! [`EnergyPreset`]s are the statements of renderers.
+//! An [`EnergyTable`] states a table of albedos for energy compensation, of metals and of dielectrics from both sides.
+//! [`EnergyPreset`]s are the tables of renderers.
 //!
-//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness. A [`FresnelTable`] holds the reflectance of a
-//! plane of any index, over angle, n and k. [`LtcTable`] and [`SheenTable`] hold linearly
+//! A [`FilmTable`] holds the colour of a plane under a thin film, over angle and thickness. A [`FresnelTable`] holds
+//! the reflectance of a plane of any index, over angle, n and k. [`LtcTable`] and [`SheenTable`] hold linearly
 //! transformed cosines: of rough metals for area lights, and of a layer of fibres.
 //!
-//! Simplifications: tables have one level and are read by linear filtering along each axis. Split sums are of light from above and of Schlick's
-//! reflectance.
+//! Simplifications: tables have one level, and are read by linear filtering along each axis. Split sums are for light
+//! from above and for Schlick's reflectance.
 
 mod axes;
 mod base;

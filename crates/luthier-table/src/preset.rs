@@ -1,18 +1,18 @@
-//! Split-sum tables as engines have them.
+//! Split-sum tables of engines.
 
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
 
 use crate::{DfgTable, Layout, Nodes, Stored, Value};
 
-/// Container in which an engine takes its table.
+/// File format of an engine's table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Container {
     /// KTX2.
     Ktx2,
     /// PNG of 8 bits.
     Png,
-    /// Texels and nothing else, little-endian, rows from the top.
+    /// Bare texels, little-endian, rows from the top.
     Raw,
     /// A JavaScript module that exports the words of half floats as `DFG_LUT_DATA`.
     JavaScript,
@@ -23,6 +23,14 @@ pub enum Container {
 }
 
 /// The split-sum table of an engine.
+///
+/// ```
+/// use luthier_table::{Bindings, Preset};
+///
+/// let table = Preset::named("babylon").unwrap().table();
+/// assert_eq!(table.bytes(), 256 * 256 * 4);
+/// assert!(table.wgsl(Bindings::default()).unwrap().contains("fn luthier_dfg("));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Preset {
     /// Name on command lines.
@@ -39,9 +47,9 @@ pub struct Preset {
     pub size: [u32; 2],
     /// Number type of the texels.
     pub stored: Stored,
-    /// How the table reaches the engine.
+    /// File format of the table.
     pub container: Container,
-    /// Where the layout was read.
+    /// Source of the layout.
     pub source: &'static str,
 }
 
@@ -143,7 +151,7 @@ impl Preset {
         Self::ALL.iter().find(|preset| preset.name == name)
     }
 
-    /// The table that the engine would read.
+    /// The engine's table.
     pub fn table(&self) -> DfgTable {
         DfgTable {
             distribution: Distribution::Ggx,

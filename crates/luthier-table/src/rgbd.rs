@@ -1,14 +1,15 @@
 //! RGBD: three channels in four bytes, as Babylon.js stores its tables.
 //!
-//! The texel (r, g, b, d) of bytes over 255 stands for `(r, g, b)^2.2 / d`. Up to 1 the divisor is 1; beyond it is the largest byte that keeps
-//! the largest channel below 1, so that values up to 255 are held (`toRGBD` and `fromRGBD` of Babylon.js 9.35).
+//! The texel (r, g, b, d) of bytes over 255 stands for `(r, g, b)^2.2 / d`. The divisor is 1 for channels up to 1. For
+//! larger ones it is the largest byte that keeps the largest channel below 1, so that values up to 255 can be stored
+//! (`toRGBD` and `fromRGBD` of Babylon.js 9.35).
 
 use luthier_lut::Image;
 
 /// Power by which channels are decoded.
 const POWER: f64 = 2.2;
 
-/// The bytes of a texel, for values of 0 to 255. What they decode to encodes to the same bytes.
+/// The bytes of a texel, for values of 0 to 255. Decoded bytes encode to themselves.
 pub fn encode(color: [f64; 3]) -> [u8; 4] {
     let color = color.map(|value| value.clamp(0.0, 255.0));
     let mut bytes = with_divisor(color, divisor(color));
@@ -29,7 +30,7 @@ pub fn decode([r, g, b, d]: [u8; 4]) -> [f64; 3] {
     [r, g, b].map(|byte| libm::pow(f64::from(byte) / 255.0, POWER) / divisor)
 }
 
-/// The bytes of an image of up to three channels, row by row: what the file holds whose reads are the image.
+/// The bytes of a file that reads as an image of up to three channels, row by row.
 pub fn texels(image: &Image) -> Vec<u8> {
     image.texels().flat_map(|texel| encode(color(texel))).collect()
 }
@@ -42,7 +43,7 @@ pub fn decode_image(bytes: &Image) -> Image {
     Image { channels: 3, data: read.map(|value| value as f32).collect(), ..*bytes }
 }
 
-/// The values that a shader reads once it has decoded an image of up to three channels.
+/// The values of a shader after decoding an image of up to three channels.
 pub(crate) fn quantise(image: &Image) -> Image {
     let channels = image.channels as usize;
     let read = image.texels().flat_map(|texel| decode(encode(color(texel))).into_iter().take(channels));

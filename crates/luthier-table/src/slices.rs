@@ -10,18 +10,18 @@ pub(crate) const BITS: u32 = 8;
 pub(crate) fn read(texels: &Image, position: [f64; 3], [_, rows, slices]: [u32; 3]) -> [f64; 4] {
     let rows = f64::from(rows);
     let y = position[1].clamp(0.5, rows - 0.5);
-    let read = |slice: f64| bilinear(texels, [position[0], slice * rows + y], WeightBits::Fixed(BITS));
     let last = f64::from(slices - 1);
     let z = (position[2] - 0.5).clamp(0.0, last);
     let low = libm::floor(z);
     let scale = f64::from(1u32 << BITS);
     let t = libm::round((z - low) * scale) / scale;
-    let (near, far) = (read(low), read((low + 1.0).min(last)));
+    let [near, far] = [low, (low + 1.0).min(last)]
+        .map(|slice| bilinear(texels, [position[0], slice * rows + y], WeightBits::Fixed(BITS)));
     [0, 1, 2, 3].map(|c: usize| near[c] + (far[c] - near[c]) * t)
 }
 
-/// The error over a box of coordinates: a scan of so many points along each axis, then a climb from the worst ones of the worst slice.
-/// `named` gives the values of the axes at a coordinate.
+/// The error over a box of coordinates: a scan of `points` points along each axis, then a climb from the worst ones of
+/// the worst slice. `named` gives the values of the axes at a coordinate.
 pub(crate) fn measure(
     points: u32,
     ends: [[f64; 2]; 3],
@@ -45,6 +45,5 @@ pub(crate) fn measure(
     let worst = stats.worst.at.clone();
     let third = worst.get(2).copied().unwrap_or(0.5);
     stats.worst.at = named([0, 1, 2].map(|k: usize| worst.get(k).copied().unwrap_or(0.5)));
-    let u3 = |u: [f64; 2]| [u[0], u[1], third];
-    stats.with_worst_of(measure_scan(&scan, |u| compare(u3(u)), |u| named(u3(u))))
+    stats.with_worst_of(measure_scan(&scan, |[u, v]| compare([u, v, third]), |[u, v]| named([u, v, third])))
 }

@@ -34,7 +34,7 @@ impl Stored {
         }
     }
 
-    /// Bytes of a texel of so many values.
+    /// Bytes of a texel with this many values.
     pub fn texel_bytes(self, channels: usize) -> usize {
         match self {
             Self::Unorm8 => channels,
@@ -44,7 +44,7 @@ impl Stored {
         }
     }
 
-    /// The values that a shader reads, of an image of up to four channels.
+    /// The values that a shader reads, for an image of up to four channels.
     pub fn quantise(self, image: &Image) -> Image {
         let format = match self {
             Self::Unorm8 => TexelFormat::Rgba8Unorm,

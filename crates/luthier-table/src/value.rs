@@ -1,4 +1,4 @@
-//! Contents of channels, and the functions that they follow from.
+//! Contents of channels, and the functions behind them.
 
 use luthier_optics::cloth::{ClothRow, ClothVisibility, cloth_albedo};
 use luthier_optics::diffuse_albedo::unity_disney_albedo;
@@ -14,9 +14,9 @@ pub enum Value {
     Bias,
     /// Sum of scale and bias: the albedo for f0 = 1.
     Albedo,
-    /// 1 less the albedo: small where the albedo is near 1, so that half floats hold it more closely.
+    /// 1 less the albedo. It is small where the albedo is near 1, so half floats hold it more closely.
     Loss,
-    /// The albedo of cloth under [`ClothVisibility::Neubelt`]; it exceeds 1 where alpha is low and light grazes.
+    /// The albedo of cloth under [`ClothVisibility::Neubelt`]. It exceeds 1 at low alphas and grazing light.
     Cloth,
     /// The albedo of cloth under [`ClothVisibility::EstevezKulla`].
     Sheen,
@@ -57,7 +57,7 @@ impl Value {
         }
     }
 
-    /// Whether it follows from the split sum.
+    /// Whether the split sum determines it.
     pub fn is_split_sum(self) -> bool {
         matches!(self, Self::Scale | Self::Bias | Self::Albedo | Self::Loss)
     }
@@ -77,7 +77,7 @@ impl Value {
     }
 }
 
-/// The functions that some values need.
+/// The functions that a list of contents needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Needs {
     pub(crate) split_sum: bool,
@@ -97,7 +97,7 @@ impl Needs {
     }
 }
 
-/// Functions at one direction and alpha; those that are not needed are 0.
+/// Functions at one direction and alpha; unneeded ones are 0.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Parts {
     sum: SplitSum,
@@ -113,7 +113,7 @@ impl From<SplitSum> for Parts {
 }
 
 impl Parts {
-    /// By quadrature.
+    /// The functions by quadrature.
     pub(crate) fn exact(needs: Needs, distribution: Distribution, masking: Masking, alpha: f64, cos: f64) -> Self {
         let mut parts = Self::in_passing(needs, alpha, cos);
         if needs.split_sum {
@@ -125,7 +125,7 @@ impl Parts {
         parts
     }
 
-    /// Those for which there is no faster way along a line.
+    /// The functions that have no faster way along a line.
     fn in_passing(needs: Needs, alpha: f64, cos: f64) -> Self {
         let mut parts = Self::default();
         if needs.sheen {

@@ -1,5 +1,5 @@
-//! DDS (DirectDraw Surface): the first image of a file of uncompressed texels, to read. With the DX10 header by its DXGI format, without
-//! it by FourCC or bit masks (Microsoft, "Programming Guide for DDS").
+//! DDS (DirectDraw Surface), to read: the first image of a file of uncompressed texels. Texel formats come from the
+//! DXGI format of a DX10 header, else from FourCC or bit masks (Microsoft, "Programming Guide for DDS").
 
 use luthier_lut::Image;
 
@@ -67,27 +67,24 @@ fn unsupported(what: impl Into<std::borrow::Cow<'static, str>>) -> TextureError 
 
 /// DXGI_FORMAT.
 fn dxgi(format: u32) -> Option<TexelLayout> {
-    let of = |samples, channels| Some(TexelLayout::of(samples, channels));
-    match format {
-        2 => of(Samples::Float, 4),
-        6 => of(Samples::Float, 3),
-        10 => of(Samples::Half, 4),
-        11 => of(Samples::Unorm16, 4),
-        16 => of(Samples::Float, 2),
-        24 => of(Samples::Unorm10, 4),
-        28 => of(Samples::Unorm8, 4),
-        29 => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        34 => of(Samples::Half, 2),
-        35 => of(Samples::Unorm16, 2),
-        41 => of(Samples::Float, 1),
-        49 => of(Samples::Unorm8, 2),
-        54 => of(Samples::Half, 1),
-        56 => of(Samples::Unorm16, 1),
-        61 => of(Samples::Unorm8, 1),
-        87 | 88 => Some(TexelLayout { bgr: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        91 => Some(TexelLayout { bgr: true, srgb: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        _ => None,
-    }
+    let (samples, channels) = match format {
+        2 => (Samples::Float, 4),
+        6 => (Samples::Float, 3),
+        10 => (Samples::Half, 4),
+        11 => (Samples::Unorm16, 4),
+        16 => (Samples::Float, 2),
+        24 => (Samples::Unorm10, 4),
+        28 | 29 | 87 | 88 | 91 => (Samples::Unorm8, 4),
+        34 => (Samples::Half, 2),
+        35 => (Samples::Unorm16, 2),
+        41 => (Samples::Float, 1),
+        49 => (Samples::Unorm8, 2),
+        54 => (Samples::Half, 1),
+        56 => (Samples::Unorm16, 1),
+        61 => (Samples::Unorm8, 1),
+        _ => return None,
+    };
+    Some(TexelLayout { samples, channels, bgr: matches!(format, 87 | 88 | 91), srgb: matches!(format, 29 | 91) })
 }
 
 /// D3DFORMAT numbers that older writers put where a FourCC goes.
@@ -107,18 +104,17 @@ fn d3d9(format: u32) -> Option<TexelLayout> {
 }
 
 fn masked(flags: u32, bits: u32, masks: [u32; 4]) -> Option<TexelLayout> {
-    let of = |samples, channels| Some(TexelLayout::of(samples, channels));
-    let bgr = |channels| Some(TexelLayout { bgr: true, ..TexelLayout::of(Samples::Unorm8, channels) });
-    match (flags & (RGB | LUMINANCE), bits, [masks[0], masks[1], masks[2]]) {
-        (LUMINANCE, 8, _) => of(Samples::Unorm8, 1),
-        (LUMINANCE, 16, [0xffff, ..]) => of(Samples::Unorm16, 1),
-        (LUMINANCE, 16, [0xff, ..]) => of(Samples::Unorm8, 2),
-        (RGB, 16, [0xff, 0xff00, 0]) => of(Samples::Unorm8, 2),
-        (RGB, 32, [0xffff, 0xffff_0000, 0]) => of(Samples::Unorm16, 2),
-        (RGB, 32, [0xff, 0xff00, 0xff_0000]) => of(Samples::Unorm8, 4),
-        (RGB, 32, [0xff_0000, 0xff00, 0xff]) => bgr(4),
-        (RGB, 24, [0xff, 0xff00, 0xff_0000]) => of(Samples::Unorm8, 3),
-        (RGB, 24, [0xff_0000, 0xff00, 0xff]) => bgr(3),
-        _ => None,
-    }
+    let (samples, channels, bgr) = match (flags & (RGB | LUMINANCE), bits, [masks[0], masks[1], masks[2]]) {
+        (LUMINANCE, 8, _) => (Samples::Unorm8, 1, false),
+        (LUMINANCE, 16, [0xffff, ..]) => (Samples::Unorm16, 1, false),
+        (LUMINANCE, 16, [0xff, ..]) => (Samples::Unorm8, 2, false),
+        (RGB, 16, [0xff, 0xff00, 0]) => (Samples::Unorm8, 2, false),
+        (RGB, 32, [0xffff, 0xffff_0000, 0]) => (Samples::Unorm16, 2, false),
+        (RGB, 32, [0xff, 0xff00, 0xff_0000]) => (Samples::Unorm8, 4, false),
+        (RGB, 32, [0xff_0000, 0xff00, 0xff]) => (Samples::Unorm8, 4, true),
+        (RGB, 24, [0xff, 0xff00, 0xff_0000]) => (Samples::Unorm8, 3, false),
+        (RGB, 24, [0xff_0000, 0xff00, 0xff]) => (Samples::Unorm8, 3, true),
+        _ => return None,
+    };
+    Some(TexelLayout { bgr, ..TexelLayout::of(samples, channels) })
 }

@@ -42,6 +42,11 @@ impl fmt::Display for Container {
 }
 
 /// Why a texture cannot be written or a file cannot be read.
+///
+/// ```
+/// let error = luthier_texture::ktx2::decode(b"a few bytes").unwrap_err();
+/// assert_eq!(error.to_string(), "not a valid KTX2 file: it ends within the header");
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TextureError {
@@ -53,7 +58,7 @@ pub enum TextureError {
         /// Texels down.
         height: u32,
     },
-    /// More or fewer values than width, height and channels ask for.
+    /// Another number of values than width, height and channels ask for.
     #[error("{found} values where {expected} are needed")]
     Length {
         /// Given.
@@ -80,10 +85,10 @@ pub enum TextureError {
         /// Fault of the file.
         reason: Cow<'static, str>,
     },
-    /// None of the formats that tables are read from.
+    /// A format that no tables are read from.
     #[error("neither DDS, KTX2, EXR, PNG nor Radiance HDR")]
     UnknownContainer,
-    /// A valid file that holds more than luthier reads.
+    /// A valid file with content that luthier does not read.
     #[error("{container} file with {what}, which luthier does not read")]
     Unsupported {
         /// The format.
@@ -106,12 +111,12 @@ pub enum TextureError {
     /// A JPEG or WebP file that does not decode.
     #[error("not a valid {container} file: {}", decoder_reason(.reason))]
     PictureDecode {
-        /// The format that its first bytes say.
+        /// The format according to its first bytes.
         container: Container,
         /// Fault of the file, in the decoder's words.
         reason: ::image::ImageError,
     },
-    /// No picture of a format that maps are read from.
+    /// A file of a format that no maps are read from.
     #[error("{0}; PNG, JPEG and WebP are read")]
     NoPicture(&'static str),
     /// The PNG encoder refused.
@@ -125,7 +130,7 @@ pub enum TextureError {
     Lut(#[from] LutError),
 }
 
-/// The decoder's reason, without the format's name, which stands before it.
+/// The decoder's reason, without the name of the format, which the message states before it.
 fn decoder_reason(error: &::image::ImageError) -> String {
     use std::error::Error;
     let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);

@@ -1,22 +1,22 @@
-//! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at; and, to read, what others made: pictures
-//! of radiance ([`radiance`]), maps ([`picture`]: PNG, JPEG, WebP) and tables ([`table`]: DDS, KTX2, EXR, PNG, raw). The bytes of a file depend
-//! on its content only; nothing here reads a clock or starts a thread.
+//! Containers: KTX2 for shipped texels, EXR for unquantised values, PNG to look at. Files of other programs are read
+//! too: pictures of radiance ([`radiance`]), maps ([`picture`]: PNG, JPEG, WebP) and tables ([`table`]: DDS, KTX2, EXR,
+//! PNG, raw). The bytes of a file depend on its content only; no function reads a clock or starts a thread.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
-//! allocated for them, and memory grows with the data found rather than with the data promised.
+//! Every reader takes untrusted bytes. Sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before memory is
+//! allocated for them, and memory grows with the data found, not with the data promised.
 //!
-//! The codecs are those of the `ktx2`, `ruzstd`, `exr`, `png` and `image` crates; Radiance HDR and the headers of OpenEXR are read here, since
-//! their attributes and lines change values and places.
+//! The codecs come from the crates `ktx2`, `ruzstd`, `exr`, `png` and `image`. Radiance HDR and the headers of OpenEXR
+//! are read here, since their attributes and lines change values and places.
 //!
-//! Simplifications: textures that are written have one layer; EXR files are
-//! single-part scan-line images of 32-bit floats.
+//! Simplifications: written textures have one layer; written EXR files are single-part scan-line images of 32-bit
+//! floats.
 //!
 //! # Rooms
 //!
-//! Each uses those above it, none below.
+//! Each room uses those above it, none below.
 //!
 //! - `limits`, `error`, `size`: limits, refusals, and sizes that are checked.
 //! - `metadata`, `srgb`, `texels`, `texture`, `zstd`: texels with their notes, and how they are stored.

@@ -2,8 +2,18 @@
 
 use crate::TextureError;
 
-/// Statements of a file about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
-/// `-`, and distinct; values hold no NUL and are at most 1 MiB.
+/// Statements of a file about itself: keys and values, sorted by key in the file. Keys are distinct, and 1 to 64 ASCII
+/// letters, digits, `.`, `_` and `-`. Values hold no NUL and are at most 1 MiB.
+///
+/// ```
+/// use luthier_lut::Image;
+/// use luthier_texture::exr;
+///
+/// let metadata = vec![("model".to_owned(), "Fresnel".to_owned())];
+/// let image = Image { width: 1, height: 1, channels: 1, data: vec![0.5] };
+/// assert_eq!(exr::decode(&exr::encode(&image, &["Y"], &metadata)?)?, (image, metadata));
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 pub type Metadata = Vec<(String, String)>;
 
 const MAX_KEY_BYTES: usize = 64;
@@ -11,9 +21,9 @@ const MAX_VALUE_BYTES: usize = 1 << 20;
 
 /// Checks the rules of [`Metadata`].
 pub(crate) fn check(metadata: &[(String, String)]) -> Result<(), TextureError> {
-    let plain = |key: &str| key.bytes().all(|b| b.is_ascii_alphanumeric() || b".-_".contains(&b));
     for (i, (key, value)) in metadata.iter().enumerate() {
-        let reason = if key.is_empty() || key.len() > MAX_KEY_BYTES || !plain(key) {
+        let is_plain = key.bytes().all(|b| b.is_ascii_alphanumeric() || b".-_".contains(&b));
+        let reason = if key.is_empty() || key.len() > MAX_KEY_BYTES || !is_plain {
             "a key is 1 to 64 ASCII letters, digits, `.`, `_` or `-`"
         } else if metadata[..i].iter().any(|(earlier, _)| earlier == key) {
             "the key appears twice"

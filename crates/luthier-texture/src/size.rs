@@ -5,23 +5,19 @@ use luthier_lut::Image;
 use crate::error::TextureError;
 use crate::limits::{MAX_BYTES, MAX_SIDE};
 
-/// The bytes that an image takes, `texel_bytes` to a texel as it is stored.
+/// The bytes of an image with `texel_bytes` to a stored texel.
 ///
 /// # Errors
 /// [`TextureError::Size`] beyond the limits, or when a side is 0.
 pub(crate) fn checked_bytes(width: u32, height: u32, texel_bytes: u32) -> Result<usize, TextureError> {
-    let side_ok = |side: u32| (1..=MAX_SIDE).contains(&side);
-    if !side_ok(width) || !side_ok(height) {
-        return Err(TextureError::Size { width, height });
-    }
-    let bytes = u64::from(width) * u64::from(height) * u64::from(texel_bytes);
-    if bytes > MAX_BYTES {
-        return Err(TextureError::Size { width, height });
-    }
+    let are_sides = [width, height].iter().all(|side| (1..=MAX_SIDE).contains(side));
+    // Sides within the limit keep the product within 64 bits.
+    let bytes = are_sides.then(|| u64::from(width) * u64::from(height) * u64::from(texel_bytes));
+    let bytes = bytes.filter(|bytes| *bytes <= MAX_BYTES).ok_or(TextureError::Size { width, height })?;
     Ok(bytes as usize)
 }
 
-/// Checks that an image is what its fields say, and within the limits.
+/// Checks that the fields of an image fit together, and are within the limits.
 pub(crate) fn check_image(image: &Image) -> Result<(), TextureError> {
     if !(1..=4).contains(&image.channels) {
         return Err(TextureError::Channels(image.channels));

@@ -2,7 +2,7 @@
 
 use luthier_lut::Image;
 
-/// The code of 8 bits of a linear value, clipped to 0..=1; not a number is 0.
+/// The 8-bit code of a linear value, clipped to 0..=1; NaN is 0.
 pub(crate) fn encode(linear: f32) -> u8 {
     (luthier_lut::srgb::code(linear) * 255.0).round() as u8
 }

@@ -1,4 +1,4 @@
-//! Layouts of texels in files of other makers: number type, channels, order.
+//! Layouts of texels in files of other programs: number type, channels, order.
 
 use std::fmt;
 
@@ -6,6 +6,13 @@ use half::f16;
 use luthier_lut::Image;
 
 /// How one value is stored.
+///
+/// ```
+/// use luthier_texture::Samples;
+///
+/// assert_eq!(Samples::Unorm8.step(), 1.0 / 255.0);
+/// assert!(Samples::Half.step() > Samples::Unorm16.step());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Samples {
     /// A byte over 255.
@@ -21,7 +28,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// Distance of neighbouring values next to 1: what rounding costs at most is half of it.
+    /// Distance of neighbouring values next to 1. Rounding errs by at most half of it.
     pub fn step(self) -> f64 {
         match self {
             Self::Unorm8 => 1.0 / 255.0,
@@ -48,7 +55,7 @@ pub(crate) struct TexelLayout {
     pub(crate) channels: u32,
     /// Blue first.
     pub(crate) bgr: bool,
-    /// sRGB-encoded, but for alpha.
+    /// sRGB-encoded, except alpha.
     pub(crate) srgb: bool,
 }
 
@@ -57,12 +64,12 @@ impl TexelLayout {
         Self { samples, channels, bgr: false, srgb: false }
     }
 
-    /// Three channels of ten bits and one of two take four bytes, as four of eight do.
+    /// Bytes of a texel. Three channels of ten bits and one of two take four bytes, as four of eight do.
     pub(crate) fn texel_bytes(self) -> u32 {
         self.channels * self.samples.bytes()
     }
 
-    /// The values in bytes, little-endian; a last texel that is cut off does not count.
+    /// The values of some bytes, little-endian. A last texel that is cut off does not count.
     pub(crate) fn image(self, width: u32, height: u32, bytes: &[u8]) -> Image {
         let mut data: Vec<f32> = match self.samples {
             Samples::Unorm8 => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
@@ -87,8 +94,8 @@ impl TexelLayout {
 }
 
 fn ten_bits(texel: u32) -> [f32; 4] {
-    let ten = |shift: u32| (texel >> shift & 1023) as f32 / 1023.0;
-    [ten(0), ten(10), ten(20), (texel >> 30) as f32 / 3.0]
+    let [r, g, b] = [0, 10, 20].map(|shift| (texel >> shift & 1023) as f32 / 1023.0);
+    [r, g, b, (texel >> 30) as f32 / 3.0]
 }
 
 impl fmt::Display for TexelLayout {

@@ -1,11 +1,20 @@
-//! Textures as a device takes them: a format, a size, bytes.
+//! Textures for devices: a format, a size, bytes.
 
 use luthier_lut::{Atlas, Image, TexelFormat};
 
 use crate::TextureError;
 use crate::size::checked_bytes;
 
-/// Texels as a device takes them.
+/// A texture for a device.
+///
+/// ```
+/// use luthier_lut::TexelFormat;
+/// use luthier_texture::Texture;
+///
+/// let texture = Texture { format: TexelFormat::R16Float, width: 1, height: 1, bytes: vec![0x00, 0x3c] };
+/// assert_eq!(texture.image()?.data, [1.0]);
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     /// Format of the texels.
@@ -28,7 +37,7 @@ impl Texture {
     /// The values that a shader reads.
     ///
     /// # Errors
-    /// [`TextureError::Size`] beyond the limits, [`TextureError::Lut`] when the bytes do not fit width, height and
+    /// [`TextureError::Size`] beyond the limits, [`TextureError::Lut`] if the bytes do not fit width, height and
     /// format.
     pub fn image(&self) -> Result<Image, TextureError> {
         checked_bytes(self.width, self.height, self.format.texel_bytes())?;

@@ -7,10 +7,11 @@ use crate::error::{Container, TextureError};
 
 /// Decoded bytes that the decoder may run ahead of the reader.
 const STEP_BYTES: usize = 1 << 20;
-/// RFC 8878 asks every decoder for windows of 8 MiB; a frame without a window has its content as one.
+/// Least window that a frame may ask for. RFC 8878 asks every decoder for 8 MiB; a frame without a window has its
+/// content as one.
 const MIN_WINDOW_BYTES: u64 = 8 << 20;
 
-/// Compresses at the only compressing level that the encoder implements, and checks that the result decompresses.
+/// Compresses at the encoder's only compressing level, and checks that the result decompresses.
 pub(crate) fn compress(bytes: &[u8]) -> Result<Vec<u8>, TextureError> {
     let compressed = compress_to_vec(bytes, CompressionLevel::Fastest);
     if decompress(&compressed, bytes.len())? == bytes {
@@ -20,24 +21,20 @@ pub(crate) fn compress(bytes: &[u8]) -> Result<Vec<u8>, TextureError> {
     }
 }
 
-/// Decompresses one frame of exactly `expected` bytes. Memory follows what is decoded, not what is promised.
+/// Decompresses one frame of exactly `expected` bytes. Memory follows the decoded bytes, not the promised ones.
 pub(crate) fn decompress(mut source: &[u8], expected: usize) -> Result<Vec<u8>, TextureError> {
-    let wrong_length = || TextureError::malformed(Container::Ktx2, format!("zstd data is not {expected} bytes"));
     let mut decoder = FrameDecoder::new();
     decoder.set_max_window_size(MIN_WINDOW_BYTES.max(expected as u64));
     decoder.init(&mut source)?;
     let mut bytes = Vec::new();
-    while !decoder.is_finished() {
+    while !decoder.is_finished() && bytes.len() <= expected {
         decoder.decode_blocks(&mut source, BlockDecodingStrategy::UptoBytes(STEP_BYTES))?;
         if let Some(part) = decoder.collect() {
             bytes.extend_from_slice(&part);
         }
-        if bytes.len() > expected {
-            return Err(wrong_length());
-        }
     }
     if bytes.len() != expected || !source.is_empty() {
-        return Err(wrong_length());
+        return Err(TextureError::malformed(Container::Ktx2, format!("zstd data is not {expected} bytes")));
     }
     match (decoder.get_checksum_from_data(), decoder.get_calculated_checksum()) {
         (Some(stored), Some(actual)) if stored != actual => {

@@ -10,16 +10,16 @@ use super::Found;
 /// Why no candidates hold a budget.
 #[derive(Debug, Error)]
 pub(crate) enum Refusal {
-    /// Of one kind no candidate is good enough.
+    /// No candidate of one kind is good enough.
     #[error("no table is good enough; nearest: {words}; `{hint}` would do")]
     Error {
-        /// Place of the kind among those that were found, and of the candidate that comes nearest.
+        /// Place of the kind among those found, and place of the nearest candidate in it.
         nearest: (usize, usize),
         /// Names of the limits that it exceeds.
         limits: Vec<&'static str>,
         /// The candidate in words.
         words: String,
-        /// Limits that would be met.
+        /// Limits that this candidate would hold.
         hint: String,
     },
     /// Candidates are good enough, but together too large or too slow.
@@ -34,13 +34,15 @@ pub(crate) enum Refusal {
     },
 }
 
-/// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
+/// The Pareto front: candidates that no other beats or equals in bytes, cost and absolute error at once. The first of
+/// equals stays.
 fn front(candidates: &[Candidate]) -> Vec<usize> {
-    let is_beaten = |i: usize| {
-        let mut others = candidates.iter().enumerate().filter(|(j, _)| *j != i);
-        others.any(|(j, other)| beats(other, &candidates[i]) && (j < i || !beats(&candidates[i], other)))
-    };
-    (0..candidates.len()).filter(|&i| !is_beaten(i)).collect()
+    (0..candidates.len()).filter(|&i| !is_beaten(candidates, i)).collect()
+}
+
+fn is_beaten(candidates: &[Candidate], i: usize) -> bool {
+    let mut others = candidates.iter().enumerate().filter(|(j, _)| *j != i);
+    others.any(|(j, other)| beats(other, &candidates[i]) && (j < i || !beats(&candidates[i], other)))
 }
 
 /// Whether a candidate is as good as another in each respect, or better.
@@ -53,66 +55,75 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
     a.bytes.cmp(&b.bytes).then_with(|| a.cost.total_cmp(&b.cost).then(a.error.max_abs.total_cmp(&b.error.max_abs)))
 }
 
-/// One candidate for each kind: together of the fewest bytes, then the lowest cost, among those that hold. `fixed_bytes` are those of
-/// the tables that are not searched.
+/// One candidate for each kind. Together they hold the budget with the fewest bytes, then with the lowest cost.
+/// `fixed_bytes` is the size of the tables that are not searched.
 ///
-/// Where errors are not limited, the least absolute error that bytes and cost allow is the limit.
+/// Without a limit on errors, the limit is the least absolute error that bytes and cost allow.
 ///
 /// # Errors
-/// [`Refusal`] when none holds: what comes nearest, and what would do.
+/// [`Refusal`] when no combination holds. It names the nearest candidate and a limit that could be met.
 pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, Refusal> {
     if budget.limits_errors() {
-        return match cheapest(found, budget, fixed_bytes, &|c: &Candidate| budget.excess(&c.error) <= 1.0) {
-            Some(chosen) => Ok(chosen),
-            None => Err(nearest(found, budget, fixed_bytes)),
-        };
+        let chosen = cheapest(found, budget, fixed_bytes, &|c| holds(c, budget));
+        return chosen.ok_or_else(|| nearest(found, budget, fixed_bytes));
     }
     let mut limits: Vec<f64> = found.iter().flat_map(|f| f.candidates.iter().map(|c| c.error.max_abs)).collect();
     limits.sort_by(f64::total_cmp);
     limits.dedup();
     // The smallest limit that works: every larger one works too.
-    let works = |limit: f64| cheapest(found, budget, fixed_bytes, &|c: &Candidate| c.error.max_abs <= limit);
-    let first = limits.partition_point(|&limit| works(limit).is_none());
-    limits.get(first).and_then(|&limit| works(limit)).ok_or_else(|| nearest(found, budget, fixed_bytes))
+    let first = limits.partition_point(|&limit| within(found, budget, fixed_bytes, limit).is_none());
+    let chosen = limits.get(first).and_then(|&limit| within(found, budget, fixed_bytes, limit));
+    chosen.ok_or_else(|| nearest(found, budget, fixed_bytes))
 }
 
-/// The cheapest candidate of each kind that holds; where none does, the one of the least excess.
+/// The cheapest combination of candidates whose absolute errors are at most `max_abs`.
+fn within(found: &[Found], budget: &Budget, fixed_bytes: u64, max_abs: f64) -> Option<Vec<usize>> {
+    cheapest(found, budget, fixed_bytes, &|c| c.error.max_abs <= max_abs)
+}
+
+/// Whether the errors of a candidate hold a budget.
+fn holds(candidate: &Candidate, budget: &Budget) -> bool {
+    budget.excess(&candidate.error) <= 1.0
+}
+
+/// The cheapest candidate of each kind within the budget; the one that exceeds it least where none is.
 pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
-    let excess = |c: &Candidate| budget.excess(&c.error).max(1.0);
-    let of = |f: &Found| {
-        let best = |&i: &usize, &j: &usize| {
-            let (a, b) = (&f.candidates[i], &f.candidates[j]);
-            excess(a).total_cmp(&excess(b)).then(cheaper(a, b))
-        };
-        (0..f.candidates.len()).min_by(best).unwrap_or_default()
-    };
-    found.iter().map(of).collect()
+    let choices = found.iter().map(|f| {
+        let best = (0..f.candidates.len()).min_by(|&i, &j| {
+            let candidates = [i, j].map(|i| &f.candidates[i]);
+            let [a, b] = candidates.map(|c| budget.excess(&c.error).max(1.0));
+            a.total_cmp(&b).then(cheaper(candidates[0], candidates[1]))
+        });
+        best.unwrap_or_default()
+    });
+    choices.collect()
 }
 
-/// The candidates of a lock, where it has one of each kind and together they hold a budget.
+/// The candidates of a lock, if it has one of each kind and they hold the budget together.
 pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_bytes: u64) -> Option<Vec<usize>> {
-    let place = |found: &Found| {
+    let places = found.iter().map(|found| {
         let decision = lock.iter().find(|decision| decision.kind == found.kind)?;
         found.candidates.iter().position(|candidate| candidate.form == decision.candidate.form)
-    };
-    let places: Vec<usize> = found.iter().map(place).collect::<Option<_>>()?;
+    });
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
     let chosen: Vec<&Candidate> = found.iter().zip(&places).map(|(found, &place)| &found.candidates[place]).collect();
     let bytes = fixed_bytes + chosen.iter().map(|candidate| candidate.bytes).sum::<u64>();
     let cost = chosen.iter().map(|candidate| candidate.cost).sum::<f64>();
-    let holds = chosen.iter().all(|candidate| budget.excess(&candidate.error) <= 1.0)
+    let holds = chosen.iter().all(|candidate| holds(candidate, budget))
         && budget.max_bytes.is_none_or(|most| bytes <= most)
         && budget.max_cost.is_none_or(|most| cost <= most);
     (holds && !places.is_empty()).then_some(places)
 }
 
-/// The cheapest combination of candidates that hold, within bytes and cost.
+/// The cheapest combination of candidates that pass `holds`, within the limits on bytes and cost.
 fn cheapest(
     found: &[Found],
     budget: &Budget,
     fixed_bytes: u64,
     holds: &dyn Fn(&Candidate) -> bool,
 ) -> Option<Vec<usize>> {
-    // Of each kind, those that no other beats in both bytes and cost, by bytes.
+    // Pareto fronts in bytes and cost, combined kind by kind and sorted by bytes: a dominated part can never be in the
+    // cheapest whole.
     let mut partial: Vec<(u64, f64, Vec<usize>)> = vec![(fixed_bytes, 0.0, Vec::new())];
     for kind in found {
         let mut order: Vec<usize> = (0..kind.candidates.len()).filter(|&i| holds(&kind.candidates[i])).collect();
@@ -140,34 +151,35 @@ fn cheapest(
         });
         partial = combined;
     }
-    let within = |(bytes, cost, _): &&(u64, f64, Vec<usize>)| {
+    let within = partial.into_iter().find(|(bytes, cost, _)| {
         budget.max_bytes.is_none_or(|max| *bytes <= max) && budget.max_cost.is_none_or(|max| *cost <= max)
-    };
-    partial.iter().find(within).map(|(_, _, chosen)| chosen.clone())
+    });
+    within.map(|(_, _, chosen)| chosen)
 }
 
-/// Why nothing holds, what comes nearest, and what would do.
+/// The reason why no combination holds, the nearest candidate, and a limit that could be met.
 fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
-    // A kind of which no candidate is good enough, whatever it weighs or costs.
+    // First reason: one kind has no candidate with small enough errors, whatever its bytes and cost.
     for (number, kind) in found.iter().enumerate() {
-        let excess = |c: &Candidate| budget.excess(&c.error);
         let candidates = kind.candidates.iter().enumerate();
-        let best = candidates.min_by(|(_, a), (_, b)| excess(a).total_cmp(&excess(b)).then(cheaper(a, b)));
-        if let Some((choice, best)) = best.filter(|(_, c)| excess(c) > 1.0) {
+        let best = candidates
+            .min_by(|(_, a), (_, b)| budget.excess(&a.error).total_cmp(&budget.excess(&b.error)).then(cheaper(a, b)));
+        if let Some((choice, best)) = best.filter(|(_, c)| !holds(c, budget)) {
             let (mut limits, mut would) = (Vec::new(), Vec::new());
-            let mut limit = |name, limit: Option<f64>, error: Option<f64>| {
+            for (name, limit, error) in [
+                ("max_abs", budget.max_abs, Some(best.error.max_abs)),
+                ("max_rel", budget.max_rel, Some(best.error.max_rel)),
+                ("delta_e", budget.delta_e, best.error.delta_e),
+                ("max_lobe_err", budget.max_lobe_err, best.error.lobe),
+                ("max_albedo_err", budget.max_albedo_err, best.error.albedo),
+            ] {
                 if let (Some(limit), Some(error)) = (limit, error)
                     && error > limit
                 {
                     limits.push(name);
                     would.push(format!("{name} = {}", above(error)));
                 }
-            };
-            limit("max_abs", budget.max_abs, Some(best.error.max_abs));
-            limit("max_rel", budget.max_rel, Some(best.error.max_rel));
-            limit("delta_e", budget.delta_e, best.error.delta_e);
-            limit("max_lobe_err", budget.max_lobe_err, best.error.lobe);
-            limit("max_albedo_err", budget.max_albedo_err, best.error.albedo);
+            }
             let (form, errors) = (in_words(&best.form), errors_in_words(&best.error));
             return Refusal::Error {
                 nearest: (number, choice),
@@ -177,12 +189,11 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
             };
         }
     }
-    // Good enough, but not within bytes and cost: the fewest bytes, or the lowest cost.
-    let errors = Budget { max_bytes: None, max_cost: None, ..*budget };
-    let holds = |c: &Candidate| errors.excess(&c.error) <= 1.0;
+    // Second reason: the errors are small enough, but bytes or cost are too high. Reported is the least of the two that
+    // errors allow.
     let least_cost: f64 = found
         .iter()
-        .map(|f| f.candidates.iter().filter(|c| holds(c)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
+        .map(|f| f.candidates.iter().filter(|c| holds(c, budget)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
         .sum();
     if budget.max_cost.is_some_and(|max| least_cost > max) {
         return Refusal::Whole {
@@ -192,7 +203,7 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Refusal {
         };
     }
     let within_cost = Budget { max_bytes: None, ..*budget };
-    let least = cheapest(found, &within_cost, fixed_bytes, &holds).map_or(fixed_bytes, |chosen| {
+    let least = cheapest(found, &within_cost, fixed_bytes, &|c| holds(c, budget)).map_or(fixed_bytes, |chosen| {
         fixed_bytes + found.iter().zip(chosen).map(|(f, i)| f.candidates[i].bytes).sum::<u64>()
     });
     let kept = if fixed_bytes > 0 {
@@ -214,8 +225,7 @@ pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
     if !keep.contains(&chosen) {
         front.push((chosen, &found.candidates[chosen]));
     }
-    let key = |c: &Candidate| (c.bytes, c.cost, c.error.max_abs);
-    front.sort_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal));
+    front.sort_by(|(_, a), (_, b)| cheaper(a, b));
     Search {
         kind: found.kind,
         budget: *budget,
@@ -225,7 +235,8 @@ pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
     }
 }
 
-/// A round number that is not less.
+/// The value rounded up to two digits. The factor keeps a value that is round already from being raised by its last
+/// bit.
 fn above(value: f64) -> String {
     let step = libm::pow(10.0, libm::floor(libm::log10(value)) - 1.0);
     format!("{:.1e}", libm::ceil(value / step * (1.0 - 1e-9)) * step)

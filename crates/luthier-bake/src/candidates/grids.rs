@@ -1,4 +1,5 @@
-//! Tables of two axes whose values are costly: one fine grid of each tile is computed, and coarser ones are interpolated from it.
+//! Tables with two axes and costly values: one fine grid of each tile is computed, and coarser tables are interpolated
+//! from it.
 
 use luthier_lut::{Axis, Image, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
@@ -61,7 +62,7 @@ pub(crate) fn candidates(
     measured.concat()
 }
 
-/// A table of these tiles, whose images on the axes are at hand.
+/// The candidate of one table, from the images of all tiles on its axes.
 fn candidate(tiles: &[Fine], images: &[Image], axes: &[Axis; 2], format: TexelFormat, colors: bool) -> Candidate {
     let errors = tiles.iter().zip(images).map(|(tile, image)| tile.error(image, axes, format, colors));
     let error = errors.reduce(|a, b| a.max(&b)).unwrap_or_default();

@@ -1,8 +1,9 @@
 //! Candidates for tables: their errors and costs, and the choice among them.
 //!
-//! Every kind of table has candidates: sizes, axis mappings, texel formats, a closed form to add, or a closed form alone. All are
-//! measured as a device samples them, against one fine truth per tile, in the same order whatever the budget: a tighter budget chooses
-//! among fewer, so never fewer bytes. Of those that hold, the fewest bytes win, then the lowest cost.
+//! Every kind of table has candidates: sizes, axis mappings, texel formats, a closed form beside the texels, or a
+//! closed form alone. All are measured as a device samples them, against one fine truth per tile. The order of
+//! measurement does not depend on the budget, so a tighter budget chooses among fewer candidates and never saves bytes.
+//! Among candidates within the budget, the fewest bytes win, then the lowest cost.
 
 mod choice;
 pub(crate) mod grids;
@@ -14,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use self::choice::{Refusal, best_effort, choose, locked, report};
 
-/// Budget of tables for which none is stated: errors that a fixed row of 128 half floats has too.
+/// Budget of tables without a stated one: the error of a fixed row of 128 half floats.
 pub const DEFAULT_BUDGET: Budget = Budget {
     max_abs: Some(5e-4),
     max_rel: None,
@@ -32,24 +33,24 @@ pub(crate) struct Found {
     /// Cost of the fixed default.
     pub(crate) fixed_cost: f64,
     pub(crate) candidates: Vec<Candidate>,
-    /// Whether the bake itself has measured each of the candidates.
+    /// True for each candidate that the bake itself has measured.
     pub(crate) confirmed: Vec<bool>,
-    /// Tiles, by number, that no candidate serves and that the others do not wait for.
+    /// Numbers of the tiles that no candidate serves. They do not count in the choice for the others.
     pub(crate) left_out: Vec<usize>,
     /// True if every tile was measured; otherwise the other candidates' errors are scaled by the ratio found for one.
     pub(crate) is_whole: bool,
 }
 
-/// The default budget (5e-4) may be exceeded fourfold: 2e-3 is half an 8-bit step. Beyond it some
-/// interface is one that no table serves (the fringes of a thick film, total reflection by what absorbs), and the choice would be the best
-/// for it alone.
+/// The default budget (5e-4) may be exceeded fourfold: 2e-3 is half an 8-bit step. An interface beyond it is one that
+/// no table serves (the fringes of a thick film, total reflection by an absorbing medium). A choice that counted it
+/// would be the best for that interface alone.
 const NEAR: f64 = 4.0;
 
-/// The error that tables are to hold where no budget is stated; a tile beyond it is named by the bake.
+/// Error that tables should hold without a stated budget. The bake names every tile beyond it.
 pub const AIM: f64 = NEAR * 5e-4;
 
 impl Found {
-    /// Whether some candidate holds a budget, or nearly.
+    /// True if a candidate holds a budget, or exceeds it by at most [`NEAR`].
     pub(crate) fn comes_near(&self, budget: &Budget) -> bool {
         self.candidates.iter().any(|c| budget.excess(&c.error) <= NEAR)
     }
@@ -59,7 +60,8 @@ impl Found {
         Self { kind, fixed_cost, candidates, confirmed, left_out: Vec::new(), is_whole: true }
     }
 
-    /// Keeps the candidates whose read costs at most half as much again as one of the fixed default, for bakes without a stated budget.
+    /// Keeps candidates whose read costs at most half more than one of the fixed default, for bakes without a stated
+    /// budget.
     pub(crate) fn affordable(mut self) -> Self {
         let most = 1.5 * self.fixed_cost;
         self.candidates.retain(|c| c.cost <= most);
@@ -92,7 +94,7 @@ pub(crate) mod cost {
     /// Fetch of 4 bytes.
     pub(crate) const FETCH: f64 = 16.0;
 
-    /// Cost of the way from a value to a node index.
+    /// Cost of the computation of a node index from a value.
     pub(crate) fn axis(axis: &Axis) -> f64 {
         let offset = if axis.min == 0.0 { 0.0 } else { 1.0 };
         offset
@@ -106,14 +108,14 @@ pub(crate) mod cost {
             }
     }
 
-    /// A filtered read; what is not filtered takes four fetches and is weighed by hand.
+    /// Cost of a filtered read. Formats that are not filterable take four fetches, and weights by hand.
     pub(crate) fn read(format: TexelFormat) -> f64 {
         let fetch = FETCH * f64::from(format.texel_bytes().max(4)) / 4.0;
         if format.is_filterable() { 4.0 + fetch } else { 4.0 * fetch + 12.0 + 9.0 * f64::from(format.channels()) }
     }
 }
 
-/// Largest errors at points: `read` against the function. `slack` is added to absolute errors.
+/// Largest errors of `read` against a function at some points. `slack` is added to absolute errors.
 pub(crate) fn measured<'p>(
     points: impl Iterator<Item = (&'p [f64; 2], [f64; 4])>,
     channels: usize,
@@ -129,8 +131,8 @@ pub(crate) fn measured<'p>(
         error.max_abs = error.max_abs.max(largest);
         error.max_rel = error.max_rel.max(largest / brightest);
         if let Some(worst) = &mut error.delta_e {
-            let rgb = |v: [f64; 4]| [v[0], v[1], v[2]];
-            *worst = worst.max(ciede2000(lab(rgb(found)), lab(rgb(expected))));
+            let [found, expected] = [found, expected].map(|[r, g, b, _]| lab([r, g, b]));
+            *worst = worst.max(ciede2000(found, expected));
         }
     }
     error
@@ -141,5 +143,5 @@ pub(crate) fn row_form(x: Axis, format: TexelFormat, base: RowBase) -> Candidate
     CandidateForm::Table { x, y: None, format, base }
 }
 
-/// How devices weigh texels.
+/// Precision of a device's filter weights.
 pub(crate) const WEIGHTS: WeightBits = WeightBits::Fixed(8);

@@ -14,11 +14,10 @@ pub struct Artefact {
 
 impl Artefact {
     pub(crate) fn new<T: Any + Send + Sync + Serialize>(value: T) -> Self {
-        let encode = |value: &dyn Any| postcard::to_stdvec(value.downcast_ref::<T>()?).ok();
-        Self { value: Box::new(value), encode }
+        Self { value: Box::new(value), encode: |value| postcard::to_stdvec(value.downcast_ref::<T>()?).ok() }
     }
 
-    /// The result of bytes that [`Self::encode`] has made of a value of the type.
+    /// Reads the bytes of [`Self::encode`] back; `None` for bytes of another type.
     pub(crate) fn decode<T: Any + Send + Sync + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<Self> {
         match postcard::take_from_bytes::<T>(bytes) {
             Ok((value, [])) => Some(Self::new(value)),

@@ -11,10 +11,18 @@ use sha2::{Digest, Sha256};
 use crate::graph::{Artefact, Inputs};
 use crate::tile::TileData;
 
-/// The revision of kinds of jobs that have none of their own.
+/// Revision of the kinds of jobs without a revision of their own.
 const REVISION: u32 = 5;
 
 /// SHA-256 of a job's inputs.
+///
+/// ```
+/// use luthier_bake::Key;
+///
+/// let key = Key::of(b"abc");
+/// assert!(key.to_string().starts_with("ba7816bf8f01cfea")); // FIPS 180-2, appendix B.1
+/// assert_eq!(Key::parse(&key.to_string()), Some(key));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key([u8; 32]);
 
@@ -29,7 +37,7 @@ impl Key {
         Self::of(json!({"kind": kind.name(), "revision": revision, "inputs": inputs}).to_string().as_bytes())
     }
 
-    /// The hash of 64 hexadecimal digits, as [`fmt::Display`] writes it.
+    /// Parses 64 hexadecimal digits, as [`fmt::Display`] writes them.
     pub fn parse(hex: &str) -> Option<Self> {
         let digits: Vec<u8> = hex.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect::<Option<_>>()?;
         let bytes: Vec<u8> = digits.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]).collect();
@@ -48,7 +56,7 @@ impl fmt::Display for Key {
     }
 }
 
-/// Kind of a job, by its name: the kind of the table that it makes a tile of, or an intermediate result.
+/// Kind of a job, by its name: the kind of the table that its tile belongs to, or an intermediate result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JobKind(&'static str);
 
@@ -74,8 +82,8 @@ pub(crate) trait Job: Any + fmt::Debug + Send + Sync {
     /// The kind, part of the key.
     fn kind(&self) -> JobKind;
 
-    /// Number that changes whenever the same inputs give other bytes than before; part of the key. That of a job on which this one depends need not
-    /// change it: stores go by the keys of both.
+    /// Number that changes whenever equal inputs give other bytes than before; part of the key. A change of a
+    /// dependency's revision need not change it: stores combine the keys of both.
     fn revision(&self) -> u32 {
         REVISION
     }
@@ -91,12 +99,12 @@ pub(crate) trait Job: Any + fmt::Debug + Send + Sync {
     /// The result, from those of the dependencies.
     fn run(&self, inputs: &Inputs<'_>) -> Artefact;
 
-    /// The result of bytes that a store kept; `None` where they are of something else.
+    /// Reads the bytes that a store kept; `None` for bytes of something else.
     fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
         Artefact::decode::<TileData>(bytes)
     }
 
-    /// Whether stores on disk keep the result: not where reading it takes as long as making it.
+    /// Whether stores on disk keep the result. False where a read would take as long as the computation.
     fn is_kept(&self) -> bool {
         true
     }

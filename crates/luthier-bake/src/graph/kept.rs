@@ -10,7 +10,18 @@ use serde_json::Value;
 
 use super::{Artefact, Inputs, Job, JobKind, Key, Results, Store, Task, address};
 
-/// A pure function that is no part of a bake, whose values a store keeps by their inputs. `revision` changes whenever the same inputs give another value than before.
+/// A pure function outside the graph. A store keeps its values by their inputs.
+///
+/// `revision` changes whenever equal inputs give another value than before.
+///
+/// ```
+/// use luthier_bake::{Function, MemoryStore, kept};
+/// use serde_json::json;
+///
+/// let (square, store) = (Function { kind: "square", revision: 1 }, MemoryStore::default());
+/// assert_eq!(kept(square, &json!(3), &store, || 9_u32), 9);
+/// assert_eq!(kept::<u32>(square, &json!(3), &store, || unreachable!("the store has it")), 9);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Function {
     /// Kind of its values in stores.

@@ -20,17 +20,34 @@ pub use self::store::{MemoryStore, Store, Task};
 use crate::error::BakeError;
 use crate::tile::TileData;
 
-/// Told what happens, from any thread. It may end a bake early, and cannot change what is computed.
+/// Receiver of progress reports, from any thread. It may end a bake early, and cannot change its results.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// use luthier_bake::{BakeError, JobKind, Observer};
+///
+/// struct Stop;
+/// impl Observer for Stop {
+///     fn planned(&self, _: usize) {}
+///     fn finished(&self, _: JobKind) {}
+///     fn batch(&self, _: JobKind, _: bool) {}
+///     fn is_cancelled(&self) -> bool { true }
+/// }
+/// assert!(matches!(luthier_bake::bake(&[glass], &|_, _| unreachable!(), &Stop), Err(BakeError::Cancelled)));
+/// ```
 pub trait Observer: Sync {
-    /// The number of jobs is known.
+    /// Reports the number of jobs that will run.
     fn planned(&self, jobs: usize);
-    /// A job is done. Jobs of one batch run side by side.
+    /// Reports a finished job. Jobs of one batch run side by side.
     fn finished(&self, kind: JobKind);
-    /// All jobs of one kind in one batch are about to run, or have run.
+    /// Reports that all jobs of one kind in one batch are about to run (`running`), or have run.
     fn batch(&self, kind: JobKind, running: bool);
-    /// So many jobs of a kind need not run, because a store has their results.
+    /// Reports jobs of a kind that need not run, because a store has their results.
     fn found(&self, _kind: JobKind, _jobs: usize) {}
-    /// Whether the bake is to end with [`BakeError::Cancelled`]. Asked before each job; jobs that run are finished, and the store keeps their results.
+    /// Returns true to end the bake with [`BakeError::Cancelled`]. Asked before each job; running jobs are finished,
+    /// and the store keeps their results.
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -70,7 +87,8 @@ impl Entry {
     }
 }
 
-/// The longest way down to a job without dependencies, and the kind.
+/// Length of the longest chain of dependencies below a job, and its kind. In this order, dependencies come before
+/// dependants.
 type Place = (u32, JobKind);
 
 /// Distinct jobs, dependencies before dependants.
@@ -83,7 +101,7 @@ pub(crate) struct Graph {
 #[derive(Debug, Default)]
 pub(crate) struct Results(BTreeMap<Key, Arc<Artefact>>);
 
-/// The results that a running job may read: those of its dependencies.
+/// The results that a running job may read: its dependencies'.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inputs<'a>(&'a Results);
 
@@ -129,7 +147,8 @@ impl Graph {
         self.with_needs(self.entries().filter(|(_, entry)| is_one(entry.job.as_ref())).map(|(at, _)| at))
     }
 
-    /// The graph of a share of its jobs, with all that these need: of those that no other needs, one after the other for each share.
+    /// The graph of a share of its jobs, with all that these need. Shares take turns at the jobs that no other job
+    /// needs.
     pub(crate) fn share(&self, share: Share, is_one: impl Fn(&dyn Job) -> bool) -> Self {
         let inner = self.inner();
         let outer = self.entries().filter(|(at, entry)| is_one(entry.job.as_ref()) && !inner.contains(at));
@@ -158,7 +177,7 @@ impl Graph {
         self.entries().flat_map(|(_, entry)| entry.needs.iter().copied()).collect()
     }
 
-    /// The number of jobs by kind whose results neither `results` nor the store has, and that would run.
+    /// The number of jobs that would run, by kind: neither `results` nor the store has their results.
     pub(crate) fn count_missing(&self, store: &dyn Store, results: &mut Results) -> BTreeMap<JobKind, usize> {
         let mut counts = BTreeMap::new();
         for ((_, kind), _) in self.missing(store, results, &Silent) {
@@ -167,7 +186,7 @@ impl Graph {
         counts
     }
 
-    /// The graph of the jobs whose results are intermediate.
+    /// The graph of the jobs with intermediate results.
     pub(crate) fn intermediate(&self) -> Self {
         self.with_needs(self.inner().into_iter())
     }
@@ -188,12 +207,10 @@ impl Graph {
         let inner = self.inner();
         let mut missing: BTreeSet<(Place, Key)> = BTreeSet::new();
         for (&place, jobs) in self.jobs.iter().rev() {
-            let is_needed = |key: Key| !inner.contains(&(place, key)) || missing.contains(&(place, key));
-            let idle = jobs.iter().filter(|(key, _)| !is_needed(**key));
-            idle.for_each(|(_, entry)| store.touch(&entry.task()));
-            let open: Vec<(Key, &Entry)> = (jobs.iter().map(|(key, entry)| (*key, entry)))
-                .filter(|(key, _)| is_needed(*key) && !results.0.contains_key(key))
-                .collect();
+            let (mut open, idle): (Vec<(Key, &Entry)>, Vec<_>) = (jobs.iter().map(|(key, entry)| (*key, entry)))
+                .partition(|(key, _)| !inner.contains(&(place, *key)) || missing.contains(&(place, *key)));
+            idle.into_iter().for_each(|(_, entry)| store.touch(&entry.task()));
+            open.retain(|(key, _)| !results.0.contains_key(key));
             let tasks: Vec<Task<'_>> = open.iter().map(|(_, entry)| entry.task()).collect();
             let fetched = store.get_all(&tasks);
             missing.retain(|(at, _)| *at != place);
@@ -214,7 +231,8 @@ impl Graph {
         missing
     }
 
-    /// Runs every job without a result on the rayon pool, except jobs whose dependants are all stored already. Kinds run in their order, which puts dependencies first; jobs of one kind run side by side.
+    /// Runs every job without a result on the rayon pool, except jobs whose dependants are all stored already. Kinds
+    /// run in their order, which puts dependencies first; jobs of one kind run side by side.
     ///
     /// # Errors
     /// [`BakeError::Cancelled`].
@@ -254,7 +272,7 @@ impl Graph {
 }
 
 impl Results {
-    /// The result of a job of which it has the type, if the job has run.
+    /// The result of a job that has run, if it is of the type `T`.
     pub(crate) fn get<T: Any>(&self, key: Key) -> Option<&T> {
         self.0.get(&key)?.get()
     }

@@ -24,7 +24,7 @@ enum Form<'a> {
 }
 
 impl<'a> Task<'a> {
-    /// A task without a job: bytes at this address are read by a function.
+    /// A task without a job: `decode` reads the bytes at its address.
     pub(crate) fn new(kind: JobKind, address: Key, decode: fn(&[u8]) -> Option<Artefact>) -> Self {
         Self { kind, address, result: Form::Function(decode) }
     }
@@ -38,12 +38,13 @@ impl<'a> Task<'a> {
         self.kind
     }
 
-    /// Hash of all that decides the bytes of the result: kind, inputs and revision of the job and of all on which it depends, and the version of this crate.
+    /// Hash of everything that decides the bytes of the result: kind, inputs and revision of the job and of its
+    /// dependencies, and the version of this crate.
     pub fn address(&self) -> Key {
         self.address
     }
 
-    /// Whether the result is worth keeping beyond the process.
+    /// Whether the result is worth storing beyond the process.
     pub fn is_kept(&self) -> bool {
         match self.result {
             Form::Job(job) => job.is_kept(),
@@ -51,7 +52,7 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// The result of bytes that [`Artefact::encode`] has made of it; `None` where they are something else.
+    /// Reads the bytes of [`Artefact::encode`]; `None` for other bytes.
     pub fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
         match self.result {
             Form::Job(job) => job.decode(bytes),
@@ -60,7 +61,7 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Results by their addresses. A job whose result is here is not run; a store may forget at any time.
+/// Results by their addresses. A job does not run if its result is here. A store may forget at any time.
 pub trait Store: Sync {
     /// The result of a job.
     fn get(&self, task: &Task<'_>) -> Option<Arc<Artefact>>;
@@ -68,16 +69,27 @@ pub trait Store: Sync {
     /// Keeps a result.
     fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>);
 
-    /// A result is of use that is not read now, because that of a job above it is there.
+    /// Marks a result as used that is not read now, because the result of a dependant is there.
     fn touch(&self, _task: &Task<'_>) {}
 
-    /// The results of some jobs, in their order: stores that are far away fetch them at once.
+    /// The results of some jobs, in their order. Remote stores fetch them at once.
     fn get_all(&self, tasks: &[Task<'_>]) -> Vec<Option<Arc<Artefact>>> {
         tasks.par_iter().map(|task| self.get(task)).collect()
     }
 }
 
 /// A store in memory.
+///
+/// ```
+/// use luthier_bake::{Function, MemoryStore};
+///
+/// let store = MemoryStore::default();
+/// Function { kind: "square", revision: 1 }.keep(&serde_json::json!(3), &store, 9_u32);
+/// store.sweep(); // The result was kept since the last call: it stays.
+/// assert_eq!(store.len(), 1);
+/// store.sweep();
+/// assert!(store.is_empty());
+/// ```
 #[derive(Default)]
 pub struct MemoryStore {
     kept: Mutex<BTreeMap<Key, Kept>>,
@@ -99,7 +111,7 @@ impl MemoryStore {
         self.len() == 0
     }
 
-    /// Forgets what was neither read, touched nor kept since the last call.
+    /// Forgets every result that was neither read, touched nor kept since the last call.
     pub fn sweep(&self) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|_, kept| std::mem::take(&mut kept.is_used));

@@ -1,4 +1,4 @@
-//! Escape tiles: which part of a lobe inside a medium is not totally reflected at its surface.
+//! Escape tiles: the share of a lobe inside a medium that is not totally reflected at its surface.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ impl Kind for Table {
         Ok(Shape::grid(axes, TexelFormat::R16Float))
     }
 
-    /// A tile for a layer that totally reflects some of the lobes of an interface below; other layers need none.
+    /// A tile for a layer that totally reflects a part of the lobes of an interface below. Other layers need none.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
         let job = EscapeJob { eta: site.record.eta, axes: site.shape.axes(), format: site.shape.format };
         Ok((job.eta > 1.0).then(|| Arc::new(job) as Arc<dyn Job>))
@@ -37,9 +37,9 @@ impl Kind for Table {
 
 #[derive(Debug)]
 struct EscapeJob {
-    /// Index of the medium over that outside, above 1.
+    /// Index of the medium over the index outside, above 1.
     eta: f64,
-    /// cos_theta outside, of the refracted direction, and alpha of the lobe.
+    /// cos_theta of the refracted direction outside, and alpha of the lobe.
     axes: [Axis; 2],
     format: TexelFormat,
 }
@@ -93,7 +93,7 @@ impl Job for EscapeJob {
 }
 
 impl EscapeJob {
-    /// The share of the lobe around the direction into which light at `cos_theta` outside is refracted.
+    /// The escaping share of the lobe around the refracted direction of light that arrives at `cos_theta` outside.
     fn value(&self, cos_theta: f64, alpha: f64) -> f64 {
         let eta = self.eta;
         let inside = ((cos_theta * cos_theta + (eta - 1.0) * (eta + 1.0)) / (eta * eta)).sqrt();

@@ -33,7 +33,7 @@ const PER_CELL: u32 = 8;
 /// Rows of a fit.
 const ROWS: usize = FitSettings::DEFAULT_ROWS;
 
-/// Every so many of the rows, among which a search chooses.
+/// Steps between the rows that are kept, among which a search chooses.
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
 /// Jobs that fit lobes.
@@ -47,7 +47,7 @@ impl Kind for Table {
         Ok(shape(LOBES, materials.iter().any(has_base), 1))
     }
 
-    /// A tile for the first layer: the others are in it.
+    /// A tile for the first layer, whose lobes contain the light of all layers below.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
         let Site { material, layer, shape, .. } = site;
         let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
@@ -58,7 +58,7 @@ impl Kind for Table {
         Ok(Some(Arc::new(LobesJob { fit, most: site.lobes, tile: 0, axes, format })))
     }
 
-    /// A tile for every other node over what a texture scales, or over the azimuth.
+    /// Tiles for the other nodes over the varying factor, or over the azimuth.
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
         let Site { material, shape, lobes: most, .. } = *site;
         let fit = fit(material, most.is_some());
@@ -68,7 +68,7 @@ impl Kind for Table {
     }
 }
 
-/// The part of a material that a texture decides and rows are over: they are over one factor alone.
+/// The factor that a texture varies and that rows are over. A material has at most one.
 fn varying(material: &Material) -> Option<Varying> {
     let maps = &material.layers.first()?.maps;
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
@@ -81,27 +81,29 @@ fn varying(material: &Material) -> Option<Varying> {
     })
 }
 
-/// A budget that cannot be met, with the errors of each material, by number, under the nearest candidate.
+/// A budget that cannot be met, with the error of each material, by number, under the nearest candidate.
 pub(crate) type Broken = (Refusal, Vec<(usize, MeasuredError)>);
 
-/// Most layers of a stack whose rows are over something beside the view: it has a fit for each of its tiles. The time of a fit is in proportion to the layers. Transparent
-/// ones of alpha 0.25 take 31 s of a core for 50, and 46 s for 16 under a roughness map, so that no fit takes a minute.
+/// Most layers of a stack with rows over something beside the view: such a stack has a fit for each of its tiles. The
+/// time of a fit is proportional to the layers. With transparent layers of alpha 0.25, a fit of 50 takes 31 s of a
+/// core, and one of 16 under a roughness map 46 s: no fit takes a minute.
 pub const VARIED_LAYERS_MAX: usize = 16;
 
-/// Whether a material of the model `lobes` has more layers than are fitted.
+/// Whether a material of the model `lobes` has more layers than can be fitted.
 pub fn is_too_deep(material: &Material) -> bool {
     material.stack.layers.len() > VARIED_LAYERS_MAX
         && material.model().is_fitted()
         && Varied::tiles_of(&shown(&material.stack), varying(material)) > 1
 }
 
-/// Whether rows of a material have the light of a diffuse base.
+/// Whether rows of a material contain the light of a diffuse base.
 fn has_base(material: &Material) -> bool {
     let is_under_patina = matches!(varying(material), Some(Varying::Patina(_)));
     material.model().is_fitted() && !is_under_patina && base_below(&material.stack).is_some()
 }
 
-/// The shape of tiles for so many lobes, with the light of diffuse bases or without, with every so many of the rows.
+/// The shape of tiles for some lobes, with or without the light of diffuse bases. `step` is the distance of the rows
+/// that are kept.
 fn shape(lobes: usize, has_base: bool, step: usize) -> Shape {
     let rows = (ROWS - 1) / step + 1;
     let (first, last) = (if has_base { Row::BASE_PARTS } else { 0 } as f64, (Row::parts(lobes) - 1) as f64);
@@ -112,7 +114,7 @@ fn shape(lobes: usize, has_base: bool, step: usize) -> Shape {
     Shape::grid(axes, TexelFormat::Rgba16Float)
 }
 
-/// The rows between two nodes of an axis of so many.
+/// The step between kept rows of an axis with this many nodes.
 fn step(size: u32) -> usize {
     (ROWS - 1) / (size as usize - 1)
 }
@@ -123,11 +125,12 @@ pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
     Some(graph.only(|job| job.kind() == FIT))
 }
 
-/// Decides the shape of the tiles, from the fits of a plan: of as many parts as the material with the most lobes needs, or where the budget limits
-/// errors of lobes the smallest that hold it, and then reports the search.
+/// Decides the shape of the tiles, from the fits of a plan. Without limits on the errors of lobes, the tiles have as
+/// many parts as the material with the most lobes needs. With limits, the smallest shape that holds them is taken, and
+/// the search is reported.
 ///
 /// # Errors
-/// Where none holds: why, and the errors of each material in what comes nearest.
+/// [`Broken`] where no shape holds the limits.
 pub(crate) fn decide(
     settings: &mut Settings,
     plan: &Plan,
@@ -137,30 +140,24 @@ pub(crate) fn decide(
     lock: &[Decision],
 ) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
-    let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(most_lobes(None), has_base, 1));
+        settings.take_lobes(shape(lobes_of(&fits, None), has_base, 1));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
     let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
-    let measured = |error: FitError| MeasuredError {
-        lobe: Some(error.lobe),
-        albedo: Some(error.albedo),
-        ..MeasuredError::default()
-    };
-    let candidate = |&(most, i): &(usize, usize)| {
+    let candidates = choices.iter().map(|&(most, i)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
-        let Shape { x, y, base, format } = shape(most_lobes(Some(most)), has_base, STEPS[i]);
+        let Shape { x, y, base, format } = shape(lobes_of(&fits, Some(most)), has_base, STEPS[i]);
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
         let bytes = layout.size().map(u64::from).iter().product::<u64>() * u64::from(format.texel_bytes());
         let form = CandidateForm::Table { x, y, format, base };
         Candidate { form, bytes, cost, error: measured(error) }
-    };
-    let found = Found::new(TableKind::Lobes, 0.0, choices.iter().map(candidate).collect());
+    });
+    let found = Found::new(TableKind::Lobes, 0.0, candidates.collect());
     let found = std::slice::from_ref(&found);
     let chosen = locked(found, lock, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
@@ -168,23 +165,35 @@ pub(crate) fn decide(
             Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
             Refusal::Whole { .. } => choices[0],
         };
-        let fits = |material: &Material| results.get::<Fits>(fit(material, true).key());
-        let error = |(number, material)| Some((number, measured(fits(material)?.of(Some(most)).errors[i])));
-        (refusal, materials.iter().enumerate().filter_map(error).collect())
+        let errors = materials.iter().enumerate().filter_map(|(number, material)| {
+            let fits: &Fits = results.get(fit(material, true).key())?;
+            Some((number, measured(fits.of(Some(most)).errors[i])))
+        });
+        (refusal, errors.collect())
     })?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
-    settings.take_lobes(shape(most_lobes(Some(most)), has_base, STEPS[i]));
+    settings.take_lobes(shape(lobes_of(&fits, Some(most)), has_base, STEPS[i]));
     Ok(Some(candidates::report(&found[0], chosen, budget)))
 }
 
-/// The fit of a material; with lobes of every number, where a search chooses among them.
+/// The most lobes of any fit, if each has at most `most`.
+fn lobes_of(fits: &[&Fits], most: Option<usize>) -> usize {
+    fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0)
+}
+
+fn measured(error: FitError) -> MeasuredError {
+    MeasuredError { lobe: Some(error.lobe), albedo: Some(error.albedo), ..MeasuredError::default() }
+}
+
+/// The job that fits a material; for every number of lobes, if a search chooses among them.
 fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
     let (stack, color, varying) = (shown(&material.stack), material.color(), varying(material));
     Arc::new(FitJob { stack, color, varying, is_searched })
 }
 
-/// The lobes of a stack as bakes without limits on their errors have them: the store's, or such as are fitted now and kept.
+/// The lobes of a stack, as in bakes without limits on their errors. They come from the store, or are fitted now and
+/// kept.
 pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dyn Store) -> Varied {
     let job = FitJob { stack: shown(stack), color: *color, varying, is_searched: false };
     let fits = result_of(&job, store);
@@ -192,7 +201,7 @@ pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dy
     fits.of(None).varied.clone()
 }
 
-/// Numbers that stand in where nothing was fitted.
+/// Placeholder numbers where nothing was fitted.
 const UNFITTED: LobesRecord = LobesRecord {
     index: 1.5,
     falloff: [0.5, 0.1],
@@ -206,7 +215,7 @@ const UNFITTED: LobesRecord = LobesRecord {
     error: None,
 };
 
-/// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline without fits.
+/// The view-independent numbers of a material's lobes; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, settings: &Settings, results: &Results) -> LobesRecord {
     let axes = Axes::of(&material.stack).map(|Axes { turn, is_mirrored }| AxesRecord {
         turn,
@@ -257,7 +266,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
     }
 }
 
-/// Lobes of a material, and their errors with every so many rows of [`STEPS`].
+/// Lobes of a material, and their errors with each of [`STEPS`].
 #[derive(Debug, Serialize, Deserialize)]
 struct Fit {
     varied: Varied,
@@ -271,12 +280,12 @@ impl Fit {
     }
 }
 
-/// Result of a [`FitJob`]: the lobes of bakes without a search, or those of up to no lobe, one, and so on.
+/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on.
 #[derive(Debug, Serialize, Deserialize)]
 struct Fits(Vec<Fit>);
 
 impl Fits {
-    /// The lobes, so many at most where a search decided it.
+    /// The fit; with at most `most` lobes, if a search decided so.
     fn of(&self, most: Option<usize>) -> &Fit {
         &self.0[most.unwrap_or(0).min(self.0.len() - 1)]
     }
@@ -320,13 +329,13 @@ impl Job for FitJob {
         let traced = Traced::new(stack, color, *varying, FitSettings::default());
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
-        let fit = |(most, excess)| {
-            let varied: Varied = traced.fit(most, excess);
-            Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
-        };
         let wanted: Vec<(usize, f64)> =
             if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
-        Artefact::new(Fits(wanted.into_iter().map(fit).collect()))
+        let fits = wanted.into_iter().map(|(most, excess)| {
+            let varied: Varied = traced.fit(most, excess);
+            Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
+        });
+        Artefact::new(Fits(fits.collect()))
     }
 
     fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
@@ -334,7 +343,7 @@ impl Job for FitJob {
     }
 }
 
-/// Numbers that decide what rows are over.
+/// Numbers of the varying factor, for the key.
 fn numbers(varying: Varying) -> Value {
     match varying {
         Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
@@ -342,7 +351,7 @@ fn numbers(varying: Varying) -> Value {
     }
 }
 
-/// Words on what varies.
+/// Name of the varying factor.
 fn factor_name(varying: Varying) -> &'static str {
     match varying {
         Varying::Alpha => "slope parameters",
@@ -352,12 +361,18 @@ fn factor_name(varying: Varying) -> &'static str {
     }
 }
 
+/// A row filled up to `most` lobes, and with the light of a base if tiles have a place for it (0 if the row has no
+/// base).
+fn filled(row: Row, most: usize, has_base: bool) -> Row {
+    Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) }
+}
+
 #[derive(Debug)]
 struct LobesJob {
     fit: Arc<FitJob>,
-    /// The number of lobes that a search decided, at most.
+    /// Most lobes, if a search decided them.
     most: Option<usize>,
-    /// Number over what varies, or over the azimuth.
+    /// Number of the tile, over the varying factor or over the azimuth.
     tile: usize,
     /// Cosine of the view, and part.
     axes: [Axis; 2],
@@ -390,13 +405,12 @@ impl Job for LobesJob {
         let (lobes, tile) = varied.tile(self.tile);
         let (has_base, last) = (y.min < 0.0, y.max as usize);
         let most = (last + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
-        // Rows without a base have no light of it.
-        let filled = |row: Row| Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) };
-        // Parts are side by side; the first and the last node of each stand there twice.
+        // Parts lie side by side. The first and the last node of each are repeated, so that filtering does not mix in a
+        // neighbour.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
             let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
-            let mut parts = filled(row).to_parts();
+            let mut parts = filled(row, most, has_base).to_parts();
             if let (Some(Varying::Patina(_)), Some([.., free])) = (varied.varying(), parts.last_mut()) {
                 *free = varied.bare_facets(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
             }
@@ -405,17 +419,15 @@ impl Job for LobesJob {
             }
         }
         let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
-        let read = |c: f64| {
-            let part = |j: u32| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8));
-            Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>(), has_base)
-        };
         let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
-        let energies = |part: usize| {
+        let errors = (0..most + 3).map(|part| {
             measure_scan(
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
-                    let [expected, sampled] = [filled(lobes.row_of(tile, c)), read(c)].map(|row| {
+                    let parts = (0..y.size).map(|j| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8)));
+                    let read = Row::of_parts(&parts.collect::<Vec<_>>(), has_base);
+                    let [expected, sampled] = [filled(lobes.row_of(tile, c), most, has_base), read].map(|row| {
                         let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });
@@ -423,23 +435,23 @@ impl Job for LobesJob {
                 },
                 |u| vec![x.decode(u[0]), part as f64],
             )
-        };
-        let error = (1..most + 3).map(energies).fold(energies(0), ErrorStats::with_worst_of);
+        });
+        let error = errors.reduce(ErrorStats::with_worst_of).unwrap_or_else(|| unreachable!("a row has energies"));
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
-        let azimuth = |axes: Axes| {
+        let azimuth = lobes.frame.axes.map(|axes: Axes| {
             let [cos, sin] = axes.azimuth(tile as f64);
             format!(
                 " seen {:.1} degrees from the axis of its lowest anisotropic surface",
                 libm::atan2(sin, cos).to_degrees()
             )
-        };
+        });
         let factors = varied.varying().map(|varying: Varying| match (varying, varying.factor(self.tile as f64)) {
             (Varying::Patina(_), amount) if amount > 1.0 => {
                 " with all layers, and none of the light of its patina".to_owned()
             }
             (_, factor) => format!(" with {factor:.4} of its {}", factor_name(varying)),
         });
-        let here = factors.or(lobes.frame.axes.map(azimuth)).unwrap_or_default();
+        let here = factors.or(azimuth).unwrap_or_default();
         let model = format!(
             "{} fitted to the simulated stack{here}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",

@@ -1,4 +1,4 @@
-//! Kinds of tables: how each is laid out, which job makes a tile of it, and which candidates a search compares.
+//! Kinds of tables: the layout of each, the job that makes its tiles, and the candidates that a search compares.
 
 pub(crate) mod distribution;
 mod escape;
@@ -35,58 +35,61 @@ pub(crate) struct Site<'a> {
     pub(crate) color: Color,
     /// Shape of the tile.
     pub(crate) shape: &'a Shape,
-    /// Shape that it would have without a search.
+    /// Shape of the tile without a search.
     pub(crate) fixed: &'a Shape,
-    /// The number of lobes that a search takes at most, where there is one.
+    /// Most lobes, if a search decides them.
     pub(crate) lobes: Option<usize>,
     pub(crate) read_image: ImageReader<'a>,
 }
 
-/// The part of a bake that differs by the kind of table.
+/// One kind of table: everything in a bake that differs by kind.
 pub(crate) trait Kind: Sync {
     /// The shape of its tiles without a search.
     ///
     /// # Errors
-    /// [`BakeError`] where the materials ask for shapes that do not go together.
+    /// [`BakeError`] where the materials ask for different shapes.
     fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError>;
 
-    /// The parts of that shape that a material decides itself.
+    /// The parts of that shape that a material decides.
     fn asked(&self, _: &BakeSettings) -> Asked {
         Asked::default()
     }
 
-    /// The job that makes the tile of an interface; none where the interface has no use for a tile.
+    /// The job that makes the tile of an interface; none if the interface needs no tile.
     ///
     /// # Errors
     /// [`BakeError::Map`] where an image cannot be read.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError>;
 
-    /// The jobs of more tiles of an interface, which follow the first.
+    /// The jobs of the tiles that follow the first of an interface.
     fn followers(&self, _: &Site<'_>) -> Vec<Arc<dyn Job>> {
         Vec::new()
     }
 
-    /// The name of the tile, where that is not the name of the layer.
+    /// The name of the tile, if it differs from the name of the layer.
     fn name(&self, _: &Layer) -> Option<&'static str> {
         None
     }
 
-    /// Whether tiles that no budget is stated for are to hold [`crate::AIM`].
+    /// Whether tiles without a stated budget should hold [`crate::AIM`].
     fn has_aim(&self) -> bool {
         false
     }
 
-    /// The candidates for the tiles of a plan; none where nothing is left to choose. `results` has the intermediate ones.
+    /// The candidates for the tiles of a plan; none if nothing is left to choose. `results` has the intermediate
+    /// results.
     fn candidates(&self, _plan: &Plan, _results: &Results, _colors: bool) -> Option<Found> {
         None
     }
 
-    /// The errors of the tiles of a plan, by their numbers, in tables of this form, as a search measures them. None of kinds whose tiles are of no single material.
+    /// The errors of the tiles of a plan, with their numbers, in tables of this form, as a search measures them. Empty
+    /// for kinds whose tiles belong to no single material.
     fn errors(&self, _plan: &Plan, _results: &Results, _form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
         Vec::new()
     }
 
-    /// The candidates where no budget is stated: only of kinds that shaders read for every interface and that need no costly truth.
+    /// The candidates without a stated budget: only of kinds that shaders read for every interface, and that need no
+    /// costly truth.
     fn candidates_by_default(&self, _: &Plan) -> Option<Found> {
         None
     }
@@ -106,7 +109,7 @@ pub(crate) fn of(kind: TableKind) -> &'static dyn Kind {
     }
 }
 
-/// Whether the shape of the tables of a kind that interfaces share is left to the bake, which then aims at an error of its own.
+/// Whether the bake decides the shape of the tables of a kind, and then aims at [`crate::AIM`].
 pub(crate) fn is_left(settings: &Settings, kind: TableKind) -> bool {
     of(kind).has_aim() && !settings.asked(kind).is_any()
 }

@@ -36,8 +36,11 @@ impl Kind for Table {
         let Some((film, variation)) = site.layer.films.first().zip(variation) else { return Ok(None) };
         let source = &site.material.source;
         let relief = Relief::of(&variation.source, |picture| {
-            let map = |reason| BakeError::Map { material: source.clone(), path: picture.path.clone(), reason };
-            (site.read_image)(source, picture).map_err(map)
+            (site.read_image)(source, picture).map_err(|reason| BakeError::Map {
+                material: source.clone(),
+                path: picture.path.clone(),
+                reason,
+            })
         })?;
         Ok(Some(Arc::new(ThicknessJob {
             relief,
@@ -50,7 +53,8 @@ impl Kind for Table {
     }
 }
 
-/// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
+/// Four channels if slopes are read: by Granier and Heidrich's model, or by a material that requests the table. Else
+/// the thickness alone.
 fn default_format(materials: &[Material]) -> TexelFormat {
     let reads_slopes =
         (materials.iter()).any(|m| m.model().reads_some(TableKind::Phase) || m.bake.asks_for(TableKind::Thickness));
@@ -87,13 +91,12 @@ impl Job for ThicknessJob {
         let surface = Surface::new(self);
         let channels = self.format.channels();
         let mut truth = Image::zeros(x.size + 2 * APRON, y.size + 2 * APRON, channels);
-        // The apron repeats the opposite edge, so that filtering wraps around.
-        let node = |axis: &Axis, texel: usize| axis.node((texel as u32 + axis.size - APRON) % axis.size);
         let row = (truth.width * channels) as usize;
         truth.data.par_chunks_mut(row).enumerate().for_each(|(j, row)| {
             for (i, texel) in row.chunks_mut(channels as usize).enumerate() {
-                let record = surface.record([node(x, i), node(y, j)]).map(|c| c as f32);
-                texel.copy_from_slice(&record[..channels as usize]);
+                // The apron repeats the opposite edge, so that filtering wraps around.
+                let at = [(x, i), (y, j)].map(|(axis, k)| axis.node((k as u32 + axis.size - APRON) % axis.size));
+                texel.copy_from_slice(&surface.record(at).map(|c| c as f32)[..channels as usize]);
             }
         });
         let atlas = lone_tile(TableKind::Thickness, &[x, y], self.format, &truth);
@@ -134,13 +137,15 @@ impl<'a> Surface<'a> {
 
     /// Thickness record at a point; both coordinates repeat after 1.
     fn record(&self, uv: [f64; 2]) -> [f64; 4] {
-        let job = self.job;
-        let thickness = |uv| job.min_nm + (job.max_nm - job.min_nm) * self.field.unit(uv);
-        let run = 2.0 * SLOPE_STEP * job.extent_um * 1e3;
+        let run = 2.0 * SLOPE_STEP * self.job.extent_um * 1e3;
         let [u, v] = uv;
-        let slope_x = (thickness([u + SLOPE_STEP, v]) - thickness([u - SLOPE_STEP, v])) / run;
-        let slope_y = (thickness([u, v + SLOPE_STEP]) - thickness([u, v - SLOPE_STEP])) / run;
+        let slope_x = (self.thickness_nm([u + SLOPE_STEP, v]) - self.thickness_nm([u - SLOPE_STEP, v])) / run;
+        let slope_y = (self.thickness_nm([u, v + SLOPE_STEP]) - self.thickness_nm([u, v - SLOPE_STEP])) / run;
         let normalisation = libm::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
-        [thickness(uv) / (2.0 * job.max_nm), slope_x, slope_y, normalisation]
+        [self.thickness_nm(uv) / (2.0 * self.job.max_nm), slope_x, slope_y, normalisation]
+    }
+
+    fn thickness_nm(&self, uv: [f64; 2]) -> f64 {
+        self.job.min_nm + (self.job.max_nm - self.job.min_nm) * self.field.unit(uv)
     }
 }

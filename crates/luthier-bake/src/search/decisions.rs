@@ -1,4 +1,4 @@
-//! Decisions that stay: those of a lock, and searches that a store has.
+//! Decisions that stay: decisions of a lock, and searches in a store.
 
 use std::sync::Arc;
 
@@ -9,14 +9,14 @@ use crate::candidates::{AIM, DEFAULT_BUDGET, Found};
 use crate::graph::{Artefact, JobKind, Key, Results, Store, Task};
 use crate::plan::Plan;
 
-/// Changes whenever the same plan gives other candidates, or other errors of them, than before.
+/// Changes whenever an unchanged plan gives other candidates or other errors than before.
 const REVISION: u32 = 2;
 
 /// The kind of searches in stores.
 const SEARCH: JobKind = JobKind::part("search");
 
-/// The candidates that a search finds for a kind of a plan, from the store where it has been made before. Its truths are those of the jobs of the tiles: what makes
-/// the tiles of other kinds does not decide it.
+/// The candidates of a search for a kind of a plan, from the store if it was made before. Only the jobs of the kind's
+/// own tiles decide the result: jobs of other kinds are not part of the address.
 pub(super) fn kept(
     plan: &Plan,
     kind: TableKind,
@@ -35,7 +35,7 @@ pub(super) fn kept(
         format!("luthier-bake {version} search {REVISION} {name} {is_asked} {colors} {asked:?} {fixed:?} {formats:?}");
     let addresses = tiles.iter().filter_map(|(_, key)| plan.graph.address(*key));
     addresses.for_each(|address| text.push_str(&address.to_string()));
-    // As text: the names of forms are part of the values.
+    // Stored as text, because the values contain the names of forms.
     let task = Task::new(SEARCH, Key::of(text.as_bytes()), Artefact::decode::<String>);
     if let Some(found) = store.get(&task).and_then(|artefact| serde_json::from_str(artefact.get::<String>()?).ok()) {
         return found;
@@ -47,10 +47,10 @@ pub(super) fn kept(
     found
 }
 
-/// The reports of decisions of a lock on a plan that has taken them, where no budget is stated: none where a table is off by more than bakes aim at, and by more
-/// than when it was locked.
+/// Reports of a lock's decisions on a plan that has taken them, for bakes without a stated budget. None where a table
+/// errs by more than [`AIM`] and by more than when it was locked.
 pub(super) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decision]) -> Option<Vec<Search>> {
-    let report = |decision: &Decision| {
+    let reports = decisions.iter().map(|decision| {
         let Candidate { form, cost, error, .. } = &decision.candidate;
         let found = plan.worst(results, decision.kind, &[]);
         if found > error.max_abs.max(AIM) {
@@ -63,6 +63,6 @@ pub(super) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decisi
         };
         let candidate = Candidate { form: form.clone(), bytes: form.bytes(tiles), cost: *cost, error };
         Some(Search { kind: decision.kind, budget: DEFAULT_BUDGET, chosen: 0, front: vec![candidate], measured: 1 })
-    };
-    decisions.iter().map(report).collect()
+    });
+    reports.collect()
 }

@@ -1,7 +1,7 @@
-//! The search for the shapes of the tables of a bake: those that materials ask for, those that a lock keeps, and those that hold a budget.
+//! The search for the shapes of a bake's tables: requested by materials, kept from a lock, or chosen to hold a budget.
 //!
-//! Not searched: thickness textures, which are pictures, and escape tiles. Lobes come first and have limits of their own ([`lobes::decide`]): their
-//! errors are those of the fit, not of texels.
+//! Thickness textures, which are pictures, and escape tiles are not searched. Lobes come first and have limits of their
+//! own ([`lobes::decide`]): their errors are errors of the fit, not of texels.
 
 mod decisions;
 mod refusal;
@@ -24,10 +24,10 @@ use crate::relief::ImageReader;
 use crate::settings::Settings;
 use crate::{BakeError, planner};
 
-/// The kinds that are searched where no budget is stated.
+/// The kinds that are searched without a stated budget.
 const SEARCHED_BY_DEFAULT: [TableKind; 2] = [TableKind::Fresnel, TableKind::Distribution];
 
-/// A plan whose settings are final, results that were needed to find them, and what the search found.
+/// A plan with final settings, the results that were needed to find them, and the reports of the search.
 pub(crate) struct Planned {
     pub(crate) plan: Plan,
     pub(crate) results: Results,
@@ -42,11 +42,11 @@ pub(crate) struct Fixed {
     pub(crate) asked: Budget,
 }
 
-/// Often enough for the error of every choice to be confirmed or refuted by the exact measurement.
+/// Most rounds of a search: enough for the exact measurement to confirm or refute the error of every choice.
 const ROUNDS: usize = 24;
 
 impl Fixed {
-    /// The plan of what materials and options ask for. Lobes have the most parts, as long as nothing is fitted.
+    /// The plan that materials and options request. Until lobes are fitted, their tiles have the most parts.
     pub(crate) fn new(
         materials: &[Material],
         options: &Options<'_>,
@@ -64,13 +64,13 @@ impl Fixed {
         Ok(Self { settings, plan, asked })
     }
 
-    /// The limits on texels, and whether there are any; otherwise those that bakes aim at.
+    /// The limits on texels, and whether any are stated; else the limits that bakes aim at.
     pub(crate) fn budget(&self) -> (Budget, bool) {
         let asked = self.asked.of_texels();
         if asked.is_empty() { (DEFAULT_BUDGET, false) } else { (asked, true) }
     }
 
-    /// The settings that a bake without a stated budget tries first: those of the lock, or of a search. None where nothing is searched.
+    /// The settings that a bake without a stated budget tries first, from the lock or from a search.
     pub(crate) fn first_choice(&self, options: &Options<'_>, store: &dyn Store) -> Settings {
         let mut settings = self.settings.clone();
         if let Some(decisions) = self.locked(options) {
@@ -84,45 +84,46 @@ impl Fixed {
         settings
     }
 
-    /// The decisions of the lock for the kinds that a bake without a stated budget searches, where it has one for each of them.
+    /// The decisions of the lock for the kinds that a bake without a stated budget searches, if it has one for each of
+    /// them.
     fn locked(&self, options: &Options<'_>) -> Option<Vec<Decision>> {
-        let decision = |kind: TableKind| {
-            let is_fit = |decision: &&Decision| match &decision.candidate.form {
-                CandidateForm::ClosedForm => true,
-                CandidateForm::Table { format, .. } => options.formats.has(*format),
-            };
-            options.locked.iter().find(|decision| decision.kind == kind).filter(is_fit).cloned()
-        };
         let open = SEARCHED_BY_DEFAULT
             .into_iter()
             .filter(|kind| !self.plan.tiles[*kind as usize].tiles.is_empty() && !self.settings.asked(*kind).is_any());
-        let decisions: Vec<Decision> = open.map(decision).collect::<Option<_>>()?;
+        let decisions = open.map(|kind| {
+            let decision = options.locked.iter().find(|decision| decision.kind == kind)?;
+            match decision.candidate.form {
+                CandidateForm::Table { format, .. } if !options.formats.has(format) => None,
+                _ => Some(decision.clone()),
+            }
+        });
+        let decisions: Vec<Decision> = decisions.collect::<Option<_>>()?;
         (!decisions.is_empty()).then_some(decisions)
     }
 }
 
-/// The candidates for the tables of a plan; none that no texture holds.
+/// The candidates for the tables of a plan. Tables that no texture holds are left out.
 fn found(fixed: &Fixed, results: &Results, store: &dyn Store) -> Vec<Found> {
     let (budget, is_asked) = fixed.budget();
     let (plan, colors) = (&fixed.plan, budget.delta_e.is_some());
     let kinds: &[TableKind] = if is_asked { &TableKind::ALL } else { &SEARCHED_BY_DEFAULT };
-    let of = |&kind: &TableKind| {
+    let found = kinds.iter().filter_map(|&kind| {
         kept(plan, kind, is_asked, colors, store, &|| {
             if is_asked { candidates(plan, kind, results, colors) } else { by_default(plan, kind) }
         })
-    };
-    let mut found: Vec<Found> = kinds.iter().filter_map(of).collect();
+    });
+    let mut found: Vec<Found> = found.collect();
     found.iter_mut().for_each(|found| fitting(found, plan));
     found.retain(|found| !found.candidates.is_empty());
     found
 }
 
-/// The candidates of a kind, if some come near the default budget. A row that none serves does not count.
+/// The candidates of a kind, if one comes near the default budget. Rows that no candidate serves do not count.
 fn by_default(plan: &Plan, kind: TableKind) -> Option<Found> {
     kinds::of(kind).candidates_by_default(plan).filter(|f| f.comes_near(&DEFAULT_BUDGET))
 }
 
-/// Measures the candidates of a kind that a plan has. `results` has the intermediate ones of its graph.
+/// Measures the candidates of a kind of a plan. `results` has the intermediate results of its graph.
 fn candidates(plan: &Plan, kind: TableKind, results: &Results, colors: bool) -> Option<Found> {
     kinds::of(kind).candidates(plan, results, colors).filter(|f| !f.candidates.is_empty())
 }
@@ -165,7 +166,7 @@ pub(crate) fn plan(
             return Ok(Planned { plan, results, searches });
         }
     }
-    // Costly tables are made once; candidates are compared with them.
+    // Costly truths are computed once; all candidates are compared with them.
     if is_asked {
         results = fixed.plan.graph.intermediate().run(observer, store, results)?;
     }
@@ -180,20 +181,11 @@ pub(crate) fn plan(
         })
         .sum();
     let Fixed { settings, plan, .. } = fixed;
-    // One plan at a time: of many materials it is large.
+    // One plan at a time: the plan of many materials takes much memory.
     let mut last = Some(plan);
     let (mut chosen, mut refusal) = (Vec::new(), None);
-    let refuse = |refusal: Refusal, plan: &Plan, results: &Results, found: &[Found]| {
-        let Refusal::Error { nearest: (number, candidate), .. } = refusal else {
-            return refused(refusal, TableKind::Lobes, None, materials, options);
-        };
-        let Found { kind, candidates, .. } = &found[number];
-        let errors = kinds::of(*kind).errors(plan, results, &candidates[candidate].form);
-        let worst = worst_of(&errors, &budget).and_then(|tile| plan.reader(*kind, tile as u32));
-        refused(refusal, *kind, worst, materials, options)
-    };
     for _ in 0..ROUNDS {
-        // What a refusal says would do is confirmed too, before it is said.
+        // The hint of a refusal is confirmed too, before it is given.
         refusal = None;
         chosen = if !is_asked {
             best_effort(&found, &budget)
@@ -204,11 +196,8 @@ pub(crate) fn plan(
                 Ok(chosen) => chosen,
                 Err(error) => {
                     let unlimited = Budget { max_bytes: None, max_cost: None, ..budget };
-                    let Ok(would) = choose(&found, &unlimited, fixed_bytes) else {
-                        let plan = last.unwrap_or_else(|| unreachable!("there is a plan before each round"));
-                        return Err(refuse(error, &plan, &results, &found));
-                    };
                     refusal = Some(error);
+                    let Ok(would) = choose(&found, &unlimited, fixed_bytes) else { break };
                     would
                 }
             }
@@ -219,7 +208,7 @@ pub(crate) fn plan(
         }
         drop(last.take());
         let plan = last.insert(planner::plan(materials, settings, read_image)?);
-        // The measurement of the bake itself climbs to the worst points; it has the last word.
+        // The bake's own measurement climbs to the worst points and has the last word.
         results = exact(plan, &searched).run(observer, store, results)?;
         let mut is_confirmed = true;
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
@@ -229,9 +218,15 @@ pub(crate) fn plan(
             break;
         }
     }
-    let plan = last.unwrap_or_else(|| unreachable!("there is a plan after each round"));
-    if let Some(error) = refusal {
-        return Err(refuse(error, &plan, &results, &found));
+    let plan = last.unwrap_or_else(|| unreachable!("there is a plan before and after each round"));
+    if let Some(refusal) = refusal {
+        let Refusal::Error { nearest: (number, candidate), .. } = refusal else {
+            return Err(refused(refusal, TableKind::Lobes, None, materials, options));
+        };
+        let Found { kind, candidates, .. } = &found[number];
+        let errors = kinds::of(*kind).errors(&plan, &results, &candidates[candidate].form);
+        let worst = worst_of(&errors, &budget).and_then(|tile| plan.reader(*kind, tile as u32));
+        return Err(refused(refusal, *kind, worst, materials, options));
     }
     searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| report(f, choice, &budget)));
     Ok(Planned { plan, results, searches })
@@ -242,7 +237,7 @@ fn exact(plan: &Plan, kinds: &[TableKind]) -> Graph {
     plan.graph.only(|job| kinds.iter().any(|&kind| job.kind() == JobKind::tile(kind)))
 }
 
-/// Drops the candidates whose table no texture holds.
+/// Drops the candidates with a table that no texture holds.
 fn fitting(found: &mut Found, plan: &Plan) {
     let tiles = plan.tiles[found.kind as usize].tiles.len() as u32;
     found.candidates.retain(|candidate| match &candidate.form {

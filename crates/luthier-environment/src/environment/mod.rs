@@ -19,11 +19,21 @@ const MAX_HEIGHT: u32 = 512;
 /// Rows of the parts that irradiance is summed over, and of the map that it is stored in.
 const IRRADIANCE_HEIGHT: u32 = 32;
 
-/// Light from all around, far away: an equirectangular map of radiance, linear RGB, and what smooth and rough surfaces
-/// make of it.
+/// Light from all around, far away: an equirectangular map of radiance, linear RGB, and its reflection by smooth and
+/// rough surfaces.
 ///
-/// Its top is +y, its middle looks along -z, the way the default camera looks. Blurred copies are made at their first
-/// use, per slope distribution; they depend on the map only.
+/// The top of the map is +y, its middle looks along -z, as the default camera does. Blurred copies are made at their
+/// first use, per slope distribution. They depend on the map only.
+///
+/// ```
+/// use luthier_environment::{Environment, Sky};
+///
+/// let sky = Sky { zenith: [1.0; 3], ..Sky::uniform([0.0; 3]) };
+/// let environment = Environment::sky(&sky)?;
+/// let [up, down] = [1.0, -1.0].map(|y| environment.diffuse([0.0, y, 0.0])[1]);
+/// assert!(up > 0.4 && down < 0.1);
+/// # Ok::<(), luthier_environment::EnvironmentError>(())
+/// ```
 #[derive(Debug)]
 pub struct Environment {
     /// The map, then each half as high as the one before.
@@ -38,7 +48,7 @@ pub struct Environment {
     beckmann: OnceLock<Vec<Image>>,
 }
 
-/// Part of the sphere of directions, as patches see it that have it above their horizon as a whole.
+/// Part of the sphere of directions, as seen by patches that have all of it above their horizon.
 #[derive(Debug, Clone, Copy, Default)]
 struct Part {
     /// Integral of the direction.
@@ -48,10 +58,10 @@ struct Part {
 }
 
 impl Environment {
-    /// The environment of a map: RGB, twice as wide as high. Maps with more than 512 rows are averaged down to that.
+    /// The environment of an RGB map, twice as wide as high. Maps with more than 512 rows are averaged down to that.
     ///
     /// # Errors
-    /// [`EnvironmentError`] for another shape, and for radiance that is negative or not finite.
+    /// [`EnvironmentError`] for another shape, or for radiance that is negative or not finite.
     pub fn new(map: Image) -> Result<Self, EnvironmentError> {
         if map.channels != 3 || map.height == 0 || map.width != 2 * map.height {
             let found = format!("{} x {} with {} channels", map.width, map.height, map.channels);
@@ -85,13 +95,13 @@ impl Environment {
         })
     }
 
-    /// A map of a sky, fine enough for its sharpest light.
+    /// The environment of a sky. Its map is fine enough for the sharpest light.
     ///
     /// # Errors
     /// [`EnvironmentError`].
     pub fn sky(sky: &Sky) -> Result<Self, EnvironmentError> {
         sky.check()?;
-        // Eight rows to the spread of the sharpest light, which bilinear reads follow within a percent.
+        // Eight rows to the spread of the sharpest light: bilinear reads follow it within a percent.
         let height = (8.0 * sky.sharpness().sqrt()) as u32;
         let height = height.next_power_of_two().clamp(32, MAX_HEIGHT);
         let mut map = Image::zeros(2 * height, height, 3);
@@ -114,29 +124,30 @@ impl Environment {
         bilinear(self.map(), coordinates(direction))
     }
 
-    /// Irradiance of a patch with this unit normal, over pi: what a white Lambertian patch sends out.
+    /// Irradiance of a patch with this unit normal, over pi: the radiance of a white Lambertian patch.
     pub fn diffuse(&self, normal: [f64; 3]) -> [f64; 3] {
         bilinear(self.irradiance_map(), coordinates(normal))
     }
 
-    /// Radiance that a rough mirror with slope parameter `alpha` shows around the mirrored direction, over its albedo: the
-    /// facets of a surface at normal incidence, by their cavities' masking.
+    /// Radiance of a rough mirror with slope parameter `alpha` around the mirrored direction, over its albedo. The
+    /// facets are those of a surface at normal incidence, weighed by their cavities' masking.
     pub fn mirrored(&self, blur: Blur, alpha: f64, direction: [f64; 3]) -> [f64; 3] {
         let at = coordinates(direction);
-        let read = |k: usize| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at);
         let (low, weight) = place(alpha);
-        let (a, b) = (read(low), read((low + 1).min(ALPHAS.len())));
+        let [a, b] = [low, (low + 1).min(ALPHAS.len())]
+            .map(|k| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at));
         [0, 1, 2].map(|c| a[c] + weight * (b[c] - a[c]))
     }
 
-    /// Irradiance over pi on a small map.
+    /// Irradiance over pi, on a small map.
     pub fn irradiance_map(&self) -> &Image {
         self.irradiance
             .get_or_init(|| filled(2 * IRRADIANCE_HEIGHT, IRRADIANCE_HEIGHT, |normal| self.irradiance(normal)))
     }
 
-    /// Irradiance over pi, summed over parts of the sphere. Parts that the horizon cuts count as one direction, which a thousandth of an even
-    /// environment hangs on; others are exact. The sum is over that of an even environment, which is returned exactly.
+    /// Irradiance over pi, summed over parts of the sphere. A part that the horizon cuts counts as one direction, which
+    /// costs a thousandth of an even environment; other parts are exact. The sum is divided by the sum for an even
+    /// environment, which is therefore returned exactly.
     pub(crate) fn irradiance(&self, normal: [f64; 3]) -> [f64; 3] {
         let (mut sum, mut total) = ([0.0; 3], 0.0);
         for Part { area, flux } in self.parts.get_or_init(|| parts(self.map())) {
@@ -148,12 +159,12 @@ impl Environment {
         sum.map(|v| v / total)
     }
 
-    /// Rows of the largest level that suit this environment: a power of two.
+    /// Rows of the largest level that suit this map: a power of two.
     pub fn level_size(&self) -> u32 {
         self.map().height.next_power_of_two().clamp(32, 512)
     }
 
-    /// The map on a cube as fine as it, and averages over ever larger texels.
+    /// The map on a cube of its own fineness, and averages over ever larger texels.
     pub(crate) fn cubes(&self) -> &[Cube] {
         self.cubes.get_or_init(|| {
             let mut cubes = vec![Cube::of_map(self.map(), self.level_size())];
@@ -174,8 +185,8 @@ impl Environment {
         cell.get_or_init(|| ALPHAS.iter().map(|&alpha| self.blurred(blur, alpha)).collect())
     }
 
-    /// The map blurred by a lobe. A lobe looks the same from every texel of a row, but for its azimuth: where its samples
-    /// lie is worked out once per row.
+    /// The map blurred by a lobe. A lobe looks alike from every texel of a row, except for its azimuth: its samples are
+    /// placed once per row.
     fn blurred(&self, blur: Blur, alpha: f64) -> Image {
         let height = level_height(alpha).min(self.map().height.max(16));
         let lobe = Lobe::new(blur, alpha, self.map().height);
@@ -206,7 +217,7 @@ impl Environment {
         map
     }
 
-    /// Radiance averaged over about a texel of a level; levels in between are mixed.
+    /// Radiance averaged over about a texel of a level. Between two levels they are mixed.
     fn filtered(&self, at: [f64; 2], level: f64) -> [f64; 3] {
         let last = self.levels.len() - 1;
         let level = level.clamp(0.0, last as f64);
@@ -217,14 +228,14 @@ impl Environment {
     }
 }
 
-/// A map with each texel four times: levels and cubes want two rows.
+/// A map with each texel four times, because levels and cubes need two rows.
 fn doubled(map: &Image) -> Image {
     let texels = (0..2 * map.height).flat_map(|y| (0..2 * map.width).map(move |x| map.texel(x / 2, y / 2)));
     let data = texels.flatten().copied().collect();
     Image { width: 2 * map.width, height: 2 * map.height, channels: map.channels, data }
 }
 
-/// A map in parts of a fixed number of rows, or as it is where it has fewer.
+/// A map in parts of a fixed number of rows, or its own texels if it has fewer.
 fn parts(map: &Image) -> Vec<Part> {
     let rows = map.height.min(IRRADIANCE_HEIGHT);
     let mut parts = vec![Part::default(); (2 * rows * rows) as usize];
@@ -242,7 +253,7 @@ fn parts(map: &Image) -> Vec<Part> {
     parts
 }
 
-/// A map of a function of the direction.
+/// The map of a function of the direction.
 fn filled(width: u32, height: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Image {
     let mut map = Image::zeros(width, height, 3);
     let shape = Image { data: Vec::new(), ..map.clone() };

@@ -1,4 +1,5 @@
-//! Levels: an environment blurred by lobes whose widths double, each a texture of half the side of the one before.
+//! Levels: an environment blurred by lobes of doubling widths. Each level is a texture of half the side of the one
+//! before.
 
 use luthier_lut::Image;
 
@@ -16,19 +17,19 @@ const LAST: u32 = 4;
 const IRRADIANCE: u32 = 32;
 
 impl Environment {
-    /// The levels of a cube as large as suits the map.
+    /// The levels of a cube, of a size that suits the map.
     pub fn cube_levels(&self) -> &[Level] {
         self.levels_of_cube
             .get_or_init(|| self.levels(Layout::Cube, self.level_size()).expect("a size that is a power of two"))
     }
 
-    /// Width of the blur of a level of a texture whose largest level has this many rows: 0 for the first level, 8 / size for the second, then
-    /// doubling up to 1 at four rows.
+    /// Width of the blur of a level, for a texture with this many rows in its largest level: 0 for the first level, 8 /
+    /// size for the second, then doubling up to 1 at four rows.
     pub fn level_width(size: u32, level: u32) -> f64 {
         if level == 0 { 0.0 } else { f64::from(4 << level) / f64::from(size) }
     }
 
-    /// Copies of the environment, each blurred more and half as large as the one before; the first is the map itself.
+    /// Copies of the environment, each blurred more and half as large as the one before. The first is the map itself.
     ///
     /// # Errors
     /// [`EnvironmentError`] for a size that is not a power of two from 32 to 1024.
@@ -38,7 +39,7 @@ impl Environment {
         }
         let cubes = self.cubes();
         let count = size.ilog2() - LAST.ilog2() + 1;
-        let level = |k: u32| {
+        let levels = (0..count).map(|k| {
             let (size, width) = (size >> k, Self::level_width(size, k));
             let images = if k == 0 {
                 self.first_level(layout, size)
@@ -47,11 +48,12 @@ impl Environment {
                 layout.images(size, |middle| kernel.mean(middle))
             };
             Level { width, images }
-        };
-        Ok((0..count).map(level).collect())
+        });
+        Ok(levels.collect())
     }
 
-    /// The map itself: texels are means of what they cover; where an equirectangular map is finer than it, they are reads.
+    /// The map itself. Texels are means of the area that they cover; if an equirectangular level is finer than the map,
+    /// they are reads of it.
     fn first_level(&self, layout: Layout, size: u32) -> Vec<Image> {
         match layout {
             Layout::Cube => match self.cubes().iter().find(|cube| cube.size() == size) {
@@ -69,7 +71,7 @@ impl Environment {
     }
 }
 
-/// The cube that has so many texels along a side, or the finest where none has as many.
+/// The cube with this many texels along a side; the finest if none has as many.
 fn source(cubes: &[Cube], size: u32) -> &Cube {
     cubes.iter().find(|cube| cube.size() <= size).unwrap_or(&cubes[cubes.len() - 1])
 }

@@ -3,7 +3,7 @@
 use super::patterns::{clouds, mix, noise, random, smooth};
 use crate::vector::{dot, unit};
 
-/// Where the sun is.
+/// Direction of the sun.
 const SUN: [f64; 3] = [-0.52, 0.62, 0.58];
 
 pub(super) fn clear_day(d: [f64; 3]) -> [f64; 3] {
@@ -13,16 +13,16 @@ pub(super) fn clear_day(d: [f64; 3]) -> [f64; 3] {
     let across = (d[0] * d[0] + d[2] * d[2]).sqrt().max(1e-9);
     let height = d[1] / across;
     // A wood on one side, hills all around.
-    let side = |at: f64| smooth(0.5, 1.0, libm::cos(azimuth - at));
+    let wood = smooth(0.5, 1.0, libm::cos(azimuth - 2.4));
     let crowns = 0.06
         + 0.13
-            * side(2.4)
+            * wood
             * (0.55 + 0.45 * noise([9.0 * azimuth + 50.0, 0.0, 0.0]) + 0.25 * noise([31.0 * azimuth + 90.0, 0.0, 5.0]));
     let hills = 0.035 + 0.05 * noise([2.0 * azimuth + 20.0, 3.0, 0.0]);
     if height < 0.0 {
         return meadow(d, cosine, height);
     }
-    if height < crowns && side(2.4) > 0.05 {
+    if height < crowns && wood > 0.05 {
         let leaves = noise([60.0 * azimuth + 200.0, 60.0 * height, 2.0]);
         let lit = 0.35 + 0.65 * smooth(0.3, 0.7, leaves) * smooth(-0.6, 0.8, libm::cos(azimuth - 2.4));
         return [0.07, 0.105, 0.03].map(|v| v * lit);

@@ -1,4 +1,5 @@
-//! Surroundings with detail, by formulas of the project's own: for tests, measurements, and whoever has no picture at hand.
+//! Surroundings with detail, from the project's own formulas, for tests and measurements, and for use without a
+//! picture.
 
 mod field;
 mod patterns;
@@ -15,6 +16,15 @@ use crate::vector::{dot, unit};
 
 luthier_lut::named! {
     /// Surroundings made of formulas and fixed random numbers.
+    ///
+    /// ```
+    /// use luthier_environment::Scenery;
+    ///
+    /// let map = Scenery::NightStreet.map(16)?;
+    /// assert_eq!((map.width, map.height), (32, 16));
+    /// assert_eq!(Scenery::from_name("night-street"), Some(Scenery::NightStreet));
+    /// # Ok::<(), luthier_environment::EnvironmentError>(())
+    /// ```
     pub enum Scenery("scenery") {
         /// A sun of three degrees among soft clouds, over a field.
         CloudySun = "cloudy-sun",
@@ -32,10 +42,10 @@ luthier_lut::named! {
 }
 
 impl Scenery {
-    /// A map with this many rows, each texel the mean of sixteen points.
+    /// The map with this many rows. Each texel is the mean of sixteen points.
     ///
     /// # Errors
-    /// [`EnvironmentError`] for other than 2 to 4096 rows.
+    /// [`EnvironmentError`] for fewer than 2 or more than 4096 rows.
     pub fn map(self, rows: u32) -> Result<Image, EnvironmentError> {
         if !(2..=4096).contains(&rows) {
             return Err(setting("rows", rows.to_string(), "2 to 4096"));
@@ -55,7 +65,7 @@ impl Scenery {
         Ok(map)
     }
 
-    /// An environment with this many rows.
+    /// The environment with this many rows.
     ///
     /// # Errors
     /// As [`Scenery::map`].
@@ -86,7 +96,7 @@ fn cloudy_sun(d: [f64; 3]) -> [f64; 3] {
     let bright = 0.7 + 1.6 * libm::exp(6.0 * (cosine - 1.0));
     let cloud = [bright; 3];
     let glow = 2.0 * libm::exp(120.0 * (cosine - 1.0));
-    // Through the thinner parts of a cloud.
+    // It shines through the thinner parts of a cloud.
     let disc = 180.0 * smooth(0.9985, 0.9988, cosine) * (1.0 - 0.6 * cover);
     let shine = [1.0, 0.93, 0.8].map(|c| c * (glow + disc));
     let base = mix(sky, cloud, cover);
@@ -123,7 +133,7 @@ struct Lamp {
 }
 
 fn lamps() -> Vec<Lamp> {
-    let lamp = |i: i64| {
+    let lamps = (0..100).map(|i| {
         let [azimuth, height, size, power, tint] = [1, 2, 3, 4, 5].map(|k| random(i, k, 7919));
         let (sin, cos) = libm::sincos(2.0 * std::f64::consts::PI * azimuth);
         let y = -0.05 + 0.75 * height * height;
@@ -132,8 +142,8 @@ fn lamps() -> Vec<Lamp> {
         let tint = mix([1.0, 0.6, 0.25], [0.8, 0.9, 1.0], tint);
         let radiance = tint.map(|c| c * (6.0 + 90.0 * power * power * power));
         Lamp { direction: [r * sin, y, r * cos], rim: libm::cos(angle), radiance }
-    };
-    (0..100).map(lamp).collect()
+    });
+    lamps.collect()
 }
 
 fn night_street(d: [f64; 3], lamps: &[Lamp]) -> [f64; 3] {

@@ -1,15 +1,14 @@
-//! Random numbers, noise and shapes that surroundings are made of.
+//! Random numbers, noise and shapes of surroundings.
 
 use crate::vector::{cross, dot};
 
-/// A number in 0..1 for three whole numbers: PCG's output function (Jarzynski and Olano 2020), thrice.
+/// A number in 0..1 for three whole numbers: PCG's output function (Jarzynski and Olano 2020), three times.
 pub(super) fn random(x: i64, y: i64, z: i64) -> f64 {
-    let step = |state: u32| {
-        let state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let hash = [x, y, z].into_iter().fold(0, |hash: u32, v| {
+        let state = (hash ^ v as u32).wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
         let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
         (word >> 22) ^ word
-    };
-    let hash = [y, z].into_iter().fold(step(x as u32), |hash, v| step(hash ^ v as u32));
+    });
     f64::from(hash) / f64::from(u32::MAX)
 }
 
@@ -20,13 +19,13 @@ pub(super) fn noise(at: [f64; 3]) -> f64 {
         let t = at[i] - cell[i];
         t * t * (3.0 - 2.0 * t)
     });
-    let corner = |i: usize| {
+    let corners = (0..8).map(|i: usize| {
         let step = [i & 1, i >> 1 & 1, i >> 2];
         let value =
             random(cell[0] as i64 + step[0] as i64, cell[1] as i64 + step[1] as i64, cell[2] as i64 + step[2] as i64);
         (0..3).map(|c| if step[c] == 1 { weight[c] } else { 1.0 - weight[c] }).product::<f64>() * value
-    };
-    (0..8).map(corner).sum()
+    });
+    corners.sum()
 }
 
 /// Five octaves of noise, in 0..1.
@@ -43,7 +42,7 @@ pub(super) fn smooth(from: f64, to: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Whether a ray from the middle of a room meets a rectangle on a wall: its middle, half sides along two axes.
+/// The meeting of a ray from the middle of a room and a rectangle, in half sides from its middle.
 pub(super) fn meets(d: [f64; 3], middle: [f64; 3], along: [f64; 3], across: [f64; 3]) -> Option<[f64; 2]> {
     let normal = cross(along, across);
     let facing = dot(d, normal);

@@ -1,4 +1,4 @@
-//! Rooms: boxes about the point from which they are seen, with things on their walls. Walls are lit by the lamps of the room.
+//! Rooms: boxes about the viewer, with things on their walls. The lamps of a room light its walls.
 
 use super::patterns::{clouds, meets, mix, noise, random, smooth};
 use crate::vector::{dot, unit};
@@ -21,15 +21,16 @@ struct Place {
 impl Room {
     /// The wall in a direction.
     fn wall(&self, d: V) -> Place {
-        let distance = |c: usize| if d[c] > 0.0 { self.high[c] / d[c] } else { self.low[c] / d[c].min(-1e-12) };
-        let nearest = (1..3).fold(0, |near, c| if distance(c) < distance(near) { c } else { near });
+        let distances =
+            [0, 1, 2].map(|c: usize| if d[c] > 0.0 { self.high[c] / d[c] } else { self.low[c] / d[c].min(-1e-12) });
+        let nearest = (1..3).fold(0, |near, c| if distances[c] < distances[near] { c } else { near });
         let mut normal = [0.0; 3];
         normal[nearest] = if d[nearest] > 0.0 { -1.0 } else { 1.0 };
-        Place { at: d.map(|v| v * distance(nearest)), normal }
+        Place { at: d.map(|v| v * distances[nearest]), normal }
     }
 }
 
-/// A lamp as walls are lit by it: its place and its intensity over pi.
+/// A lamp for the walls: its place and its intensity over pi.
 struct Glow {
     at: V,
     color: V,
@@ -58,13 +59,13 @@ fn softbox([u, v]: [f64; 2], radiance: V) -> V {
         return [0.015; 3];
     }
     // Two lamps and the seams of the cloth.
-    let lamp = |x: f64| libm::exp(-2.0 * ((u - x) * (u - x) + v * v));
+    let [left, right] = [-0.4, 0.4].map(|x| libm::exp(-2.0 * ((u - x) * (u - x) + v * v)));
     let seam = 1.0 - 0.12 * (smooth(0.02, 0.0, u.abs()) + smooth(0.02, 0.0, v.abs())).min(1.0);
-    scaled(radiance, seam * (0.55 + 0.45 * (lamp(-0.4) + lamp(0.4)).min(1.0)))
+    scaled(radiance, seam * (0.55 + 0.45 * (left + right).min(1.0)))
 }
 
 pub(super) fn softbox_studio(d: V) -> V {
-    // So that a white patch which faces the camera is nearly white.
+    // Scaled so that a white patch facing the camera is nearly white.
     scaled(softboxes(d), 1.7)
 }
 

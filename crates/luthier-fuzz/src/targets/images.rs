@@ -9,7 +9,7 @@ use luthier_texture::{
 /// First bytes of a PNG file.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// Values of the largest image that is written again: larger ones would take the time that others need.
+/// Values of the largest image that is written again. Larger ones would take the time of the others.
 const WRITTEN_MAX: usize = 1 << 16;
 
 /// A texture of a bake.
@@ -40,7 +40,7 @@ pub(super) fn exr(bytes: &[u8]) {
     assert_eq!(bits(&again), bits(&image));
 }
 
-/// A map. Its sums are put right first: nearly every change breaks one, and the parser would look no further.
+/// A map. Its checksums are corrected first: nearly every change breaks one, and the parser would stop there.
 pub(super) fn png(bytes: &[u8]) {
     assert!(bytes.starts_with(SIGNATURE) || portable::decode(bytes).is_err());
     let bytes = &with_sums(bytes);
@@ -56,7 +56,7 @@ pub(super) fn picture(bytes: &[u8]) {
     round_trip(bytes);
 }
 
-/// A picture that is read is written as PNG with the same samples.
+/// Checks that a picture is written as PNG with equal samples.
 fn round_trip(bytes: &[u8]) {
     let Some(pictures::Decoded { picture, .. }) = read(pictures::decode(bytes)) else { return };
     let values = picture.texel_count() * picture.channels as usize;
@@ -85,18 +85,19 @@ pub(super) fn table(bytes: &[u8]) {
     }
 }
 
-/// Values without a header: width, height, channels and their kind in five bytes, then the file.
+/// Values without a header. Five bytes state width, height, channels and kind, and the file follows.
 pub(super) fn raw(bytes: &[u8]) {
     let Some((&[width, height, channels, kind, shift], file)) = bytes.split_first_chunk() else { return };
     let kinds = [Samples::Unorm8, Samples::Unorm10, Samples::Unorm16, Samples::Half, Samples::Float];
-    let side = |side: u8| u32::from(side).checked_shl((shift % 40).into()).unwrap_or(u32::MAX);
+    let [width, height] =
+        [width, height].map(|side| u32::from(side).checked_shl((shift % 40).into()).unwrap_or(u32::MAX));
     let samples = kinds[usize::from(kind) % kinds.len()];
-    if let Some(table) = read(tables::raw(file, side(width), side(height), (channels % 8).into(), samples)) {
+    if let Some(table) = read(tables::raw(file, width, height, (channels % 8).into(), samples)) {
         is_whole(&table.image);
     }
 }
 
-/// The value that was read; nothing where it was refused in words.
+/// The value as read; `None` if it was refused with a message.
 fn read<T>(result: Result<T, TextureError>) -> Option<T> {
     result.inspect_err(|error| assert!(!error.to_string().is_empty())).ok()
 }
@@ -116,7 +117,14 @@ fn bits(image: &Image) -> Vec<u32> {
     image.data.iter().map(|value| value.to_bits()).collect()
 }
 
-/// A file whose chunks have the sums that they should, if it is a PNG file; other bytes as they are.
+/// A PNG file with correct checksums of its chunks; other bytes as they are.
+///
+/// ```
+/// let whole = luthier_texture::png::encode_rgb(1, 1, &[0; 3]).unwrap();
+/// let mut broken = whole.clone();
+/// broken[29] ^= 1; // the checksum of the header
+/// assert_eq!(luthier_fuzz::with_sums(&broken), whole);
+/// ```
 pub fn with_sums(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     let mut at = SIGNATURE.len();
@@ -135,6 +143,7 @@ pub fn with_sums(bytes: &[u8]) -> Vec<u8> {
 
 /// CRC-32 of ISO 3309, bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
-    let step = |sum: u32, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
-    !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), step))
+    !bytes.iter().fold(!0, |sum, byte| {
+        (0..8).fold(sum ^ u32::from(*byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
+    })
 }

@@ -60,11 +60,11 @@ pub(super) fn directions(bytes: &[u8]) {
                 let direction = angles.direction();
                 assert!((direction.length() - 1.0).abs() < 1e-12 && direction.z >= 0.0, "{direction} of {angles:?}");
             }
-            let line = |pair: &[_; 2]| {
+            let lines = list.iter().map(|pair| {
                 let [wi, wo]: [[f64; 2]; 2] = pair.map(luthier_layers::angles::Angles::to_array);
                 format!("{},{},{},{}\n", wi[0], wi[1], wo[0], wo[1])
-            };
-            let printed: String = list.iter().map(line).collect();
+            });
+            let printed: String = lines.collect();
             assert_eq!(pairs(&printed), Ok(list));
         }
         Err(error) => assert!(!error.reason.is_empty() && error.line != Some(0)),
@@ -96,7 +96,6 @@ pub(super) fn reradiation(bytes: &[u8]) {
             for (bin, &nm) in matrix.wavelengths_nm.iter().enumerate() {
                 assert_eq!(matrix.bin(nm), Some(bin));
             }
-            let row = |values: &[f64]| values.iter().map(|value| format!(",{value}")).collect::<String>();
             let head = format!("nm{}\n", row(&matrix.wavelengths_nm));
             let rows = matrix.wavelengths_nm.iter().zip(matrix.shares.chunks_exact(bins));
             let printed = rows.fold(head, |text, (nm, shares)| format!("{text}{nm}{}\n", row(shares)));
@@ -104,4 +103,8 @@ pub(super) fn reradiation(bytes: &[u8]) {
         }
         Err(error) => assert!(!error.reason.is_empty() && error.line != Some(0)),
     }
+}
+
+fn row(values: &[f64]) -> String {
+    values.iter().map(|value| format!(",{value}")).collect()
 }

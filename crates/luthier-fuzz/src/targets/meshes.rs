@@ -2,7 +2,7 @@
 
 use luthier_mesh::{Mesh, TRIANGLES_MAX, soup};
 
-/// Triangles of the largest mesh that is made ready: larger ones would take the time that others need.
+/// Triangles of the largest mesh that is prepared. Larger ones would take the time of the others.
 const READY_MAX: usize = 1 << 12;
 
 /// A glTF file; the buffers beside it are the file itself.
@@ -24,9 +24,8 @@ pub(super) fn gltf(bytes: &[u8]) {
     let Ok(mesh) = Mesh::new(file.soup) else { return };
     assert!(mesh.openness().iter().all(|open| (0.0..=1.0).contains(open)));
     assert!(mesh.vertices().iter().all(|vertex| vertex.tangent.iter().all(|value| value.is_finite())));
-    let inside = |vertex: &luthier_mesh::Vertex| vertex.position.iter().all(|value| value.abs() < 1.001);
-    for triangle in mesh.triangles().iter().filter(|triangle| triangle.part == 0) {
-        assert!(triangle.corners.iter().all(|&corner| inside(&mesh.vertices()[corner as usize])));
+    for corner in mesh.triangles().iter().filter(|triangle| triangle.part == 0).flat_map(|triangle| triangle.corners) {
+        assert!(mesh.vertices()[corner as usize].position.iter().all(|value| value.abs() < 1.001));
     }
     assert!(mesh.bvh().nodes().iter().all(|node| node.next as usize <= mesh.bvh().nodes().len()));
 }

@@ -1,4 +1,4 @@
-//! The targets: a function for each parser, which checks what should hold for whatever the parser accepts.
+//! The targets: a function for each parser, which checks everything that the parser accepts.
 
 mod images;
 mod json;
@@ -8,7 +8,14 @@ mod toml;
 
 pub use images::with_sums;
 
-/// A parser, and what is fed to it.
+/// A parser, its inputs and its checks.
+///
+/// ```
+/// let target = luthier_fuzz::target("png").unwrap();
+/// let inputs = luthier_fuzz::corpus(target).unwrap();
+/// assert!(!inputs.is_empty());
+/// inputs.iter().for_each(|input| (target.run)(&input.bytes));
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
     /// Name of the target and of its folder in the corpus.
@@ -19,9 +26,9 @@ pub struct Target {
     pub reads: &'static str,
     /// Checks of what the parser accepts.
     pub holds: &'static str,
-    /// Folders of the repository that have inputs beside those of the corpus.
+    /// Folders of the repository with inputs beside the corpus.
     pub folders: &'static [&'static str],
-    /// Feeds bytes to the parser. It panics where something does not hold.
+    /// Feeds bytes to the parser. It panics if a check fails.
     pub run: fn(&[u8]),
 }
 

@@ -9,13 +9,13 @@ use luthier_material::{
 };
 use luthier_optics::stack::{Base, Stack};
 
-/// Errors and warnings that are listed at most: 20 of each, and how many more there are.
+/// Most errors and warnings that are listed: 20 of each, and how many more there are.
 const LISTED_MAX: usize = 42;
 
 /// Characters of the longest message.
 const MESSAGE_MAX: usize = 700;
 
-/// A material file; behind a NUL, the contents of whatever CSV file it names.
+/// A material file. After a NUL, the contents of any CSV file that it names.
 pub(super) fn material(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let (text, csv) = text.split_once('\0').unwrap_or((&text, ""));
@@ -37,7 +37,7 @@ pub(super) fn material(bytes: &[u8]) {
     }
 }
 
-/// The pictures of a file that has errors can be named where it names them.
+/// Checks that pictures of a file with errors are found at their places in it.
 fn can_be_told(text: &str, read: &dyn Fn(&str) -> io::Result<String>) {
     let Some(material) = parse_partly("m.toml", text, read).0 else { return };
     for image in material.images() {

@@ -1,10 +1,10 @@
-//! Numbers in the buffers of a glTF file. Whatever the file says of them is checked before they are read.
+//! Numbers in the buffers of a glTF file. Every statement about them is checked before they are read.
 
 use super::buffers::Buffers;
 use super::document::{Accessor, Document};
 use crate::{MeshError, TRIANGLES_MAX};
 
-/// Elements of the longest accessor that is read.
+/// Most elements of an accessor.
 const ELEMENTS_MAX: usize = 3 * TRIANGLES_MAX;
 
 /// Types of numbers, by their codes.
@@ -38,9 +38,23 @@ impl Kind {
             Self::U32 | Self::F32 => 4,
         }
     }
+
+    /// The number in the first bytes; shorter types that are normalised become 0..1 or -1..1.
+    fn number(self, bytes: &[u8], is_normalised: bool) -> f32 {
+        let (value, largest) = match (self, bytes) {
+            (Self::I8, &[a, ..]) => (f32::from(a as i8), 127.0),
+            (Self::U8, &[a, ..]) => (f32::from(a), 255.0),
+            (Self::I16, &[a, b, ..]) => (f32::from(i16::from_le_bytes([a, b])), 32767.0),
+            (Self::U16, &[a, b, ..]) => (f32::from(u16::from_le_bytes([a, b])), 65535.0),
+            (Self::U32, &[a, b, c, d, ..]) => return u32::from_le_bytes([a, b, c, d]) as f32,
+            (Self::F32, &[a, b, c, d, ..]) => return f32::from_le_bytes([a, b, c, d]),
+            _ => return 0.0,
+        };
+        if is_normalised { (value / largest).max(-1.0) } else { value }
+    }
 }
 
-/// Whose numbers are read.
+/// Owner of the numbers that are read, for messages.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Owner<'a> {
     /// The numbers, such as positions.
@@ -51,6 +65,10 @@ pub(super) struct Owner<'a> {
 impl Owner<'_> {
     pub(super) fn refuse(self, reason: impl Into<String>) -> MeshError {
         MeshError::Accessor { what: self.what, mesh: self.mesh.to_owned(), reason: reason.into() }
+    }
+
+    pub(super) fn check_count(self, values: usize, positions: usize) -> Result<(), MeshError> {
+        if values == positions { Ok(()) } else { Err(self.refuse(format!("{values} for {positions} positions"))) }
     }
 }
 
@@ -66,7 +84,7 @@ impl<'a> Numbers<'a> {
         self.document.accessors.get(index).ok_or_else(|| owner.refuse(format!("accessor {index} is not there")))
     }
 
-    /// The numbers of an accessor, so many to an element; shorter types that are normalised become 0..1 or -1..1.
+    /// The numbers of an accessor, `N` to an element. Shorter types that are normalised become 0..1 or -1..1.
     pub(super) fn floats<const N: usize>(self, index: usize, owner: Owner<'_>) -> Result<Vec<[f32; N]>, MeshError> {
         let accessor = self.accessor(index, owner)?;
         if components(&accessor.shape) != Some(N) {
@@ -75,18 +93,11 @@ impl<'a> Numbers<'a> {
         }
         let kind = Kind::of(accessor.component_type).map_err(|reason| owner.refuse(reason))?;
         let size = kind.size();
-        let scaled = |value: f32, largest: f32| if accessor.normalized { (value / largest).max(-1.0) } else { value };
-        let number = |bytes: &[u8]| match (kind, bytes) {
-            (Kind::I8, &[a, ..]) => scaled(f32::from(a as i8), 127.0),
-            (Kind::U8, &[a, ..]) => scaled(f32::from(a), 255.0),
-            (Kind::I16, &[a, b, ..]) => scaled(f32::from(i16::from_le_bytes([a, b])), 32767.0),
-            (Kind::U16, &[a, b, ..]) => scaled(f32::from(u16::from_le_bytes([a, b])), 65535.0),
-            (Kind::U32, &[a, b, c, d, ..]) => u32::from_le_bytes([a, b, c, d]) as f32,
-            (Kind::F32, &[a, b, c, d, ..]) => f32::from_le_bytes([a, b, c, d]),
-            _ => 0.0,
-        };
         let bytes = self.elements(accessor, N * size, owner)?;
-        Ok(bytes.chunks_exact(N * size).map(|element| std::array::from_fn(|i| number(&element[i * size..]))).collect())
+        let elements = bytes.chunks_exact(N * size);
+        let elements =
+            elements.map(|bytes| std::array::from_fn(|i| kind.number(&bytes[i * size..], accessor.normalized)));
+        Ok(elements.collect())
     }
 
     /// The whole numbers of an accessor.
@@ -99,7 +110,7 @@ impl<'a> Numbers<'a> {
         whole(kind, &self.elements(accessor, kind.size(), owner)?).map_err(|reason| owner.refuse(reason))
     }
 
-    /// The bytes of all elements, without gaps. Without a buffer view they are zeros; sparse elements are put in.
+    /// The bytes of all elements, without gaps. They are zeros without a buffer view; sparse elements replace some.
     fn elements(self, accessor: &Accessor, size: usize, owner: Owner<'_>) -> Result<Vec<u8>, MeshError> {
         let count = accessor.count;
         if count > ELEMENTS_MAX {
@@ -121,8 +132,9 @@ impl<'a> Numbers<'a> {
         let values = self.gathered(values.buffer_view, values.byte_offset, sparse.count, size, owner)?;
         let places = whole(kind, &places).map_err(|reason| owner.refuse(reason))?;
         for (place, value) in places.into_iter().zip(values.chunks_exact(size)) {
-            let beyond = || owner.refuse(format!("the sparse element {place} of {count}"));
-            all.chunks_exact_mut(size).nth(place as usize).ok_or_else(beyond)?.copy_from_slice(value);
+            let element = all.chunks_exact_mut(size).nth(place as usize);
+            let element = element.ok_or_else(|| owner.refuse(format!("the sparse element {place} of {count}")))?;
+            element.copy_from_slice(value);
         }
         Ok(all)
     }
@@ -138,18 +150,17 @@ impl<'a> Numbers<'a> {
     ) -> Result<Vec<u8>, MeshError> {
         let view = self.document.buffer_views.get(view);
         let view = view.ok_or_else(|| owner.refuse("their buffer view is not there"))?;
-        let beyond = || owner.refuse(format!("{count} elements do not fit into their buffer view"));
         let buffer = self.buffers.get(view.buffer)?.ok_or_else(|| owner.refuse("their buffer is not there"))?;
-        let end = view.byte_offset.checked_add(view.byte_length).ok_or_else(beyond)?;
-        let bytes = buffer.get(view.byte_offset..end).and_then(|bytes| bytes.get(offset..)).ok_or_else(beyond)?;
+        let end = view.byte_offset.checked_add(view.byte_length);
+        let bytes = end.and_then(|end| buffer.get(view.byte_offset..end)?.get(offset..));
         let stride = view.byte_stride.unwrap_or(size);
         let length = match count.checked_sub(1) {
             Some(last) => last.checked_mul(stride).and_then(|start| start.checked_add(size)),
             None => Some(0),
         };
-        if stride < size || length.is_none_or(|length| length > bytes.len()) {
-            return Err(beyond());
-        }
+        let bytes = bytes
+            .filter(|bytes| stride >= size && length.is_some_and(|length| length <= bytes.len()))
+            .ok_or_else(|| owner.refuse(format!("{count} elements do not fit into their buffer view")))?;
         Ok((0..count).flat_map(|i| &bytes[i * stride..i * stride + size]).copied().collect())
     }
 }

@@ -1,4 +1,5 @@
-//! Buffers of a glTF file: in the file, in its text, or in files beside it. A buffer is read when numbers in it are asked for.
+//! Buffers of a glTF file: in the file, in its text, or in files beside it. A buffer is read when its numbers are first
+//! needed.
 
 use std::borrow::Cow;
 use std::cell::{Cell, OnceCell};
@@ -12,7 +13,7 @@ use super::document::{Buffer, Document};
 use super::extensions::COMPRESSIONS;
 use crate::MeshError;
 
-/// Bytes of all buffers that are held.
+/// Most bytes of all buffers together.
 const BYTES_MAX: usize = 512 << 20;
 
 /// Reads a file beside the glTF file by its relative path.
@@ -33,7 +34,7 @@ impl<'a> Buffers<'a> {
         Self { document, blob, files, read, held: Cell::new(0) }
     }
 
-    /// The bytes of a buffer; nothing where there is none of this number.
+    /// The bytes of a buffer; `None` for a missing number.
     pub(super) fn get(&self, index: usize) -> Result<Option<&[u8]>, MeshError> {
         let (Some(cell), Some(buffer)) = (self.read.get(index), self.document.buffers.get(index)) else {
             return Ok(None);
@@ -56,21 +57,22 @@ impl<'a> Buffers<'a> {
                 (format!("number {index}"), Err("the file does not say where its bytes are".to_owned()))
             }
         };
-        let refused = |reason| MeshError::Buffer { uri: name.clone(), reason };
-        let bytes = bytes.map_err(refused)?;
-        let (has, wants) = (bytes.len(), buffer.byte_length);
-        if has < wants {
-            return Err(refused(format!("it has {has} bytes of {wants}")));
-        }
-        self.held.set(self.held.get() + has);
-        if self.held.get() > BYTES_MAX {
-            return Err(refused(format!("with it the buffers take more than {} MiB", BYTES_MAX >> 20)));
-        }
-        Ok(bytes)
+        let checked = bytes.and_then(|bytes| {
+            let (has, wants) = (bytes.len(), buffer.byte_length);
+            if has < wants {
+                return Err(format!("it has {has} bytes of {wants}"));
+            }
+            self.held.set(self.held.get() + has);
+            if self.held.get() > BYTES_MAX {
+                return Err(format!("with it the buffers take more than {} MiB", BYTES_MAX >> 20));
+            }
+            Ok(bytes)
+        });
+        checked.map_err(|reason| MeshError::Buffer { uri: name, reason })
     }
 }
 
-/// Padding may be there or not.
+/// Base 64 with or without padding.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
@@ -104,12 +106,12 @@ fn beside(path: &str, files: Files<'_>) -> Result<io::Result<Vec<u8>>, String> {
     Ok(files(path))
 }
 
-/// A name that may be megabytes of data.
+/// A name for messages: a `data:` name may have megabytes.
 fn shortened(uri: &str) -> String {
     if uri.chars().count() <= 64 { uri.to_owned() } else { uri.chars().take(61).chain("...".chars()).collect() }
 }
 
-/// Bytes for percent signs with two digits; others stay.
+/// Decodes percent signs with two digits; others stay.
 fn percent_decoded(uri: &str) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

@@ -10,8 +10,8 @@ pub(super) struct Container<'a> {
     pub(super) blob: Option<&'a [u8]>,
 }
 
-/// Splits a file. Chunks of other kinds are passed over, and so is what follows the last chunk. The length that the header states for the
-/// whole file does not count: those of the chunks are enough.
+/// Splits a file. Chunks of other kinds are skipped, and so are bytes after the last chunk. The stated length of the
+/// whole file does not count: the lengths of the chunks are enough.
 ///
 /// # Errors
 /// [`MeshError::Version`] and [`MeshError::Gltf`].
@@ -19,7 +19,6 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, MeshError> {
     let Some(rest) = bytes.strip_prefix(b"glTF") else {
         return Ok(Container { json: json(bytes)?, blob: None });
     };
-    let ends = || MeshError::Gltf("it ends in its header".to_owned());
     let version = word(rest, 0).ok_or_else(ends)?;
     if version != 2 {
         return Err(MeshError::Version(version.to_string()));
@@ -43,7 +42,11 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>, MeshError> {
     Ok(Container { json, blob: None })
 }
 
-/// Text in UTF-8 that begins as an object does.
+fn ends() -> MeshError {
+    MeshError::Gltf("it ends in its header".to_owned())
+}
+
+/// Checks that a text is UTF-8 and begins as an object does.
 fn json(bytes: &[u8]) -> Result<&[u8], MeshError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(MeshError::Gltf("its text is in UTF-16: save it as UTF-8".to_owned()));
@@ -57,7 +60,7 @@ fn json(bytes: &[u8]) -> Result<&[u8], MeshError> {
     Ok(text)
 }
 
-/// Kind and bytes of the first chunk, and what follows it; nothing where the bytes do not suffice for the head of one.
+/// Kind and bytes of the first chunk, and the bytes after it. `None` if the bytes are too few for the head of a chunk.
 #[expect(clippy::type_complexity, reason = "three parts of one slice")]
 fn chunk(bytes: &[u8]) -> Result<Option<(&[u8; 4], &[u8], &[u8])>, MeshError> {
     let (Some(length), Some((head, body))) = (word(bytes, 0), bytes.split_at_checked(8)) else { return Ok(None) };

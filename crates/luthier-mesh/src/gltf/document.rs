@@ -1,5 +1,5 @@
-//! The text of a glTF 2.0 file, as far as luthier reads it: meshes, the nodes that hold them, and the numbers that these are made of.
-//! All else is passed over, whatever it is.
+//! The text of a glTF 2.0 file, as far as luthier reads it: meshes, the nodes that hold them, and their numbers. All
+//! else is skipped, whatever it is.
 
 use std::collections::BTreeMap;
 
@@ -64,7 +64,7 @@ pub(super) struct Primitive {
     pub(super) extensions: Extensions,
 }
 
-/// Accessors by what they hold; those of other names are passed over.
+/// Accessors by their content; other names are skipped.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Attributes {
@@ -125,7 +125,7 @@ pub(super) struct Buffer {
     pub(super) extensions: Extensions,
 }
 
-/// The part of the text that says which version the rest is in.
+/// The version of a text.
 #[derive(Debug, Deserialize)]
 struct Heading {
     asset: Option<Asset>,
@@ -142,10 +142,8 @@ impl Document {
     /// # Errors
     /// [`MeshError::Version`] for versions other than 2, [`MeshError::Gltf`] for text that is no glTF.
     pub(super) fn parse(json: &[u8]) -> Result<Self, MeshError> {
-        let invalid = |error: serde_json::Error| MeshError::Gltf(error.to_string());
-        let heading: Heading = serde_json::from_slice(json).map_err(invalid)?;
+        let heading: Heading = serde_json::from_slice(json).map_err(|error| invalid(&error))?;
         let Asset { version, min_version } = heading.asset.unwrap_or_default();
-        let said = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         if version.is_null() {
             return Err(MeshError::Gltf("it does not state its version (asset.version)".to_owned()));
         }
@@ -155,6 +153,15 @@ impl Document {
         if !min_version.is_null() && said(&min_version) != "2.0" {
             return Err(MeshError::Version(said(&min_version)));
         }
-        serde_json::from_slice(json).map_err(invalid)
+        serde_json::from_slice(json).map_err(|error| invalid(&error))
     }
+}
+
+fn invalid(error: &serde_json::Error) -> MeshError {
+    MeshError::Gltf(error.to_string())
+}
+
+/// A string without quotes, another value as JSON.
+fn said(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -3,17 +3,18 @@
 use super::document::Document;
 use crate::MeshError;
 
-/// Extensions that take the numbers of a mesh out of their accessors.
+/// Extensions that move the numbers of a mesh out of their accessors.
 pub(super) const COMPRESSIONS: [&str; 3] =
     ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Extensions of nodes that change what is shown of a mesh, and what becomes of them.
+/// Extensions of nodes that change how a mesh is shown, and what happens with them.
 pub(super) const OF_NODES: [(&str, &str); 2] = [
     ("EXT_mesh_gpu_instancing", "instances (EXT_mesh_gpu_instancing): one of each is shown"),
     ("KHR_node_visibility", "hidden nodes (KHR_node_visibility): they are shown"),
 ];
 
-/// Beginnings of names of extensions that leave meshes as they are: materials, textures, lights, motion, and what is said of a file.
+/// Prefixes of extensions that leave meshes as they are: materials, textures, lights, motion, and descriptions of a
+/// file.
 const OF_OTHER_THINGS: [&str; 13] = [
     "KHR_materials_",
     "KHR_texture_",
@@ -30,10 +31,10 @@ const OF_OTHER_THINGS: [&str; 13] = [
     "MSFT_lod",
 ];
 
-/// The extension that lets attributes be of any type of number, as all are read here.
+/// The extension that allows any type of number for attributes. All types are read here.
 const QUANTIZATION: &str = "KHR_mesh_quantization";
 
-/// Extensions that the file says it cannot do without and that are passed over, because they change nothing of its meshes.
+/// Required extensions that are skipped, because they change nothing of the meshes.
 ///
 /// # Errors
 /// [`MeshError::Compressed`] and [`MeshError::Extension`].

@@ -1,10 +1,10 @@
-//! Materials of a glTF file: the colour of plain parts, and where textures lie.
+//! Materials of a glTF file: the colour of plain parts, and placements of textures.
 
 use serde_json::Value;
 
 use crate::MeshError;
 
-/// Name of materials whose parts keep their colour.
+/// Name of materials with parts that keep their own colour.
 const PLAIN: &str = "plain";
 
 /// Textures of a material.
@@ -16,7 +16,7 @@ const TEXTURES: [&str; 5] = [
     "/emissiveTexture",
 ];
 
-/// The base colour of a plain material; nothing for all others.
+/// The base colour of a plain material; `None` for others.
 pub(super) fn plain_color(material: Option<&Value>) -> Result<Option<[f32; 3]>, MeshError> {
     let Some(material) = material.filter(|material| material["name"] == PLAIN) else { return Ok(None) };
     let factor = match material.pointer("/pbrMetallicRoughness/baseColorFactor") {
@@ -28,7 +28,7 @@ pub(super) fn plain_color(material: Option<&Value>) -> Result<Option<[f32; 3]>, 
     Ok(Some([r, g, b].map(|v| v.clamp(0.0, 1.0))))
 }
 
-/// Where a texture lies over texture coordinates, `KHR_texture_transform`.
+/// Placement of a texture over texture coordinates, `KHR_texture_transform`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Placement {
     offset: [f64; 2],
@@ -37,15 +37,16 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// The placement of the first texture of a material that has one.
+    /// The placement of the first placed texture of a material.
     pub(super) fn of(material: &Value) -> Option<Self> {
-        let placed = |texture: &&str| material.pointer(&format!("{texture}/extensions/KHR_texture_transform"));
-        let placed = TEXTURES.iter().find_map(placed)?;
-        let pair = |name: &str| <[f64; 2] as serde::Deserialize>::deserialize(&placed[name]).ok();
+        let mut places = TEXTURES.iter().map(|texture| format!("{texture}/extensions/KHR_texture_transform"));
+        let placed = places.find_map(|place| material.pointer(&place))?;
+        let [offset, scale] =
+            ["offset", "scale"].map(|name| <[f64; 2] as serde::Deserialize>::deserialize(&placed[name]).ok());
         Some(Self {
-            offset: pair("offset").unwrap_or([0.0; 2]),
+            offset: offset.unwrap_or([0.0; 2]),
             rotation: placed["rotation"].as_f64().unwrap_or(0.0),
-            scale: pair("scale").unwrap_or([1.0; 2]),
+            scale: scale.unwrap_or([1.0; 2]),
         })
     }
 

@@ -17,13 +17,15 @@ pub use self::reader::File;
 use self::reader::Reader;
 use crate::error::MeshError;
 
-/// The triangles of the default scene of a glTF 2.0 file, binary or text. `files` reads buffers beside the file by their relative paths. Normals that are
-/// missing are those of the triangles. The material of the file does not count, but for parts whose material is named `plain`: these keep its base
-/// colour. Only what triangles are made of is read: the rest of the file may be anything.
+/// The triangles of the default scene of a glTF 2.0 file, binary or text. `files` reads buffers beside the file by
+/// their relative paths.
+///
+/// Missing normals are the normals of the triangles. Materials do not count, except that parts with a material named
+/// `plain` keep its base colour. Only the data of triangles is read: the rest of the file may be anything.
 ///
 /// # Errors
-/// [`MeshError`]: no glTF, extensions that the file cannot do without, buffers that cannot be read, numbers that do not fit, more than
-/// [`TRIANGLES_MAX`](crate::TRIANGLES_MAX) triangles.
+/// [`MeshError`] for bytes that are not glTF, unsupported required extensions, unreadable buffers, numbers that do not
+/// fit, and more than [`TRIANGLES_MAX`](crate::TRIANGLES_MAX) triangles.
 pub fn soup(bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<File, MeshError> {
     let container = container::split(bytes)?;
     let document = Document::parse(container.json)?;

@@ -13,21 +13,31 @@ use crate::normals;
 use crate::soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};
 use crate::vector::{cross, sub, unit};
 
-/// Levels of nodes below a scene.
+/// Most levels of nodes below a scene.
 const DEPTH_MAX: usize = 64;
 
-/// Nodes of a scene, counted as often as they are met.
+/// Most nodes of a scene, each counted as often as it is reached.
 const NODES_MAX: usize = 1 << 16;
 
-/// Vertices and corners that are looked at, those that no triangle uses included, which meshes may share.
+/// Most vertices and corners that are read, unused ones included. Meshes may share them, so their number is not limited
+/// by the size of the file.
 const LOOKS_MAX: usize = 128 * TRIANGLES_MAX;
 
 /// Contents of a glTF file.
+///
+/// ```
+/// use luthier_mesh::{model, soup};
+///
+/// let file = soup(model::GLB, &|_| Err(std::io::ErrorKind::NotFound.into()))?;
+/// assert_eq!(file.soup.plain.len(), 1); // the floor
+/// assert!(file.soup.has_uv && file.left_out.is_empty());
+/// # Ok::<(), luthier_mesh::MeshError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct File {
     /// Its triangles.
     pub soup: Soup,
-    /// Parts of it that are not shown, or not as they stand in the file: a phrase each, each once.
+    /// Parts of the file that are not shown, or shown otherwise: a phrase each, without repetition.
     pub left_out: Vec<String>,
 }
 
@@ -77,7 +87,7 @@ impl<'a> Reader<'a> {
         File { soup: self.soup, left_out: self.left_out.into_iter().map(Cow::into_owned).collect() }
     }
 
-    /// The default scene, or the first; without scenes, all nodes; without nodes, all meshes.
+    /// Reads the default scene, or the first. Without scenes, reads all nodes; without nodes, all meshes.
     pub(super) fn scene(&mut self) -> Result<(), MeshError> {
         let document = self.numbers.document;
         let nodes = &document.nodes;
@@ -176,9 +186,6 @@ impl<'a> Reader<'a> {
         }
         let (used, triangles) = used(count, &turn.wound(triangles));
 
-        let fitting = |values: usize, what| {
-            if values == count { Ok(()) } else { Err(owner(what).refuse(format!("{values} for {count} positions"))) }
-        };
         let mut vertices = Vec::with_capacity(used.len());
         for &i in &used {
             let position = turn.point(positions[i]);
@@ -195,7 +202,7 @@ impl<'a> Reader<'a> {
         let mut flat = true;
         if let Some(accessor) = primitive.attributes.normals {
             let all = numbers.floats::<3>(accessor, owner("normals"))?;
-            fitting(all.len(), "normals")?;
+            owner("normals").check_count(all.len(), count)?;
             for (vertex, &i) in vertices.iter_mut().zip(&used) {
                 vertex.normal = unit(turn.normal(all[i])).unwrap_or([0.0; 3]);
             }
@@ -209,7 +216,7 @@ impl<'a> Reader<'a> {
         let mut has_tangent = vec![false; vertices.len()];
         if let Some(accessor) = primitive.attributes.tangents {
             let all = numbers.floats::<4>(accessor, owner("tangents"))?;
-            fitting(all.len(), "tangents")?;
+            owner("tangents").check_count(all.len(), count)?;
             for ((vertex, has), &i) in vertices.iter_mut().zip(&mut has_tangent).zip(&used) {
                 if let Some(tangent) = turn.tangent(all[i]) {
                     (vertex.tangent, *has) = (tangent, true);
@@ -220,7 +227,7 @@ impl<'a> Reader<'a> {
         let part = self.part(primitive)?;
         if let Some(accessor) = primitive.attributes.uvs {
             let all = numbers.floats::<2>(accessor, owner("texture coordinates"))?;
-            fitting(all.len(), "texture coordinates")?;
+            owner("texture coordinates").check_count(all.len(), count)?;
             let placement = self.placement(primitive, accessor);
             for (vertex, &i) in vertices.iter_mut().zip(&used) {
                 let uv = placement.map_or(all[i], |placement| placement.of_uv(all[i]));
@@ -234,7 +241,7 @@ impl<'a> Reader<'a> {
         self.add(&Piece { vertices, has_tangent, triangles, flat, part })
     }
 
-    /// The placement of textures, where texture coordinates are whole numbers: these have their scale in it.
+    /// The placement of textures, if texture coordinates are whole numbers: such a placement contains their scale.
     fn placement(&mut self, primitive: &Primitive, uvs: usize) -> Option<Placement> {
         let document = self.numbers.document;
         let placement = Placement::of(document.materials.get(primitive.material?)?)?;
@@ -245,7 +252,7 @@ impl<'a> Reader<'a> {
         Some(placement)
     }
 
-    /// The number of a colour of plain parts, or 0.
+    /// The number of a part by its plain colour, or 0.
     fn part(&mut self, primitive: &Primitive) -> Result<u32, MeshError> {
         let material = primitive.material.and_then(|index| self.numbers.document.materials.get(index));
         let Some(color) = plain_color(material)? else { return Ok(0) };
@@ -284,7 +291,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The type of numbers that have fractions.
+/// The type code of floats.
 const FLOAT: u32 = 5126;
 
 /// Modes of primitives.
@@ -292,20 +299,20 @@ const LIST: u32 = 4;
 const STRIP: u32 = 5;
 const FAN: u32 = 6;
 
-/// The triangles of a list, a strip or a fan; nothing for another mode.
+/// The triangles of a list, a strip or a fan; `None` for other modes.
 fn triangles(corners: &[u32], mode: u32) -> Option<Vec<[u32; 3]>> {
     Some(match mode {
         LIST => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         STRIP => {
-            let wound = |(n, t): (usize, &[u32])| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
-            corners.windows(3).enumerate().map(wound).collect()
+            let windows = corners.windows(3).enumerate();
+            windows.map(|(n, t)| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }).collect()
         }
         FAN => corners.windows(2).skip(1).map(|t| [corners[0], t[0], t[1]]).collect(),
         _ => return None,
     })
 }
 
-/// The vertices that triangles use, of so many, and the triangles by their places among these.
+/// The numbers of the vertices that triangles use, and the triangles by places in this list.
 fn used(count: usize, triangles: &[[u32; 3]]) -> (Vec<usize>, Vec<[u32; 3]>) {
     let mut places = vec![None; count];
     for &corner in triangles.iter().flatten() {

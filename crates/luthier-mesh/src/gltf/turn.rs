@@ -9,8 +9,8 @@ pub(super) type Matrix = [[f64; 4]; 4];
 pub(super) const IDENTITY: Matrix =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
-/// The transformation of a node: a matrix, or else scale, rotation and translation. A rotation of any length counts as a unit quaternion; `None`
-/// for one that has none.
+/// The transformation of a node: a matrix, or else scale, rotation and translation. A rotation of any length counts as
+/// a unit quaternion; `None` for length 0.
 pub(super) fn of_node(node: &Node) -> Option<Matrix> {
     if let Some(matrix) = &node.matrix {
         return Some(std::array::from_fn(|column| std::array::from_fn(|row| matrix[4 * column + row])));
@@ -43,17 +43,19 @@ pub(super) fn product(a: Matrix, b: Matrix) -> Matrix {
 /// The transformation of a node.
 pub(super) struct Turn {
     matrix: Matrix,
-    /// Cofactors of the linear part: they turn normals.
+    /// Cofactors of the linear part, which transform normals.
     cofactors: [[f64; 3]; 3],
     mirrors: bool,
 }
 
 impl Turn {
     pub(super) fn of(matrix: Matrix) -> Self {
-        let c = |column: usize, row: usize| matrix[column % 3][row % 3];
-        let cofactor = |i: usize, j: usize| c(i + 1, j + 1) * c(i + 2, j + 2) - c(i + 1, j + 2) * c(i + 2, j + 1);
-        let cofactors: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| cofactor(i, j)));
-        let determinant: f64 = (0..3).map(|j| c(0, j) * cofactors[0][j]).sum();
+        // Each is made of the two columns and rows that follow in the cycle.
+        let cofactors: [[f64; 3]; 3] = std::array::from_fn(|i| {
+            let [a, b] = [1, 2].map(|k| matrix[(i + k) % 3]);
+            std::array::from_fn(|j| a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3])
+        });
+        let determinant: f64 = (0..3).map(|j| matrix[0][j] * cofactors[0][j]).sum();
         Self { matrix, cofactors, mirrors: determinant < 0.0 }
     }
 
@@ -73,14 +75,14 @@ impl Turn {
         scaled([0, 1, 2].map(|row| (0..3).map(|k| sign * self.cofactors[k][row] * v[k]).sum()))
     }
 
-    /// A tangent with its sign; `None` where it has no direction.
+    /// A tangent with its sign; `None` without a direction.
     pub(super) fn tangent(&self, [x, y, z, w]: [f32; 4]) -> Option<[f32; 4]> {
         let [x, y, z] = unit(self.direction([x, y, z])).filter(|_| w.is_finite())?;
         let sign = if w < 0.0 { -1.0 } else { 1.0 };
         Some([x, y, z, if self.mirrors { -sign } else { sign }])
     }
 
-    /// Triangles that are counterclockwise from outside after the turn.
+    /// Winds triangles so that they are counterclockwise from outside after the turn.
     pub(super) fn wound(&self, mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
         if self.mirrors {
             triangles.iter_mut().for_each(|t| t.swap(1, 2));

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 /// Radius of the ball.
 pub(super) const OUTER: f64 = 0.8;
 
-/// Texture coordinates repeat after this length along a curve: half a turn over the ball.
+/// Length along a curve after which texture coordinates repeat: half a turn over the ball.
 const REPEAT: f64 = PI * OUTER;
 
 /// A point of a half section: distance from the axis and height.
@@ -24,18 +24,18 @@ impl Curve {
         Self { points: vec![(from, normal, 0.0), (to, normal, length)] }
     }
 
-    /// Part of a circle. Angles count from the outside up; where they fall, the curve is hollow.
+    /// Part of a circle. Angles count from the outside up. Falling angles make a hollow curve.
     pub(super) fn arc(centre: Point, radius: f64, [from, to]: [f64; 2], rows: u32) -> Self {
         let sign = if to > from { 1.0 } else { -1.0 };
-        let point = |i: u32| {
+        let points = (0..=rows).map(|i| {
             let angle = from + (to - from) * f64::from(i) / f64::from(rows);
             let (sin, cos) = libm::sincos(angle);
             // Poles are on the axis, not beside it.
             let r = centre[0] + radius * cos;
             let r = if r.abs() < 1e-9 { 0.0 } else { r };
             ([r, centre[1] + radius * sin], [sign * cos, sign * sin], radius * (angle - from).abs())
-        };
-        Self { points: (0..=rows).map(point).collect() }
+        });
+        Self { points: points.collect() }
     }
 
     /// The other side.
@@ -64,7 +64,8 @@ impl Part {
         self.positions.len() as u32 - 1
     }
 
-    /// Adds what curves sweep between two azimuths, counted from +z towards +x. `u` is the azimuth, `v` falls upwards along the curves.
+    /// Adds the surface that curves sweep between two azimuths, which count from +z towards +x. `u` is the azimuth, `v`
+    /// falls upwards along the curves.
     pub(super) fn turned(&mut self, curves: &[Curve], [from, to]: [f64; 2], columns: u32) {
         let mut start = 0.0;
         for curve in curves {
@@ -92,7 +93,8 @@ impl Part {
         }
     }
 
-    /// Adds the flat face between two curves at an azimuth. Forward is where azimuths grow. Tangents lead away from the axis.
+    /// Adds the flat face between two curves at an azimuth. Forward is the direction of growing azimuths. Tangents lead
+    /// away from the axis.
     pub(super) fn face(&mut self, outer: &Curve, inner: &Curve, azimuth: f64, faces_forward: bool) {
         let (sin, cos) = libm::sincos(azimuth);
         let sign = if faces_forward { 1.0 } else { -1.0 };

@@ -1,7 +1,8 @@
 //! A model that shows what materials do: a ball of two shells with a cut, on a stand with rims, over a plain floor.
 //!
-//! The ball has the texture coordinates of a sphere. What is turned has tangents around the axis; the faces of the cut have them outwards. Lengths are
-//! in units of the file, in which the floor is at height 0 and the ball has a radius of 0.8.
+//! The ball has the texture coordinates of a sphere. Turned surfaces have tangents around the axis; the faces of the
+//! cut have outward tangents. Lengths are in units of the file: the floor is at height 0 and the ball has a radius of
+//! 0.8.
 
 mod lathe;
 mod write;
@@ -11,7 +12,7 @@ use std::f64::consts::PI;
 use crate::{Mesh, soup};
 use lathe::{Curve, OUTER, Part};
 
-/// The model as binary glTF: what [`glb`] makes, so that other programs can have the file.
+/// The model as binary glTF, as [`glb`] makes it. It is stored so that other programs can use the file.
 pub const GLB: &[u8] = include_bytes!("../../assets/model.glb");
 
 /// Albedo of the floor, linear.
@@ -32,7 +33,7 @@ pub fn mesh() -> Mesh {
     Mesh::new(file.soup).expect("a test makes it")
 }
 
-/// The bytes of the model, made anew: the same on every platform.
+/// Builds the bytes of the model, which are equal on every platform.
 pub fn glb() -> Vec<u8> {
     let mut shown = Part::default();
     shell(&mut shown);
@@ -44,21 +45,29 @@ pub fn glb() -> Vec<u8> {
 
 /// The outer ball, its hollow, and the faces of the cut.
 fn shell(part: &mut Part) {
-    let at = |radius: f64| libm::asin(CUT_HEIGHT / radius);
-    // From where the collar of the stand hides it.
-    let below = Curve::arc([0.0, MIDDLE], OUTER, [-0.42 * PI, at(OUTER)], 15);
+    // Begins where the collar of the stand hides it.
+    let below = Curve::arc([0.0, MIDDLE], OUTER, [-0.42 * PI, cut_angle(OUTER)], 15);
     part.turned(&[below], [-PI, PI], 64);
-    let above = |radius: f64, rows| Curve::arc([0.0, MIDDLE], radius, [at(radius), 0.5 * PI], rows);
     let closed = [CUT[1], CUT[0] + 2.0 * PI];
     part.turned(&[above(OUTER, 20)], closed, 54);
     part.turned(&[above(HOLLOW, 14).reversed()], closed, 42);
-    let bowl = Curve::arc([0.0, MIDDLE], HOLLOW, [-0.5 * PI, at(HOLLOW)], 10);
+    let bowl = Curve::arc([0.0, MIDDLE], HOLLOW, [-0.5 * PI, cut_angle(HOLLOW)], 10);
     part.turned(&[bowl.reversed()], [-PI, PI], 48);
-    let edge = |radius: f64| [radius * libm::cos(at(radius)), MIDDLE + CUT_HEIGHT];
-    part.turned(&[Curve::line(edge(OUTER), edge(HOLLOW))], CUT, 16);
+    let [outer, hollow] = [OUTER, HOLLOW].map(|radius| [radius * libm::cos(cut_angle(radius)), MIDDLE + CUT_HEIGHT]);
+    part.turned(&[Curve::line(outer, hollow)], CUT, 16);
     for (azimuth, faces_forward) in [(CUT[0], true), (CUT[1], false)] {
         part.face(&above(OUTER, 20), &above(HOLLOW, 20), azimuth, faces_forward);
     }
+}
+
+/// Angle of the lower end of the cut, from the middle of a ball.
+fn cut_angle(radius: f64) -> f64 {
+    libm::asin(CUT_HEIGHT / radius)
+}
+
+/// The part of a ball above the lower end of the cut.
+fn above(radius: f64, rows: u32) -> Curve {
+    Curve::arc([0.0, MIDDLE], radius, [cut_angle(radius), 0.5 * PI], rows)
 }
 
 /// Half a section of the stand, from the floor outwards and up.

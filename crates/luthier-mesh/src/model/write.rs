@@ -4,33 +4,28 @@ use super::lathe::Part;
 
 /// The file: one node, a shown part with all attributes, and a plain part with positions and normals.
 pub(super) fn glb(shown: &Part, floor: &Part, albedo: f64) -> Vec<u8> {
-    let mut bin = Vec::new();
-    let mut views = Vec::new();
-    let mut accessors = Vec::new();
-    let mut add = |bytes: &[u8], target: u32, what: String| {
-        views.push(format!(
-            r#"{{"buffer":0,"byteOffset":{},"byteLength":{},"target":{target}}}"#,
-            bin.len(),
-            bytes.len()
-        ));
-        accessors.push(format!(r#"{{"bufferView":{},{what}}}"#, views.len() - 1));
-        bin.extend_from_slice(bytes);
-        bin.resize(bin.len().next_multiple_of(4), 0);
-    };
+    let mut parts = Vec::new();
     for (part, is_shown) in [(shown, true), (floor, false)] {
         let count = part.positions.len();
         let (low, high) = bounds(&part.positions);
         let limits = format!(r#""componentType":5126,"count":{count},"type":"VEC3","min":{low:?},"max":{high:?}"#);
-        add(&bytes(&part.positions), ARRAY, limits);
-        let vectors = |kind: &str| format!(r#""componentType":5126,"count":{count},"type":"{kind}""#);
-        add(&bytes(&part.normals), ARRAY, vectors("VEC3"));
+        parts.push((bytes(&part.positions), ARRAY, limits));
+        parts.push((bytes(&part.normals), ARRAY, vectors("VEC3", count)));
         if is_shown {
-            add(&bytes(&part.tangents), ARRAY, vectors("VEC4"));
-            add(&bytes(&part.uvs), ARRAY, vectors("VEC2"));
+            parts.push((bytes(&part.tangents), ARRAY, vectors("VEC4", count)));
+            parts.push((bytes(&part.uvs), ARRAY, vectors("VEC2", count)));
         }
         let indices: Vec<u8> = part.triangles.iter().flatten().flat_map(|&i| (i as u16).to_le_bytes()).collect();
         let about = format!(r#""componentType":5123,"count":{},"type":"SCALAR""#, 3 * part.triangles.len());
-        add(&indices, ELEMENTS, about);
+        parts.push((indices, ELEMENTS, about));
+    }
+    let (mut bin, mut views, mut accessors) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, (bytes, target, about)) in parts.into_iter().enumerate() {
+        let (offset, length) = (bin.len(), bytes.len());
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length},"target":{target}}}"#));
+        accessors.push(format!(r#"{{"bufferView":{number},{about}}}"#));
+        bin.extend_from_slice(&bytes);
+        bin.resize(bin.len().next_multiple_of(4), 0);
     }
     let json = format!(
         r#"{{"asset":{{"version":"2.0","generator":"luthier"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"name":"model","mesh":0}}],
@@ -45,19 +40,14 @@ pub(super) fn glb(shown: &Part, floor: &Part, albedo: f64) -> Vec<u8> {
     );
     let mut json = json.into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let word = |n: usize| (n as u32).to_le_bytes();
-    let chunks: [&[u8]; 9] = [
-        b"glTF",
-        &word(2),
-        &word(28 + json.len() + bin.len()),
-        &word(json.len()),
-        b"JSON",
-        &json,
-        &word(bin.len()),
-        b"BIN\0",
-        &bin,
-    ];
+    let [version, length, json_length, bin_length] =
+        [2, 28 + json.len() + bin.len(), json.len(), bin.len()].map(|n| (n as u32).to_le_bytes());
+    let chunks: [&[u8]; 9] = [b"glTF", &version, &length, &json_length, b"JSON", &json, &bin_length, b"BIN\0", &bin];
     chunks.concat()
+}
+
+fn vectors(kind: &str, count: usize) -> String {
+    format!(r#""componentType":5126,"count":{count},"type":"{kind}""#)
 }
 
 /// Targets of buffer views: attributes of vertices, and indices.

@@ -19,10 +19,10 @@ pub(crate) const OBJECTS: &str = "objects";
 /// Folder of entries that are being written.
 pub(crate) const TEMPORARY: &str = "tmp";
 
-/// An entry that was read is marked as used where its last mark is older than this.
+/// Age of a mark of use after which a read renews it: a write for every read would be slow.
 const MARK_AGE: Duration = Duration::from_secs(3600);
 
-/// Files of writers that were killed are removed when they are as old as this.
+/// Age after which files of killed writers are removed.
 const LEFT_AGE: Duration = Duration::from_secs(3600);
 
 /// Why a store cannot be used.
@@ -44,12 +44,12 @@ pub(crate) fn at<T>(action: &'static str, path: &Path, result: io::Result<T>) ->
 
 /// Results of jobs in a folder.
 ///
-/// A store never makes a bake fail: an entry that cannot be read is computed again, and one that cannot be written is not kept.
-/// [`Self::problem`] has the first reason.
+/// A store never makes a bake fail: an unreadable entry is computed again, and an entry that cannot be written is not
+/// kept. [`Self::problem`] returns the first reason.
 #[derive(Debug)]
 pub struct DiskStore {
     pub(crate) root: PathBuf,
-    /// Bytes that entries may have together.
+    /// Most bytes of all entries.
     pub(crate) limit: u64,
     /// Bytes that this process has written.
     pub(crate) written: AtomicU64,
@@ -57,8 +57,8 @@ pub struct DiskStore {
 }
 
 impl DiskStore {
-    /// Opens the store in a folder, which is made if it does not exist. Entries of more than `limit` bytes together are removed by [`Self::close`], those first that
-    /// were not used for the longest time.
+    /// Opens the store in a folder, and makes the folder if it does not exist. If entries take more than `limit` bytes
+    /// together, [`Self::close`] removes the least recently used ones.
     ///
     /// # Errors
     /// [`StoreError`] where the folder can be neither made nor listed.
@@ -75,22 +75,22 @@ impl DiskStore {
         &self.root
     }
 
-    /// The first thing that went wrong, once.
+    /// The first problem; returned once.
     pub fn problem(&self) -> Option<StoreError> {
         self.problem.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// Bytes that are no result of a job, by the hash of all that decides them.
+    /// Bytes at an address that are not the result of a job.
     pub fn bytes(&self, kind: &str, address: Key) -> Option<Vec<u8>> {
         self.read(kind, address)
     }
 
-    /// Keeps such bytes.
+    /// Keeps bytes that are not the result of a job.
     pub fn put_bytes(&self, kind: &str, address: Key, bytes: &[u8]) {
         self.write(kind, address, bytes);
     }
 
-    /// Removes what writers left that were killed.
+    /// Removes files that killed writers left.
     fn sweep(&self, temporary: &Path) -> Result<(), StoreError> {
         for file in at("list", temporary, fs::read_dir(temporary))?.flatten() {
             let age = file.metadata().and_then(|m| m.modified()).ok().and_then(|time| time.elapsed().ok());
@@ -146,14 +146,14 @@ impl DiskStore {
 
     /// Keeps the first error.
     fn note<T>(&self, result: Result<T, StoreError>) -> Option<T> {
-        let keep = |error| {
+        let noted = result.map_err(|error| {
             self.problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-        };
-        result.map_err(keep).ok()
+        });
+        noted.ok()
     }
 }
 
-/// A file with a name that no other has, which goes away unless it is renamed. Others may read it as they may any new file.
+/// A new file with a unique name, which is removed unless it is renamed. Others may read it as they may any new file.
 fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -161,10 +161,10 @@ fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Marks an entry as used now, where the last mark is old.
+/// Marks an entry as used now, if the last mark is old.
 fn mark(path: &Path) {
-    let is_old = |time: SystemTime| time.elapsed().is_ok_and(|age| age > MARK_AGE);
-    let is_due = fs::metadata(path).and_then(|m| m.modified()).is_ok_and(is_old);
+    let marked = fs::metadata(path).and_then(|m| m.modified());
+    let is_due = marked.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > MARK_AGE));
     if is_due && let Ok(file) = File::options().append(true).open(path) {
         let _ = file.set_modified(SystemTime::now());
     }

@@ -1,4 +1,4 @@
-//! The address of a shared store, and the variables that belong to it.
+//! The address of a shared store, and the environment variables for it.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,17 +14,17 @@ use url::{Position, Url};
 use super::RemoteError;
 use super::error::reason;
 
-/// Retries of a request that a server refused for a moment, or that did not reach it.
+/// Retries of a request that a server refused for a moment, or that did not reach the server.
 const RETRIES: usize = 3;
 
-/// No retry begins later than this: who waited for so long need not wait again.
+/// Time after which no retry begins: a user who has waited this long should not wait again.
 const RETRY_LIMIT: Duration = Duration::from_secs(10);
 
 /// An address, taken apart.
 pub(super) struct Address {
-    /// The address as messages show it, without what may be secret.
+    /// The address for messages, without parts that may be secret.
     pub(super) name: String,
-    /// Where the objects are, or why they cannot be asked for.
+    /// The objects, or why they cannot be reached.
     pub(super) objects: Result<Arc<dyn ObjectStore>, String>,
     /// The beginning of the names of all objects.
     pub(super) prefix: Path,
@@ -36,7 +36,7 @@ impl Address {
             |store: &str, reason: &str| RemoteError::Address { store: store.to_owned(), reason: reason.to_owned() };
         let forms =
             "addresses are s3://BUCKET/PREFIX, gs://BUCKET/PREFIX, az://CONTAINER/PREFIX and https://HOST/PREFIX";
-        // What is no address may still hold a password.
+        // The text is not shown: it may still hold a password.
         let url = Url::parse(text).map_err(|_| refused("what is no address", forms))?;
         let name = public(&url);
         let (scheme, prefix) = ObjectStoreScheme::parse(&url).map_err(|_| refused(&name, forms))?;
@@ -71,7 +71,7 @@ fn azure(url: &Url) -> Built {
     Ok(Arc::new(builder.build()?))
 }
 
-/// Who writes `http://` wants no encryption.
+/// A store over HTTP. `http://` turns encryption off.
 fn http(url: &Url) -> Built {
     let builder = HttpBuilder::new()
         .with_url(&url[..Position::BeforePath])
@@ -80,14 +80,14 @@ fn http(url: &Url) -> Built {
     Ok(Arc::new(builder.build()?))
 }
 
-/// Few retries. Without variables that say otherwise, a connection is given up after 5 s.
+/// Settings of retries: few. Unless variables say otherwise, a connection is given up after 5 s.
 fn retry() -> RetryConfig {
     RetryConfig { backoff: BackoffConfig::default(), max_retries: RETRIES, retry_timeout: RETRY_LIMIT }
 }
 
 /// An address without names, passwords and signatures.
 fn public(url: &Url) -> String {
-    // Not even a host: nobody knows what such a text holds.
+    // Not even a host: such a text may hold anything.
     if url.cannot_be_a_base() {
         return format!("{}:…", url.scheme());
     }

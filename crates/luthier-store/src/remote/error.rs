@@ -5,16 +5,16 @@ use std::error::Error as StdError;
 use object_store::Error;
 use thiserror::Error;
 
-/// Letters of a reason that are printed: servers answer with pages.
+/// Letters of a reason that are printed: some servers answer with whole pages.
 const REASON: usize = 200;
 
-/// The reason where the time is up.
+/// The reason for a request beyond its time.
 pub(super) const NO_ANSWER: &str = "it takes too long to answer";
 
-/// Why a shared store, or an entry of it, is not used.
+/// Reason why a shared store, or an entry of it, is not used.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RemoteError {
-    /// The address is that of no store.
+    /// The address names no store.
     #[error("no shared store can be opened at {store}: {reason}")]
     Address {
         /// The address, without what may be secret.
@@ -30,7 +30,7 @@ pub enum RemoteError {
         /// The reason in words.
         reason: String,
     },
-    /// An entry is not what its place says.
+    /// An entry does not match its address.
     #[error("the shared store {store} has damaged entries, which are made anew; the first is {name}")]
     Damaged {
         /// The address, without what may be secret.

@@ -21,20 +21,22 @@ use address::Address;
 pub use error::RemoteError;
 use transfers::Transfers;
 
-/// A request and all its retries take no longer.
+/// Longest duration of a request with all its retries.
 const REQUEST_LIMIT: Duration = Duration::from_secs(30);
 
-/// Entries that are fetched before they are decoded, so that their bytes are not all in memory at once.
+/// Most entries that are fetched before they are decoded: more would hold too many bytes in memory.
 const FETCHED_AT_ONCE: usize = 256;
 
-/// Results of jobs in a store that machines share: S3 and what speaks its protocol, Google Cloud Storage, Azure, or HTTP with WebDAV.
+/// Results of jobs in a store that machines share: S3 and its compatible services, Google Cloud Storage, Azure, or HTTP
+/// with WebDAV.
 ///
-/// An object is an entry as on disk, with its address and the hash of its result: an object that is damaged or in the place of another one is refused, and
-/// its job runs again. Uploads run beside the bake. A store never makes a bake fail: after the first request that fails, or that takes too long, it is out of
-/// use for good. [`Self::problem`] has the reason. It belongs below a store on disk, in [`Layers`](crate::Layers).
+/// An object is an entry as on disk, with its address and the hash of its result. A damaged or misplaced object is
+/// refused, and its job runs again. Uploads run beside the bake. A store never makes a bake fail: after the first
+/// request that fails or takes too long, it is not used any more, and [`Self::problem`] returns the reason. It belongs
+/// below a store on disk, in [`Layers`](crate::Layers).
 pub struct RemoteStore {
     transfers: Arc<Transfers>,
-    /// Where requests run: one thread for all.
+    /// Runtime of all requests: one thread.
     runtime: Handle,
     thread: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
 }
@@ -44,7 +46,7 @@ impl RemoteStore {
     /// endpoints come from the variables that other programs read, too: AWS_ACCESS_KEY_ID, AWS_ENDPOINT_URL, GOOGLE_SERVICE_ACCOUNT, AZURE_STORAGE_ACCOUNT_NAME.
     ///
     /// # Errors
-    /// [`RemoteError`] where this is no such address. Credentials that cannot be read are no error: the store is out of use then.
+    /// [`RemoteError`] if this is no such address. Unreadable credentials are not an error; the store is then not used.
     pub fn open(url: &str) -> Result<Self, RemoteError> {
         let Address { name, objects, prefix } = Address::parse(url)?;
         match objects {
@@ -64,16 +66,15 @@ impl RemoteStore {
         prefix: Path,
         request_limit: Duration,
     ) -> Result<Self, RemoteError> {
-        let no_thread = |error: std::io::Error| RemoteError::Address { store: name.clone(), reason: error.to_string() };
-        let runtime = Builder::new_current_thread().enable_all().build().map_err(no_thread)?;
+        let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| no_thread(&name, &error))?;
         let handle = runtime.handle().clone();
         let (stop, stopped) = oneshot::channel();
-        let run = move || {
-            // Whether it was told to stop, or the store is gone.
+        let thread = thread::Builder::new().name("luthier-store".to_owned()).spawn(move || {
+            // Returns when the store is told to stop, or is dropped.
             let _ = runtime.block_on(stopped);
             runtime.shutdown_background();
-        };
-        let thread = thread::Builder::new().name("luthier-store".to_owned()).spawn(run).map_err(no_thread)?;
+        });
+        let thread = thread.map_err(|error| no_thread(&name, &error))?;
         let transfers = Arc::new(Transfers::new(name, objects, prefix, request_limit));
         Ok(Self { transfers, runtime: handle, thread: Some((stop, thread)) })
     }
@@ -83,7 +84,7 @@ impl RemoteStore {
         self.transfers.wait();
     }
 
-    /// The thing that went wrong, once: why the store is out of use, else the first damaged entry.
+    /// The first problem, returned once: why the store is not used any more, else the first damaged entry.
     pub fn problem(&self) -> Option<RemoteError> {
         self.transfers.take_problem()
     }
@@ -92,21 +93,25 @@ impl RemoteStore {
     fn fetch(&self, asked: &[(&str, Key)]) -> Vec<Option<Vec<u8>>> {
         let names: Vec<Path> = asked.iter().map(|&(kind, address)| self.transfers.name(kind, address)).collect();
         let objects = Transfers::fetch_all(&self.transfers, &self.runtime, names);
-        let result = |(&(kind, address), object): (&(&str, Key), Option<Vec<u8>>)| {
+        let results = asked.par_iter().zip(objects).map(|(&(kind, address), object)| {
             let object = object?;
             let result = unpack(address, &object).map(<[u8]>::to_vec);
             if result.is_none() {
                 self.transfers.distrust(kind, address);
             }
             result
-        };
-        asked.par_iter().zip(objects).map(result).collect()
+        });
+        results.collect()
     }
 
     /// Sends a result.
     fn send(&self, kind: &str, address: Key, result: &[u8]) {
         Transfers::send(&self.transfers, &self.runtime, self.transfers.name(kind, address), pack(address, result));
     }
+}
+
+fn no_thread(store: &str, error: &std::io::Error) -> RemoteError {
+    RemoteError::Address { store: store.to_owned(), reason: error.to_string() }
 }
 
 impl Store for RemoteStore {
@@ -119,15 +124,15 @@ impl Store for RemoteStore {
         let kept: Vec<usize> = (0..tasks.len()).filter(|&i| tasks[i].is_kept()).collect();
         for part in kept.chunks(FETCHED_AT_ONCE) {
             let asked: Vec<(&str, Key)> = part.iter().map(|&i| (tasks[i].kind().name(), tasks[i].address())).collect();
-            let decode = |(&i, result): (&usize, Option<Vec<u8>>)| {
+            let results = part.par_iter().zip(self.fetch(&asked)).map(|(&i, result)| {
                 let result = result?;
                 let artefact = tasks[i].decode(&result);
                 if artefact.is_none() {
                     self.transfers.distrust(tasks[i].kind().name(), tasks[i].address());
                 }
                 artefact.map(Arc::new)
-            };
-            let results: Vec<_> = part.par_iter().zip(self.fetch(&asked)).map(decode).collect();
+            });
+            let results: Vec<_> = results.collect();
             part.iter().zip(results).for_each(|(&i, result)| found[i] = result);
         }
         found
@@ -148,7 +153,7 @@ impl Drop for RemoteStore {
         self.close();
         if let Some((stop, thread)) = self.thread.take() {
             drop(stop);
-            // It has nothing left to do; that it panicked would have been seen.
+            // The thread has nothing left to do. A panic of it would have been seen.
             let _ = thread.join();
         }
     }

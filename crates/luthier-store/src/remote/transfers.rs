@@ -1,4 +1,4 @@
-//! Requests to a shared store: many at once, each bounded in time, none after the first that failed.
+//! Requests to a shared store: many at once, each limited in time, none after the first failure.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
@@ -18,13 +18,13 @@ use super::error::{NO_ANSWER, reason};
 /// Objects that are fetched at once.
 const FETCHES: usize = 64;
 
-/// Objects that are sent at once, beside those that are fetched.
+/// Objects that are sent at once, beside the fetched ones.
 const UPLOADS: usize = 32;
 
-/// Bytes that wait for their upload; a bake that is faster than the network waits then.
+/// Most bytes that wait for their upload. A bake that is faster than the network waits.
 const WAITING: usize = 64 << 20;
 
-/// Larger objects are neither fetched nor sent.
+/// Size of the largest object that is fetched or sent.
 const LARGEST: usize = 64 << 20;
 
 /// Requests of one store.
@@ -38,9 +38,9 @@ pub(super) struct Transfers {
     uploads: Semaphore,
     is_out: AtomicBool,
     problem: Mutex<Option<RemoteError>>,
-    /// Bytes of uploads that are not done.
+    /// Bytes of unfinished uploads.
     waiting: Mutex<usize>,
-    /// Tells that these have become fewer, or that the store is out of use.
+    /// Signals that these bytes have become fewer, or that the store is not used any more.
     fewer: Condvar,
 }
 
@@ -78,15 +78,17 @@ impl Transfers {
             *problem = Some(RemoteError::OutOfUse { store: self.store.clone(), reason });
         }
         drop(problem);
-        // Whoever waits has either seen that the store is out of use, or is told now.
+        // Taken between the flag and the signal: a waiting thread has seen the flag already, or gets the signal.
         drop(lock(&self.waiting));
         self.fewer.notify_all();
     }
 
-    /// Keeps in mind that an entry is not what its place says.
+    /// Records that an entry does not match its address.
     pub(super) fn distrust(&self, kind: &str, address: Key) {
-        let damaged = || RemoteError::Damaged { store: self.store.clone(), name: self.name(kind, address).to_string() };
-        lock(&self.problem).get_or_insert_with(damaged);
+        lock(&self.problem).get_or_insert_with(|| RemoteError::Damaged {
+            store: self.store.clone(),
+            name: self.name(kind, address).to_string(),
+        });
     }
 
     /// Waits for uploads.
@@ -94,13 +96,13 @@ impl Transfers {
         drop(self.wait_for(0));
     }
 
-    /// Waits until no more bytes than these wait for their upload, or nothing is uploaded any more.
+    /// Waits until at most this many bytes wait for their upload, or uploads have ended.
     fn wait_for(&self, bytes: usize) -> MutexGuard<'_, usize> {
-        let goes_on = |waiting: &mut usize| *waiting > bytes && self.is_in_use();
-        self.fewer.wait_while(lock(&self.waiting), goes_on).unwrap_or_else(PoisonError::into_inner)
+        let waited = self.fewer.wait_while(lock(&self.waiting), |waiting| *waiting > bytes && self.is_in_use());
+        waited.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The objects of some names, in their order; `None` for those that are not there. Blocks.
+    /// The objects of some names, in their order; `None` for missing ones. Blocks.
     pub(super) fn fetch_all(this: &Arc<Self>, runtime: &Handle, names: Vec<Path>) -> Vec<Option<Vec<u8>>> {
         let mut found = vec![None; names.len()];
         if names.is_empty() || !this.is_in_use() {
@@ -129,7 +131,7 @@ impl Transfers {
     async fn fetch(&self, name: &Path) -> Option<Vec<u8>> {
         let request = async {
             let object = self.objects.get(name).await?;
-            // A result that large is none of ours.
+            // Not one of our results.
             if object.meta.size > LARGEST as u64 {
                 return Ok(Vec::new());
             }
@@ -145,7 +147,7 @@ impl Transfers {
         }
     }
 
-    /// Sends an object. Blocks only where too many bytes wait.
+    /// Sends an object. Blocks only while too many bytes wait.
     pub(super) fn send(this: &Arc<Self>, runtime: &Handle, name: Path, object: Vec<u8>) {
         if object.len() > LARGEST {
             return;
@@ -160,7 +162,8 @@ impl Transfers {
         runtime.spawn(async move { upload.run(&name, object).await });
     }
 
-    /// The outcome of a request, once there is a slot for it; `None` where the store is out of use, or becomes so because the time is up.
+    /// The outcome of a request, after waiting for a slot. `None` if the store is not used, or is given up because the
+    /// time is up.
     async fn request<T>(
         &self,
         slots: &Semaphore,

@@ -1,4 +1,5 @@
-//! Symmetric positive systems, in a fixed order of operations: bytes of tables depend on them. (Products of nalgebra are fused on some machines.)
+//! Symmetric positive systems, in a fixed order of operations, because bytes of tables depend on it. (Products of
+//! nalgebra are fused on some machines.)
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -21,7 +22,8 @@ pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, v| most.max(v.abs()))
 }
 
-/// The lower Cholesky factor of a symmetric matrix, whose upper half is not read; none of a matrix that is not positive definite.
+/// The lower Cholesky factor of a symmetric matrix, whose upper half is not read. None if the matrix is not positive
+/// definite.
 pub(super) fn cholesky(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     for i in 0..matrix.len() {
         let (before, rest) = matrix.split_at_mut(i);

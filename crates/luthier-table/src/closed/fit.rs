@@ -10,10 +10,10 @@ use super::{ClosedForm, STRETCH};
 
 /// Nodes of the grid along each axis.
 const NODES: u32 = 24;
-/// Lowest cosine and alpha of a form: the functions have no limit at the corner below.
+/// Lowest cosine and alpha of a form. The functions have no limit at the corner below.
 const LOWEST: f64 = 1e-3;
-/// Degrees in t and alpha that are tried for the loss, from the cheapest on: of all degrees up to 4 over 3 those that no cheaper ones match,
-/// for GGX with correlated masking.
+/// Degrees in t and alpha that are tried for the loss, the cheapest first. Of all degrees up to 4 over 3, these are the
+/// ones that no cheaper ones match, for GGX with correlated masking.
 const LOSSES: [Degrees; 11] = [
     [[2, 1], [0, 0]],
     [[2, 2], [0, 0]],
@@ -54,11 +54,11 @@ pub struct FittedForm {
 }
 
 impl ClosedForm {
-    /// The closed form of least cost whose bias and albedo err by `max_abs` at most over cosines and alphas from the given ones on (0.001 at
-    /// least); where none does, the most accurate.
+    /// The cheapest closed form whose bias and albedo err by at most `max_abs`, over cosines and alphas from the given
+    /// ones on (at least 0.001). If none holds the error, the most accurate.
     ///
-    /// Errors are the least that the form allows, to a few parts in a hundred, on a grid of 24 x 24 points by quadrature; the outcome is measured
-    /// between them, in single precision. Deterministic.
+    /// Errors are the least of each form, to a few parts in a hundred, on a grid of 24 x 24 points by quadrature. The
+    /// outcome is measured between these points, in single precision. Deterministic.
     pub fn fit(distribution: Distribution, masking: Masking, max_abs: f64, min_cos: f64, min_alpha: f64) -> FittedForm {
         let floor = [min_cos, min_alpha].map(|lowest| lowest.clamp(LOWEST, 0.5));
         let points = Points::new(distribution, masking, floor);
@@ -81,8 +81,8 @@ impl ClosedForm {
     }
 }
 
-/// The quotients of the degrees in turn that hold an error at the grid and have a positive divisor between its points; where none does, the most
-/// accurate.
+/// Tries degrees in turn until a quotient holds an error at the grid and has a positive divisor between its points. If
+/// none does, the most accurate.
 fn promising<'a, T: Target>(
     degrees: &'a [Degrees],
     grid: &'a [T],
@@ -116,7 +116,8 @@ struct Points {
     sums: Vec<([f64; 2], SplitSum)>,
 }
 
-/// Coordinates along an axis: squares of the extremes of Chebyshev's polynomials, dense at both ends, and denser at the lower.
+/// Coordinates along an axis: squares of the extremes of Chebyshev's polynomials, which are dense at both ends, and
+/// denser at the lower.
 fn along(lowest: f64, count: u32) -> impl Iterator<Item = f64> + Clone {
     (0..count).map(move |i| {
         let u = 0.5 - 0.5 * libm::cos(std::f64::consts::PI * f64::from(i) / f64::from(count - 1));
@@ -182,7 +183,7 @@ impl Target for Loss {
     }
 }
 
-/// The cosine z, whose error is that of albedo (1 - z)^5, with the albedo of the form.
+/// The cosine z. Its error is that of albedo (1 - z)^5, with the albedo of the form.
 struct Cosine {
     at: [f64; 2],
     albedo: f64,

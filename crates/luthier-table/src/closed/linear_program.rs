@@ -4,14 +4,16 @@ use super::cholesky::{add, cholesky, combined, dot, largest, solve};
 
 /// Steps after which a program is given up.
 const STEPS: usize = 60;
-/// Complementarity at which a program is solved: limits are bounds of errors, of which three digits count.
+/// Complementarity at which a program is solved. Limits are bounds of errors, of which three digits count.
 const GAP: f64 = 1e-10;
-/// Part of the way to the boundary that a step goes.
+/// Share of the way to the boundary that a step goes. At 1, a slack or dual would become 0 and divide the next step.
 const STAY_INSIDE: f64 = 0.99;
-/// Share by which the diagonal of the normal equations is raised, so that the last steps have a factor, too.
+/// Share by which the diagonal of the normal equations is raised, so that the last, nearly singular steps have a factor
+/// too.
 const RAISED: f64 = 1e-13;
 
-/// The x with the least `cost . x` among those with `rows[i] . x <= limits[i]`, to some eight digits; none where the method finds no such x.
+/// The x with the least `cost . x` among those with `rows[i] . x <= limits[i]`, to some eight digits; none if the
+/// method finds no such x.
 ///
 /// Mehrotra's predictor and corrector (SIAM J. Optim. 2(4), 1992) on the normal equations. Every row has as many numbers as `cost`.
 pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Option<Vec<f64>> {
@@ -57,7 +59,7 @@ pub(super) fn minimise(cost: &[f64], rows: &[Vec<f64>], limits: &[f64]) -> Optio
             return None;
         }
     }
-    // The last steps fight rounding: what holds the limits will do.
+    // The last steps fight rounding: a point within the limits will do.
     let holds = rows.iter().zip(limits).all(|(row, limit)| dot(row, &x) <= limit + 1e-7);
     holds.then_some(x)
 }

@@ -6,16 +6,17 @@ use super::rational::{Polynomial, Rational};
 
 /// Linear programs for one fit, at most.
 const ROUNDS: usize = 24;
-/// A round that lowers the error by a smaller part has failed.
+/// A round that lowers the error by a smaller part than this has failed.
 const PROGRESS: f64 = 2e-3;
-/// The error that the first round looks for.
+/// Target error of the first round.
 const FIRST_ERROR: f64 = 0.02;
-/// Failures after which a fit ends.
+/// Number of failed rounds that end a fit.
 const FAILURES: usize = 3;
-/// Least divisor on the grid, where the terms of the divisor are of root mean square 1 and have factors up to 1.
+/// Least divisor on the grid. The terms of the divisor have a root mean square of 1 and factors of at most 1; a smaller
+/// divisor comes near a pole between the points.
 const LEAST_DIVISOR: f64 = 2e-3;
 
-/// A point of the grid of a fit: where, and what values err by a given amount at the most.
+/// A point of the grid of a fit, and the values there that err by a given amount at most.
 pub(super) trait Target {
     /// The point.
     fn at(&self) -> [f64; 2];
@@ -28,7 +29,8 @@ pub(super) trait Target {
 /// Degrees of dividend and divisor, each in both variables.
 pub(super) type Degrees = [[usize; 2]; 2];
 
-/// The quotient of these degrees with the least largest error over the grid, and this error; none where every try has a pole.
+/// The quotient of these degrees with the least largest error over the grid, and this error. None if every try has a
+/// pole.
 ///
 /// Differential correction (Cheney and Loeb 1961; Barrodale, Powell and Roberts, SIAM J. Numer. Anal. 9(3), 1972): a sequence of linear programs
 /// that converges from any start. Errors that are not differences have their bounds renewed in every round.
@@ -81,7 +83,7 @@ pub(super) fn fit<T: Target>(degrees: Degrees, grid: &[T]) -> Option<(Rational, 
         }
         let excess = x[p + q];
         if largest < before * (1.0 - PROGRESS) {
-            // Half of what the program promises: its bounds are those of another error.
+            // Half of the improvement that the program promises: its bounds belong to another error.
             error = largest * (1.0 + 0.5 * excess.clamp(-0.9, 0.0));
         } else if failures < FAILURES && excess.abs() > PROGRESS {
             failures += 1;
@@ -108,7 +110,7 @@ impl Basis {
         let mut columns: Vec<Vec<f64>> = (0..count).map(|j| powers.iter().map(|row| row[j]).collect()).collect();
         let mut coefficients: Vec<Vec<f64>> =
             (0..count).map(|j| (0..count).map(|i| if i == j { 1.0 } else { 0.0 }).collect()).collect();
-        // Gram and Schmidt, twice against rounding.
+        // Gram and Schmidt, twice: the second pass removes what rounding left.
         for j in (0..count).flat_map(|j| [j, j]) {
             for i in 0..j {
                 let part = dot(&columns[i], &columns[j]) / grid.len() as f64;
@@ -131,7 +133,8 @@ impl Basis {
     }
 }
 
-/// The quotient with its coefficients rounded, divided by the constant of the divisor, or by its largest coefficient where that is much larger.
+/// The quotient with rounded coefficients. They are divided by the constant of the divisor, or by its largest
+/// coefficient if that is much larger.
 fn rational(numerator: &[f64], denominator: &[f64], [above, below]: Degrees) -> Rational {
     let largest = largest(denominator);
     let by = if denominator[0] > 1e-3 * largest { denominator[0] } else { largest };

@@ -14,7 +14,8 @@ use luthier_optics::stack::Distribution;
 pub use fit::FittedForm;
 pub use rational::{Polynomial, Rational};
 
-/// Weight of alpha^2 beside cos_theta^2 in r^2. Of 1, 1.5, 2, 3 and 4 it gives the least errors of z for GGX; the loss hardly minds.
+/// Weight of alpha^2 beside cosine^2 in r^2. Of 1, 1.5, 2, 3 and 4 it gives the least errors of z for GGX; the loss
+/// depends on it little.
 pub(crate) const STRETCH: f64 = 3.0;
 /// Points of the scan for errors, along each axis.
 const SCAN_POINTS: u32 = 96;
@@ -23,13 +24,22 @@ const REFINEMENTS: u32 = 10;
 
 /// A split sum in closed form: two quotients of polynomials and Schlick's power.
 ///
-/// In r = sqrt(cos_theta^2 + 3 alpha^2) and t = cos_theta / r, polar coordinates around grazing light on a mirror, where cosine and alpha have
-/// values for any direction of approach and no polynomial follows. loss(t, alpha) is 1 less the albedo for f0 = 1, z(t, r) the cosine at which
-/// Schlick's formula reflects as the lobe does in the mean:
+/// The variables are r = sqrt(cos_theta^2 + 3 alpha^2) and t = cos_theta / r: polar coordinates around grazing light on
+/// a mirror. There the functions have another limit along every direction of approach, which no polynomial of cosine
+/// and alpha follows. loss(t, alpha) is 1 less the albedo for f0 = 1. z(t, r) is the cosine at which Schlick's formula
+/// reflects as the lobe does in the mean:
 ///
 /// albedo = 1 - loss, bias = albedo (1 - z)^5, scale = albedo - bias.
 ///
 /// Cosines and alphas below the floor are read as the floor.
+///
+/// ```
+/// use luthier_optics::{split_sum::Masking, stack::Distribution};
+/// use luthier_table::ClosedForm;
+///
+/// let fitted = ClosedForm::fit(Distribution::Ggx, Masking::SmithCorrelated, 0.05, 0.1, 0.1);
+/// assert!(fitted.held && fitted.form.error_at(0.5, 0.5) < 0.05);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedForm {
     /// Slope distribution.
@@ -70,7 +80,7 @@ impl ClosedForm {
         [albedo - bias, bias]
     }
 
-    /// The error in single precision over cosines and alphas from the given ones on, as [`measure_form`] has it.
+    /// The error in single precision over cosines and alphas from the given ones on, by [`measure_form`].
     pub fn error(&self, min_cos: f64, min_alpha: f64) -> ErrorStats {
         measure_form(self.distribution, self.masking, [min_cos, min_alpha], |cos_theta, alpha| {
             self.read(cos_theta, alpha)
@@ -115,7 +125,8 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Slots of a scheduler: a special function takes four, being issued at a quarter of the rate, the rest one.
+    /// Slots of a scheduler. A special function takes four, because it issues at a quarter of the rate; others take
+    /// one.
     pub fn slots(self) -> u32 {
         self.multiply_adds + self.clamps + 4 * self.specials
     }
@@ -133,10 +144,13 @@ impl std::ops::Add for Cost {
     }
 }
 
-/// The error of any approximation of a split sum against quadrature, over cosines and alphas from the given ones on: absolute, of bias and
-/// albedo. These are the reflectances for f0 = 0 and 1, so that the largest error is that of the reflectance for any f0 between.
+/// The absolute error of any approximation of a split sum against quadrature, in bias and albedo, over cosines and
+/// alphas from the given ones on.
 ///
-/// 96 x 96 points, denser towards the lower ends (squares of equal steps), then a climb from the worst.
+/// Bias and albedo are the reflectances for f0 = 0 and 1, so the largest error also bounds the reflectance for any f0
+/// between.
+///
+/// The scan has 96 x 96 points, denser towards the lower ends (squares of equal steps). A climb from the worst follows.
 pub fn measure_form(
     distribution: Distribution,
     masking: Masking,
@@ -151,11 +165,19 @@ pub fn measure_form(
         nodes: [SCAN_POINTS / 2; 2],
         refinements: REFINEMENTS,
     };
-    let place = |u: [f64; 2]| [0, 1].map(|k: usize| lowest[k] + (1.0 - lowest[k]) * u[k] * u[k]);
-    let compare = |[cos_theta, alpha]: [f64; 2]| {
-        let sums = [split_sum(distribution, masking, alpha, cos_theta), form(cos_theta, alpha)];
-        let [expected, sampled] = sums.map(|sum| [sum.bias, sum.albedo(), 0.0, 0.0]);
-        Comparison { expected, sampled }
-    };
-    measure_scan(&scan, |u| compare(place(u)), |u| place(u).to_vec())
+    measure_scan(
+        &scan,
+        |u| {
+            let [cos_theta, alpha] = place(lowest, u);
+            let sums = [split_sum(distribution, masking, alpha, cos_theta), form(cos_theta, alpha)];
+            let [expected, sampled] = sums.map(|sum| [sum.bias, sum.albedo(), 0.0, 0.0]);
+            Comparison { expected, sampled }
+        },
+        |u| place(lowest, u).to_vec(),
+    )
+}
+
+/// Cosine and alpha at coordinates, denser towards the lowest.
+fn place(lowest: [f64; 2], u: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k: usize| lowest[k] + (1.0 - lowest[k]) * u[k] * u[k])
 }

@@ -42,12 +42,12 @@ impl Polynomial {
     }
 }
 
-/// A quotient of two polynomials; of one where the divisor is the constant 1.
+/// A quotient of two polynomials, or one polynomial over the constant 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rational {
     /// The dividend.
     pub numerator: Polynomial,
-    /// The divisor, above 0 where it is meant to be read.
+    /// The divisor, above 0 wherever the quotient is read.
     pub denominator: Polynomial,
 }
 
@@ -62,7 +62,7 @@ impl Rational {
         self.numerator.at_f32(point) / self.denominator.at_f32(point)
     }
 
-    /// Whether there is nothing to divide by.
+    /// Whether the divisor is 1.
     pub fn is_polynomial(&self) -> bool {
         self.denominator.degrees == [0, 0]
     }

@@ -1,4 +1,4 @@
-//! Closed forms whose rests bend little, for tables beside them.
+//! Closed forms with straight rests, for tables beside them.
 
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
 use luthier_optics::stack::Distribution;
@@ -8,20 +8,23 @@ use super::rational::{Polynomial, Rational};
 use super::{ClosedForm, STRETCH};
 use crate::Layout;
 
-/// Nodes of the grid along each axis: about as many as the tables have that are read beside these forms.
+/// Nodes of the grid along each axis: about as many as the tables beside these forms have.
 const NODES: u32 = 24;
 /// Rounds of the fit of the cosine, the first half with half steps.
 const ROUNDS: u32 = 12;
 /// Least loss of a form at the nodes.
 const LEAST_LOSS: f64 = 1e-3;
-/// Part of the largest diagonal element that is added to each of the normal equations: polynomials that the data do not tell apart stay small.
+/// Share of the largest diagonal element that is added to each of the normal equations. It keeps polynomials small that
+/// the data do not tell apart.
 const RIDGE: f64 = 1e-8;
 
 impl ClosedForm {
-    /// The form of polynomials of some degrees, of the loss and of the cosine, that leaves the straightest rests over the axes of a layout: the least
-    /// sum of squares of second differences between nodes, in whose proportion linear interpolation errs. Rests may be large.
+    /// The form of polynomials of some degrees, of the loss and of the cosine, with the straightest rests over the axes
+    /// of a layout. Straightness is the sum of squares of second differences between nodes, to which errors of linear
+    /// interpolation are proportional. Rests may be large.
     ///
-    /// Linear least squares for the loss; for the cosine Gauss's and Newton's rounds, since the bias follows its fifth power.
+    /// The loss is fitted by linear least squares. The cosine takes Gauss's and Newton's rounds, since the bias follows
+    /// its fifth power.
     pub(crate) fn straightest(
         distribution: Distribution,
         masking: Masking,
@@ -72,21 +75,19 @@ impl Grid {
         let bends: Vec<Vec<f64>> = columns[1..].iter().map(|column| second_differences(column)).collect();
         let mut coefficients = vec![0.0];
         coefficients.extend(least_squares(&bends, &second_differences(&loss)));
-        let lowest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-        let form = |i: usize| value(&columns, &coefficients, i);
-        let nodes = 0..loss.len();
-        let least_rest = lowest(&mut nodes.clone().map(|i| loss[i] - form(i)));
-        let most_rest = -lowest(&mut nodes.clone().map(|i| form(i) - loss[i]));
-        // Rests to both sides alike, but no albedo above 1: the form would bend where it is clamped.
-        coefficients[0] = f64::max(0.5 * (least_rest + most_rest), LEAST_LOSS - lowest(&mut nodes.map(form)));
+        let forms: Vec<f64> = (0..loss.len()).map(|i| value(&columns, &coefficients, i)).collect();
+        let least_rest = least(loss.iter().zip(&forms).map(|(loss, form)| loss - form));
+        let most_rest = -least(loss.iter().zip(&forms).map(|(loss, form)| form - loss));
+        // The constant makes rests equal to both sides. It is raised where the form's albedo would exceed 1: the form
+        // would bend where it is clamped.
+        coefficients[0] = f64::max(0.5 * (least_rest + most_rest), LEAST_LOSS - least(forms.into_iter()));
         polynomial(degrees, &coefficients)
     }
 
     fn cosine(&self, degrees: [usize; 2], loss: &Rational) -> Rational {
         let albedos: Vec<f64> = self.variables.iter().map(|&[t, _, alpha]| 1.0 - loss.at([t, alpha])).collect();
         let columns = columns(self.variables.iter().map(|&[t, r, _]| Polynomial::powers(degrees, [t, r])));
-        let slope = |albedo: f64, rest: f64| 5.0 * albedo * (rest * rest) * (rest * rest);
-        // The start: the cosine itself, where it counts.
+        // The start fits the cosine itself, weighed by its effect on the bias.
         let rests: Vec<f64> =
             self.sums.iter().map(|sum| libm::pow((sum.bias / sum.albedo().max(1e-6)).clamp(0.0, 1.0), 0.2)).collect();
         let weights: Vec<f64> = self.sums.iter().zip(&rests).map(|(sum, rest)| slope(sum.albedo(), *rest)).collect();
@@ -114,6 +115,15 @@ impl Grid {
     }
 }
 
+fn least(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::INFINITY, f64::min)
+}
+
+/// Derivative of the bias, `albedo * rest^5`, by the rest.
+fn slope(albedo: f64, rest: f64) -> f64 {
+    5.0 * albedo * (rest * rest) * (rest * rest)
+}
+
 fn polynomial(degrees: [usize; 2], coefficients: &[f64]) -> Rational {
     Rational {
         numerator: Polynomial::rounded(degrees, coefficients.iter().copied()),
@@ -139,20 +149,20 @@ fn value(columns: &[Vec<f64>], coefficients: &[f64], node: usize) -> f64 {
 /// Second differences of values at the nodes, along both axes.
 fn second_differences(values: &[f64]) -> Vec<f64> {
     let n = NODES as usize;
-    let along = |step: usize, across: usize| {
-        (1..n - 1).flat_map(move |i| (0..n).map(move |j| i * step + j * across)).map(move |i| (i, step))
-    };
-    along(1, n).chain(along(n, 1)).map(|(i, step)| values[i - step] - 2.0 * values[i] + values[i + step]).collect()
+    let places = [(1, n), (n, 1)]
+        .into_iter()
+        .flat_map(|(step, across)| (1..n - 1).flat_map(move |i| (0..n).map(move |j| (i * step + j * across, step))));
+    places.map(|(i, step)| values[i - step] - 2.0 * values[i] + values[i + step]).collect()
 }
 
-/// Factors of columns whose sum is nearest to the target: the normal equations by Cholesky's factors.
+/// Factors of columns whose sum is nearest to the target, by the normal equations and Cholesky's factors.
 fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Vec<f64> {
     let n = columns.len();
     let mut normal: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
     let ridge = RIDGE * (0..n).map(|i| normal[i][i]).fold(0.0, f64::max);
     (0..n).for_each(|i| normal[i][i] += ridge);
     let right = columns.iter().map(|a| dot(a, target)).collect();
-    // The ridge makes it positive definite, unless values are no numbers.
+    // The ridge makes the matrix positive definite, unless values are NaN.
     cholesky(normal).map_or_else(|| vec![f64::NAN; n], |factor| solve(&factor, right))
 }
 

@@ -6,14 +6,14 @@ use luthier_lut::Image;
 
 use crate::Stored;
 
-/// Container in which a renderer takes its table.
+/// File format of a renderer's table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EnergyContainer {
     /// A C array of floats with six digits, as Cycles' `shader.tables` has them: one line per row, an empty line between slices.
     CArray,
     /// 16-bit words in decimal, separated by commas on one line, to be included between the braces of an array.
     Words,
-    /// Texels and nothing else, little-endian.
+    /// Bare texels, little-endian.
     Raw,
 }
 
@@ -29,19 +29,23 @@ impl EnergyContainer {
 
     /// The file of a table of one channel, whose parts lie one after the other in memory; `rows` is the number of rows in a slice.
     pub fn write(self, table: &str, parts: &[Image], rows: u32, stored: Stored) -> Vec<u8> {
-        let words = || parts.iter().flat_map(|part| &part.data).map(|v| (v * 65535.0).round() as u16);
         match self {
             Self::CArray => c_array(table, parts, rows).into_bytes(),
             Self::Words => {
-                let words: Vec<String> = words().map(|word| word.to_string()).collect();
+                let words: Vec<String> = words(parts).map(|word| word.to_string()).collect();
                 format!("// clang-format off\n{}\n    // clang-format on\n", words.join(", ")).into_bytes()
             }
             Self::Raw if stored == Stored::Float => {
                 parts.iter().flat_map(|part| &part.data).flat_map(|v| v.to_le_bytes()).collect()
             }
-            Self::Raw => words().flat_map(u16::to_le_bytes).collect(),
+            Self::Raw => words(parts).flat_map(u16::to_le_bytes).collect(),
         }
     }
+}
+
+/// Texels as words of 16 bits.
+fn words(parts: &[Image]) -> impl Iterator<Item = u16> {
+    parts.iter().flat_map(|part| &part.data).map(|v| (v * 65535.0).round() as u16)
 }
 
 fn c_array(table: &str, parts: &[Image], rows: u32) -> String {

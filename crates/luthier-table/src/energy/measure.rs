@@ -7,12 +7,12 @@ use crate::{AxisSpec, slices};
 
 /// Points of a scan along each of one, two or three axes.
 const POINTS: [u32; 3] = [512, 48, 20];
-/// Points of averages over the hemisphere, each of which takes a hundred albedos.
+/// Points of a scan of averages over the hemisphere. They are few, because each takes a hundred albedos.
 const POINTS_OF_AVERAGES: [u32; 2] = [64, 14];
 /// Halvings of the climb to the worst error.
 const REFINEMENTS: u32 = 6;
 
-/// Where the error of a table of energy is measured.
+/// Domain over which the error of a table of energy is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergyDomain {
     /// Least cosine.
@@ -35,10 +35,12 @@ impl EnergyDomain {
 }
 
 impl EnergyTable {
-    /// The error of reads from texels of this statement (linear between the nodes of each axis, weights of 8 bits), over a domain: absolute, of
-    /// every channel, against quadrature. Axis values of the worst point are the cosine, alpha and index, as far as the table has them.
+    /// The absolute error of reads (linear between the nodes of each axis, weights of 8 bits) from these texels over a
+    /// domain, in every channel, against quadrature. Axis values of the worst point are the cosine, alpha and index, as
+    /// far as the table has them.
     ///
-    /// A scan of points between nodes, then a climb from the worst ones; over three axes the climb keeps to the worst of the slices.
+    /// Points between nodes are scanned, and the worst are climbed from. Over three axes the climb stays in the worst
+    /// slice.
     pub fn error(&self, texels: &Image, domain: EnergyDomain) -> ErrorStats {
         let axes = self.layout.axes();
         let ends: Vec<[f64; 2]> = axes.iter().map(|axis| domain.ends(axis)).collect();

@@ -22,8 +22,8 @@ pub use preset::{EnergyFile, EnergyPreset};
 /// The surface whose albedo a table holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EnergySurface {
-    /// Facets that reflect everything: metals, whose colour comes in by the average Fresnel (Kulla and Conty 2017) or by the factor
-    /// `1 + f0 (1 - E)/E` (Turquin 2019).
+    /// Facets that reflect everything: metals. Their colour enters by the average Fresnel (Kulla and Conty 2017) or by
+    /// the factor `1 + f0 (1 - E)/E` (Turquin 2019).
     Reflector,
     /// An interface between transparent media with exact Fresnel, lit from the rarer side.
     FromRarer,
@@ -50,9 +50,9 @@ impl EnergySurface {
 pub enum EnergyValue {
     /// E: light reflected and transmitted.
     Albedo,
-    /// 1 - E: what multiple scattering carries.
+    /// 1 - E: the share of multiple scattering.
     Loss,
-    /// (1 - E)/E: what a factor on the single scattering adds (Turquin 2019).
+    /// (1 - E)/E: the added part of a factor on the single scattering (Turquin 2019).
     Compensation,
     /// Light reflected.
     Reflected,
@@ -93,18 +93,27 @@ impl EnergyValue {
     }
 }
 
-/// A table of energy compensation: a statement, from which its texels follow.
+/// A table of energy compensation. Its fields state the table; the texels follow from them.
+///
+/// ```
+/// use luthier_table::{EnergyPreset, EnergyTable};
+///
+/// let cycles = EnergyPreset::named("cycles").unwrap();
+/// let table = EnergyTable { size: [4, 4, 1], ..cycles.tables(&cycles.files[0])[0].clone() };
+/// let texels = table.bake();
+/// assert!(texels.data.iter().all(|albedo| (0.0..=1.0).contains(albedo)));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyTable {
     /// Slope distribution.
     pub distribution: Distribution,
     /// Masking and shadowing.
     pub masking: JointMasking,
-    /// Whose albedo.
+    /// Surface of the albedo.
     pub surface: EnergySurface,
     /// Axes and nodes: the fastest in memory first.
     pub layout: EnergyLayout,
-    /// Nodes along each axis; 1 where there is none.
+    /// Nodes along each axis; 1 for a missing axis.
     pub size: [u32; 3],
     /// Content of each channel, one to four.
     pub values: Vec<EnergyValue>,
@@ -112,18 +121,20 @@ pub struct EnergyTable {
     pub stored: Stored,
     /// Whether texels are moved by a sixteenth of their second differences, so that reads between them err to both sides alike.
     pub balanced: bool,
-    /// Indices nearer to 1 than this let all light pass, as renderers have it that treat such an interface as a plane; 0 for none.
+    /// Distance from 1 below which an index lets all light pass: some renderers treat such an interface as a plane. 0
+    /// for none.
     pub clear_within: f64,
 }
 
-/// Axes of a table of energy: one of the micro-surface, at most one of the direction, and one of the index where the surface has one.
+/// Axes of a table of energy: one of the micro-surface, at most one of the direction, and one of the index if the
+/// surface has one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyLayout {
     axes: Vec<AxisSpec>,
 }
 
 impl EnergyLayout {
-    /// One to three axes, separated by commas, the fastest in memory first, in the grammar of [`AxisSpec`].
+    /// Parses one to three axes, separated by commas, the fastest in memory first, in the grammar of [`AxisSpec`].
     ///
     /// # Errors
     /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::EnergyAxes`] unless there is one of the micro-surface and at most one
@@ -150,7 +161,8 @@ impl EnergyLayout {
         self
     }
 
-    /// Cosine, alpha and index of a place, each axis' canonical value given by a function of its number; none for a missing axis.
+    /// Cosine, alpha and index of a place. `canonical` returns the canonical value of each axis by its number; a
+    /// missing axis has none.
     fn place(&self, canonical: impl Fn(usize, &AxisSpec) -> f64) -> Place {
         let mut place = Place { cos_theta: None, alpha: 0.0, ior: None };
         for (k, axis) in self.axes.iter().enumerate() {
@@ -177,7 +189,7 @@ impl std::fmt::Display for EnergyLayout {
     }
 }
 
-/// Where a table is evaluated. Without a cosine, the average over the hemisphere is meant.
+/// A place where a table is evaluated. Without a cosine, it stands for the average over the hemisphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
     cos_theta: Option<f64>,
@@ -186,8 +198,10 @@ struct Place {
 }
 
 impl EnergyTable {
-    /// The texels as they are stored: slices of the third axis one below the other. Values at the nodes within 1e-6 (averages 2e-6), then moved if
-    /// [`balanced`](Self::balanced), then rounded. Deterministic, whatever the number of threads.
+    /// The texels as they are stored, slices of the third axis one below the other.
+    ///
+    /// Values at the nodes are within 1e-6 (averages 2e-6). They are moved if [`balanced`](Self::balanced), then
+    /// rounded. Deterministic, whatever the number of threads.
     pub fn bake(&self) -> Image {
         let [nx, ny, nz] = self.size;
         let texels: Vec<Vec<f64>> = (0..nx * ny * nz)
@@ -233,22 +247,25 @@ impl EnergyTable {
     }
 }
 
-/// Texels between which linear interpolation errs evenly: see [`luthier_lut::balance`], here over three axes.
+/// Moves texels so that linear interpolation errs evenly: [`luthier_lut::balance`] over three axes.
 fn balance(size: [u32; 3], texels: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let [nx, ny, nz] = size.map(|n| n as usize);
     let strides = [1, nx, nx * ny];
-    let moved = |i: usize, c: usize| {
+    let mut balanced = texels.to_vec();
+    for (i, texel) in balanced.iter_mut().enumerate() {
         let at = [i % nx, i / nx % ny, i / nx / ny];
-        let here = texels[i][c];
-        let mut curvature = 0.0;
-        for ((at, n), stride) in at.into_iter().zip([nx, ny, nz]).zip(strides) {
-            if at > 0 && at + 1 < n {
-                curvature += texels[i - stride][c] - 2.0 * here + texels[i + stride][c];
+        for (c, value) in texel.iter_mut().enumerate() {
+            let here = *value;
+            let mut curvature = 0.0;
+            for ((at, n), stride) in at.into_iter().zip([nx, ny, nz]).zip(strides) {
+                if at > 0 && at + 1 < n {
+                    curvature += texels[i - stride][c] - 2.0 * here + texels[i + stride][c];
+                }
             }
+            *value = (here - curvature / 16.0).clamp(0.0, here.max(1.0));
         }
-        (here - curvature / 16.0).clamp(0.0, here.max(1.0))
-    };
-    (0..texels.len()).map(|i| (0..texels[i].len()).map(|c| moved(i, c)).collect()).collect()
+    }
+    balanced
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Tables of energy compensation as renderers have them.
+//! Tables of energy compensation of renderers.
 
 use luthier_lut::Image;
 use luthier_optics::dielectric_albedo::JointMasking;
@@ -25,7 +25,7 @@ struct Part {
 /// One table of a renderer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergyFile {
-    /// Name as the renderer has it.
+    /// Name in the renderer.
     pub name: &'static str,
     value: EnergyValue,
     masking: JointMasking,
@@ -41,11 +41,11 @@ pub struct EnergyPreset {
     pub files: &'static [EnergyFile],
     /// Number type of the texels.
     pub stored: Stored,
-    /// How a table reaches the renderer.
+    /// File format of a table.
     pub container: EnergyContainer,
-    /// Where the layout was read.
+    /// Source of the layout.
     pub source: &'static str,
-    /// Lowest and highest values of axes of the roughness, the cosine, and the index as the axis has it.
+    /// Lowest and highest values of the axes of the roughness, the cosine, and the index as the axis words it.
     limits: [[f64; 2]; 3],
     /// [`EnergyTable::clear_within`].
     clear_within: f64,
@@ -75,7 +75,7 @@ const OPENPBR_DIR: &[Part] = &[
 const OPENPBR_AVG: &[Part] =
     &[part(FromDenser, "roughness,-ior=1..2.5", [32, 16, 1]), part(FromRarer, "roughness,ior=1..2.5", [32, 16, 1])];
 
-/// OSPRay's index is that above over that below: for light from the rarer side 1/3 to 1.
+/// OSPRay's index is the index above over the index below: 1/3 to 1 for light from the rarer side.
 const OSPRAY_DIR: &[Part] = &[part(FromRarer, "cos_theta,inverse_ior,roughness", [16, 16, 16])];
 const OSPRAY_AVG: &[Part] = &[part(FromRarer, "inverse_ior,roughness", [16, 16, 1])];
 
@@ -171,24 +171,17 @@ impl EnergyPreset {
         Self::ALL.iter().find(|preset| preset.name == name)
     }
 
-    /// The statements of a table, which lie one after the other in memory.
+    /// The statements of a table's parts, which follow each other in memory.
     pub fn tables(&self, file: &EnergyFile) -> Vec<EnergyTable> {
-        let table = |part: &Part| {
+        let tables = file.parts.iter().map(|part| {
             let layout = EnergyLayout::parse(part.axes, Nodes::Ends).unwrap_or_else(|error| unreachable!("{error}"));
-            let limits: Vec<[f64; 2]> = layout
-                .axes()
-                .iter()
-                .map(|axis| {
-                    let [slope, angle, index] = self.limits;
-                    if axis.quantity.is_slope() {
-                        slope
-                    } else if axis.quantity.is_angle() {
-                        angle
-                    } else {
-                        index
-                    }
-                })
-                .collect();
+            let [slope, angle, index] = self.limits;
+            let limits = layout.axes().iter().map(|axis| match axis.quantity {
+                quantity if quantity.is_slope() => slope,
+                quantity if quantity.is_angle() => angle,
+                _ => index,
+            });
+            let limits: Vec<[f64; 2]> = limits.collect();
             EnergyTable {
                 distribution: Distribution::Ggx,
                 masking: file.masking,
@@ -200,8 +193,8 @@ impl EnergyPreset {
                 balanced: false,
                 clear_within: self.clear_within,
             }
-        };
-        file.parts.iter().map(table).collect()
+        });
+        tables.collect()
     }
 
     /// A table of the renderer, baked.

@@ -7,8 +7,9 @@ use luthier_lut::Mapping;
 use super::float;
 use crate::{AxisSpec, Cost, Nodes, Quantity};
 
-/// `let NAME = ...;`: the coordinate in 0..1 at which a texture of `size` texels along this axis is read, the WGSL of
-/// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis or one of a real index or a thickness.
+/// Writes `let NAME = ...;`, the coordinate in 0..1 at which a texture of `size` texels along this axis is read: the
+/// WGSL of [`Layout::position`](crate::Layout::position) over the size. None for a periodic axis, a real index or a
+/// thickness.
 pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, size: u32) -> Option<()> {
     let (quantity, is_within) = quantity(out, axis.quantity, input)?;
     let AxisSpec { min, max, .. } = *axis;
@@ -33,7 +34,7 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
         }
         Mapping::Periodic => return None,
     };
-    // Where the first and the last texel are read, or would be: ends of an ascending axis.
+    // Coordinates of the ends of an ascending axis: the first texel's, and the distance to the last texel's.
     let n = f64::from(size);
     let [first, span] = match axis.nodes {
         Nodes::Ends => [0.5 / n, (n - 1.0) / n],
@@ -52,42 +53,44 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
     Some(())
 }
 
-/// Operations of the text of [`write()`]; none where there is none.
+/// Operations of the text of [`write()`]; none if it writes none.
 pub(super) fn cost(axis: &AxisSpec) -> Option<Cost> {
-    let of = |multiply_adds, clamps, specials| Cost { multiply_adds, clamps, specials };
     let (quantity, is_within) = match axis.quantity {
-        Quantity::CosTheta | Quantity::Alpha => (of(0, 1, 0), true),
-        Quantity::CosThetaSq | Quantity::AlphaSq => (of(1, 1, 0), true),
-        Quantity::SqrtCosTheta | Quantity::Roughness => (of(0, 1, 1), true),
-        Quantity::SqrtRoughness => (of(0, 1, 2), true),
+        Quantity::CosTheta | Quantity::Alpha => (operations(0, 1, 0), true),
+        Quantity::CosThetaSq | Quantity::AlphaSq => (operations(1, 1, 0), true),
+        Quantity::SqrtCosTheta | Quantity::Roughness => (operations(0, 1, 1), true),
+        Quantity::SqrtRoughness => (operations(0, 1, 2), true),
         // The root, and an arc tangent as compilers write it: a quotient of minimum and maximum, a polynomial, two choices.
-        Quantity::Theta => (of(11, 5, 2), false),
-        Quantity::SqrtOneMinusCosTheta => (of(1, 1, 1), true),
+        Quantity::Theta => (operations(11, 5, 2), false),
+        Quantity::SqrtOneMinusCosTheta => (operations(1, 1, 1), true),
         _ => return None,
     };
     let is_whole = is_within && axis.min == 0.0 && axis.max == 1.0;
     // The shift and the scale are one product with a sum.
-    let part = if is_whole { Cost::default() } else { of(1, 1, 0) };
+    let part = if is_whole { Cost::default() } else { operations(1, 1, 0) };
     let mapping = match axis.mapping {
         Mapping::Linear | Mapping::Apart => part,
         Mapping::Power { exponent } => part + exponents_cost(exponent),
-        Mapping::Rational { .. } => part + of(2, 0, 1),
-        Mapping::Logarithmic => of(2, 1, 1),
+        Mapping::Rational { .. } => part + operations(2, 0, 1),
+        Mapping::Logarithmic => operations(2, 1, 1),
         Mapping::Periodic => return None,
     };
     let is_plain = axis.nodes == Nodes::CENTRES && !axis.descending;
-    Some(quantity + mapping + of(u32::from(!is_plain), 0, 0))
+    Some(quantity + mapping + operations(u32::from(!is_plain), 0, 0))
+}
+
+fn operations(multiply_adds: u32, clamps: u32, specials: u32) -> Cost {
+    Cost { multiply_adds, clamps, specials }
 }
 
 /// Operations of [`root`]: roots, or a logarithm, a product and an exponential.
 fn exponents_cost(exponent: f64) -> Cost {
-    match ROOTS.into_iter().position(|power| power == exponent) {
-        Some(count) => Cost { specials: count as u32, ..Cost::default() },
-        None => Cost { multiply_adds: 1, specials: 2, ..Cost::default() },
-    }
+    let roots = ROOTS.into_iter().position(|power| power == exponent);
+    roots.map_or(operations(1, 0, 2), |count| operations(0, 0, count as u32))
 }
 
-/// A quantity of a cosine, an alpha, or a part of a complex index, and whether it lies in 0..1; none of other quantities.
+/// A quantity of a cosine, an alpha or a part of a complex index, and whether it lies in 0..1. None for other
+/// quantities.
 fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String, bool)> {
     if matches!(quantity, Quantity::IorN | Quantity::IorK) {
         return Some((input.to_owned(), false));
@@ -111,7 +114,7 @@ fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String
 /// Exponents whose roots are square roots: none, one, two, three.
 const ROOTS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// The root of an expression in 0..1 by square roots where the exponent is a power of two up to 8, else by a power.
+/// The root of an expression in 0..1: by square roots if the exponent is a power of two up to 8, else by a power.
 fn root(part: &str, exponent: f64) -> String {
     match ROOTS.into_iter().position(|power| power == exponent) {
         Some(count) => format!("{}{part}{}", "sqrt(".repeat(count), ")".repeat(count)),

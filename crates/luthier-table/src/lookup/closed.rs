@@ -12,7 +12,7 @@ impl ClosedForm {
         self.wgsl_named(LOOKUP)
     }
 
-    /// As [`Self::wgsl`], of a function of another name.
+    /// As [`Self::wgsl`], with another name of the function.
     pub(super) fn wgsl_named(&self, name: &str) -> String {
         let Self { distribution, masking, floor, .. } = self;
         let mut out = format!(

@@ -13,10 +13,12 @@ pub const REFLECTANCE_TEXTURE: &str = "luthier_reflectance_table";
 pub const REFLECTANCE_SAMPLER: &str = "luthier_reflectance_sampler";
 
 impl FresnelTable {
-    /// WGSL of `fn luthier_reflectance(cos_theta: f32, ior_n: f32, ior_k: f32) -> f32`, which reads this table; none where an axis is periodic.
+    /// WGSL of `fn luthier_reflectance(cos_theta: f32, ior_n: f32, ior_k: f32) -> f32`, which reads this table. None if
+    /// an axis is periodic.
     ///
-    /// It declares the texture [`REFLECTANCE_TEXTURE`] and the sampler [`REFLECTANCE_SAMPLER`], which has to filter linearly and clamp to the edge, and
-    /// reads twice: in the two nearest slices. Values beyond an axis are read at its end.
+    /// The text declares the texture [`REFLECTANCE_TEXTURE`] and the sampler [`REFLECTANCE_SAMPLER`], which must filter
+    /// linearly and clamp to the edge. The function reads twice, in the two nearest slices. Values beyond an axis are
+    /// read at its end.
     pub fn wgsl(&self, bindings: Bindings) -> Option<String> {
         let Bindings { group, texture, sampler } = bindings;
         let [width, rows, slices] = self.size;

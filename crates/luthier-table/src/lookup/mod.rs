@@ -1,4 +1,4 @@
-//! Look-ups as WGSL: text of a function that gives scale and bias.
+//! Look-ups as WGSL: the text of a function that returns scale and bias.
 
 mod axis;
 mod closed;
@@ -20,7 +20,7 @@ pub const SAMPLER: &str = "luthier_dfg_sampler";
 /// Name of the function of a table's base.
 const FORM: &str = "luthier_dfg_form";
 
-/// Where a shader finds a table and its sampler.
+/// Bindings of a table and its sampler in a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bindings {
     /// Bind group, or register space, or descriptor set.
@@ -39,12 +39,13 @@ impl Default for Bindings {
 }
 
 impl DfgTable {
-    /// WGSL of `fn luthier_dfg(cos_theta: f32, alpha: f32) -> vec2<f32>`, which reads this table and gives scale and bias; none where the channels do
-    /// not determine them, or an axis is periodic.
+    /// WGSL of `fn luthier_dfg(cos_theta: f32, alpha: f32) -> vec2<f32>`, which reads this table and returns scale and
+    /// bias. None if the channels do not determine them, or an axis is periodic.
     ///
-    /// It declares the texture [`TEXTURE`] and the sampler [`SAMPLER`], which has to filter linearly and clamp to the edge. Inputs are clamped to
-    /// 0..1. Channels that are not stored follow from the others: albedo = scale + bias = 1 - loss. A base is a function of its own,
-    /// `luthier_dfg_form`; with what the texels add to it, neither scale nor bias falls below 0, and the albedo stays.
+    /// The text declares the texture [`TEXTURE`] and the sampler [`SAMPLER`], which must filter linearly and clamp to
+    /// the edge. Inputs are clamped to 0..1. Channels that are not stored follow from the others: albedo = scale + bias
+    /// = 1 - loss. A base is a function of its own, `luthier_dfg_form`. After the texels are added, neither scale nor
+    /// bias falls below 0, and the albedo stays.
     pub fn wgsl(&self, bindings: Bindings) -> Option<String> {
         let result = result(&self.values, self.base.is_some())?;
         let Bindings { group, texture, sampler } = bindings;
@@ -84,7 +85,7 @@ impl DfgTable {
         Some(out)
     }
 
-    /// Operations of a read beside the texture; none where there is no look-up.
+    /// Operations of a read beside the texture fetch; none without a look-up.
     pub fn cost(&self) -> Option<Cost> {
         result(&self.values, false)?;
         let axes = [Some(&self.layout.angle), self.layout.slope.as_ref()];
@@ -98,7 +99,8 @@ impl DfgTable {
             (false, false) => 2,
         };
         if let Some(base) = &self.base {
-            // Each channel times the factor, scale and bias added to the form's, what the scale gives for a bias below 0.
+            // Each channel times the factor, scale and bias added to the form's, and the clamp that takes a negative
+            // bias from the scale.
             let channels = self.values.iter().filter(|value| value.is_split_sum()).count() as u32;
             let multiply_adds = 3 + if base.is_plain() { 0 } else { channels };
             cost = cost + base.form.cost() + Cost { multiply_adds, clamps: 3, specials: 0 };
@@ -127,7 +129,7 @@ impl DfgTable {
     }
 }
 
-/// Scale and bias as an expression of a texel, or of what its channels add.
+/// Scale and bias as an expression of a texel, or of the sums with the base.
 fn result(values: &[Value], is_rest: bool) -> Option<String> {
     let [scale, bias, albedo, loss] = [Value::Scale, Value::Bias, Value::Albedo, Value::Loss].map(|value| {
         values.iter().zip(["r", "g", "b", "a"]).find(|(v, _)| **v == value).map(|(_, name)| format!("texel.{name}"))

@@ -13,21 +13,23 @@ const AZIMUTHS: usize = 64;
 /// Halvings of the layer, down to a slab that scatters once.
 const HALVINGS: u32 = 24;
 
-/// A layer of unit thickness and density, of mirrors with the SGGX distribution of a fibre (Heitz, Dupuy, Crassin and Dachsbacher 2015): its reflection at
-/// given cosines, all orders of scattering, nothing absorbed.
+/// The reflection of a layer of unit thickness and density at given cosines, with all orders of scattering and no
+/// absorption. The layer consists of mirrors with the SGGX distribution of a fibre (Heitz, Dupuy, Crassin and
+/// Dachsbacher 2015).
 ///
-/// By adding and doubling (van de Hulst 1980) for each mode of the azimuth. Radiance is cubic between ordinates.
+/// Computed by adding and doubling (van de Hulst 1980) for each mode of the azimuth. Radiance is cubic between
+/// ordinates.
 #[derive(Debug, Clone)]
 pub(super) struct FibreLayer {
     /// Cosines of the ordinates, ascending.
     pub(super) cosines: Vec<f64>,
-    /// For each ordinate its part of the interval of cosines, and the mean cosine there.
+    /// Share of the interval of cosines and mean cosine of each ordinate.
     weights: Vec<[f64; 2]>,
     /// Reflection of each mode, row by row, times the weights.
     modes: Vec<Matrix>,
 }
 
-/// One row of reflection: the BRDF times the cosine over directions of the light, for one of the viewer.
+/// One row of reflection: the BRDF times the cosine over directions of the light, for one direction of the viewer.
 pub(super) struct Row<'a> {
     layer: &'a FibreLayer,
     row: usize,
@@ -39,7 +41,7 @@ pub(super) fn kernel_rules() -> GradedRules {
 }
 
 impl FibreLayer {
-    /// The layer of fibres of cross section `sigma`, in 0..=1; `cosines` are ascending, above 0, and end with 1.
+    /// The layer of fibres of cross section `sigma`, in 0..=1. `cosines` ascend, are above 0, and end with 1.
     pub(super) fn new(rules: &GradedRules, sigma: f64, cosines: Vec<f64>) -> Self {
         let n = cosines.len();
         let weights = weights(&cosines);
@@ -81,9 +83,10 @@ impl Row<'_> {
         (0..self.layer.cosines.len()).map(|j| self.layer.modes[0][(self.row, j)]).sum()
     }
 
-    /// For each ordinate of the light its mean cosine, its part of 0..1, and the BRDF times the cosine at an azimuth against the viewer.
+    /// For each ordinate of the light: its mean cosine, its share of 0..1, and the BRDF times the cosine at an azimuth
+    /// against the viewer.
     pub(super) fn at_azimuth(&self, phi: f64) -> impl Iterator<Item = [f64; 3]> + '_ {
-        // The azimuths of light as it travels and of where it comes from differ by pi.
+        // The azimuth of travelling light and the azimuth of its source differ by pi, which flips odd modes.
         let factors: [f64; MODES] = std::array::from_fn(|m| {
             let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
             sign * if m == 0 { 0.5 } else { 1.0 } * libm::cos(m as f64 * phi) / PI
@@ -95,14 +98,16 @@ impl Row<'_> {
     }
 }
 
-/// Area of the fibres seen along a direction, over that across: the extinction of a layer of density 1.
+/// Area of the fibres seen along a direction, over their area seen from the side: the extinction of a layer of density
+/// 1.
 fn projected_area(sigma: f64, cos: f64) -> f64 {
     libm::sqrt((1.0 - cos) * (1.0 + cos) + sigma * sigma * cos * cos)
 }
 
-/// Ordinates and factors of the cubic through the four about a cosine; below the first ordinate radiance is constant.
+/// Ordinates and factors of the cubic through the four ordinates about a cosine. Below the first ordinate radiance is
+/// constant.
 ///
-/// Straight lines would scatter light farther than the fibres do, where those are thinner than gaps are wide.
+/// A cubic, because straight lines would scatter light farther than thin fibres do where gaps are wide.
 fn interpolation(cosines: &[f64], z: f64) -> [(usize, f64); 4] {
     let above = cosines.partition_point(|c| *c < z);
     if above == 0 {
@@ -116,7 +121,7 @@ fn interpolation(cosines: &[f64], z: f64) -> [(usize, f64); 4] {
     })
 }
 
-/// For each ordinate, of what is interpolated from 1 there and 0 elsewhere, the integral over 0..1 and the centroid.
+/// Integral over 0..1 and centroid of each ordinate's basis function: the interpolation of 1 there and 0 elsewhere.
 fn weights(cosines: &[f64]) -> Vec<[f64; 2]> {
     let mut moments = vec![[0.0; 2]; cosines.len()];
     moments[0] = [cosines[0], 0.5 * cosines[0] * cosines[0]];
@@ -135,9 +140,9 @@ fn weights(cosines: &[f64]) -> Vec<[f64; 2]> {
 
 /// Scattering into each ordinate from each other, by mode.
 struct Kernels {
-    /// From light that travels to the same side.
+    /// Scattering of light that travels to the same side.
     same: Vec<Matrix>,
-    /// From light that travels to the other side.
+    /// Scattering of light that travels to the other side.
     opposite: Vec<Matrix>,
 }
 
@@ -153,39 +158,39 @@ impl Kernels {
             .map(|phi| std::array::from_fn(|m| 2.0 * PI / AZIMUTHS as f64 * libm::cos(m as f64 * phi)))
             .collect();
         let pieces: Vec<[f64; 2]> = std::iter::once(&0.0).chain(cosines).zip(cosines).map(|(a, b)| [*a, *b]).collect();
-        // Nodes of each gap between ordinates, for a kernel that changes on a scale beside a peak, which is at an ordinate or at 0.
-        let about = |peak: f64, scale: f64| {
-            pieces.iter().flat_map(move |&[a, b]| {
-                let [near, far] = if a >= peak { [a, b] } else { [b, a] };
-                let reach = (far - near) / (scale + (near - peak).abs());
-                let rule = rules.for_reach_squared(reach * reach);
-                rule.iter().map(move |&(u, weight)| (near + u * (far - near), weight * (b - a)))
-            })
-        };
         for i in 0..n {
             let z = cosines[i];
             let sin = libm::sqrt((1.0 - z) * (1.0 + z));
-            // Mirrors are upright as closely as fibres are thin: light keeps its cosine, or turns it around where that is small.
-            let kept = about(z, sigma * (sin + sigma)).map(|(z, weight)| (z, weight, true));
-            let turned = about(0.0, sigma + z).map(|(z, weight)| (z, weight, false));
-            for (z_from, weight, is_same) in kept.chain(turned) {
-                let sin_from = libm::sqrt(((1.0 - z_from) * (1.0 + z_from)).max(0.0));
-                let signed = if is_same { z_from } else { -z_from };
-                let mut modes = [0.0; MODES];
-                for (cos_phi, weights) in cos_phis.iter().zip(&weights) {
-                    let length_sq = 2.0 - 2.0 * (z * signed + sin * sin_from * cos_phi);
-                    let cos_h_sq = ((z - signed) * (z - signed) / length_sq.max(f64::MIN_POSITIVE)).min(1.0);
-                    let value = 0.25 * fibre_distribution(sigma, cos_h_sq) * weight;
-                    modes.iter_mut().zip(weights).for_each(|(mode, w)| *mode += w * value);
-                }
-                let matrices = if is_same { &mut same } else { &mut opposite };
-                for (j, part) in interpolation(cosines, z_from) {
-                    matrices.iter_mut().zip(modes).for_each(|(matrix, mode)| matrix[(i, j)] += part * mode);
+            // Mirrors are upright as closely as fibres are thin: light keeps its cosine, or reverses a small one. The
+            // kernel changes on a scale beside a peak, which is at an ordinate or at 0.
+            let kept = (&mut same, z, sigma * (sin + sigma), 1.0);
+            let turned = (&mut opposite, 0.0, sigma + z, -1.0);
+            for (matrices, peak, scale, sign) in [kept, turned] {
+                let nodes = pieces.iter().flat_map(|&[a, b]| {
+                    let [near, far] = if a >= peak { [a, b] } else { [b, a] };
+                    let reach = (far - near) / (scale + (near - peak).abs());
+                    let rule = rules.for_reach_squared(reach * reach);
+                    rule.iter().map(move |&(u, weight)| (near + u * (far - near), weight * (b - a)))
+                });
+                for (z_from, weight) in nodes {
+                    let sin_from = libm::sqrt(((1.0 - z_from) * (1.0 + z_from)).max(0.0));
+                    let signed = sign * z_from;
+                    let mut modes = [0.0; MODES];
+                    for (cos_phi, weights) in cos_phis.iter().zip(&weights) {
+                        let length_sq = 2.0 - 2.0 * (z * signed + sin * sin_from * cos_phi);
+                        let cos_h_sq = ((z - signed) * (z - signed) / length_sq.max(f64::MIN_POSITIVE)).min(1.0);
+                        let value = 0.25 * fibre_distribution(sigma, cos_h_sq) * weight;
+                        modes.iter_mut().zip(weights).for_each(|(mode, w)| *mode += w * value);
+                    }
+                    for (j, part) in interpolation(cosines, z_from) {
+                        matrices.iter_mut().zip(modes).for_each(|(matrix, mode)| matrix[(i, j)] += part * mode);
+                    }
                 }
             }
-            // Nothing is absorbed: what is scattered is what extinction takes away. Quadrature misses that by less than a half in a hundred.
-            let row = |matrices: &[Matrix]| (0..n).map(|j| matrices[0][(i, j)]).sum::<f64>();
-            let factor = projected_area(sigma, z) / (row(&same) + row(&opposite));
+            // Nothing is absorbed, so scattering equals extinction. Quadrature misses this by less than half a percent,
+            // and is scaled.
+            let [kept, turned] = [&same, &opposite].map(|matrices| (0..n).map(|j| matrices[0][(i, j)]).sum::<f64>());
+            let factor = projected_area(sigma, z) / (kept + turned);
             debug_assert!((factor - 1.0).abs() < 0.005, "{sigma} {z}: {factor}");
             for matrix in same.iter_mut().chain(&mut opposite) {
                 (0..n).for_each(|j| matrix[(i, j)] *= factor);

@@ -6,19 +6,20 @@ use super::target::Target;
 
 /// Width of the first simplex: in logarithms of scales, in widths of the lobe, in radians.
 const STEPS: [f64; 4] = [0.15, 0.15, 0.3, 0.15];
-/// Loss of shared energy from one shape to the next beyond which a second search starts.
+/// Loss of shared energy from one shape to the next that starts a second search.
 const JUMP: f64 = 0.004;
-/// Turn of the second start, over the mirror direction's angle.
+/// Turn of the second start, as a share of the mirror direction's angle.
 const MIRROR_TURN: f64 = 0.6;
 
-/// A lobe in words that fits change: M is a rotation about y, of a matrix of scales and skew (section 4 of the paper, whose rotation is not fitted).
+/// A lobe by the parameters of a fit: M is a rotation about y times a matrix of scales and skew (section 4 of the
+/// paper, whose rotation is not fitted).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shape {
     /// Logarithm of the scale in the plane of incidence.
     ln_along: f64,
     /// Logarithm of the scale across.
     ln_across: f64,
-    /// Angle from the normal to where the axis of the cosine goes, towards the mirror direction.
+    /// Angle from the normal to the image of the cosine's axis, towards the mirror direction.
     centre: f64,
     /// Angle of the rotation.
     turn: f64,
@@ -53,27 +54,31 @@ impl Shape {
     }
 }
 
-/// The lobe about the normal that shares most energy with a reflection: a golden-section search, for normal incidence.
+/// The lobe about the normal that shares most energy with a reflection, for normal incidence. A golden-section search.
 pub(super) fn fit_upright(target: &Target) -> Shape {
-    let loss = |ln_scale: f64| 1.0 - target.shared(Shape::upright(ln_scale).lobe(), 1.0);
     let golden = 0.5 * (libm::sqrt(5.0) - 1.0);
-    // The scale is 2 alpha for smooth surfaces, and less than that for rough ones.
+    // The scale is 2 alpha for smooth surfaces, and less for rough ones.
     let middle = libm::log(2.0 * target.alpha);
     let (mut from, mut to) = (middle - 1.6, middle + 0.8);
     let mut inner = [to - golden * (to - from), from + golden * (to - from)];
-    let mut values = inner.map(loss);
+    let mut values = inner.map(|ln_scale| upright_loss(target, ln_scale));
     while to - from > 1e-7 {
         if values[0] < values[1] {
             to = inner[1];
             inner = [to - golden * (to - from), inner[0]];
-            values = [loss(inner[0]), values[0]];
+            values = [upright_loss(target, inner[0]), values[0]];
         } else {
             from = inner[0];
             inner = [inner[1], from + golden * (to - from)];
-            values = [values[1], loss(inner[1])];
+            values = [values[1], upright_loss(target, inner[1])];
         }
     }
     Shape::upright(0.5 * (from + to))
+}
+
+/// The share of energy that an upright lobe misses.
+fn upright_loss(target: &Target, ln_scale: f64) -> f64 {
+    1.0 - target.shared(Shape::upright(ln_scale).lobe(), 1.0)
 }
 
 /// The shape that shares most energy with a reflection, found from another: the simplex search of Nelder and Mead 1965, twice.
@@ -82,8 +87,9 @@ pub(super) fn fit_from(target: &Target, start: Shape) -> Shape {
     search(target, first, STEPS.map(|step| 0.3 * step))
 }
 
-/// Shapes of one roughness, from normal to grazing incidence, each found from the last; where that one shares less energy than the last by more than
-/// [`JUMP`], the better of two searches, the other from the mirror direction.
+/// Shapes of one roughness, from normal to grazing incidence, each found from the last. If a shape shares less energy
+/// than the last by more than [`JUMP`], a second search starts at the mirror direction, and the better of both is
+/// taken.
 pub(super) fn fit_column(targets: impl Iterator<Item = Target>) -> Vec<Shape> {
     let mut shapes: Vec<Shape> = Vec::new();
     let (mut upright, mut last_theta, mut last_cos, mut last_shared) = (0.0, 0.0, 1.0, 1.0);
@@ -124,7 +130,8 @@ pub(super) fn fit_column(targets: impl Iterator<Item = Target>) -> Vec<Shape> {
 fn search(target: &Target, start: Shape, steps: [f64; 4]) -> Shape {
     start.moved(minimise(steps, |by| {
         let lobe = start.moved(by).lobe();
-        // Lobes that are turned inside out, or away from the normal, are none that reads between texels could pass.
+        // Excludes lobes that are turned inside out or away from the normal: reads between texels could not pass
+        // through them.
         if lobe.determinant() > 0.0 && lobe.m11 > 0.0 && lobe.m33 > 0.0 { 1.0 - target.shared(lobe, 1.0) } else { 1.0 }
     }))
 }

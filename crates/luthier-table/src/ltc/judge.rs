@@ -12,7 +12,7 @@ use crate::Layout;
 /// Fraction bits of the sampler's weights.
 pub(super) const WEIGHTS: WeightBits = WeightBits::Fixed(8);
 
-/// An error and where it is.
+/// An error and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlacedError {
     /// The error.
@@ -28,7 +28,7 @@ pub struct PlacedError {
 pub struct LtcError {
     /// The median.
     pub median: f64,
-    /// The error below which 95 of 100 places are.
+    /// The 95th percentile.
     pub p95: f64,
     /// The largest.
     pub max: PlacedError,
@@ -37,9 +37,9 @@ pub struct LtcError {
 /// Errors of the light of rectangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IrradianceError {
-    /// Absolute, of lights of radiance 1, over the albedo.
+    /// Absolute errors for lights of radiance 1, over the albedo.
     pub absolute: LtcError,
-    /// Relative, where the light reflects more than a hundredth of the albedo.
+    /// Relative errors of lights that reflect more than a hundredth of the albedo.
     pub relative: LtcError,
 }
 
@@ -54,14 +54,15 @@ impl LtcError {
 impl LtcTable {
     /// Differences of energy at the texels themselves, from the given cosine and alpha on.
     ///
-    /// The difference is half the integral of |lobe times albedo - BRDF times cosine| over the albedo: no light errs more than that, and some light errs as much.
-    /// 0 is perfect, 1 is a lobe beside the reflection; an albedo read too large adds to that. Against a quadrature of its own, within 1e-3.
-    /// At least one texel must be in that range.
+    /// The difference is half the integral of |lobe times albedo - BRDF times cosine| over the albedo. No light errs by
+    /// more, and some light errs by as much. 0 is perfect, 1 is a lobe beside the reflection; an albedo read too large
+    /// adds to that. A separate quadrature computes it within 1e-3. At least one texel must be in the range.
     pub fn error_at_texels(&self, texels: &LtcTexels, min_cos: f64, min_alpha: f64) -> LtcError {
         self.error_at(texels, min_cos, min_alpha, [0.0; 2])
     }
 
-    /// Differences of energy half-way between texels, of bilinear reads with weights of 8 bits: as [`Self::error_at_texels`].
+    /// Differences of energy half-way between texels, as [`Self::error_at_texels`], for bilinear reads with weights of
+    /// 8 bits.
     pub fn error_between_texels(&self, texels: &LtcTexels, min_cos: f64, min_alpha: f64) -> LtcError {
         self.error_at(texels, min_cos, min_alpha, [0.5; 2])
     }
@@ -86,16 +87,18 @@ impl LtcTable {
         LtcError::of(errors)
     }
 
-    /// A shader's read: the lobe, and the albedo.
+    /// The lobe and the albedo of a shader's read.
     fn read(&self, texels: &LtcTexels, theta: f64, alpha: f64) -> (Lobe, f64) {
         let position = self.layout.position(self.size, [theta, alpha]);
         let lobe = Lobe::of_texel(bilinear(&texels.matrices, position, WEIGHTS));
         (lobe, bilinear(&texels.norms, position, WEIGHTS)[0])
     }
 
-    /// Errors of the light of four rectangles: closed form of the lobe as read from the table, against quadrature of the BRDF over their area.
+    /// Errors of the light of four rectangles: the closed form of the lobe as read from the table, against quadrature
+    /// of the BRDF over their area.
     ///
-    /// A wide one overhead, a near one beside the normal, a strip, and one that the surface cuts. 6 roughnesses from 0.2 to 1 and 7 cosines from 0.1 to 1, between texels too.
+    /// The rectangles are a wide one overhead, a near one beside the normal, a strip, and one that the surface cuts.
+    /// They are lit at 6 roughnesses from 0.2 to 1 and 7 cosines from 0.1 to 1, between texels too.
     pub fn irradiance_error(&self, texels: &LtcTexels) -> IrradianceError {
         let rectangles = [
             [DVec3::new(-2.0, -1.0, 1.0), DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0)],
@@ -140,12 +143,10 @@ pub(super) fn place(layout: &Layout, size: [u32; 2], texel: [u32; 2], offset: [f
         let [theta, alpha] = layout.at_texel(size, texel);
         [layout.angle.coordinate(theta), layout.slope.map_or(0.0, |slope| slope.coordinate(alpha))]
     });
-    let middle = [0, 1].map(|k: usize| 0.5 * (from[k] + to[k]));
-    let theta = layout.angle.canonical_of_coordinate(middle[0]);
-    [theta, layout.slope.map_or(0.0, |slope| slope.canonical_of_coordinate(middle[1]))]
+    layout.canonical([0, 1].map(|k: usize| 0.5 * (from[k] + to[k])))
 }
 
-/// Half the L1 distance of a lobe times its albedo from a reflection, over that one's albedo.
+/// Half the L1 distance of a lobe times its albedo from a reflection, over the albedo of the reflection.
 pub(super) fn difference((lobe, albedo): (Lobe, f64), target: &Target) -> f64 {
     let amplitude = albedo / target.albedo_dir;
     0.5 * (1.0 + amplitude) - target.shared(lobe, amplitude)
@@ -155,12 +156,12 @@ pub(super) fn difference((lobe, albedo): (Lobe, f64), target: &Target) -> f64 {
 fn over_rectangle(rule: &[(f64, f64)], [corner, u, v]: [DVec3; 3], f: impl Fn(DVec3) -> f64) -> f64 {
     const PATCHES: u32 = 32;
     let normal = u.cross(v);
-    let at = |i: u32, x: f64| (f64::from(i) + x) / f64::from(PATCHES);
     let mut sum = 0.0;
     for (i, j) in (0..PATCHES * PATCHES).map(|k| (k / PATCHES, k % PATCHES)) {
         for (x, weight_x) in rule {
             for (y, weight_y) in rule {
-                let p = corner + u * at(i, *x) + v * at(j, *y);
+                let [s, t] = [(i, x), (j, y)].map(|(patch, x)| (f64::from(patch) + x) / f64::from(PATCHES));
+                let p = corner + u * s + v * t;
                 let r_sq = p.length_squared();
                 let w = p / libm::sqrt(r_sq);
                 sum += weight_x * weight_y * f(w) * normal.dot(w).abs() / r_sq;

@@ -6,9 +6,20 @@ use glam::DVec3;
 
 /// A linearly transformed cosine (Heitz, Dupuy, Hill and Neubelt 2016), symmetric about the plane of incidence.
 ///
-/// The inverse matrix takes a direction of the lobe to a direction of the clamped cosine: M^-1 = [m11 0 m13; 0 1 0; m31 0 m33], scaled so that the
-/// entry in the middle is 1. x points to the side of the viewer, z along the normal, so that the mirror direction has a negative x.
-/// The determinant is positive. The integral of the density over all directions is 1.
+/// The inverse matrix takes a direction of the lobe to a direction of the clamped cosine: M^-1 = [m11 0 m13; 0 1 0; m31
+/// 0 m33], scaled so that the entry in the middle is 1. x points to the side of the viewer, z along the normal; the
+/// mirror direction therefore has a negative x. The determinant is positive. The integral of the density over all
+/// directions is 1.
+///
+/// ```
+/// use glam::DVec3;
+/// use luthier_table::Lobe;
+///
+/// assert!((Lobe::COSINE.pdf_solid_angle(DVec3::Z) - std::f64::consts::FRAC_1_PI).abs() < 1e-15);
+/// // A huge square overhead fills the cosine's hemisphere.
+/// let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(1e6 * x, 1e6 * y, 1.0));
+/// assert!((Lobe::COSINE.over_polygon(&corners) - 1.0).abs() < 1e-5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobe {
     /// Row 1, column 1 of the inverse.
@@ -40,7 +51,7 @@ impl Lobe {
         self.m11 * self.m33 - self.m13 * self.m31
     }
 
-    /// Density over solid angle of a unit direction (eq. 1 and 2); 0 where the transformed direction is below its horizon.
+    /// Density over solid angle of a unit direction (eq. 1 and 2); 0 if the transformed direction is below its horizon.
     pub fn pdf_solid_angle(self, w: DVec3) -> f64 {
         let z = self.m31 * w.x + self.m33 * w.z;
         if z <= 0.0 {
@@ -51,7 +62,7 @@ impl Lobe {
         self.determinant() * z / (PI * length_sq * length_sq)
     }
 
-    /// The part of the lobe that lies below the surface: the cosine over a lune, in closed form.
+    /// The share of the lobe below the surface: the cosine over a lune, in closed form.
     pub fn below_horizon(self) -> f64 {
         // The horizon's normal in the space of the cosine is the last row of M, which is (-m31, 0, m11) but for a factor.
         let cos = self.m11 / libm::sqrt(self.m11 * self.m11 + self.m31 * self.m31);
@@ -60,19 +71,21 @@ impl Lobe {
 
     /// The integral of the density over the directions of a flat polygon, given by its corners as seen from the shaded point, in order.
     ///
-    /// The polygon is clipped at the horizon of the cosine, then Lambert's formula is exact (eq. 9 to 11); corners on either side of the
-    /// surface are let through, as in the paper. A convex polygon; the sense of rotation does not matter.
+    /// The polygon is clipped at the horizon of the cosine; then Lambert's formula is exact (eq. 9 to 11). Corners on
+    /// either side of the surface are let through, as in the paper. The polygon must be convex; its sense of rotation
+    /// does not matter.
     pub fn over_polygon(self, corners: &[DVec3]) -> f64 {
-        let transform = |w: &DVec3| DVec3::new(self.m11 * w.x + self.m13 * w.z, w.y, self.m31 * w.x + self.m33 * w.z);
-        let transformed: Vec<DVec3> = corners.iter().map(transform).collect();
-        let clipped: Vec<DVec3> = clip(&transformed).into_iter().map(DVec3::normalize_or_zero).collect();
+        let transformed =
+            corners.iter().map(|w| DVec3::new(self.m11 * w.x + self.m13 * w.z, w.y, self.m31 * w.x + self.m33 * w.z));
+        let clipped: Vec<DVec3> =
+            clip(&transformed.collect::<Vec<_>>()).into_iter().map(DVec3::normalize_or_zero).collect();
         let next = clipped.iter().cycle().skip(1);
         let sum: f64 = clipped.iter().zip(next).map(|(&a, &b)| edge(a, b)).sum();
         sum.abs() / (2.0 * PI)
     }
 }
 
-/// The part of a polygon whose z is not negative.
+/// The part of a polygon above the plane z = 0.
 pub(super) fn clip(corners: &[DVec3]) -> Vec<DVec3> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (i, &a) in corners.iter().enumerate() {

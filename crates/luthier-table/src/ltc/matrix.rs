@@ -1,4 +1,4 @@
-//! Small dense matrices, in a fixed order of operations: bytes of tables depend on them.
+//! Small dense matrices, in a fixed order of operations, because bytes of tables depend on it.
 
 /// A square matrix.
 #[derive(Debug, Clone)]
@@ -26,7 +26,8 @@ impl Matrix {
         product
     }
 
-    /// The inverse of the identity less this, times another: elimination without pivots, as rows of this sum to less than 1.
+    /// The inverse of the identity less this, times another. Elimination needs no pivots, because rows of this sum to
+    /// less than 1.
     pub(super) fn identity_less_inverse_times(mut self, other: &Self) -> Self {
         let n = self.size;
         self.data.iter_mut().for_each(|value| *value = -*value);

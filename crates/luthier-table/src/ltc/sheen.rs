@@ -15,7 +15,7 @@ use crate::{Layout, Nodes, Stored};
 
 /// Lowest cosine, and lowest roughness, as in the paper.
 const LOWEST: f64 = 0.01;
-/// Ordinates beside those of the table: light near the surface.
+/// Ordinates beside the table's, for light near the surface.
 const ORDINATES: [f64; 11] = [0.001, 0.003, 0.006, 0.01, 0.015, 0.02, 0.026, 0.04, 0.048, 0.056, 0.08];
 /// Widest gap between ordinates.
 const GAP: f64 = 0.035;
@@ -24,8 +24,17 @@ const AZIMUTHS: u32 = 48;
 
 /// A table of sheen by linearly transformed cosines (Zeltner, Burley and Chiang 2022, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines").
 ///
-/// Sheen is the reflection of a layer of fibres along the normal, of unit thickness and density, without absorption; their cross section is the square
-/// of the roughness. The inverse matrix is [a 0 b; 0 a 0; 0 0 1], with x towards the side of the viewer.
+/// Sheen is the reflection of a layer of fibres along the normal, of unit thickness and density, without absorption.
+/// The cross section of the fibres is the square of the roughness. The inverse matrix is [a 0 b; 0 a 0; 0 0 1], with x
+/// towards the side of the viewer.
+///
+/// ```
+/// use luthier_table::SheenTable;
+///
+/// let texels = SheenTable { size: [3, 3], ..SheenTable::of_engines() }.bake();
+/// let [grazing, normal] = [0, 2].map(|x| texels.texel(x, 2)[2]);
+/// assert!(grazing > normal); // sheen shows at grazing angles
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheenTable {
     /// Axes and nodes.
@@ -37,8 +46,8 @@ pub struct SheenTable {
 }
 
 impl SheenTable {
-    /// The layout of the paper's table: 32 x 32 floats, the cosine across, the roughness down, ends at texel centres. Blender's Cycles reads the three channels
-    /// as planes, one after the other.
+    /// The layout of the paper's table: 32 x 32 floats, the cosine across, the roughness down, ends at texel centres.
+    /// Blender's Cycles reads the three channels as planes, one after the other.
     pub fn of_engines() -> Self {
         let layout = Layout::parse("cos_theta,roughness", Nodes::Ends).unwrap_or_else(|error| unreachable!("{error}"));
         Self { layout, size: [32, 32], stored: Stored::Float }
@@ -49,31 +58,34 @@ impl SheenTable {
         let [a, s] = self.layout.order();
         let [angles, slopes] = [a, s].map(|k| self.size[k] - u32::from(offset[k] > 0.0));
         let rules = kernel_rules();
-        let at = |angle: u32, slope: u32| {
-            let [theta, sigma] = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
-            [libm::cos(theta).clamp(LOWEST, 1.0), sigma.clamp(LOWEST * LOWEST, 1.0)]
-        };
-        let cosines: Vec<f64> = (0..angles).map(|angle| at(angle, 0)[0]).collect();
+        let cosines: Vec<f64> = (0..angles).map(|angle| self.at([angle, 0], offset)[0]).collect();
         let ordinates = ordinates(&cosines);
         (0..slopes)
             .into_par_iter()
             .map(|slope| {
-                let sigma = at(0, slope)[1];
+                let sigma = self.at([0, slope], offset)[1];
                 let layer = FibreLayer::new(&rules, sigma, ordinates.clone());
                 cosines.iter().map(|cos| target(&layer, sigma, *cos)).collect()
             })
             .collect()
     }
 
+    /// Cosine and cross section at a place along both axes.
+    fn at(&self, [angle, slope]: [u32; 2], offset: [f64; 2]) -> [f64; 2] {
+        let [theta, sigma] = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
+        [libm::cos(theta).clamp(LOWEST, 1.0), sigma.clamp(LOWEST * LOWEST, 1.0)]
+    }
+
     /// Texels of three channels: a, b and the albedo.
     ///
-    /// Albedo and reflection come by adding and doubling, where the paper samples random walks (of at most 16 bounces). Of all lobes of this form the one that
-    /// shares most energy with the reflection is taken, from rough to smooth; the paper minimises the third power of the difference. Deterministic, whatever the
-    /// number of threads.
+    /// Albedo and reflection come by adding and doubling; the paper samples random walks of at most 16 bounces. The
+    /// lobe is the one of this form that shares most energy with the reflection, found from rough to smooth; the paper
+    /// minimises the third power of the difference. Deterministic, whatever the number of threads.
     ///
-    /// Energy differs by 0.030 in the median and 0.21 at worst where the albedo is 0.01 or more; that of the paper's own table by 0.031 and 0.44. The
-    /// albedo follows random walks within their noise of 0.002; the paper's is too low by up to 0.23 for thin fibres at grazing angles, which scatter
-    /// light more than 16 times. The example `judge_sheen` measures these.
+    /// Where the albedo is at least 0.01, energy differs by 0.030 in the median and 0.21 at worst; in the paper's own
+    /// table by 0.031 and 0.44. The albedo follows random walks within their noise of 0.002. The paper's is too low by
+    /// up to 0.23 for thin fibres at grazing angles, which scatter light more than 16 times. The example `judge_sheen`
+    /// measures these.
     pub fn bake(&self) -> Image {
         let [a, s] = self.layout.order();
         let targets = self.targets([0.0; 2]);
@@ -104,13 +116,14 @@ impl SheenTable {
         self.stored.quantise(&image)
     }
 
-    /// Differences of energy at texels where the albedo is `min_albedo` at least, as [`LtcTable::error_at_texels`](super::LtcTable::error_at_texels) has
-    /// them, and absolute errors of the albedo. The slope parameter of places is the cross section. At least one texel must have that albedo.
+    /// Differences of energy at texels with an albedo of at least `min_albedo`, as in
+    /// [`LtcTable::error_at_texels`](super::LtcTable::error_at_texels), and absolute errors of the albedo. The slope
+    /// parameter of places is the cross section. At least one texel must have that albedo.
     pub fn error_at_texels(&self, texels: &Image, min_albedo: f64) -> [LtcError; 2] {
         self.error(texels, min_albedo, [0.0; 2])
     }
 
-    /// As [`Self::error_at_texels`], half-way between texels, of bilinear reads with weights of 8 bits.
+    /// As [`Self::error_at_texels`], half-way between texels, for bilinear reads with weights of 8 bits.
     pub fn error_between_texels(&self, texels: &Image, min_albedo: f64) -> [LtcError; 2] {
         self.error(texels, min_albedo, [0.5; 2])
     }
@@ -126,11 +139,13 @@ impl SheenTable {
         for (target, angle, slope) in places.filter(|(target, ..)| target.albedo_dir >= min_albedo) {
             let at = place(&self.layout, self.size, self.layout.texel(angle, slope), offset);
             let [a, b, albedo, _] = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
-            let placed = |error: f64| PlacedError { error, cos_theta_o: target.cos_theta_o, alpha: target.alpha };
             // A table may leave out lobes that reflect too little.
             let entry = if a > 0.0 { [a, b] } else { [1.0, 0.0] };
-            differences.push(placed(difference((lobe(entry), albedo), target)));
-            albedos.push(placed((albedo - target.albedo_dir).abs()));
+            let errors = [difference((lobe(entry), albedo), target), (albedo - target.albedo_dir).abs()];
+            let &Target { cos_theta_o, alpha, .. } = target;
+            let [energy, albedo] = errors.map(|error| PlacedError { error, cos_theta_o, alpha });
+            differences.push(energy);
+            albedos.push(albedo);
         }
         [LtcError::of(differences), LtcError::of(albedos)]
     }
@@ -141,30 +156,32 @@ fn lobe([a, b]: [f64; 2]) -> Lobe {
     Lobe { m11: 1.0, m31: 0.0, m13: b / a, m33: 1.0 / a }
 }
 
-/// The a and b of the lobe that shares most energy with a reflection, from others; upright at normal incidence.
+/// The a and b of the lobe that shares most energy with a reflection, searched from `start`. At normal incidence the
+/// lobe is upright.
 fn fit(target: &Target, start: [f64; 2]) -> [f64; 2] {
-    let loss = |entries: [f64; 2]| 1.0 - target.shared(lobe(entries), 1.0);
     if target.cos_theta_o > 1.0 - 1e-9 {
-        let from = |a: f64, edge: f64| {
-            let [by] = minimise([edge], |[by]| loss([a * libm::exp(by), 0.0]));
+        let a = [-0.2, 0.05].into_iter().fold(start[0], |a, edge| {
+            let [by] = minimise([edge], |[by]| 1.0 - target.shared(lobe([a * libm::exp(by), 0.0]), 1.0));
             a * libm::exp(by)
-        };
-        return [from(from(start[0], -0.2), 0.05), 0.0];
+        });
+        return [a, 0.0];
     }
-    // Steps of b are in units of a: that is the width of the lobe.
-    let moved = |[a, b]: [f64; 2], by: [f64; 2]| {
-        let scaled = a * libm::exp(by[0]);
-        [scaled, scaled * (b / a + by[1])]
-    };
-    let from = |start: [f64; 2], edges: [f64; 2]| moved(start, minimise(edges, |by| loss(moved(start, by))));
-    from(from(start, [-0.2, -0.2]), [0.05, 0.05])
+    [[-0.2, -0.2], [0.05, 0.05]].into_iter().fold(start, |start, edges| {
+        moved(start, minimise(edges, |by| 1.0 - target.shared(lobe(moved(start, by)), 1.0)))
+    })
 }
 
-/// The table's cosines, those near the surface, and more where gaps are wide.
+/// An a and a b after a step. The step of b is in units of a, which is the width of the lobe.
+fn moved([a, b]: [f64; 2], by: [f64; 2]) -> [f64; 2] {
+    let scaled = a * libm::exp(by[0]);
+    [scaled, scaled * (b / a + by[1])]
+}
+
+/// The cosines of the table and those near the surface, with more where gaps are wide.
 pub(super) fn ordinates(cosines: &[f64]) -> Vec<f64> {
     let mut all: Vec<f64> = cosines.iter().copied().chain(ORDINATES).chain([1.0]).collect();
     all.sort_by(f64::total_cmp);
-    // Cosines of axes are the same number but for rounding.
+    // Merges cosines that differ by rounding only.
     all.dedup_by(|b, a| *b - *a < 1e-4);
     let mut filled = vec![all[0]];
     for pair in all.windows(2) {

@@ -1,11 +1,12 @@
 //! The simplex search of Nelder and Mead 1965.
 
-/// Searches end where the values of the simplex differ by less than this.
+/// Difference of the values of a simplex at which a search ends.
 const SPREAD: f64 = 1e-9;
-/// Steps of one search.
+/// Most steps of one search.
 const STEPS_MAX: usize = 240;
 
-/// A place near the origin where a function is least, from a simplex of the given edges; at most 240 steps, and no promise that the minimum is global.
+/// A local minimum of a function near the origin, from a simplex of the given edges, in at most 240 steps. It need not
+/// be the global minimum.
 pub(super) fn minimise<const N: usize>(edges: [f64; N], f: impl Fn([f64; N]) -> f64) -> [f64; N] {
     let mut corners: Vec<([f64; N], f64)> = (0..=N)
         .map(|i| {

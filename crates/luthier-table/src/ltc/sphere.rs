@@ -2,11 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The clipped form factor of a sphere, over the length of its vector form factor: what engines keep in the fourth channel of the second table.
+/// The clipped form factor of a sphere, over the length of its vector form factor: the fourth channel of engines'
+/// second table.
 ///
-/// `cos_elevation` in -1..=1 is the cosine of the direction of the sphere's centre against the normal. `length` in 0..=1 is the length of the
-/// vector form factor, which is sin^2 of the sphere's angular radius. The result times `length` is the integral of the clamped cosine over the sphere, over pi:
-/// a polygon is lit as the sphere of equal vector form factor (Hill and Heitz 2016, "Real-Time Area Lighting: a Journey from Research to Production").
+/// `cos_elevation` in -1..=1 is the cosine of the direction of the sphere's centre against the normal. `length` in
+/// 0..=1 is the length of the vector form factor, which is sin^2 of the sphere's angular radius. The result times
+/// `length` is the integral of the clamped cosine over the sphere, over pi. Engines light a polygon as the sphere of
+/// equal vector form factor (Hill and Heitz 2016, "Real-Time Area Lighting: a Journey from Research to Production").
 /// Closed form of Snyder 1996, "Area Light Sources for Real-Time Graphics".
 pub fn clipped_sphere_form_factor(cos_elevation: f64, length: f64) -> f64 {
     let z = cos_elevation.clamp(-1.0, 1.0);
@@ -25,7 +27,7 @@ pub fn clipped_sphere_form_factor(cos_elevation: f64, length: f64) -> f64 {
     }
     let cos_sigma = libm::sqrt(1.0 - sin_sq);
     let sin_omega = libm::sqrt(1.0 - z * z);
-    // The circle of the sphere meets the horizon where the sine of this angle is cos sigma / sin omega.
+    // The rim of the sphere meets the horizon where the sine of this angle is cos sigma / sin omega.
     let sin_g = (cos_sigma / sin_omega).min(1.0);
     let cos_g = libm::sqrt(1.0 - sin_g * sin_g);
     let segment = FRAC_PI_2 - libm::asin(sin_g) + sin_g * cos_g - 2.0 * sin_omega * cos_sigma * cos_g;

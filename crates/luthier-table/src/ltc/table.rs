@@ -11,14 +11,15 @@ use super::target::{Rules, Surface, Target};
 use super::{Lobe, clipped_sphere_form_factor};
 use crate::{Layout, Nodes, Stored};
 
-/// A pair of tables for area lights by linearly transformed cosines: a statement, from which the texels follow.
+/// A pair of tables for area lights by linearly transformed cosines. Its fields state the tables; the texels follow
+/// from them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LtcTable {
     /// Slope distribution.
     pub distribution: Distribution,
     /// Smith's masking, correlated by height or separable.
     pub masking: Correlation,
-    /// Axes and nodes of both tables; the fourth channel of the norms has its own, see [`LtcTexels::norms`].
+    /// Axes and nodes of both tables. The fourth channel of the norms has axes of its own, see [`LtcTexels::norms`].
     pub layout: Layout,
     /// Texels across and down.
     pub size: [u32; 2],
@@ -31,15 +32,18 @@ pub struct LtcTable {
 pub struct LtcTexels {
     /// The inverse matrices: m11, m31, m13, m33 of [`Lobe`].
     pub matrices: Image,
-    /// Albedo for f0 = 1, bias of the split sum, 0, and [`clipped_sphere_form_factor`]: its elevation's cosine runs across from -1 to 1, its length down from 0 to 1.
+    /// Albedo for f0 = 1, bias of the split sum, 0, and [`clipped_sphere_form_factor`]. Across, the cosine of its
+    /// elevation runs from -1 to 1; down, its length runs from 0 to 1.
     pub norms: Image,
 }
 
 impl LtcTable {
-    /// The layout that engines read: 64 x 64 half floats, roughness across, the square root of one less the cosine down, ends at texel centres.
+    /// The layout of engines: 64 x 64 half floats, roughness across, the square root of one less the cosine down, ends
+    /// at texel centres.
     ///
-    /// Read in the shaders of three.js (npm three 0.187.0, `RectAreaLightTexturesLib`), Babylon.js (npm @babylonjs/core 9.35.0, `ltcHelperFunctions`, whose file has
-    /// the eight channels of a texel side by side) and Bevy (bevy_pbr 0.20.1, `ltc.ktx2`, an array of two layers; the same half floats as three.js's).
+    /// Sources are the shaders of three.js (npm three 0.187.0, `RectAreaLightTexturesLib`), Babylon.js (npm
+    /// @babylonjs/core 9.35.0, `ltcHelperFunctions`, a file with the eight channels of a texel side by side) and Bevy
+    /// (bevy_pbr 0.20.1, `ltc.ktx2`, an array of two layers with the half floats of three.js).
     pub fn of_engines(distribution: Distribution) -> Self {
         Self {
             distribution,
@@ -63,9 +67,10 @@ impl LtcTable {
 
     /// Both tables.
     ///
-    /// A matrix is the one whose lobe shares most energy with the BRDF times the cosine (half the L1 distance of both densities is the least), by a simplex search at fixed
-    /// nodes of a quadrature, from normal to grazing incidence. The paper minimises the third power of the difference, for three entries; here all four are
-    /// free. The norms come by quadrature. Deterministic, whatever the number of threads.
+    /// A matrix is the one whose lobe shares most energy with the BRDF times the cosine: half the L1 distance of the
+    /// densities is least. A simplex search at fixed nodes of a quadrature finds it, from normal to grazing incidence.
+    /// The paper minimises the third power of the difference for three entries; here all four are free. The norms come
+    /// by quadrature. Deterministic, whatever the number of threads.
     pub fn bake(&self) -> LtcTexels {
         LtcTexels { matrices: self.stored.quantise(&self.matrices()), norms: self.stored.quantise(&self.norms()) }
     }
@@ -115,7 +120,6 @@ impl LtcTable {
         }
         let sums = balance(&sums, 0.0);
         let mut norms = Image::zeros(self.size[0], self.size[1], 4);
-        let part = |texel: u32, size: u32| if size < 2 { 0.5 } else { f64::from(texel) / f64::from(size - 1) };
         for y in 0..self.size[1] {
             let length = part(y, self.size[1]);
             for x in 0..self.size[0] {
@@ -126,6 +130,11 @@ impl LtcTable {
         }
         norms
     }
+}
+
+/// Place of a texel between the first and the last, in 0..=1.
+fn part(texel: u32, size: u32) -> f64 {
+    if size < 2 { 0.5 } else { f64::from(texel) / f64::from(size - 1) }
 }
 
 impl LtcTexels {

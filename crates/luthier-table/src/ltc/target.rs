@@ -10,24 +10,25 @@ use luthier_optics::stack::Distribution;
 
 use super::Lobe;
 
-/// Lowest alpha: smoother surfaces are taken as this one.
+/// Lowest alpha. Smoother surfaces are taken as this one.
 pub(super) const ALPHA_MIN: f64 = 1e-5;
-/// Lowest cosine: directions nearer the surface are taken as this one.
+/// Lowest cosine. Directions nearer the surface are taken as this one.
 pub(super) const COS_MIN: f64 = 1e-3;
 
-/// Rules over reflected directions, graded as those of the split sum: by the tangent of half the angle from the mirror direction, and by that of half the azimuth.
+/// Rules over reflected directions, graded as the split sum's: by the tangent of half the angle from the mirror
+/// direction, and by the tangent of half the azimuth.
 pub(super) struct Rules {
     tilt: GradedRules,
     azimuth: GradedRules,
 }
 
 impl Rules {
-    /// Some 1,500 directions of half the hemisphere: for fits.
+    /// Rules of some 1,500 directions over half the hemisphere, for fits.
     pub(super) fn fitting() -> Self {
         Self::new([9.0, 5.0], [8.0, 4.0], 7)
     }
 
-    /// Some 6,000: for errors.
+    /// Rules of some 6,000 directions, for errors.
     pub(super) fn judging() -> Self {
         Self::new([20.0, 10.0], [16.0, 8.0], 14)
     }
@@ -42,7 +43,7 @@ impl Rules {
     }
 }
 
-/// One direction of half the hemisphere, that of positive y.
+/// One direction in the half of the hemisphere with positive y.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Node {
     /// Direction: the mirror direction has a negative x.
@@ -134,8 +135,9 @@ impl Target {
 
     /// The energy that reflection and lobe share: the integral of the lesser of both densities, that of the lobe times `amplitude`.
     ///
-    /// Half the integral of the difference of two densities is 1 less this. It bounds what any light of radiance 1 errs by, over the albedo, and some light
-    /// errs as much. The lesser of both is 0 where the reflection is: the nodes need not know where the lobe is.
+    /// Half the integral of the difference of two densities is 1 less this. No light of radiance 1 errs by more, over
+    /// the albedo, and some light errs by as much. The lesser density is 0 wherever the reflection is, so the nodes
+    /// need not follow the lobe.
     pub(super) fn shared(&self, lobe: Lobe, amplitude: f64) -> f64 {
         self.nodes
             .iter()

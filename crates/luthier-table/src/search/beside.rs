@@ -1,4 +1,4 @@
-//! The cheapest closed form that a small table brings within an error.
+//! The search for the cheapest closed form that holds an error together with a small table.
 
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
 use luthier_optics::stack::Distribution;
@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use super::Found;
 use crate::{Base, ClosedForm, Cost, DfgTable, Layout, Nodes, Stored, Value};
 
-/// Degrees of the forms with straight rests that are tried: of the loss in t and alpha, of the cosine in t and r.
+/// Degrees of the tried forms with straight rests: of the loss in t and alpha, of the cosine in t and r.
 const STRAIGHT: [[[usize; 2]; 2]; 5] =
     [[[2, 1], [1, 1]], [[2, 2], [1, 2]], [[3, 2], [1, 3]], [[3, 2], [2, 2]], [[3, 3], [2, 3]]];
-/// Errors of the forms with small rests that are tried. They cost more than those with straight rests.
+/// Errors of the tried forms with small rests. They cost more than forms with straight rests.
 const SMALL: [f64; 3] = [5e-3, 2e-3, 1e-3];
-/// Exponents of the axes that are tried, of cosines and of alpha, the cheaper to read first: by square roots.
+/// Exponents of the tried axes, of cosines and of alpha: the cheaper to read come first. All are read by square roots.
 const EXPONENTS: [[f64; 2]; 4] = [[2.0, 2.0], [2.0, 4.0], [4.0, 2.0], [4.0, 4.0]];
 /// Number types that are tried, the smaller first.
 const STORED: [Stored; 2] = [Stored::Unorm8, Stored::Half];
@@ -20,18 +20,18 @@ const STORED: [Stored; 2] = [Stored::Unorm8, Stored::Half];
 const SIDES: [u32; 18] = [3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 48, 64];
 /// Points at which candidates are judged, along each axis.
 const POINTS: u32 = 64;
-/// Candidates beside one form that are measured at the most.
+/// Most candidates that are measured beside one form.
 const MEASURED: usize = 4;
-/// The amplitude of a base over the largest rest: bytes hold both ends.
+/// Ratio of the amplitude of a base to the largest rest. It exceeds 1, so that bytes hold both ends.
 const MARGIN: f64 = 1.001;
 
-/// A table beside a form and its error at some points, which are not all.
+/// A table beside a form, and its error at the points of the judge, which are few.
 struct Candidate {
     table: DfgTable,
     error: f64,
 }
 
-/// The split sums that candidates are judged by.
+/// The exact split sums that candidates are compared with.
 struct Judge {
     distribution: Distribution,
     masking: Masking,
@@ -42,13 +42,15 @@ struct Judge {
     points: Vec<([f64; 2], SplitSum)>,
 }
 
-/// The table beside a closed form ([`DfgTable::base`]) that is cheapest to read ([`DfgTable::cost`], to a few operations) of those whose texels take
-/// `max_bytes` at most and whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables beside one form the
-/// smallest. Where none does, the most accurate of those that were measured.
+/// The cheapest table beside a closed form ([`DfgTable::base`]) whose texels take at most `max_bytes` and whose reads
+/// err by at most `max_abs`, over cosines and alphas from the given ones on. The cost is [`DfgTable::cost`], to a few
+/// operations; beside one form the smallest table is taken. If none holds the error, the most accurate of the measured
+/// ones.
 ///
-/// Forms are of two kinds: polynomials with straight rests, of half floats or bytes, and beyond their reach those of [`ClosedForm::fit`] with small
-/// rests. Axes are powers that are read with square roots, from the lowest cosine and alpha on. Channels are [`Value::Bias`] and [`Value::Loss`].
-/// There is always a table of 3 x 3 texels, whatever `max_bytes` is.
+/// Forms are of two kinds: polynomials with straight rests, in half floats or bytes, and beyond their reach the forms
+/// of [`ClosedForm::fit`] with small rests. Axes are powers that are read with square roots, from the lowest cosine and
+/// alpha on. Channels are [`Value::Bias`] and [`Value::Loss`]. A table of 3 x 3 texels is always allowed, whatever
+/// `max_bytes` is.
 pub fn search_beside_form(
     distribution: Distribution,
     masking: Masking,
@@ -62,7 +64,7 @@ pub fn search_beside_form(
         let mut candidates = judge.candidates(&form, &layouts, max_bytes);
         candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
         let held = candidates.partition_point(|candidate| candidate.error <= max_abs);
-        // Those that may hold, by size; else the most accurate.
+        // Candidates that may hold the error, by size; else the most accurate.
         candidates.truncate(held.max(1));
         candidates.sort_by_key(|candidate| candidate.table.bytes());
         for Candidate { table, .. } in candidates.into_iter().take(MEASURED) {
@@ -83,22 +85,20 @@ pub fn search_beside_form(
 impl Judge {
     fn new(distribution: Distribution, masking: Masking, lowest: [f64; 2]) -> Self {
         let surface = SplitSumSurface::new(distribution, masking);
-        // Denser towards the lower ends, as the measurement of forms.
-        let at = |axis: usize, i: u32| {
-            let u = f64::from(i) / f64::from(POINTS - 1);
-            (lowest[axis] + (1.0 - lowest[axis]) * u * u).min(1.0)
-        };
-        let points = (0..POINTS)
-            .flat_map(|j| {
-                let alpha = at(1, j);
-                let row = surface.row(alpha);
-                (0..POINTS).map(move |i| ([libm::acos(at(0, i)), alpha], row.at(at(0, i))))
-            })
-            .collect();
+        // Denser towards the lower ends, as in the measurement of forms.
+        let [cosines, alphas] = lowest.map(|lowest| {
+            let parts = (0..POINTS).map(|i| f64::from(i) / f64::from(POINTS - 1));
+            parts.map(|u| (lowest + (1.0 - lowest) * u * u).min(1.0)).collect::<Vec<f64>>()
+        });
+        let points = alphas.iter().flat_map(|&alpha| {
+            let row = surface.row(alpha);
+            cosines.iter().map(move |&cos| ([libm::acos(cos), alpha], row.at(cos)))
+        });
+        let points = points.collect();
         Self { distribution, masking, lowest, surface, points }
     }
 
-    /// Polynomials with straight rests, each with its axes, by what a read costs.
+    /// Polynomials with straight rests, each with its axes, sorted by the cost of a read.
     fn straight(&self) -> Vec<(ClosedForm, Vec<Layout>)> {
         let mut all = Vec::new();
         for degrees in STRAIGHT {
@@ -154,7 +154,7 @@ impl Judge {
         statements.into_par_iter().map(|table| self.candidate(table, form, &sums)).collect()
     }
 
-    /// The table, with the amplitude that its bytes need, judged.
+    /// Measures a table at the points, after its bytes got the amplitude that they need.
     fn candidate(&self, mut table: DfgTable, form: &ClosedForm, sums: &[SplitSum]) -> Candidate {
         if table.stored == Stored::Unorm8 {
             let rests = DfgTable { stored: Stored::Float, ..table.clone() }.bake_from(Some(&self.surface));

@@ -1,4 +1,4 @@
-//! The smallest table that holds an error.
+//! The search for the smallest table that holds an error.
 
 mod beside;
 
@@ -34,10 +34,11 @@ pub struct Found {
     pub held: bool,
 }
 
-/// The table of half floats with the fewest texels whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables
-/// of one size the most accurate. Where none does, the most accurate of 128 x 128 texels.
+/// The smallest table of half floats whose reads err by at most `max_abs`, over cosines and alphas from the given ones
+/// on. Of tables of one size the most accurate is taken; if none holds the error, the most accurate of 128 x 128
+/// texels.
 ///
-/// Axes are powers or logarithms, from the lowest cosine and alpha on: lower ones read as these. Channels are of the
+/// Axes are powers or logarithms, from the lowest cosine and alpha on; lower ones read as these. Channels are of the
 /// split sum, such as [`SPLIT_SUM`].
 pub fn search(
     distribution: Distribution,
@@ -50,7 +51,7 @@ pub fn search(
     let surface = SplitSumSurface::new(distribution, masking);
     let mut best: Option<Found> = None;
     for (index, side) in SIDES.into_iter().enumerate() {
-        // A size between two squares: one side longer.
+        // Between two squares comes a size with one longer side.
         let next = SIDES.get(index + 1).copied();
         let sizes = [Some([side, side]), next.map(|next| [next, side]), next.map(|next| [side, next])];
         let candidates: Vec<DfgTable> = sizes
@@ -77,10 +78,10 @@ pub fn search(
                 error.max_abs_err
             })
             .collect();
-        // Squares come first, and of one size the least error.
+        // Sorted by size, then by error: squares come first.
         let mut order: Vec<usize> = (0..candidates.len()).collect();
-        let texels = |i: usize| candidates[i].size[0] * candidates[i].size[1];
-        order.sort_by(|&a, &b| texels(a).cmp(&texels(b)).then(errors[a].total_cmp(&errors[b])));
+        let texels: Vec<u32> = candidates.iter().map(|table| table.size[0] * table.size[1]).collect();
+        order.sort_by(|&a, &b| texels[a].cmp(&texels[b]).then(errors[a].total_cmp(&errors[b])));
         let is_last = next.is_none();
         let promising = order.into_iter().filter(|&i| is_last || errors[i] <= max_abs);
         for i in promising.take(if is_last { 1 } else { 6 }) {

@@ -1,7 +1,8 @@
 //! OpenEXR: single-part scan-line images of 32-bit floats, ZIP-compressed (lossless), through the `exr` crate.
 //!
-//! The `exr` crate keeps custom attributes in a hash map, whose order differs from run to run. So that the bytes do not, all
-//! metadata are one attribute: `luthier`, a string that holds a JSON object of strings, sorted by key.
+//! The `exr` crate keeps custom attributes in a hash map, whose order differs from run to run. All metadata are
+//! therefore one attribute, so that bytes do not differ: `luthier`, a string with a JSON object of strings, sorted by
+//! key.
 
 pub(crate) mod dwa;
 
@@ -27,17 +28,17 @@ use crate::{Metadata, TextureError, metadata};
 
 /// Name of the attribute that holds the metadata.
 const ATTRIBUTE: &str = "luthier";
-/// Key whose value is also written to the standard attribute `software`.
+/// Key with the value of the standard attribute `software`.
 const GENERATOR: &str = "generator";
 
 /// Names of the channels of a picture.
 pub const RGB: [&str; 3] = ["R", "G", "B"];
 
-/// An EXR file of an image, bit-exact, with a name for each of its channels. Metadata become
-/// the JSON object described above; the value of `generator` is also the standard attribute `software`.
+/// An EXR file of an image, bit-exact, with a name for each of its channels. Metadata become the JSON object described
+/// above. The value of `generator` is also the standard attribute `software`.
 ///
 /// # Errors
-/// [`TextureError::Size`], [`TextureError::Channels`] where names and channels are not as many, [`TextureError::Length`],
+/// [`TextureError::Size`], [`TextureError::Channels`] if names and channels differ in number, [`TextureError::Length`],
 /// [`TextureError::Metadata`], [`TextureError::ExrEncode`].
 pub fn encode(image: &Image, names: &[&str], metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
     check_image(image)?;
@@ -46,8 +47,10 @@ pub fn encode(image: &Image, names: &[&str], metadata: &Metadata) -> Result<Vec<
     if names.len() != channels {
         return Err(TextureError::Channels(image.channels));
     }
-    let plane = |c: usize| FlatSamples::F32(image.data.iter().skip(c).step_by(channels).copied().collect());
-    let planes = names.iter().enumerate().map(|(c, &name)| AnyChannel::new(name, plane(c)));
+    let planes = names.iter().enumerate().map(|(c, &name)| {
+        let values = image.data.iter().skip(c).step_by(channels).copied();
+        AnyChannel::new(name, FlatSamples::F32(values.collect()))
+    });
 
     let mut attributes = LayerAttributes::default();
     if !metadata.is_empty() {
@@ -67,9 +70,9 @@ pub fn encode(image: &Image, names: &[&str], metadata: &Metadata) -> Result<Vec<
     Ok(file.into_inner())
 }
 
-/// Reads an EXR file of the shape that [`encode`] writes: one part, scan lines from the top, one to four channels of 32-bit float,
-/// uncompressed or ZIP. Channels come in the order R, G, B, A, X, Y, Z, V, then the others by name. The metadata are sorted by key, and
-/// empty in files of other makers.
+/// Reads an EXR file of the shape that [`encode`] writes: one part, scan lines from the top, one to four channels of
+/// 32-bit float, uncompressed or ZIP. Channels come in the order R, G, B, A, X, Y, Z, V, then the others by name. The
+/// metadata are sorted by key, and empty in files of other makers.
 ///
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::ExrDecode`] for damaged files, [`TextureError::Unsupported`] for
@@ -106,7 +109,7 @@ pub fn decode(file: &[u8]) -> Result<(Image, Metadata), TextureError> {
     Ok((Image { width, height, channels: channels as u32, data }, metadata))
 }
 
-/// Appends the rows of a block, channels interleaved; `places` are those of the file's channels in a texel.
+/// Appends the rows of a block, channels interleaved. `places` has the place in a texel of each channel of the file.
 fn append_rows(data: &mut Vec<f32>, meta: &MetaData, block: &UncompressedBlock, places: &[usize]) {
     let Vec2(width, height) = block.index.pixel_size;
     let start = data.len();
@@ -121,7 +124,7 @@ fn append_rows(data: &mut Vec<f32>, meta: &MetaData, block: &UncompressedBlock, 
     }
 }
 
-/// Where a channel stands among those of its image, by name.
+/// Sort key of a channel among those of its image, by name.
 pub(crate) fn rank(name: &str) -> (usize, String) {
     let known = "RGBAXYZV".find(name).filter(|_| name.len() == 1);
     (known.unwrap_or(usize::MAX), name.to_owned())
@@ -159,12 +162,12 @@ fn read_metadata(header: &Header) -> Result<Metadata, TextureError> {
     Ok(object.into_iter().collect())
 }
 
-/// Sides beyond `u32` become its maximum, which no limit lets pass.
+/// A side as `u32`. Larger ones become its maximum, which no limit lets pass.
 pub(crate) fn side(length: usize) -> u32 {
     u32::try_from(length).unwrap_or(u32::MAX)
 }
 
-/// The crate's own constructor takes Latin-1 only; the format does not care.
+/// A string of UTF-8. The crate's own constructor takes Latin-1 only; the format allows both.
 fn utf8(text: &str) -> Text {
     Text::from_slice_unchecked(text.as_bytes())
 }

@@ -1,8 +1,9 @@
-//! KTX2 (Khronos KTX file format 2.0): one level, or levels of maps and cubes to write; zstd-supercompressed or plain, with a basic data format descriptor.
+//! KTX2 (Khronos KTX file format 2.0): one level, or to write also the levels of maps and cubes, with zstd or plain,
+//! with a basic data format descriptor.
 //!
-//! Textures of bakes have the key `KTXwriter` and no other: Khronos' validator warns about every key that the specification does not list,
-//! whatever its prefix, so that a file with one would not pass `ktx validate --warnings-as-errors`. Tables that travel alone say what they are
-//! in keys of their own ([`Levels::metadata`]).
+//! Textures of bakes have the key `KTXwriter` and no other. Khronos' validator warns about every unlisted key, whatever
+//! its prefix, so a file with one would not pass `ktx validate --warnings-as-errors`. Tables that travel alone describe
+//! themselves in keys of their own ([`Levels::metadata`]).
 
 use ::ktx2::dfd::{Basic, Block};
 use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionScheme};
@@ -16,8 +17,8 @@ use crate::{Metadata, Samples, Texture, TextureError, metadata, zstd};
 /// Value of the `KTXwriter` entry.
 const WRITER: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
 
-/// Bytes of the descriptor section that may differ from ours without changing what the texels mean: colour primaries,
-/// alpha flags, and the plane sizes, which some writers leave 0 under supercompression.
+/// Bytes of the descriptor section that may differ from ours without a change of meaning: colour primaries, alpha
+/// flags, and the plane sizes, which some writers leave 0 under supercompression.
 const FREE_DFD_BYTES: [std::ops::Range<usize>; 3] = [13..14, 15..16, 20..28];
 
 /// A KTX2 file of a texture: header, level index, descriptor, the writer's name, zstd texels.
@@ -28,7 +29,7 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
     write(&Levels::one(texture), Some(SupercompressionScheme::Zstandard))
 }
 
-/// A KTX2 file of a texture with the texels as they are, for readers without a decoder of zstd.
+/// A KTX2 file of a texture with uncompressed texels, for readers without a decoder of zstd.
 ///
 /// # Errors
 /// As [`encode`].
@@ -36,21 +37,33 @@ pub fn encode_plain(texture: &Texture) -> Result<Vec<u8>, TextureError> {
     write(&Levels::one(texture), None)
 }
 
-/// A KTX2 file of a map or a cube with levels, the smallest first, as the specification wants them; with zstd or without.
+/// A KTX2 file of a map or a cube with levels, with zstd or without. The smallest level comes first, as the
+/// specification requires.
 ///
 /// # Errors
-/// As [`encode`]; [`TextureError::Length`] for faces of another number than 1 or 6, or more levels than halve the sides; and
-/// [`TextureError::Metadata`].
+/// As [`encode`]; [`TextureError::Length`] for a number of faces other than 1 or 6, or for more levels than the sides
+/// can be halved; and [`TextureError::Metadata`].
 pub fn encode_levels(levels: &Levels<'_>, is_compressed: bool) -> Result<Vec<u8>, TextureError> {
     write(levels, is_compressed.then_some(SupercompressionScheme::Zstandard))
 }
 
 /// Texels of a map or a cube, level by level.
+///
+/// ```
+/// use luthier_lut::TexelFormat;
+/// use luthier_texture::ktx2::{Levels, encode_levels};
+///
+/// let levels = vec![vec![255; 16].into(), vec![255; 4].into()];
+/// let (format, metadata) = (TexelFormat::Rgba8Unorm, Vec::new());
+/// let file = encode_levels(&Levels { format, width: 2, height: 2, faces: 1, levels, metadata }, false)?;
+/// assert_eq!(file[40..44], 2_u32.to_le_bytes()); // levelCount of the header
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Levels<'a> {
     /// Format of the texels.
     pub format: TexelFormat,
-    /// Texels across, of the largest level; each level has half of those of the one before.
+    /// Texels across, of the largest level. Each level has half the sides of the one before.
     pub width: u32,
     /// Texels down.
     pub height: u32,
@@ -58,7 +71,7 @@ pub struct Levels<'a> {
     pub faces: u32,
     /// The faces of each level one after another, the largest level first.
     pub levels: Vec<std::borrow::Cow<'a, [u8]>>,
-    /// Statements of the file about itself beside its writer; their keys begin with a small letter.
+    /// Statements of the file about itself, beside its writer. Their keys begin with a small letter.
     pub metadata: Metadata,
 }
 
@@ -77,9 +90,8 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
     if !is_map || count == 0 || count > texture.width.max(texture.height).ilog2() + 1 {
         return Err(TextureError::Length { found: texture.levels.len(), expected: 1 });
     }
-    let half = |side: u32, level: u32| (side >> level).max(1);
     for (level, bytes) in (0..).zip(&texture.levels) {
-        let (width, height) = (half(texture.width, level), half(texture.height, level));
+        let [width, height] = [texture.width, texture.height].map(|side| (side >> level).max(1));
         let expected = level_bytes(texture.format, width, height)? * texture.faces as usize;
         if bytes.len() != expected {
             return Err(TextureError::Length { found: bytes.len(), expected });
@@ -97,8 +109,8 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
         None => texture.levels.clone(),
     };
 
-    // Descriptor and key/value entries are multiples of 4 bytes. Levels lie at multiples of 4 and of the bytes of a block of texels,
-    // but for supercompressed ones, which need no alignment.
+    // Descriptor and key/value entries are multiples of 4 bytes. Plain levels lie at multiples of 4 and of the bytes of
+    // a block of texels; supercompressed levels need no alignment.
     let descriptor_at = Header::LENGTH + LevelIndex::LENGTH * stored.len();
     let key_values_at = descriptor_at + descriptor.len();
     let key_values_end = key_values_at + key_values.len();
@@ -139,8 +151,8 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
     Ok([&header.as_bytes(), index.concat().as_slice(), &descriptor, &key_values, &body].concat())
 }
 
-/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Of the key/value data only the orientation
-/// is looked at.
+/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Of the key/value data only
+/// the orientation counts.
 ///
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::Zstd`] for damaged files, [`TextureError::Unsupported`] for other
@@ -162,8 +174,8 @@ pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
     Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes })
 }
 
-/// Reads the largest level of a two-dimensional KTX2 file of uncompressed texels by any maker, with zstd or no supercompression. The
-/// format is taken from the header: the descriptor is not looked at, because some writers get it wrong.
+/// Reads the largest level of a two-dimensional KTX2 file of uncompressed texels by any maker, with zstd or no
+/// supercompression. The header states the format. The descriptor does not count, because some writers get it wrong.
 ///
 /// # Errors
 /// As [`decode`].
@@ -200,30 +212,28 @@ fn block_bytes(format: TexelFormat) -> usize {
 }
 
 fn table_layout(format: Format) -> Option<TexelLayout> {
-    let of = |samples, channels| Some(TexelLayout::of(samples, channels));
-    match format {
-        Format::R8_UNORM => of(Samples::Unorm8, 1),
-        Format::R8G8_UNORM => of(Samples::Unorm8, 2),
-        Format::R8G8B8_UNORM => of(Samples::Unorm8, 3),
-        Format::R8G8B8A8_UNORM => of(Samples::Unorm8, 4),
-        Format::R8G8B8A8_SRGB => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        Format::R8G8B8_SRGB => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 3) }),
-        Format::B8G8R8A8_UNORM => Some(TexelLayout { bgr: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
-        Format::A2B10G10R10_UNORM_PACK32 => of(Samples::Unorm10, 4),
-        Format::R16_UNORM => of(Samples::Unorm16, 1),
-        Format::R16G16_UNORM => of(Samples::Unorm16, 2),
-        Format::R16G16B16_UNORM => of(Samples::Unorm16, 3),
-        Format::R16G16B16A16_UNORM => of(Samples::Unorm16, 4),
-        Format::R16_SFLOAT => of(Samples::Half, 1),
-        Format::R16G16_SFLOAT => of(Samples::Half, 2),
-        Format::R16G16B16_SFLOAT => of(Samples::Half, 3),
-        Format::R16G16B16A16_SFLOAT => of(Samples::Half, 4),
-        Format::R32_SFLOAT => of(Samples::Float, 1),
-        Format::R32G32_SFLOAT => of(Samples::Float, 2),
-        Format::R32G32B32_SFLOAT => of(Samples::Float, 3),
-        Format::R32G32B32A32_SFLOAT => of(Samples::Float, 4),
-        _ => None,
-    }
+    let (samples, channels) = match format {
+        Format::R8_UNORM => (Samples::Unorm8, 1),
+        Format::R8G8_UNORM => (Samples::Unorm8, 2),
+        Format::R8G8B8_UNORM | Format::R8G8B8_SRGB => (Samples::Unorm8, 3),
+        Format::R8G8B8A8_UNORM | Format::R8G8B8A8_SRGB | Format::B8G8R8A8_UNORM => (Samples::Unorm8, 4),
+        Format::A2B10G10R10_UNORM_PACK32 => (Samples::Unorm10, 4),
+        Format::R16_UNORM => (Samples::Unorm16, 1),
+        Format::R16G16_UNORM => (Samples::Unorm16, 2),
+        Format::R16G16B16_UNORM => (Samples::Unorm16, 3),
+        Format::R16G16B16A16_UNORM => (Samples::Unorm16, 4),
+        Format::R16_SFLOAT => (Samples::Half, 1),
+        Format::R16G16_SFLOAT => (Samples::Half, 2),
+        Format::R16G16B16_SFLOAT => (Samples::Half, 3),
+        Format::R16G16B16A16_SFLOAT => (Samples::Half, 4),
+        Format::R32_SFLOAT => (Samples::Float, 1),
+        Format::R32G32_SFLOAT => (Samples::Float, 2),
+        Format::R32G32B32_SFLOAT => (Samples::Float, 3),
+        Format::R32G32B32A32_SFLOAT => (Samples::Float, 4),
+        _ => return None,
+    };
+    let srgb = matches!(format, Format::R8G8B8A8_SRGB | Format::R8G8B8_SRGB);
+    Some(TexelLayout { samples, channels, bgr: format == Format::B8G8R8A8_UNORM, srgb })
 }
 
 fn header(file: &[u8]) -> Result<Header, TextureError> {
@@ -238,7 +248,7 @@ fn header(file: &[u8]) -> Result<Header, TextureError> {
     })
 }
 
-/// The texels of the first level, which is the largest.
+/// The texels of the first level, the largest.
 fn first_level(file: &[u8], header: &Header, expected: usize) -> Result<Vec<u8>, TextureError> {
     let level = section(file, Header::LENGTH as u64, LevelIndex::LENGTH as u64)?;
     let level = LevelIndex::from_bytes(level.first_chunk().ok_or_else(|| malformed("the level index is missing"))?);
@@ -296,7 +306,7 @@ fn check_shape(header: &Header) -> Result<(), TextureError> {
     }
 }
 
-/// The descriptor section (its length, then one basic block) and the size that the header states for endian conversion.
+/// The descriptor section (its length, then one basic block), and the type size of the header for endian conversion.
 fn descriptor_section(format: TexelFormat) -> Result<(Vec<u8>, u32), TextureError> {
     let (basic, type_size) = Basic::from_format(vulkan_format(format))
         .map_err(|_| unsupported(format!("{format} texels, for which there is no descriptor")))?;
@@ -307,8 +317,9 @@ fn descriptor_section(format: TexelFormat) -> Result<(Vec<u8>, u32), TextureErro
 
 /// Whether two descriptor sections mean the same texels.
 fn describes(found: &[u8], expected: &[u8]) -> bool {
-    let free = |i: usize| FREE_DFD_BYTES.iter().any(|range| range.contains(&i));
-    found.len() == expected.len() && found.iter().zip(expected).enumerate().all(|(i, (a, b))| a == b || free(i))
+    let mut bytes = found.iter().zip(expected).enumerate();
+    found.len() == expected.len()
+        && bytes.all(|(i, (a, b))| a == b || FREE_DFD_BYTES.iter().any(|range| range.contains(&i)))
 }
 
 /// Entries by section 3.11 of the specification, sorted by key: length, key, NUL, value, NUL, padding to 4 bytes.
@@ -333,19 +344,22 @@ fn key_value_section(metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
     Ok(section)
 }
 
-/// Whether the key/value data hold whole entries, and rows go from the top down, which is what a file without a word of it means.
+/// The fault of key/value data that end within an entry.
+const CUT_OFF: &str = "a key/value entry is cut off";
+
+/// Checks that the key/value data hold whole entries, and that rows go from the top down. A file that does not state it
+/// means the same.
 fn check_orientation(mut section: &[u8]) -> Result<(), TextureError> {
-    let cut = || malformed("a key/value entry is cut off");
     while let Some((length, rest)) = section.split_first_chunk() {
         let length = u32::from_le_bytes(*length) as usize;
-        let entry = rest.get(..length).ok_or_else(cut)?;
+        let entry = rest.get(..length).ok_or_else(|| malformed(CUT_OFF))?;
         section = rest.get(length.next_multiple_of(4)..).unwrap_or_default();
         let key_end = entry.iter().position(|&b| b == 0).ok_or_else(|| malformed("a key does not end"))?;
         if &entry[..key_end] == b"KTXorientation" && !entry[key_end + 1..].starts_with(b"rd") {
             return Err(unsupported("rows from the bottom or columns from the right"));
         }
     }
-    if section.is_empty() { Ok(()) } else { Err(cut()) }
+    if section.is_empty() { Ok(()) } else { Err(malformed(CUT_OFF)) }
 }
 
 fn section(file: &[u8], offset: u64, length: u64) -> Result<&[u8], TextureError> {

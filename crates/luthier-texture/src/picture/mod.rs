@@ -1,7 +1,7 @@
-//! Maps made by others: PNG, JPEG and WebP of 8 or 16 bits. To read only.
+//! Maps of other programs, to read: PNG, JPEG and WebP of 8 or 16 bits.
 //!
-//! [`decode`] tells the format by its first bytes: file endings are often wrong. Values are as they are stored, without a curve. A JPEG or WebP
-//! that says which way is up is turned that way; of an animation the first frame counts.
+//! [`decode`] tells the format by its first bytes, because file endings are often wrong. Values stay as stored, without
+//! a curve. A JPEG or WebP is turned upright if it states its orientation. Of an animation the first frame counts.
 
 use std::io::Cursor;
 
@@ -15,14 +15,23 @@ use crate::limits::is_plausible;
 use crate::size::checked_bytes;
 use crate::{TextureError, png};
 
-/// A picture, and what its file says of it.
+/// A picture, and the statements of its file about it.
+///
+/// ```
+/// use luthier_texture::{Container, picture, png};
+///
+/// let decoded = picture::decode(&png::encode_rgb(1, 1, &[255, 0, 51])?)?;
+/// assert_eq!((decoded.container, decoded.picture.channels), (Container::Png, 3));
+/// assert_eq!(decoded.picture.stored(2), 0.2);
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decoded {
     /// Its samples, not linearised.
     pub picture: Picture,
     /// The format.
     pub container: Container,
-    /// Whether its colours are stored by the sRGB curve: PNG says it in a chunk, JPEG and WebP are made so.
+    /// Whether its colours are stored by the sRGB curve. PNG says so in a chunk; JPEG and WebP always are.
     pub says_srgb: bool,
 }
 
@@ -59,7 +68,7 @@ fn webp(file: &[u8]) -> Result<Picture, Fault> {
     pixels(WebPDecoder::new(Cursor::new(file))?, file)
 }
 
-/// Why a decoder has no picture.
+/// Fault of a file that a decoder refused.
 enum Fault {
     Codec(ImageError),
     Ours(TextureError),
@@ -92,7 +101,7 @@ fn pixels(mut decoder: impl ImageDecoder, file: &[u8]) -> Result<Picture, Fault>
     Ok(Picture { width, height, channels, is_srgb: false, samples: PictureSamples::Bits8(bytes) })
 }
 
-/// Likely format of a file that is no picture.
+/// Likely format of a file that is not a picture.
 fn kind(file: &[u8]) -> &'static str {
     const SIGNATURES: [(&[u8], &str); 17] = [
         (b"GIF8", "it is a GIF"),

@@ -1,4 +1,4 @@
-//! PNG: pictures to look at, tables of 8 bits, and maps made by others to read.
+//! PNG: pictures to look at, tables of 8 bits, and maps of other programs.
 
 use std::io::Cursor;
 
@@ -10,13 +10,13 @@ use crate::error::Container;
 use crate::size::{check_image, checked_bytes};
 use crate::{Metadata, TextureError, metadata, srgb};
 
-/// Deflate expands by at most 1032 (RFC 1951: a match of 258 bytes in two bits); a file that promises more is damaged.
+/// Largest expansion of deflate (RFC 1951: a match of 258 bytes in two bits). A file that promises more is damaged.
 const MAX_EXPANSION: u64 = 1032;
 
-/// Bytes that the decoder may allocate beside the pixels: rows, and the chunks that it keeps.
+/// Bytes that the decoder may allocate beside the pixels, for rows and kept chunks.
 const MAX_DECODER_BYTES: u64 = 16 << 20;
 
-/// A PNG of sRGB pixels, three bytes each, row by row from the top. It holds no metadata: it is only to look at.
+/// A PNG of sRGB pixels, three bytes each, row by row from the top. It holds no metadata.
 ///
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Length`], [`TextureError::PngEncode`].
@@ -41,7 +41,8 @@ pub fn encode_image(image: &Image) -> Result<Vec<u8>, TextureError> {
     encode_rgb(image.width, image.height, &srgb::rgb8(image))
 }
 
-/// A PNG of a table: one to four channels, linear values clipped to 0..=1, as 8 bits without a colour space; statements about it as text.
+/// A PNG of a table of one to four channels: linear values clipped to 0..=1, as 8 bits without a colour space. Metadata
+/// are text chunks.
 ///
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::Metadata`], [`TextureError::PngTable`].
@@ -68,7 +69,7 @@ pub fn encode_table(table: &Image, metadata: &Metadata) -> Result<Vec<u8>, Textu
     Ok(file)
 }
 
-/// A PNG of a map: one channel, linear values clipped to 0..=1, as 8 bits of grey, which every engine filters.
+/// A PNG of a map of one channel: linear values clipped to 0..=1, as 8 bits of grey, which every engine filters.
 ///
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::PngEncode`].
@@ -82,7 +83,7 @@ pub fn encode_gray(map: &Image) -> Result<Vec<u8>, TextureError> {
     Ok(file)
 }
 
-/// A picture of one channel, or of the three of RGB, as PNG of the same bits; texels of floats become 16 bits.
+/// A PNG of a picture of one channel or of RGB, with the same bits. Texels of floats become 16 bits.
 ///
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Length`], [`TextureError::PngTable`].
@@ -117,7 +118,7 @@ pub fn encode_picture(picture: &Picture) -> Result<Vec<u8>, TextureError> {
     Ok(file)
 }
 
-/// An image as RGBA in 0..=1, the stored values over their maximum (8 or 16 bits), not linearised; alpha is 1 where the
+/// Reads an image as RGBA in 0..=1: stored values over their maximum (8 or 16 bits), not linearised. Alpha is 1 if the
 /// file has none.
 ///
 /// # Errors
@@ -128,7 +129,7 @@ pub fn decode(file: &[u8]) -> Result<Image, TextureError> {
     Ok(picture.image())
 }
 
-/// A table with as many channels as the file has (a grey one has 1), values over their maximum, and its bits per value.
+/// Reads a table with the channels of the file (grey has 1), values over their maximum, and its bits per value.
 ///
 /// # Errors
 /// As [`decode`].
@@ -139,7 +140,7 @@ pub(crate) fn decode_table(file: &[u8]) -> Result<(Image, u32), TextureError> {
     Ok((Image { width: picture.width, height: picture.height, channels: picture.channels, data }, bits))
 }
 
-/// The pixels of a file as they are stored.
+/// Reads the pixels of a file as stored.
 pub(crate) fn read(file: &[u8]) -> Result<Picture, TextureError> {
     if let Some(reason) = unreadable(file) {
         return Err(TextureError::malformed(Container::Png, reason));
@@ -168,7 +169,7 @@ pub(crate) fn read(file: &[u8]) -> Result<Picture, TextureError> {
     Ok(Picture { width, height, channels, is_srgb: false, samples })
 }
 
-/// Whether a file says that its colours are stored by the sRGB curve, or by a power that stands for it.
+/// Whether a file says that its colours are stored by the sRGB curve, or by a power near it.
 pub(crate) fn says_srgb(file: &[u8]) -> bool {
     chunks(file).any(|(kind, data)| match kind {
         b"sRGB" | b"iCCP" => true,
@@ -177,13 +178,13 @@ pub(crate) fn says_srgb(file: &[u8]) -> bool {
     })
 }
 
-/// Why a file of PNG's signature is none that others than its maker read.
+/// Reason why other programs than its maker cannot read a file with the signature of PNG.
 fn unreadable(file: &[u8]) -> Option<&'static str> {
     let apple = chunks(file).next().is_some_and(|(kind, _)| kind == b"CgBI");
     apple.then_some("Xcode made it for iOS (chunk CgBI), which no other program reads; export the picture again")
 }
 
-/// The chunks of a file: kind and data, as far as it goes.
+/// The chunks of a file: kind and data, up to its end.
 fn chunks(file: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     // Chunks: length, kind, data, sum.
     let mut rest = file.get(8..).unwrap_or_default();
@@ -196,7 +197,8 @@ fn chunks(file: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     })
 }
 
-/// Refuses palettes that do not consist of 1 to 256 colours (section 11.2.2 of the PNG specification): the decoder reads beyond their end.
+/// Refuses palettes that do not consist of 1 to 256 colours (section 11.2.2 of the PNG specification). The decoder
+/// would read beyond their end.
 fn check_palette(file: &[u8]) -> Result<(), TextureError> {
     if chunks(file).any(|(kind, data): (&[u8; 4], &[u8])| {
         kind == b"PLTE" && !(data.len().is_multiple_of(3) && (3..=768).contains(&data.len()))

@@ -10,9 +10,9 @@ pub(super) struct Header {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) order: Order,
-    /// Stored values are over these, channel by channel: exposure and colour correction.
+    /// Divisors of the stored values, by channel: exposure and colour correction.
     pub(super) divisors: [f64; 3],
-    /// Primaries that are not those of Rec.709.
+    /// Primaries, if they differ from those of Rec.709.
     pub(super) primaries: Option<Primaries>,
     /// The format is `32-bit_rle_xyze`.
     pub(super) is_xyz: bool,
@@ -21,7 +21,7 @@ pub(super) struct Header {
     pub(super) length: usize,
 }
 
-/// Where scanlines and their texels lie.
+/// Order of scanlines and their texels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Order {
     /// Scanlines are columns.
@@ -39,10 +39,11 @@ pub(super) fn malformed(reason: impl Into<String>) -> TextureError {
     TextureError::malformed(Container::Hdr, reason.into())
 }
 
-/// Reads a header. Lines that begin with a blank tell of what a picture was made of, and do not count; lines of other names do not, either.
+/// Reads a header. Lines that begin with a blank tell of the sources of a picture, and are skipped; so are lines of
+/// unknown names.
 pub(super) fn read(file: &[u8]) -> Result<Header, TextureError> {
     let mut lines = Lines { file: &file[..file.len().min(LENGTH_MAX)], at: 0 };
-    // The first line is that of the program, `#?RADIANCE` or another.
+    // The first line names the program: `#?RADIANCE` or another.
     lines.next().ok_or_else(|| malformed("it ends in its header"))?;
     let (mut divisors, mut primaries, mut is_xyz, mut pixel_aspect) = ([1.0; 3], None, false, 1.0);
     loop {
@@ -115,30 +116,31 @@ fn numbers<const N: usize>(name: &str, value: &str, allowed: fn(f64) -> bool) ->
     })
 }
 
-/// `-Y 32 +X 64`: scanlines from the top, each from the left. The sign says which way a coordinate runs, the first axis is that of the scanlines.
+/// Parses a line such as `-Y 32 +X 64`: scanlines from the top, each from the left. The sign is the direction of a
+/// coordinate, the first axis is the one of the scanlines.
 fn size(line: &str) -> Result<(Order, u32, u32), TextureError> {
-    let wrong = || {
+    ordered(line).ok_or_else(|| {
         let line: String = line.chars().take(64).collect();
         malformed(format!("the line of its size is `{line}`, where one such as `-Y 512 +X 1024` belongs"))
-    };
+    })
+}
+
+fn ordered(line: &str) -> Option<(Order, u32, u32)> {
     let words: Vec<&str> = line.split_whitespace().collect();
-    let [first, lines, second, texels] = words[..] else { return Err(wrong()) };
-    let (lines, texels): (u32, u32) = (lines.parse().map_err(|_| wrong())?, texels.parse().map_err(|_| wrong())?);
-    let down = |word: &str| match word {
-        "-Y" => Some(true),
-        "+Y" => Some(false),
-        _ => None,
+    let [first, lines, second, texels] = words[..] else { return None };
+    let (lines, texels): (u32, u32) = (lines.parse().ok()?, texels.parse().ok()?);
+    let columns = matches!(first, "+X" | "-X");
+    let (vertical, horizontal) = if columns { (second, first) } else { (first, second) };
+    let from_bottom = match vertical {
+        "-Y" => false,
+        "+Y" => true,
+        _ => return None,
     };
-    let right = |word: &str| match word {
-        "+X" => Some(true),
-        "-X" => Some(false),
-        _ => None,
+    let from_right = match horizontal {
+        "+X" => false,
+        "-X" => true,
+        _ => return None,
     };
-    if let (Some(down), Some(right)) = (down(first), right(second)) {
-        return Ok((Order { columns: false, from_bottom: !down, from_right: !right }, texels, lines));
-    }
-    if let (Some(right), Some(down)) = (right(first), down(second)) {
-        return Ok((Order { columns: true, from_bottom: !down, from_right: !right }, lines, texels));
-    }
-    Err(wrong())
+    let (width, height) = if columns { (lines, texels) } else { (texels, lines) };
+    Some((Order { columns, from_bottom, from_right }, width, height))
 }

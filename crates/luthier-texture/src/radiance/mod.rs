@@ -1,4 +1,5 @@
-//! Pictures of radiance made by others: OpenEXR of any compression, 16 or 32 bits, and Radiance HDR (RGBE and XYZE). To read only.
+//! Pictures of radiance of other programs, to read: OpenEXR of any compression, 16 or 32 bits, and Radiance HDR (RGBE
+//! and XYZE).
 
 mod channels;
 mod hdr;
@@ -13,11 +14,12 @@ use crate::error::Container;
 
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Reads a Radiance HDR file, or the colours of an OpenEXR file: those of its first part that has any, at their largest resolution.
+/// Reads a Radiance HDR file, or the colours of an OpenEXR file. Of OpenEXR, the first part with colours is read, at
+/// its largest resolution.
 ///
-/// Colours are brought to linear Rec.709 where the file says that they are others (`PRIMARIES`, `32-bit_rle_xyze`, `chromaticities`), by
-/// Bradford's adaptation. Values of Radiance HDR are over `EXPOSURE` and `COLORCORR`. Of OpenEXR the picture is the display window; alpha is
-/// left out.
+/// Colours are brought to linear Rec.709 if the file states other primaries (`PRIMARIES`, `32-bit_rle_xyze`,
+/// `chromaticities`), by Bradford's adaptation. Values of Radiance HDR are divided by `EXPOSURE` and `COLORCORR`. The
+/// picture of OpenEXR is the display window; alpha is left out.
 ///
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::ExrDecode`] for damaged and other files, [`TextureError::Unsupported`] for deep data,

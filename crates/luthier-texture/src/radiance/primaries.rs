@@ -17,18 +17,19 @@ pub(super) struct Primaries {
 const REC709: Primaries =
     Primaries { red: [0.64, 0.33], green: [0.3, 0.6], blue: [0.15, 0.06], white: [0.3127, 0.329] };
 
-/// Coordinates that differ less are those of Rec.709 with another number of digits.
+/// Largest difference of coordinates that count as equal: some files state those of Rec.709 with other numbers of
+/// digits.
 const NEAR: f64 = 1e-3;
 
 /// Bradford's responses of cones (Lam 1985), from XYZ.
 const BRADFORD: Matrix = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
 
 impl Primaries {
-    /// CIE XYZ as primaries, with the white of equal energy: that of Radiance's XYZE.
+    /// CIE XYZ as primaries, with the white of equal energy, as in Radiance's XYZE.
     pub(super) const XYZ: Self =
         Self { red: [1.0, 0.0], green: [0.0, 1.0], blue: [0.0, 0.0], white: [1.0 / 3.0, 1.0 / 3.0] };
 
-    /// Whether these are CIE XYZ, whose colours are those of any white.
+    /// Whether these are CIE XYZ, with any white.
     pub(super) fn is_xyz(&self) -> bool {
         self.near(&Self { white: self.white, ..Self::XYZ })
     }
@@ -46,10 +47,9 @@ impl Primaries {
         self.coordinates().iter().zip(other.coordinates()).all(|(a, b)| (a - b).abs() <= NEAR)
     }
 
-    /// The matrix from these primaries to CIE XYZ, 1 of each being white of luminance 1.
+    /// The matrix from these primaries to CIE XYZ. 1 of each is white of luminance 1.
     fn to_xyz(self) -> Option<Matrix> {
-        let column = |[x, y]: [f64; 2]| [x, y, 1.0 - x - y];
-        let columns = [self.red, self.green, self.blue].map(column);
+        let columns = [self.red, self.green, self.blue].map(|[x, y]| [x, y, 1.0 - x - y]);
         let unscaled: Matrix = [0, 1, 2].map(|row| columns.map(|column| column[row]));
         let scale = apply(&inverse(&unscaled)?, self.white_xyz()?);
         Some(unscaled.map(|row| [0, 1, 2].map(|k| row[k] * scale[k])))
@@ -60,7 +60,8 @@ impl Primaries {
         (y > 0.0).then(|| [x / y, 1.0, (1.0 - x - y) / y])
     }
 
-    /// The matrix to linear Rec.709; white becomes white, by Bradford's adaptation. `None` where the primaries span no colours.
+    /// The matrix to linear Rec.709 that turns white into white, by Bradford's adaptation. `None` if the primaries span
+    /// no colours.
     pub(super) fn to_rec709(self) -> Option<Matrix> {
         let [from, to] = [self, REC709].map(|primaries| primaries.white_xyz().map(|white| apply(&BRADFORD, white)));
         let (from, to) = (from?, to?);
@@ -78,7 +79,7 @@ impl Primaries {
         Some(product(&inverse(&REC709.to_xyz()?)?, &self.to_xyz()?))
     }
 
-    /// As sentences have them.
+    /// The coordinates, for a sentence.
     pub(super) fn words(&self) -> String {
         let [red, green, blue, white] =
             [self.red, self.green, self.blue, self.white].map(|[x, y]| format!("{x:.4}, {y:.4}"));
@@ -102,10 +103,15 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 fn inverse(m: &Matrix) -> Option<Matrix> {
-    let at = |row: usize, column: usize| m[row % 3][column % 3];
-    let cofactor = |r: usize, c: usize| at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1);
-    let determinant: f64 = (0..3).map(|c| m[0][c] * cofactor(0, c)).sum();
-    (determinant.abs() > 1e-12).then(|| [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(c, r) / determinant)))
+    let determinant: f64 = (0..3).map(|c| m[0][c] * cofactor(m, 0, c)).sum();
+    (determinant.abs() > 1e-12).then(|| [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(m, c, r) / determinant)))
+}
+
+/// A cofactor, from the two rows and columns that follow in the cycle.
+fn cofactor(m: &Matrix, row: usize, column: usize) -> f64 {
+    let [a, b] = [1, 2].map(|k| m[(row + k) % 3]);
+    let [c, d] = [1, 2].map(|k| (column + k) % 3);
+    a[c] * b[d] - a[d] * b[c]
 }
 
 #[cfg(test)]

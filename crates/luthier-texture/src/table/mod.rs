@@ -1,8 +1,9 @@
-//! Tables made by others: DDS, KTX2, EXR, PNG, Radiance HDR or raw values, of the formats that tables come in. To read only.
+//! Tables of other programs, to read: DDS, KTX2, EXR, PNG, Radiance HDR or raw values, in the formats that tables come
+//! in.
 //!
-//! [`read`] tells the container by its first bytes. Values are what a shader gets from a sampler: unsigned normalised over their
-//! maximum, sRGB formats of DDS and KTX2 linearised. PNG files do not say what they hold; their values are taken as stored.
-//! The largest level of the first layer is read; cube maps, volumes and block-compressed formats are refused.
+//! [`read`] tells the container by its first bytes. Values are those of a sampler: unsigned normalised over their
+//! maximum, sRGB formats of DDS and KTX2 linearised. PNG files do not state their content, so their values stay as
+//! stored. The largest level of the first layer is read. Cube maps, volumes and block-compressed formats are refused.
 
 use std::io::Cursor;
 
@@ -15,16 +16,24 @@ use crate::size::checked_bytes;
 use crate::texels::{Samples, TexelLayout};
 use crate::{TextureError, dds, exr, ktx2, png, radiance};
 
-/// A table as it is in a file.
+/// A table as read from a file.
+///
+/// ```
+/// use luthier_texture::{Samples, table};
+///
+/// let table = table::raw(&[0, 255], 2, 1, 1, Samples::Unorm8)?;
+/// assert_eq!((table.image.data, table.format.as_str()), (vec![0.0, 1.0], "raw r8unorm"));
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// Its values, 1 to 4 channels in the order R, G, B, A.
     pub image: Image,
     /// How one value is stored.
     pub samples: Samples,
-    /// The file format, and the texel format where it has a name.
+    /// The file format, and the name of the texel format if it has one.
     pub format: String,
-    /// A sentence for each thing of the file that was converted or left out.
+    /// A sentence for each part of the file that was converted or left out.
     pub notes: Vec<String>,
 }
 
@@ -59,7 +68,7 @@ pub fn read(file: &[u8]) -> Result<Table, TextureError> {
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Channels`], and [`TextureError::Length`] (in values) when the bytes do not fit.
 pub fn raw(file: &[u8], width: u32, height: u32, channels: u32, samples: Samples) -> Result<Table, TextureError> {
-    // Ten bits come in words of four values.
+    // Ten-bit texels are words of four values.
     if !(1..=4).contains(&channels) || samples == Samples::Unorm10 && channels != 4 {
         return Err(TextureError::Channels(channels));
     }
@@ -72,8 +81,8 @@ pub fn raw(file: &[u8], width: u32, height: u32, channels: u32, samples: Samples
     Ok(Table { image: layout.image(width, height, file), samples, format: format!("raw {layout}"), notes: Vec::new() })
 }
 
-/// The first layer of an EXR file without deep data, of any compression. Channels are put in the order R, G, B, A where they are
-/// called so, X, Y, Z, V otherwise, or else by name.
+/// Reads the first layer of an EXR file without deep data, of any compression. Channels come in the order R, G, B, A,
+/// X, Y, Z, V, then the others by name.
 fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
     // All sizes are checked before anything is allocated for them.
     let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(file), true).map_err(exr::read_error)?;

@@ -1,6 +1,6 @@
 //! Tiles of the slope distribution, `pi alpha^2 D`, which is 1 at the normal for every alpha.
 
-mod search;
+pub(crate) mod search;
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -31,10 +31,11 @@ impl Kind for Table {
         let size = ask.one("bake.distribution.size", |b| b.distribution.size)?.unwrap_or([512, 512]);
         let exponent = ask.one("bake.distribution.exponent", |b| b.distribution.exponent)?.unwrap_or(8.0);
         let mapping = ask.one("bake.distribution.mapping", |b| b.distribution.mapping)?;
-        let theta = |mapping| axis("theta_h", "rad", [0.0, FRAC_PI_2], size[0], mapping);
         let angle = match mapping.unwrap_or(DistributionMapping::Power) {
-            DistributionMapping::Power => theta(Mapping::Power { exponent }),
-            DistributionMapping::Linear => theta(Mapping::Linear),
+            DistributionMapping::Power => {
+                axis("theta_h", "rad", [0.0, FRAC_PI_2], size[0], Mapping::Power { exponent })
+            }
+            DistributionMapping::Linear => axis("theta_h", "rad", [0.0, FRAC_PI_2], size[0], Mapping::Linear),
             DistributionMapping::CosPower => {
                 axis("cos_theta_h", "", [0.0, 1.0], size[0], Mapping::Power { exponent: 1.0 / exponent })
             }

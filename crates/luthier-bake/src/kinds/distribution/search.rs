@@ -16,7 +16,7 @@ const SIDES: [u32; 3] = [32, 64, 128];
 const EXPONENTS: [f64; 2] = [4.0, 8.0];
 const FORMATS: [TexelFormat; 2] = [TexelFormat::R16Float, TexelFormat::Rg16Float];
 
-/// Cost of the closed form: of Beckmann, the dearer (an exponential, two divisions, six products).
+/// Cost of the closed form of Beckmann, the dearer of the two (an exponential, two divisions, six products).
 const CLOSED_FORM: f64 = 3.0 * cost::QUARTER_RATE + 6.0;
 
 /// Cost of the angle from cosine and sine: a root, two divisions, a polynomial.
@@ -55,7 +55,8 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     Some(Found::new(TableKind::Distribution, price(&axes(8.0, 512), TexelFormat::Rg16Float), candidates))
 }
 
-fn axes(exponent: f64, side: u32) -> [Axis; 2] {
+/// The axes of a square table: a power of the angle, and logarithms of alpha.
+pub(crate) fn axes(exponent: f64, side: u32) -> [Axis; 2] {
     [
         axis("theta_h", "rad", [0.0, FRAC_PI_2], side, Mapping::Power { exponent }),
         axis("alpha", "", [ALPHA_MIN, 1.0], side, Mapping::Logarithmic),

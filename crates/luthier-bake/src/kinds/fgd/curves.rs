@@ -6,19 +6,20 @@ use luthier_optics::color::{Color, WavelengthNode, luminance};
 use luthier_optics::interface::{Interface, Sampled};
 use rayon::prelude::*;
 
-/// Largest change of the share of the light after the first bounce by wavelengths that are left out; the first bounce has all.
+/// Largest error by left-out wavelengths in the light after the first bounce. The first bounce has all wavelengths.
 const SPECTRUM_TOLERANCE: f64 = 4e-4;
 
-/// Largest change of the crossed part of films by wavelengths that are left out; that part is a fraction of the light.
+/// Largest error by left-out wavelengths in the crossed part of films, which is a fraction of the light.
 const CROSSED_SPECTRUM_TOLERANCE: f64 = 2e-2;
 
-/// Where spectra are compared to decide which wavelengths are left out.
+/// Cosines at which spectra are compared to decide which wavelengths are left out.
 const SPECTRUM_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
 
-/// Powers of the reflectance that are compared: as many reflections.
+/// Highest power of the reflectance that is compared: as many reflections.
 const SPECTRUM_POWERS: i32 = 3;
 
-/// Step between the points of the error scan that take all wavelengths; 16 columns and 10 of nodes are no multiples of it.
+/// Step between the points of the error scan that take all wavelengths. It divides neither 16 nor 10, the lengths of the
+/// scan's rows, so that these points lie in all columns.
 const SPECTRUM_PROBES: usize = 23;
 
 /// Reflectance curves of an interface at the wavelengths of a colour mode: all, and enough for later bounces.
@@ -27,7 +28,7 @@ pub(super) struct Curves {
     later: Weighted,
 }
 
-/// Albedo of the first bounce, and share of the rest that comes out in the end.
+/// Albedo of the first bounce, and share of the remaining light that comes out in the end.
 pub(super) struct Bounces {
     pub(super) first: Rgb,
     pub(super) later_share: Rgb,
@@ -48,8 +49,7 @@ impl Curves {
         }
     }
 
-    /// Largest change of an albedo by all wavelengths in place of the sparse ones, at some points of the error scan, and that in the root
-    /// mean square.
+    /// Largest and root mean square error of albedos by the left-out wavelengths, at some points of the error scan.
     pub(super) fn spectrum_error(&self, probes: &[([f64; 2], FacetStatistics)]) -> [f64; 2] {
         let errors: Vec<f64> = probes
             .par_iter()
@@ -103,8 +103,9 @@ fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<Wavelengt
     color.sparse_nodes(&spectra, tolerance)
 }
 
-/// The curves that stand for an interface in its crossed part. Films colour it strongly and get a curve per wavelength, and an F0 in
-/// colour one per channel; for other bare interfaces, whose index varies little, the mean by luminance serves all channels.
+/// The curves of an interface in its crossed part. Films colour it strongly and get a curve per wavelength; a coloured
+/// F0 gets one per channel. The index of other bare interfaces varies little: their mean by luminance serves all
+/// channels.
 pub(super) fn crossed_curves(interface: &Interface, color: &Color) -> Weighted {
     if interface.below.f0().is_some_and(|[r, g, b]| r != g || g != b) {
         return Weighted::new(interface.at_nodes(&sparse(interface, color, CROSSED_SPECTRUM_TOLERANCE)));

@@ -1,5 +1,5 @@
-//! How light meets the facets of a slope distribution, over the whole domain of a table: the part of FGD-infinity that no
-//! material enters, computed once for all of them.
+//! Statistics of light among the facets of a slope distribution, over the whole domain of a table. They are the part of
+//! FGD-infinity that does not depend on a material, and are computed once for all.
 
 use luthier_layers::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use luthier_lut::{Axis, Scan};
@@ -19,23 +19,24 @@ use super::smooth::savitzky_golay;
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 
-/// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
+/// Effort at the nodes, and at the points of the error scan. Nodes take less: smoothing shares their noise among
+/// neighbours.
 const EFFORT: [Effort; 2] = [Effort { first: 20, later: 40 }, Effort { first: 28, later: 72 }];
 
-/// Effort for reflectances with a kink, which quadratures resolve slowly. The walks of a point stay below the 65536 that the sequence of
-/// their random numbers has.
+/// Effort for reflectances with a kink, which quadratures resolve slowly. A point takes fewer walks than the 65536
+/// members of the random sequence.
 const KINKED_EFFORT: [Effort; 2] = [Effort { first: 64, later: 40 }, Effort { first: 128, later: 72 }];
 
 /// Points of the error scan between nodes, along each axis.
 const PROBES: u32 = 16;
 
-/// Most intervals along each axis between the nodes that the error scan has too, the last ones among them.
+/// Most intervals along each axis whose ends the error scan has too. The ends of the axes are among these.
 const PROBED_INTERVALS: u32 = 9;
 
-/// Where errors are measured: directions up to 89.5 degrees.
+/// Least cosine at which errors are measured: 89.5 degrees.
 pub(crate) const DOMAIN_COS_THETA: f64 = 0.0087;
 
-/// Where errors are measured: from this alpha on.
+/// Least alpha at which errors are measured.
 pub(crate) const DOMAIN_ALPHA: f64 = 0.01;
 
 #[derive(Debug, Clone)]
@@ -72,7 +73,7 @@ impl Job for FacetGridJob {
         Artefact::new(self.grid())
     }
 
-    /// It has 300 MB, and the truth of every interface that was made of it is kept.
+    /// Not kept: it has 300 MB, and the truths of interfaces that are made of it are kept.
     fn is_kept(&self) -> bool {
         false
     }
@@ -92,10 +93,6 @@ impl FacetGridJob {
                 self.at(u, self.efforts()[0], seed(texel))
             })
             .collect();
-        let probed = |axis: &Axis| {
-            let intervals = axis.intervals();
-            (1..=PROBED_INTERVALS).rev().find(|n| intervals.is_multiple_of(*n)).unwrap_or(1)
-        };
         let scan = Scan {
             points: [PROBES, PROBES],
             from: [x.encode(DOMAIN_COS_THETA), y.encode(DOMAIN_ALPHA)],
@@ -106,7 +103,7 @@ impl FacetGridJob {
         FacetGrid { nodes, probes: self.probes(scan.coordinates()) }
     }
 
-    /// Statistics at some coordinates, as exact as those that a table is compared with.
+    /// Statistics at some coordinates, with the effort of the error scan.
     pub(crate) fn probes(&self, at: impl IntoIterator<Item = [f64; 2]>) -> Vec<([f64; 2], FacetStatistics)> {
         let at: Vec<[f64; 2]> = at.into_iter().collect();
         (0..at.len() as u32)
@@ -124,6 +121,12 @@ impl FacetGridJob {
         let [cos_theta, alpha] = [0, 1].map(|k: usize| self.axes[k].decode(u[k]));
         FacetStatistics::new(self.distribution, alpha, cos_theta, effort, seed)
     }
+}
+
+/// Number of intervals of an axis whose ends the error scan has too: the largest allowed divisor of the axis'
+/// intervals.
+fn probed(axis: &Axis) -> u32 {
+    (1..=PROBED_INTERVALS).rev().find(|n| axis.intervals().is_multiple_of(*n)).unwrap_or(1)
 }
 
 /// Seed of the walks of a texel: neighbours get unrelated ones (Wang's integer hash).
@@ -148,7 +151,7 @@ pub(crate) struct CrossedJob {
 /// Nodes of the coarse grid along each axis.
 const CROSSED_NODES: u32 = 16;
 
-/// Nodes for films, which may reflect next to nothing but at grazing angles.
+/// Nodes for films. They are more, because films may reflect next to nothing but at grazing angles.
 const CROSSED_NODES_FILM: u32 = 32;
 
 /// Walks per node.
@@ -157,14 +160,14 @@ const CROSSED_WALKS: u32 = 256;
 /// Walks per node of films, per wavelength.
 const CROSSED_WALKS_FILM: u32 = 64;
 
-/// Walks per node from the denser side, from which far more of the light crosses and comes back.
+/// Walks per node from the denser side. They are more, because far more of the light crosses and comes back.
 const CROSSED_WALKS_DENSE: u32 = 1024;
 
-/// Intervals along each axis at whose ends, the borders of the table among them, the grid is compared with the mean of some families
-/// of walks.
+/// Intervals along each axis whose ends, borders of the table included, the grid is checked at. It is compared with the
+/// mean of some families of walks.
 const CROSSED_PROBES: u32 = 6;
 
-/// Number of families of walks that the grid is compared with; each has the walks of a node.
+/// Number of families of walks that the grid is compared with. Each has as many walks as a node.
 const CROSSED_FAMILIES: u32 = 4;
 
 /// The crossed part over coordinates `u` of the table.
@@ -172,9 +175,9 @@ const CROSSED_FAMILIES: u32 = 4;
 pub(crate) struct CrossedGrid {
     side: usize,
     values: [Vec<f64>; 3],
-    /// Largest difference found, and the uncertainty of what it was found against.
+    /// Largest difference found, plus the standard error of the reference.
     pub(crate) max_abs_err: f64,
-    /// Root mean square of the differences found, with the uncertainty.
+    /// Root mean square of the differences, standard errors included.
     pub(crate) rms_err: f64,
 }
 
@@ -239,7 +242,8 @@ impl CrossedJob {
         grid
     }
 
-    /// Index below over index above at one wavelength for all: dispersion changes this small part by a few percent of itself.
+    /// Relative index at one wavelength, for all wavelengths: dispersion changes this small part by a few percent of
+    /// itself.
     fn eta(&self) -> f64 {
         let Interface { above, below, .. } = &self.interface;
         below.at(REFRACTION_WAVELENGTH_NM).re / above.at(REFRACTION_WAVELENGTH_NM).re
@@ -263,7 +267,8 @@ impl CrossedJob {
     }
 }
 
-/// How far a value may be off the mean of independent estimates: the difference, and the standard error of the mean.
+/// Bound on the error of a value against the mean of independent estimates: the difference plus the standard error of
+/// the mean.
 fn off(estimates: impl ExactSizeIterator<Item = f64> + Clone, value: f64) -> f64 {
     let count = estimates.len() as f64;
     let mean = estimates.clone().sum::<f64>() / count;
@@ -272,7 +277,7 @@ fn off(estimates: impl ExactSizeIterator<Item = f64> + Clone, value: f64) -> f64
 }
 
 impl CrossedGrid {
-    /// Cubic between the coarse nodes, per channel.
+    /// The crossed part at coordinates, by cubics between the coarse nodes, per channel.
     pub(crate) fn at(&self, u: [f64; 2]) -> Rgb {
         let [(i, x), (j, y)] = u.map(|u| cubic_stencil(u * (self.side - 1) as f64, self.side));
         let mut rgb = [0.0; 3];

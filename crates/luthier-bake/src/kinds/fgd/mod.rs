@@ -9,9 +9,8 @@ use std::sync::Arc;
 
 use luthier_lut::{Axis, Comparison, Image, Mapping, TableKind, TexelFormat, WeightBits, measure_at};
 use luthier_manifest::{CandidateForm, MeasuredError};
-use luthier_material::{BakeSettings, Material};
+use luthier_material::BakeSettings;
 use luthier_optics::Rgb;
-use luthier_optics::albedo::FacetStatistics;
 use luthier_optics::color::{Color, luminance};
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Distribution};
@@ -32,10 +31,10 @@ use crate::settings::{Ask, Asked, Shape, axis};
 use crate::tile::{TileData, color_in_words, lone_tile};
 use crate::{BakeError, json};
 
-/// Points of the error scan in a cell that has a critical angle, along the cosine.
+/// Points of the error scan along the cosine, in a cell with a critical angle.
 const KINK_POINTS: u32 = 8;
 
-/// The alphas there: roughness wears the kink away.
+/// Alphas of the error scan in such a cell: roughness wears the kink away.
 const KINK_ALPHAS: [f64; 4] = [DOMAIN_ALPHA, 0.03, 0.1, 0.3];
 
 /// FGD tables.
@@ -50,11 +49,11 @@ impl Kind for Table {
         ];
         let format = ask.format("bake.fgd.format", |b| b.fgd.format, TexelFormat::Rgba16Float)?;
         if let Some(&side) = size.iter().find(|side| !side.is_multiple_of(format.block_side())) {
-            let asks = |has: fn(&Material) -> bool| ask.0.iter().position(has);
-            let sized = asks(|m| m.bake.fgd.size.is_some()).map(|material| (material, "bake.fgd.size"));
-            let (material, setting) = sized
-                .or_else(|| Some((asks(|m| m.bake.fgd.format.is_some())?, "bake.fgd.format")))
-                .unwrap_or((0, "bake.fgd.size"));
+            let sized = ask.0.iter().position(|m| m.bake.fgd.size.is_some());
+            let (material, setting) = match ask.0.iter().position(|m| m.bake.fgd.format.is_some()) {
+                Some(material) if sized.is_none() => (material, "bake.fgd.format"),
+                _ => (sized.unwrap_or(0), "bake.fgd.size"),
+            };
             return Err(BakeError::Blocks { material, setting, format, side });
         }
         Ok(Shape::grid(axes, format))
@@ -88,7 +87,8 @@ impl Kind for Table {
     }
 }
 
-/// The values of a tile on the grid where they are computed: what its table settings do not enter.
+/// The values of a tile on the grid of their computation. Settings of the table are no inputs, so all sizes and formats
+/// share them.
 #[derive(Debug, Clone)]
 pub(crate) struct FgdTruthJob {
     pub(crate) interface: Interface,
@@ -104,11 +104,12 @@ pub(crate) struct FgdTruthJob {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct FgdTruth {
     pub(crate) image: Image,
-    /// Axis values, and the function there.
+    /// Axis values, and the values of the function there.
     pub(crate) probes: Vec<([f64; 2], [f64; 4])>,
-    /// Axis values around critical angles, and the function there.
+    /// Axis values around critical angles, and the values of the function there.
     pub(crate) kinks: Vec<([f64; 2], [f64; 4])>,
-    /// Error of the function itself: light that crossed, and wavelengths left out. The worst of all may meet.
+    /// Error of the function itself: the sum of the largest errors of crossed light and of left-out wavelengths, which
+    /// may meet.
     pub(crate) slack: f64,
     /// Root mean square of the error of the function itself.
     pub(crate) slack_rms: f64,
@@ -150,7 +151,7 @@ impl FgdTruthJob {
         FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() }
     }
 
-    /// The cosines below which all light is totally reflected, at the wavelengths that have one.
+    /// Critical cosines: below them all light is totally reflected. One for each wavelength that has such an angle.
     fn critical_cosines(&self) -> Vec<f64> {
         let cosines = self.color.nodes().into_iter().filter_map(|node| {
             let at = self.interface.at(node.wavelength_nm, 0);
@@ -160,7 +161,8 @@ impl FgdTruthJob {
         cosines.collect()
     }
 
-    /// Coordinates around the critical angles, where smooth tables are worst: in every cell that has one, and beside it.
+    /// Coordinates around the critical angles, where smooth tables are worst: in every cell with such an angle, and
+    /// beside it.
     fn kinks(&self) -> Vec<[f64; 2]> {
         let [x, y] = &self.grid;
         let critical = self.critical_cosines();
@@ -192,7 +194,6 @@ impl FgdTruthJob {
         let grid: &FacetGrid = inputs.part(&facets);
         let crossed: Option<&CrossedGrid> = self.crossed().map(|job| inputs.part(&job));
         let curves = Curves::new(&self.interface, &self.color);
-        let crossed_at = |u| crossed.map_or([0.0; 3], |c| c.at(u));
 
         let bounces: Vec<Bounces> = grid.nodes.par_iter().map(|s| curves.bounces(s)).collect();
         let mut later: [Vec<f64>; 3] = [0, 1, 2].map(|c: usize| bounces.iter().map(|b| b.later_share[c]).collect());
@@ -203,18 +204,22 @@ impl FgdTruthJob {
         for (i, (statistics, b)) in grid.nodes.iter().zip(&bounces).enumerate() {
             let never_crossed: Rgb = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * later[c][i]);
             let (column, row) = (i as u32 % x.size, i as u32 / x.size);
-            let back = crossed_at([x.node_coordinate(f64::from(column)), y.node_coordinate(f64::from(row))]);
+            let u = [x.node_coordinate(f64::from(column)), y.node_coordinate(f64::from(row))];
+            let back = crossed.map_or([0.0; 3], |crossed| crossed.at(u));
             let [r, g, b] = [0, 1, 2].map(|c: usize| (never_crossed[c] + back[c]) as f32);
             image.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
         }
 
-        let value = |(u, statistics): &([f64; 2], FacetStatistics)| {
-            let (b, back) = (curves.bounces(statistics), crossed_at(*u));
-            let never_crossed: Rgb = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
-            let [r, g, b] = [0, 1, 2].map(|c: usize| never_crossed[c] + back[c]);
-            ([x.decode(u[0]), y.decode(u[1])], [r, g, b, luminance(never_crossed)])
-        };
-        let [probes, kinks] = [&grid.probes, &kinks].map(|points| points.par_iter().map(value).collect());
+        let [probes, kinks] = [&grid.probes, &kinks].map(|points| {
+            let values = points.par_iter().map(|(u, statistics)| {
+                let (b, back) = (curves.bounces(statistics), crossed.map_or([0.0; 3], |crossed| crossed.at(*u)));
+                let never_crossed: Rgb =
+                    [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
+                let [r, g, b] = [0, 1, 2].map(|c: usize| never_crossed[c] + back[c]);
+                ([x.decode(u[0]), y.decode(u[1])], [r, g, b, luminance(never_crossed)])
+            });
+            values.collect()
+        });
         let ([spectrum, spectrum_rms], [back, back_rms]) =
             (curves.spectrum_error(&grid.probes), crossed.map_or([0.0; 2], |c| [c.max_abs_err, c.rms_err]));
         FgdTruth { image, probes, kinks, slack: back + spectrum, slack_rms: libm::hypot(back_rms, spectrum_rms) }
@@ -225,7 +230,7 @@ impl FgdTruthJob {
 #[derive(Debug, Clone)]
 pub(crate) struct FgdJob {
     pub(crate) truth: FgdTruthJob,
-    /// cos_theta and alpha of the tile; other nodes than those of the grid are interpolated.
+    /// cos_theta and alpha of the tile. Nodes that the grid lacks are interpolated.
     pub(crate) axes: [Axis; 2],
     pub(crate) format: TexelFormat,
 }
@@ -253,15 +258,16 @@ impl Job for FgdJob {
         let truth =
             if self.axes == self.truth.grid { image.clone() } else { resampled(image, &self.truth.grid, &self.axes) };
         let atlas = lone_tile(TableKind::Fgd, &[x, y], self.format, &truth);
-        let compared = |&(at, expected): &([f64; 2], [f64; 4])| {
-            let mut sampled = atlas.sample(0, at, WeightBits::Fixed(8));
-            // Formats without a fourth channel hold reflected light alone.
-            if self.format.channels() < 4 {
-                sampled[3] = expected[3];
-            }
-            (at.to_vec(), Comparison { expected, sampled })
-        };
-        let [error, worst] = [probes, kinks].map(|points| measure_at(points.iter().map(compared)));
+        let [error, worst] = [probes, kinks].map(|points| {
+            measure_at(points.iter().map(|&(at, expected)| {
+                let mut sampled = atlas.sample(0, at, WeightBits::Fixed(8));
+                // Formats without a fourth channel hold reflected light alone.
+                if self.format.channels() < 4 {
+                    sampled[3] = expected[3];
+                }
+                (at.to_vec(), Comparison { expected, sampled })
+            }))
+        });
         let error = error.with_worst_of(worst).with_slack(*slack, *slack_rms);
         let model = format!(
             "directional albedo with all bounces, height-correlated Smith, {}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \

@@ -27,15 +27,15 @@ pub(super) fn candidates(plan: &Plan, results: &Results, colors: bool) -> Option
     Some(Found::new(TableKind::Fgd, fixed_cost, found))
 }
 
-/// The tiles of a plan on the grid where they are computed.
+/// The tiles of a plan on the grid of their computation.
 pub(super) fn tiles(plan: &Plan, results: &Results) -> Vec<Fine> {
-    let tile = |(_, job): (usize, &FgdJob)| {
+    let tiles = plan.jobs(TableKind::Fgd).map(|(_, job): (usize, &FgdJob)| {
         let FgdTruth { image, mut probes, kinks, slack, .. } = results.part::<FgdTruth>(&job.truth).clone();
         probes.extend(kinks);
         let grid = plan.settings.fixed(TableKind::Fgd).axes();
         Fine { kind: TableKind::Fgd, grid, image, probes, channels: 4, slack }
-    };
-    plan.jobs(TableKind::Fgd).map(tile).collect()
+    });
+    tiles.collect()
 }
 
 fn axes(plan: &Plan) -> Vec<[Axis; 2]> {

@@ -24,10 +24,10 @@ use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, color_in_words, lone_tile};
 use crate::{BakeError, json};
 
-/// Points of the error scan along each axis; the search from the worst of them finds what lies between.
+/// Points of the error scan along each axis. The climb from the worst of them finds worse places in between.
 const SCAN: u32 = 128;
 
-/// Steps of the sequence of points in the unit square.
+/// Steps of the R2 sequence in the unit square (Roberts 2018): powers of the inverse plastic number.
 const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 /// Film tables.
@@ -58,13 +58,13 @@ impl Kind for Table {
     }
 }
 
-/// Airy's reflectance over (cos_theta, d / d_max), integrated as the colour says: where Granier and Heidrich's phase row has two
-/// beams at three wavelengths, this has all beams at all of them. Where light is totally reflected the cosine is that of the refracted
-/// direction.
+/// Airy's reflectance over (cos_theta, d / d_max), integrated over the spectrum. Granier and Heidrich's phase row has
+/// two beams at three wavelengths; this table has all beams at all wavelengths. Under total reflection the cosine is
+/// that of the refracted direction.
 #[derive(Debug, Clone)]
 pub(crate) struct FilmJob {
     pub(crate) interface: Interface,
-    /// Thinnest and thickest of the top film; the thickest is at fraction 1.
+    /// Range of thickness of the top film; the thickest is at fraction 1.
     pub(crate) thickness: FilmThickness,
     pub(crate) color: Color,
     pub(crate) axes: [Axis; 2],
@@ -102,8 +102,9 @@ impl FilmJob {
         interface
     }
 
-    /// The least fraction that the film has. The tile goes on to 0, for films that a shader thins further; its error is stated from
-    /// here on. At 0 and grazing angles the function is not continuous: no film reflects nothing where any film reflects all.
+    /// The least fraction of the film. The tile goes on to 0, for films that a shader thins further; its error is
+    /// stated from the least fraction on. At 0 and grazing angles the function is not continuous: a film of any
+    /// thickness reflects all light there, no film none.
     fn least(&self) -> f64 {
         self.thickness.min_nm / self.thickness.max_nm
     }
@@ -116,14 +117,15 @@ impl FilmJob {
         let rows: Vec<Vec<f32>> = (0..y.size)
             .into_par_iter()
             .map(|j| {
-                let at = |i| reflectance(&thickest, y.node(j), incident_cosine(cot_sq, x.node(i)));
-                (0..x.size).flat_map(|i| at(i).map(|c| c as f32)).collect()
+                let cosines = (0..x.size).map(|i| incident_cosine(cot_sq, x.node(i)));
+                cosines.flat_map(|cos| reflectance(&thickest, y.node(j), cos).map(|c| c as f32)).collect()
             })
             .collect();
         Image { width: x.size, height: y.size, channels: 3, data: rows.concat() }
     }
 
-    /// The function at so many places where the film is: cosines are squares of a sequence of low discrepancy (Roberts 2018).
+    /// Values of the function at `count` places within the film's range. Cosines are squares of a sequence of low
+    /// discrepancy (Roberts 2018).
     pub(crate) fn probes(&self, count: u32) -> Vec<([f64; 2], [f64; 4])> {
         let thickest = self.thickest().sampled(&self.color);
         let (least, cot_sq) = (self.least(), thickest.critical_cot_sq());
@@ -175,7 +177,7 @@ impl FilmJob {
     }
 }
 
-/// The reflectance where the top film has a fraction of its greatest thickness.
+/// The reflectance at a fraction of the top film's greatest thickness.
 fn reflectance(thickest: &Sampled, fraction: f64, cos_theta_i: f64) -> Rgb {
     let mut films = Vec::new();
     thickest.sum(|at| {

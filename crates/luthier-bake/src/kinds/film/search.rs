@@ -29,25 +29,25 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     }
     let fixed_cost = grids::price(&finest(2.0), TexelFormat::Rgba16Float);
     let found = grids::candidates(&tiles, axes(), &plan.settings.allowed(&FORMATS), colors);
-    // Errors of film tiles are steep ridges along grazing angles, between the points of a search.
+    // Errors of film tiles are steep ridges along grazing angles. The points of a search miss their tops.
     Some(Found { is_whole: false, ..Found::new(TableKind::Film, fixed_cost, found) })
 }
 
 /// The tiles of a plan on the finest grid.
 pub(super) fn tiles(plan: &Plan) -> Vec<Fine> {
     let grid = finest(3.0);
-    let tile = |(_, job): (usize, &FilmJob)| Fine {
+    let tiles = plan.jobs(TableKind::Film).map(|(_, job): (usize, &FilmJob)| Fine {
         kind: TableKind::Film,
         image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
         grid: grid.clone(),
         probes: job.probes(PROBES),
         channels: 3,
         slack: 0.0,
-    };
-    plan.jobs(TableKind::Film).map(tile).collect()
+    });
+    tiles.collect()
 }
 
-/// The finest tiles that are tried.
+/// Axes of the finest tiles that are tried.
 fn finest(exponent: f64) -> [Axis; 2] {
     [
         axis("cos_theta", "", [0.0, 1.0], 96, Mapping::Power { exponent }),

@@ -27,13 +27,14 @@ use crate::{BakeError, json};
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 16;
 
-/// Points of the scan for each point that is added where all light is totally reflected.
+/// Points of the scan for each added point in the range of total reflection.
 const BEYOND: u32 = 8;
 
 /// Cosines at which the coefficient of the dip is fitted: squares of equal steps.
 const FIT_POINTS: u32 = 64;
 
-/// Steps of the search for that coefficient; each takes a third off the range of 32.
+/// Steps of the search for that coefficient. Each takes a third off the range, which starts at 32: the last is about
+/// 7e-5 wide.
 const FIT_STEPS: u32 = 32;
 
 /// Fresnel tables.
@@ -43,10 +44,9 @@ impl Kind for Table {
     fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError> {
         let mapping = ask.one("bake.fresnel.mapping", |b| b.fresnel.mapping)?.unwrap_or(FresnelMapping::Cosine);
         let size = ask.one("bake.fresnel.size", |b| b.fresnel.size)?.unwrap_or(128);
-        let cosine = |mapping| axis("cos_theta", "", [0.0, 1.0], size, mapping);
         let x = match mapping {
-            FresnelMapping::Cosine => cosine(Mapping::Linear),
-            FresnelMapping::SqrtCosine => cosine(Mapping::Power { exponent: 2.0 }),
+            FresnelMapping::Cosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Linear),
+            FresnelMapping::SqrtCosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Power { exponent: 2.0 }),
             FresnelMapping::Theta => axis("theta", "rad", [0.0, FRAC_PI_2], size, Mapping::Linear),
         };
         Ok(Shape::row(x, ask.format("bake.fresnel.format", |b| b.fresnel.format, TexelFormat::Rgba16Float)?))
@@ -117,30 +117,23 @@ impl Job for FresnelJob {
 impl FresnelJob {
     pub(crate) fn tile(&self) -> TileData {
         let curve = RowCurve::new(&self.interface, &self.color);
-        let reflectance = |cos_theta: f64| curve.at(cos_theta);
         let axis = &self.shape.axis;
-        let (atlas, truth) = self.shape.row(&reflectance, &SchlickBase::fit(&reflectance));
+        let (atlas, truth) = self.shape.row(&|cos| curve.at(cos), &SchlickBase::fit(&|cos| curve.at(cos)));
         let mut scan = Scan::whole([axis.intervals(), 0], [PER_CELL, 0]);
         if curve.critical_cot_sq > 0.0 {
-            // Coordinates below 0 are angles that are totally reflected, from the critical one to grazing.
             let beyond = f64::from(scan.points[0] / BEYOND) / f64::from(scan.points[0]);
             scan.points[0] += scan.points[0] / BEYOND;
             scan.from[0] = -beyond;
         }
-        let flattest = if axis.quantity == "theta" { axis.max } else { axis.min };
-        let value = |u: f64| if u < 0.0 { flattest } else { axis.decode(u) };
-        let incident = |u: f64| {
-            let at = incident_cosine(curve.critical_cot_sq, cos_theta(axis, value(u)));
-            if u < 0.0 { at * (1.0 - u / scan.from[0]) } else { at }
-        };
         let error = measure_scan(
             &scan,
             |u| {
-                let [r, g, b] = curve.sampled.rgb(incident(u[0]));
-                let read = atlas.sample(0, [value(u[0]), 0.0], WeightBits::Fixed(8));
+                let (value, incident) = curve.scanned(axis, u[0], scan.from[0]);
+                let [r, g, b] = curve.sampled.rgb(incident);
+                let read = atlas.sample(0, [value, 0.0], WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },
-            |u| vec![value(u[0])],
+            |u| vec![curve.scanned(axis, u[0], scan.from[0]).0],
         );
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
         let over = if curve.critical_cot_sq > 0.0 { ", over the cosine of the refracted direction" } else { "" };
@@ -157,10 +150,11 @@ impl FresnelJob {
     }
 }
 
-/// Curve of a row: the reflectance over the cosine of incidence, or where light is totally reflected over that of the refracted direction.
+/// The reflectance of a row, over the cosine of incidence. Under total reflection, it is over the cosine of the
+/// refracted direction.
 pub(crate) struct RowCurve {
     sampled: Sampled,
-    /// 0 over the cosine of incidence.
+    /// 0 if the axis is the cosine of incidence.
     pub(crate) critical_cot_sq: f64,
 }
 
@@ -174,6 +168,15 @@ impl RowCurve {
     pub(crate) fn at(&self, cos_theta: f64) -> Rgb {
         self.sampled.rgb(incident_cosine(self.critical_cot_sq, cos_theta))
     }
+
+    /// The value of an axis at a coordinate of its error scan, and the cosine of incidence there. Coordinates below 0
+    /// stand for totally reflected angles, which have no node: `from` is grazing, 0 the critical angle.
+    fn scanned(&self, axis: &Axis, u: f64, from: f64) -> (f64, f64) {
+        let flattest = if axis.quantity == "theta" { axis.max } else { axis.min };
+        let value = if u < 0.0 { flattest } else { axis.decode(u) };
+        let incident = incident_cosine(self.critical_cot_sq, cos_theta(axis, value));
+        (value, if u < 0.0 { incident * (1.0 - u / from) } else { incident })
+    }
 }
 
 /// The cosine at a value of the axis of a row.
@@ -182,12 +185,12 @@ pub(crate) fn cos_theta(axis: &Axis, value: f64) -> f64 {
 }
 
 impl RowShape {
-    /// The rows of a table.
+    /// The shape of a table's rows.
     pub(crate) fn of(shape: &Shape) -> Self {
         Self { axis: shape.x.clone(), format: shape.format, base: shape.base }
     }
 
-    /// A row of a reflectance over the cosine, as an atlas of its own, and its values at the nodes.
+    /// The row of a reflectance as an atlas of its own, and its values at the nodes.
     pub(crate) fn row(&self, reflectance: &dyn Fn(f64) -> Rgb, base: &SchlickBase) -> (Atlas, Image) {
         let mut truth = Image::zeros(self.axis.size, 1, 3);
         for i in 0..self.axis.size {
@@ -201,7 +204,7 @@ impl RowShape {
         (atlas, truth)
     }
 
-    /// The row of what Schlick's form misses, and the coefficients behind it.
+    /// The row of differences to Schlick's form, and the coefficients behind it.
     fn over_schlick(&self, truth: &Image, base: &SchlickBase) -> Atlas {
         let size = self.axis.size;
         let rounded = base.quantised(self.format);
@@ -215,7 +218,8 @@ impl RowShape {
         let missed = balance(&missed, f64::NEG_INFINITY);
         let max = self.format.unorm_max().unwrap_or(1.0);
         let span = SchlickBase::span(self.format);
-        // The next code above, so that every remainder is within reach of the texels; below half a code of it there is none.
+        // Rounded up to the next code, so that texels reach every difference. Differences below half a code are
+        // dropped.
         let scale = [0, 1, 2].map(|c: usize| {
             let largest = missed.texels().map(|t| f64::from(t[c]).abs()).fold(0.0, f64::max);
             let codes = largest / (span - 1.0) * max;
@@ -251,8 +255,8 @@ impl RowShape {
 
 /// Fits of [`SchlickBase`].
 pub(crate) trait Fit {
-    /// The closed form with the reflectance at normal and at grazing incidence, whose largest error over the cosine is least. `scale` is
-    /// left at 1.
+    /// The closed form with the exact values at normal and at grazing incidence, and the least largest error between.
+    /// `scale` is left at 1.
     fn fit(reflectance: &dyn Fn(f64) -> Rgb) -> Self;
 }
 
@@ -274,7 +278,7 @@ impl Fit for SchlickBase {
         let edge = [0, 1, 2].map(|c: usize| {
             let worst =
                 |edge: f64| points.iter().map(|(dip, missed)| (missed[c] - edge * dip).abs()).fold(0.0, f64::max);
-            // The largest error is convex in the coefficient.
+            // The largest error is convex in the coefficient, so thirds of the range can be cut off.
             let (mut low, mut high) = (-Self::EDGE_MAX, Self::EDGE_MAX);
             for _ in 0..FIT_STEPS {
                 let third = (high - low) / 3.0;

@@ -11,7 +11,7 @@ use crate::candidates::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form
 use crate::plan::Plan;
 use crate::settings::{Asked, axis};
 
-/// Nodes of a row: four to the octave, and those that make 384 bytes of texels of 4 and 8 bytes.
+/// Nodes of a row: four sizes to the octave, and the sizes of rows of 384 bytes with texels of 4 and 8 bytes.
 pub(crate) const SIZES: [u32; 33] = [
     2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 16, 19, 23, 27, 32, 38, 45, 48, 54, 64, 76, 93, 96, 108, 128, 152, 181, 215, 256,
     304, 362, 431, 512,
@@ -50,7 +50,8 @@ const PER_CELL: u32 = 5;
 /// More texels are tried while the error falls by a tenth within an octave.
 const STALLED: f64 = 0.9;
 
-/// Function that the row of one interface holds, from nodes at cubes of equal steps.
+/// The reflectance of one interface, from nodes at cubes of equal steps: they are dense at grazing angles, where it is
+/// steep.
 pub(crate) struct Truth {
     nodes: Vec<Rgb>,
     pub(crate) fit: SchlickBase,
@@ -91,27 +92,26 @@ impl Truth {
     }
 }
 
-/// Rows that candidates are measured on, the hardest of a plan: enough for the worst to be among them.
+/// Number of rows that candidates are measured on, the hardest of a plan. These are enough for the worst to be among
+/// them.
 const HARDEST: usize = 64;
 
-/// Equal steps of the root of the cosine by which rows are compared.
+/// Number of equal steps of the root of the cosine by which rows are ranked.
 const STEPS: u32 = 64;
 
-/// How much linear interpolation between [`STEPS`] misses.
+/// Largest error of linear interpolation between [`STEPS`], in the middle of a step.
 fn hardness(job: &FresnelJob) -> f64 {
     let curve = RowCurve::new(&job.interface, &job.color);
-    let at = |half: u32| {
-        let u = f64::from(half) / f64::from(2 * STEPS);
-        curve.at(u * u)
-    };
-    let missed = |step: u32| {
-        let [a, middle, b] = [0, 1, 2].map(|half| at(2 * step + half));
-        (0..3).map(|c| (0.5 * (a[c] + b[c]) - middle[c]).abs()).fold(0.0, f64::max)
-    };
-    (0..STEPS).map(missed).fold(0.0, f64::max)
+    let halves = (0..=2 * STEPS).map(|half| f64::from(half) / f64::from(2 * STEPS));
+    let halves: Vec<Rgb> = halves.map(|u| curve.at(u * u)).collect();
+    let missed = halves
+        .windows(3)
+        .step_by(2)
+        .map(|step| (0..3).map(|c| (0.5 * (step[0][c] + step[2][c]) - step[1][c]).abs()).fold(0.0, f64::max));
+    missed.fold(0.0, f64::max)
 }
 
-/// The rows of a plan by the numbers of their tiles; where they are many, the hardest first.
+/// The rows of a plan with the numbers of their tiles. Many rows are sorted, the hardest first.
 fn rows(plan: &Plan) -> Vec<(usize, &FresnelJob)> {
     let rows: Vec<(usize, &FresnelJob)> = plan.jobs(TableKind::Fresnel).collect();
     if rows.len() <= HARDEST {
@@ -152,22 +152,20 @@ pub(crate) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
 pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
     let CandidateForm::Table { x, format, base, .. } = form else { return Vec::new() };
     let shape = RowShape { axis: x.clone(), format: *format, base: *base };
-    let error = |(tile, job): &(usize, &FresnelJob)| (*tile, Truth::new(job).error(&shape, true));
-    rows(plan).par_iter().take(HARDEST).map(error).collect()
+    rows(plan).par_iter().take(HARDEST).map(|(tile, job)| (*tile, Truth::new(job).error(&shape, true))).collect()
 }
 
-/// The affordable candidates for the rows that are served by some of them, and which rows are not.
+/// The affordable candidates for the rows that some of them serve, and the numbers of the rows that none serves.
 pub(super) fn served(plan: &Plan) -> Option<Found> {
     let rows = rows(plan);
-    let of = |truths: &[&Truth]| of_rows(plan, truths, rows.len(), false).map(Found::affordable);
-    let all = of(&truths(&rows).iter().collect::<Vec<_>>())?;
+    let all = of_rows(plan, &truths(&rows).iter().collect::<Vec<_>>(), rows.len(), false)?.affordable();
     if all.comes_near(&DEFAULT_BUDGET) {
         return Some(all);
     }
     let (mut served, mut left_out) = (Vec::new(), Vec::new());
     for (tile, job) in &rows {
         let truth = Truth::new(job);
-        if !of(&[&truth]).is_some_and(|found| found.comes_near(&DEFAULT_BUDGET)) {
+        if !of_rows(plan, &[&truth], rows.len(), false).is_some_and(|f| f.affordable().comes_near(&DEFAULT_BUDGET)) {
             left_out.push(*tile);
         } else if served.len() + 1 < HARDEST {
             served.push(truth);
@@ -175,11 +173,11 @@ pub(super) fn served(plan: &Plan) -> Option<Found> {
             break;
         }
     }
-    let found = of(&served.iter().collect::<Vec<_>>()).unwrap_or(all);
+    let found = of_rows(plan, &served.iter().collect::<Vec<_>>(), rows.len(), false).map_or(all, Found::affordable);
     Some(Found { left_out, is_whole: rows.len() <= HARDEST, ..found })
 }
 
-/// The candidates of all `rows`, measured on these.
+/// The candidates of a plan with so many `rows`, measured on these truths.
 fn of_rows(plan: &Plan, truths: &[&Truth], rows: usize, colors: bool) -> Option<Found> {
     let asked = plan.settings.asked(TableKind::Fresnel);
     let given = RowShape::of(plan.settings.fixed(TableKind::Fresnel));
@@ -201,16 +199,14 @@ fn of_rows(plan: &Plan, truths: &[&Truth], rows: usize, colors: bool) -> Option<
         .flat_map(|&(base, format)| mappings.iter().map(move |axis| (base, format, axis)))
         .filter(|(base, _, axis)| base.is_zero() || axis.quantity == "cos_theta")
         .collect();
+    let sizes: &[u32] = if asked.size { &[given.axis.size] } else { &SIZES };
     let measured: Vec<Vec<Candidate>> = families
         .into_par_iter()
         .map(|(base, format, mapping)| {
-            let shape = |size| RowShape { axis: Axis { size, ..mapping.clone() }, format, base };
-            if asked.size {
-                return vec![candidate(&shape(given.axis.size), truths, rows, colors)];
-            }
             let mut family: Vec<Candidate> = Vec::new();
-            for size in SIZES {
-                family.push(candidate(&shape(size), truths, rows, colors));
+            for &size in sizes {
+                let shape = RowShape { axis: Axis { size, ..mapping.clone() }, format, base };
+                family.push(candidate(&shape, truths, rows, colors));
                 let earlier = family.len().checked_sub(5).map(|i| family[i].error.max_abs);
                 let best = family.iter().map(|c| c.error.max_abs).fold(f64::INFINITY, f64::min);
                 if size >= 16 && earlier.is_some_and(|earlier| best > STALLED * earlier) {

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use luthier_manifest::{CandidateForm, MeasuredError};
 use luthier_material::BakeSettings;
+use luthier_optics::Rgb;
 use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
 
@@ -87,18 +88,22 @@ impl Job for PhaseJob {
 }
 
 impl PhaseJob {
-    fn tile(&self) -> TileData {
+    /// The values of a row at a normalised thickness.
+    fn phase(&self, s: f64) -> Rgb {
         let waves = self.wavelengths_nm.map(|nm| 2.0 * self.thickness_max_nm * self.film.at(nm).re / nm);
-        let phase = |s: f64| waves.map(|w| 2.0 * libm::cos(2.0 * PI * w * s));
+        waves.map(|w| 2.0 * libm::cos(2.0 * PI * w * s))
+    }
+
+    fn tile(&self) -> TileData {
         let mut truth = Image::zeros(self.axis.size, 1, 3);
         for i in 0..self.axis.size {
-            truth.texel_mut(i, 0).copy_from_slice(&phase(self.axis.node(i)).map(|c| c as f32));
+            truth.texel_mut(i, 0).copy_from_slice(&self.phase(self.axis.node(i)).map(|c| c as f32));
         }
         let atlas = lone_tile(TableKind::Phase, &[&self.axis], self.format, &truth);
         let error = measure_scan(
             &Scan::whole([self.axis.intervals(), 0], [PER_CELL, 0]),
             |u| {
-                let [r, g, b] = phase(self.axis.decode(u[0]));
+                let [r, g, b] = self.phase(self.axis.decode(u[0]));
                 let read = atlas.sample(0, [self.axis.decode(u[0]), 0.0], WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },

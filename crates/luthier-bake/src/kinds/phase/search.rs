@@ -1,4 +1,4 @@
-//! Phase rows of films, and the cosines that they hold.
+//! Phase rows of films: tables, and the cosines computed instead.
 
 use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
@@ -12,7 +12,7 @@ use crate::settings::axis;
 const SIZES: [u32; 8] = [16, 32, 64, 128, 192, 256, 384, 512];
 const FORMATS: [TexelFormat; 2] = [TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
 
-/// Cosines of three phases, whole cycles taken off first.
+/// Cost of the cosines of three phases, each reduced to one cycle first.
 const CLOSED_FORM: f64 = 3.0 * (cost::QUARTER_RATE + 6.0);
 
 pub(super) fn candidates(plan: &Plan) -> Option<Found> {
@@ -23,8 +23,6 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     let formats = plan.settings.allowed(&FORMATS);
     let shapes: Vec<(u32, TexelFormat)> =
         SIZES.iter().flat_map(|&size| formats.iter().map(move |&format| (size, format))).collect();
-    // Three look-ups, one for the cosine of each channel.
-    let price = |format| 3.0 * (2.0 + cost::read(format));
     let mut candidates = vec![Candidate {
         form: CandidateForm::ClosedForm,
         bytes: 0,
@@ -41,6 +39,11 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     Some(Found::new(TableKind::Phase, price(TexelFormat::Rgba16Float), candidates))
 }
 
+/// The cost of three look-ups, one for the cosine of each channel.
+fn price(format: TexelFormat) -> f64 {
+    3.0 * (2.0 + cost::read(format))
+}
+
 /// The errors of rows in this form, by the numbers of their tiles.
 pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredError)> {
     let CandidateForm::Table { x, format, .. } = form else { return Vec::new() };
@@ -49,6 +52,6 @@ pub(super) fn errors(plan: &Plan, form: &CandidateForm) -> Vec<(usize, MeasuredE
 
 fn error(job: &PhaseJob, axis: &Axis, format: TexelFormat) -> MeasuredError {
     let error = PhaseJob { axis: axis.clone(), format, ..job.clone() }.tile().error.max_abs_err;
-    // A swing of 2 either way passes through 0: relative errors are those to its reach.
+    // The values swing between -2 and 2 and pass through 0. Errors are relative to 2.
     MeasuredError { max_abs: error, max_rel: 0.5 * error, ..MeasuredError::default() }
 }

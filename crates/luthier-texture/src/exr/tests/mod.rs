@@ -11,18 +11,20 @@ const OPENEXR: &[u8] = include_bytes!("openexr.exr");
 const NAMES: [&str; 4] = ["R", "G", "B", "A"];
 
 fn image(width: u32, height: u32, channels: u32) -> Image {
-    let count = width * height * channels;
-    let value = |i: u32| match i % 11 {
+    let values = (0..width * height * channels).map(|i| match i % 11 {
         0 => 1e-42,
         1 => -0.0,
         2 => f32::INFINITY,
         _ => libm::sinf(i as f32) * libm::powf(10.0, (i as i32 % 30 - 15) as f32),
-    };
-    Image { width, height, channels, data: (0..count).map(value).collect() }
+    });
+    Image { width, height, channels, data: values.collect() }
+}
+
+fn entry(key: &str, value: &str) -> (String, String) {
+    (key.to_owned(), value.to_owned())
 }
 
 fn metadata() -> Metadata {
-    let entry = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     vec![entry("an-entry-of-32-bytes-or-more-name", ""), entry("axis", "cos_theta"), entry("model", "Fresnel α")]
 }
 
@@ -46,10 +48,13 @@ fn the_file_is_by_the_book() {
     let image = Image { width: 1, height: 2, channels: 3, data: vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0] };
     let file = encode(&image, &RGB, &[("generator".to_owned(), "α".to_owned())].to_vec()).unwrap();
     assert_eq!(file[..8], [0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]);
-    let has = |bytes: &[u8]| file.windows(bytes.len()).any(|window| window == bytes);
-    assert!(has("luthier\0string\0\x12\0\0\0{\"generator\":\"α\"}\0".as_bytes()));
-    assert!(has("software\0string\0\x02\0\0\0α".as_bytes()));
-    assert!(has(b"compression\0compression\0\x01\0\0\0\x03"));
+    for bytes in [
+        "luthier\0string\0\x12\0\0\0{\"generator\":\"α\"}\0".as_bytes(),
+        "software\0string\0\x02\0\0\0α".as_bytes(),
+        b"compression\0compression\0\x01\0\0\0\x03",
+    ] {
+        assert!(file.windows(bytes.len()).any(|window| window == bytes), "{bytes:?}");
+    }
     let block = file.len() - 32;
     assert_eq!(file[block - 8..block], (block as u64).to_le_bytes());
     assert_eq!(file[block..block + 8], [0, 0, 0, 0, 24, 0, 0, 0]);
@@ -65,7 +70,6 @@ fn what_the_reference_library_writes_is_read() {
         let first = (i / 8) as f32 + (i % 8) as f32 / 8.0;
         assert_eq!(texel, [first, first + 10.0, first + 20.0, first + 30.0], "{i}");
     }
-    let entry = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     assert_eq!(metadata, [entry("axis", "cos_theta"), entry("model", "Fresnel α")]);
 }
 

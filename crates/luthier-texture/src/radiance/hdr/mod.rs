@@ -1,7 +1,7 @@
 //! Radiance pictures: scanlines of RGBE or XYZE texels, flat or with runs of either kind.
 //!
-//! A value is the mantissa over 256 times 2^(exponent - 128), without the half step that Radiance adds, as most readers take it.
-//! The reader of `image` knows one order of scanlines alone, and no XYZE.
+//! A value is the mantissa over 256 times 2^(exponent - 128). Radiance adds a half step to the mantissa; most readers
+//! do not, and neither does this one. The reader of `image` knows only one order of scanlines, and no XYZE.
 
 use luthier_lut::Image;
 
@@ -14,7 +14,7 @@ use crate::size::checked_bytes;
 /// Bytes of a stored texel.
 const TEXEL: usize = 4;
 
-/// Lengths of scanlines that runs plane by plane are written for.
+/// Lengths of scanlines for which writers store runs plane by plane.
 const PLANES: std::ops::RangeInclusive<usize> = 8..=0x7fff;
 
 pub(super) fn decode(file: &[u8]) -> Result<Picture, TextureError> {
@@ -24,7 +24,7 @@ pub(super) fn decode(file: &[u8]) -> Result<Picture, TextureError> {
     let (lines, length) = if order.columns { (width, height) } else { (height, width) };
     let (lines, length) = (lines as usize, length as usize);
     let bytes = &file[header.length..];
-    // A texel, and one mark of a run for each eight bits of its length.
+    // The shortest scanline: a texel, and one mark of a run for each eight bits of its length.
     let shortest = TEXEL
         * if length == 1 {
             1
@@ -69,7 +69,7 @@ pub(super) fn decode(file: &[u8]) -> Result<Picture, TextureError> {
     Ok(Picture { image, notes })
 }
 
-/// Brings colours to Rec.709, and says so.
+/// Brings colours to Rec.709, and returns notes about it.
 fn converted(header: &Header, image: &mut Image) -> Result<Vec<String>, TextureError> {
     let mut notes = Vec::new();
     if let Some(primaries) = &header.primaries {
@@ -139,7 +139,7 @@ fn scanline(stream: &mut Stream<'_>, texels: &mut [[u8; TEXEL]]) -> Result<(), F
     (0..TEXEL).try_for_each(|plane| runs_of_bytes(stream, plane, texels))
 }
 
-/// One byte of each texel: up to 128 bytes as they are, or a byte that is repeated.
+/// Reads one byte of each texel, in runs: up to 128 bytes as they are, or a repeated byte.
 fn runs_of_bytes(stream: &mut Stream<'_>, plane: usize, texels: &mut [[u8; TEXEL]]) -> Result<(), Fault> {
     let mut at = 0;
     while at < texels.len() {
@@ -158,7 +158,8 @@ fn runs_of_bytes(stream: &mut Stream<'_>, plane: usize, texels: &mut [[u8; TEXEL
     Ok(())
 }
 
-/// Whole texels; one with the mantissas 1, 1, 1 repeats the last as often as its exponent says, and one behind it 256 times as often.
+/// Reads whole texels. A texel with the mantissas 1, 1, 1 repeats the last one as often as its exponent says; a further
+/// one counts 256 times as much.
 fn runs_of_texels(stream: &mut Stream<'_>, first: [u8; TEXEL], texels: &mut [[u8; TEXEL]]) -> Result<(), Fault> {
     if first[..3] == [1; 3] {
         return Err(Fault::Start);

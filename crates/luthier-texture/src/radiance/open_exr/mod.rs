@@ -87,10 +87,10 @@ fn part(headers: &[Header]) -> Result<(usize, Colors), TextureError> {
     )))
 }
 
-/// Channels that an error lists.
+/// Most channels that an error lists.
 const LISTED: usize = 24;
 
-/// The display window, and where the data window lies in it.
+/// The display window, and the data window in it.
 struct Window {
     size: [i64; 2],
     display: IntegerBounds,
@@ -104,8 +104,8 @@ impl Window {
         let size = [display.size.0, display.size.1].map(|length| i64::from(side(length)));
         let window = Self { size, display, data };
         let [x, y] = window.offset();
-        let meets = |from: i64, length: usize, size: i64| from < size && from + i64::from(side(length)) > 0;
-        if !meets(x, data.size.0, size[0]) || !meets(y, data.size.1, size[1]) {
+        let mut axes = [(x, data.size.0, size[0]), (y, data.size.1, size[1])].into_iter();
+        if axes.any(|(from, length, size)| from >= size || from + i64::from(side(length)) <= 0) {
             return Err(malformed(format!(
                 "its data window ({}) lies outside of its display window ({})",
                 words(data),
@@ -117,11 +117,11 @@ impl Window {
 
     /// The corner of the data window in the display window.
     fn offset(&self) -> [i64; 2] {
-        let along = |data: i32, display: i32| i64::from(data) - i64::from(display);
-        [along(self.data.position.0, self.display.position.0), along(self.data.position.1, self.display.position.1)]
+        let (data, display) = (self.data.position, self.display.position);
+        [(data.0, display.0), (data.1, display.1)].map(|(data, display)| i64::from(data) - i64::from(display))
     }
 
-    /// Puts a row of one channel where it is seen.
+    /// Writes the visible part of a row of one channel.
     fn put(&self, image: &mut Image, at: [usize; 2], place: usize, kind: SampleType, bytes: &[u8]) {
         let [x, y] = self.offset();
         let (x, y) = (x + at[0] as i64, y + at[1] as i64);
@@ -173,16 +173,12 @@ fn notes(header: &Header, window: &Window, colors: &Colors) -> Vec<String> {
     notes
 }
 
-/// Brings colours of other primaries to Rec.709, and says so.
+/// Brings colours of other primaries to Rec.709, and returns a note about it.
 fn to_rec709(header: &Header, colors: &Colors, image: &mut Image) -> Result<Option<String>, TextureError> {
     let Some(stated) = header.shared_attributes.chromaticities.filter(|_| !colors.is_grey()) else { return Ok(None) };
-    let pair = |at: Vec2<f32>| [f64::from(at.0), f64::from(at.1)];
-    let stated = Primaries {
-        red: pair(stated.red),
-        green: pair(stated.green),
-        blue: pair(stated.blue),
-        white: pair(stated.white),
-    };
+    let [red, green, blue, white] =
+        [stated.red, stated.green, stated.blue, stated.white].map(|at| [f64::from(at.0), f64::from(at.1)]);
+    let stated = Primaries { red, green, blue, white };
     if stated.is_rec709() {
         return Ok(None);
     }
