@@ -52,8 +52,12 @@ fn reply(words: &[String]) -> Result<(), CostError> {
         serde_json::to_string(&compile(family, &kernels)?)?
     };
     let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.map_err(|source| CostError::Process { action: "answer", source })
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(failed_to("answer"))
+}
+
+/// The error of a step with the probe that the system refuses.
+fn failed_to(action: &'static str) -> impl FnOnce(io::Error) -> CostError {
+    move |source| CostError::Process { action, source }
 }
 
 /// [`compile`] in a process of its own: this program, started anew. Its `main` has to call [`answer`] first.
@@ -78,8 +82,7 @@ pub fn assembly_apart(family: Family, kernel: &Kernel) -> Result<String, CostErr
 
 /// Standard output of this program as the probe of a family.
 fn ask(family: Family, words: &[&str], kernels: &[Kernel]) -> Result<String, CostError> {
-    let lost = |action| move |source| CostError::Process { action, source };
-    let program = std::env::current_exe().map_err(lost("find this program"))?;
+    let program = std::env::current_exe().map_err(failed_to("find this program"))?;
     let mut command = Command::new(program);
     command.args([PROBE, family.name()]).args(words).envs(family.environment());
     for variable in FOREIGN_VARIABLES {
@@ -89,21 +92,21 @@ fn ask(family: Family, words: &[&str], kernels: &[Kernel]) -> Result<String, Cos
         command.env("VK_DRIVER_FILES", &drivers).env("VK_ICD_FILENAMES", &drivers);
     }
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(lost("start the probe"))?;
+    let mut child = command.spawn().map_err(failed_to("start the probe"))?;
     let input = serde_json::to_vec(kernels)?;
     if let Some(mut stdin) = child.stdin.take() {
         // A probe that ended early says why by itself.
         let _ = stdin.write_all(&input);
     }
-    let output = child.wait_with_output().map_err(lost("wait for the probe"))?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let output = child.wait_with_output().map_err(failed_to("wait for the probe"))?;
     if output.status.success() {
-        return Ok(text(&output.stdout));
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
-    let said = text(&output.stderr);
-    let error = said.lines().find_map(|line| line.strip_prefix("error: "));
-    let unsaid = || format!("the probe of {family} ended with {}: {said}", output.status);
-    Err(CostError::Probe(error.map_or_else(unsaid, str::to_owned)))
+    let said = String::from_utf8_lossy(&output.stderr);
+    Err(CostError::Probe(match said.lines().find_map(|line| line.strip_prefix("error: ")) {
+        Some(error) => error.to_owned(),
+        None => format!("the probe of {family} ended with {}: {said}", output.status),
+    }))
 }
 
 /// The descriptions of RADV, for the loader to load nothing else; `None` leaves the choice to the user's own variables.
@@ -111,16 +114,18 @@ fn drivers() -> Option<OsString> {
     if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().any(|name| std::env::var_os(name).is_some()) {
         return None;
     }
-    let is_radv = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        name.starts_with("radeon_icd") && name.ends_with(".json")
-    };
-    let in_folder = |folder: &str| {
-        let entries = std::fs::read_dir(Path::new(folder)).into_iter().flatten().flatten();
-        let mut found: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_radv).collect();
-        found.sort();
-        found
-    };
-    let found: Vec<PathBuf> = DRIVER_FOLDERS.into_iter().flat_map(in_folder).collect();
+    let mut found = Vec::new();
+    for folder in DRIVER_FOLDERS {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut here: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| is_radv(path)).collect();
+        here.sort();
+        found.extend(here);
+    }
     if found.is_empty() { None } else { std::env::join_paths(found).ok() }
+}
+
+/// Whether a file is by its name a description of RADV.
+fn is_radv(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with("radeon_icd") && name.ends_with(".json")
 }

@@ -74,14 +74,16 @@ impl Kernel {
     /// # Errors
     /// Those of [`emit`] and [`emit_constant`].
     pub fn of_set(set: &MaterialSet<'_>, style: Style, harness: Harness) -> Result<Self, CostError> {
-        let resource = |kind: &str| match kind {
-            "buffer" => Resource::Storage,
-            "sampler" => Resource::Sampler,
-            _ => Resource::Texture,
-        };
         let face = bindings(set, style.form);
         let face = face.iter().filter(|entry| !(style.constant && entry.resource == "buffer"));
-        let shader = face.map(|e| Binding { group: 0, binding: e.binding, resource: resource(&e.resource) });
+        let shader = face.map(|entry| {
+            let resource = match entry.resource.as_str() {
+                "buffer" => Resource::Storage,
+                "sampler" => Resource::Sampler,
+                _ => Resource::Texture,
+            };
+            Binding { group: 0, binding: entry.binding, resource }
+        });
         Self::new(&shader_text(set, style)?, shader, harness)
     }
 

@@ -70,15 +70,12 @@ impl CostReport {
     /// # Errors
     /// [`CostError::Exchange`] where a number is none of JSON's.
     pub fn to_json(&self) -> Result<String, CostError> {
-        let lines = |values: Vec<String>| format!("[\n    {}\n  ]", values.join(",\n    "));
-        let families = self.families.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-        let rows = self.rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
         Ok(format!(
             "{{\n  \"schema\": {SCHEMA},\n  \"generator\": {},\n  \"driver\": {},\n  \"families\": {},\n  \"rows\": {}\n}}\n",
             serde_json::to_string(&self.generator)?,
             serde_json::to_string(&self.driver)?,
-            lines(families),
-            lines(rows),
+            json_lines(&self.families)?,
+            json_lines(&self.rows)?,
         ))
     }
 
@@ -141,27 +138,34 @@ impl CostReport {
                 continue;
             }
             seen.push(key);
-            let same = || {
-                let of = |other: &&CostRow| (other.model, other.form, other.closed, other.constant) == key;
-                self.rows.iter().filter(|other| other.family == family).filter(of)
-            };
-            let range = |count: &dyn Fn(&Counts) -> i64| {
-                let values = || same().map(|other| count(&other.counts));
-                let (least, most) = (values().min().unwrap_or(0), values().max().unwrap_or(0));
-                if least == most { least.to_string() } else { format!("{least}..{most}") }
-            };
+            let same = self.rows.iter().filter(|other| other.family == family);
+            let same = same.filter(|other| (other.model, other.form, other.closed, other.constant) == key);
+            let counts: Vec<Counts> = same.map(|other| other.counts).collect();
             let _ = writeln!(
                 out,
                 "| {} | {} | {} | {} | {} | {} |",
                 row.model.name(),
                 style_name(row.model, row.form, row.closed, row.constant),
-                range(&|c| c.inverse_throughput),
-                range(&|c| c.issue_cycles),
-                range(&|c| c.vgprs),
-                range(&|c| c.texture_reads),
+                range(&counts, |c| c.inverse_throughput),
+                range(&counts, |c| c.issue_cycles),
+                range(&counts, |c| c.vgprs),
+                range(&counts, |c| c.texture_reads),
             );
         }
         let spilling = self.rows.iter().filter(|row| row.family == family && row.counts.spills > 0).count();
         let _ = writeln!(out, "\nShaders that spill registers: {spilling}.");
     }
+}
+
+/// A JSON list with one value per line.
+fn json_lines(values: &[impl Serialize]) -> Result<String, CostError> {
+    let values = values.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+    Ok(format!("[\n    {}\n  ]", values.join(",\n    ")))
+}
+
+/// The smallest and the largest of some counts.
+fn range(counts: &[Counts], count: fn(&Counts) -> i64) -> String {
+    let least = counts.iter().map(count).min().unwrap_or(0);
+    let most = counts.iter().map(count).max().unwrap_or(0);
+    if least == most { least.to_string() } else { format!("{least}..{most}") }
 }

@@ -65,9 +65,8 @@ impl Candidate {
         let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map.slot)));
         let mut asked: Vec<Feature> = maps.filter_map(|(i, slot)| slot.layer_feature(i)).collect();
         asked.extend(effects.iter().filter(|(_, has)| *has).map(|(effect, _)| *effect));
-        let shows = |model: ShadingModel| asked.iter().all(|&effect| model.honours(effect, form));
         let mut found: Vec<Self> = Vec::new();
-        for model in ShadingModel::ALL.into_iter().filter(|&model| shows(model)) {
+        for model in ShadingModel::ALL.into_iter().filter(|model| asked.iter().all(|&part| model.honours(part, form))) {
             let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);
             for (left_out, simple) in variants(material) {
                 let Some((cost, cost_is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };
@@ -93,8 +92,9 @@ impl Candidate {
                 }
             }
         }
-        let key = |c: &Self| (c.left_out.len(), usize::from(c.color != own));
-        found.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(key(a).cmp(&key(b))));
+        // The second sort is stable: candidates of equal cost keep the order of the first.
+        found.sort_by_key(|c| (c.left_out.len(), c.color != own));
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         found
     }
 
@@ -127,7 +127,7 @@ impl Candidate {
     fn values_of(&self, stack: &Stack, terms: &(impl ShaderTerms + Sync), probes: &[Probe]) -> Vec<Rgb> {
         let color = color_of(self.color, &self.material);
         let twin = Twin::new(self.model, stack, self.material.bake.wavelengths_nm(), color);
-        let value = |probe: &Probe| match *probe {
+        let values = probes.par_iter().map(|probe| match *probe {
             Probe::Pair { wi, wo } => twin.eval(terms, wi, wo),
             Probe::Sky { wo } => {
                 let mut sum = [0.0; 3];
@@ -137,8 +137,8 @@ impl Candidate {
                 }
                 sum
             }
-        };
-        probes.par_iter().map(value).collect()
+        });
+        values.collect()
     }
 
     /// The exact terms that the candidate's tables stand for, or that its form computes.

@@ -108,8 +108,8 @@ impl Judge {
     pub fn table_error(&self, candidate: usize, terms: &(impl ShaderTerms + Sync), with_delta_e: bool) -> SceneError {
         let candidate = &self.candidates[candidate];
         let (exact, found) = candidate.values_with(terms, &self.probes, self.footprint_deg);
-        let known = |rgb| Value { rgb, std_err: [0.0; 3] };
-        let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &known(*e), with_delta_e)).collect();
+        let exact = exact.iter().map(|&rgb| Value { rgb, std_err: [0.0; 3] });
+        let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &e, with_delta_e)).collect();
         largest(&misses, &self.probes)
     }
 

@@ -160,8 +160,8 @@ impl<'a> Director<'a> {
         };
         let (scene, costs) = (self.scene, &self.costs);
         let judges = judges.get_or_insert_with(|| {
-            let judge = |material| Judge::new(material, form, &scene.lights, &scene.view, costs);
-            self.materials.iter().map(judge).collect()
+            let materials = self.materials.iter();
+            materials.map(|material| Judge::new(material, form, &scene.lights, &scene.view, costs)).collect()
         });
         let mut choices: Vec<MaterialChoice> = Vec::with_capacity(judges.len());
         let mut misses = Vec::new();
@@ -291,9 +291,9 @@ fn table_errors(
     let (manifest, textures) = (&package.manifest, package.textures()?);
     let stacks = materials.iter().map(|material| material.stack.clone()).collect();
     let subject = Subject { manifest, textures, stacks, maps: Vec::new() };
-    let error = |number: usize| {
+    let errors = (0..materials.len()).map(|number| {
         let terms = TableTerms::new(&subject, number, Weights::EightBit)?;
         Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))
-    };
-    (0..materials.len()).map(error).collect()
+    });
+    errors.collect()
 }

@@ -65,20 +65,16 @@ impl Miss {
         }
         let scale = reference.scale();
         let delta_e = with_delta_e.then(|| {
-            let seen = |rgb: Rgb| lab(rgb.map(|v| (PI * v).clamp(0.0, 1.0)));
-            let here = seen(reference.rgb);
             let moved = [0, 1, 2].map(|c| reference.rgb[c] + reference.std_err[c]);
-            [ciede2000(seen(found), here), ciede2000(seen(moved), here)]
+            let colors = [reference.rgb, found, moved].map(|rgb| lab(rgb.map(|v| (PI * v).clamp(0.0, 1.0))));
+            [ciede2000(colors[1], colors[0]), ciede2000(colors[2], colors[0])]
         });
         Self { abs, rel: abs.map(|v| v / scale), delta_e }
     }
 
     pub(crate) fn standing(&self, budget: &SceneBudget) -> Standing {
         let mut all = Standing::Inside;
-        let limited =
-            [(budget.max_abs, Some(self.abs)), (budget.max_rel, Some(self.rel)), (budget.delta_e, self.delta_e)];
-        for (limit, miss) in limited {
-            let (Some(limit), Some([miss, noise])) = (limit, miss) else { continue };
+        for (limit, [miss, noise]) in self.limited(budget) {
             if miss - SIGMAS * noise > limit {
                 return Standing::Outside;
             }
@@ -89,11 +85,15 @@ impl Miss {
         all
     }
 
-    /// Error over limit, the largest of those limited.
+    /// The largest ratio of an error to its limit.
     pub(crate) fn excess(&self, budget: &SceneBudget) -> f64 {
-        let ratio = |limit: Option<f64>, miss: f64| limit.map_or(0.0, |limit| miss / limit);
-        let seen = self.delta_e.map_or(0.0, |[miss, _]| ratio(budget.delta_e, miss));
-        ratio(budget.max_abs, self.abs[0]).max(ratio(budget.max_rel, self.rel[0])).max(seen)
+        self.limited(budget).map(|(limit, [miss, _])| miss / limit).fold(0.0, f64::max)
+    }
+
+    /// Each limit of a budget, with the error that it is for and the standard error of that.
+    fn limited(&self, budget: &SceneBudget) -> impl Iterator<Item = (f64, [f64; 2])> {
+        let all = [(budget.max_abs, Some(self.abs)), (budget.max_rel, Some(self.rel)), (budget.delta_e, self.delta_e)];
+        all.into_iter().filter_map(|(limit, miss)| limit.zip(miss))
     }
 }
 

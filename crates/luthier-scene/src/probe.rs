@@ -28,16 +28,24 @@ pub enum Probe {
 impl Probe {
     /// Its angles.
     pub(crate) fn direction(&self) -> SceneDirection {
-        let tenths = |degrees: f64| (10.0 * degrees).round() / 10.0;
-        let theta = |w: DVec3| tenths(libm::acos(w.z.clamp(-1.0, 1.0)).to_degrees());
         match *self {
             Self::Pair { wi, wo } => {
-                let around = libm::atan2(wo.x * wi.y - wo.y * wi.x, wo.x * wi.x + wo.y * wi.y).to_degrees().abs();
-                SceneDirection { eye_deg: theta(wo), light_deg: Some([theta(wi), tenths(around)]) }
+                let around = libm::atan2(wo.x * wi.y - wo.y * wi.x, wo.x * wi.x + wo.y * wi.y).abs();
+                SceneDirection { eye_deg: theta_deg(wo), light_deg: Some([theta_deg(wi), tenths_deg(around)]) }
             }
-            Self::Sky { wo } => SceneDirection { eye_deg: theta(wo), light_deg: None },
+            Self::Sky { wo } => SceneDirection { eye_deg: theta_deg(wo), light_deg: None },
         }
     }
+}
+
+/// Angle between a direction and the normal.
+fn theta_deg(w: DVec3) -> f64 {
+    tenths_deg(libm::acos(w.z.clamp(-1.0, 1.0)))
+}
+
+/// An angle in degrees, to a tenth.
+fn tenths_deg(radians: f64) -> f64 {
+    (10.0 * radians.to_degrees()).round() / 10.0
 }
 
 /// Azimuth of the eye in the surface's frame: neither along nor across what is anisotropic.
@@ -58,7 +66,7 @@ const COS_THETA_MIN: f64 = 0.05;
 /// 1 and 2 times each slope parameter, the highlights. Light from everywhere is seen at the three view angles.
 pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
     let [least, most] = view.angles_deg;
-    let at = |step: f64| (least + step * (most - least)).to_radians();
+    let thetas = STEPS.map(|step| (least + step * (most - least)).to_radians());
     let mut found = Vec::new();
     for light in lights {
         let apart: Vec<f64> = match *light {
@@ -67,22 +75,21 @@ pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
                 STEPS.iter().map(|step| (near + step * (far - near)).to_radians()).collect()
             }
             Light::Environment => {
-                found
-                    .extend(STEPS.iter().map(|step| Probe::Sky { wo: direction(at(*step), AZIMUTH_DEG.to_radians()) }));
+                found.extend(thetas.map(|theta| Probe::Sky { wo: direction(theta, AZIMUTH_DEG.to_radians()) }));
                 continue;
             }
         };
         for apart in apart {
-            for step in STEPS {
+            for theta in thetas {
                 for lean in LEANS_DEG {
-                    found.extend(pair(apart, at(step), lean.to_radians()));
-                    if at(step) == 0.0 {
+                    found.extend(pair(apart, theta, lean.to_radians()));
+                    if theta == 0.0 {
                         break;
                     }
                 }
             }
             // The normal of the highlight, if it is in view.
-            if (at(0.0)..=at(1.0)).contains(&(0.5 * apart)) {
+            if (thetas[0]..=thetas[2]).contains(&(0.5 * apart)) {
                 for (i, alpha) in alphas(stack).into_iter().enumerate() {
                     // Its top is the same for all.
                     for flank in FLANKS.into_iter().skip(usize::from(i > 0)) {
@@ -102,8 +109,9 @@ pub fn footprint(stack: &Stack, footprint_deg: f64) -> Stack {
     let slope = libm::tan(footprint_deg.to_radians());
     let mut stack = stack.clone();
     for layer in stack.layers.iter_mut().filter(|layer| !matches!(layer.base, Base::Diffuse(_))) {
-        let wider = |alpha: f64| libm::hypot(alpha, slope).clamp(ALPHA_MIN, 1.0);
-        (layer.surface.alpha_x, layer.surface.alpha_y) = (wider(layer.surface.alpha_x), wider(layer.surface.alpha_y));
+        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+            *alpha = libm::hypot(*alpha, slope).clamp(ALPHA_MIN, 1.0);
+        }
     }
     stack
 }
@@ -140,11 +148,10 @@ fn in_frame(light: DVec3, normal: DVec3) -> Option<Probe> {
     let (x, z) = (along.normalize(), normal);
     let y = z.cross(x);
     let (sin, cos) = (libm::sin(AZIMUTH_DEG.to_radians()), libm::cos(AZIMUTH_DEG.to_radians()));
-    let local = |w: DVec3| {
+    let [wi, wo] = [light, eye].map(|w| {
         let (a, b) = (w.dot(x), w.dot(y));
         DVec3::new(cos * a - sin * b, sin * a + cos * b, w.dot(z)).normalize()
-    };
-    let (wi, wo) = (local(light), local(eye));
+    });
     (wi.z >= COS_THETA_MIN && wo.z >= COS_THETA_MIN).then_some(Probe::Pair { wi, wo })
 }
 
@@ -158,17 +165,10 @@ const POINTS: usize = 24;
 
 /// Directions over the hemisphere and their weights for the integral over solid angle; they crowd at the mirror direction of `wo`.
 pub(crate) fn hemisphere(wo: DVec3) -> Vec<(DVec3, f64)> {
-    let rule = luthier_optics::quadrature::gauss_legendre(POINTS);
     let theta_o = libm::acos(wo.z.clamp(0.0, 1.0));
     let mirror = libm::atan2(-wo.y, -wo.x);
-    // The third power crowds at the start.
-    let part = |start: f64, span: f64| {
-        rule.iter()
-            .map(move |&(u, weight)| (start + span * u * u * u, 3.0 * u * u * weight * span.abs()))
-            .collect::<Vec<_>>()
-    };
-    let thetas: Vec<_> = part(theta_o, -theta_o).into_iter().chain(part(theta_o, 0.5 * PI - theta_o)).collect();
-    let phis: Vec<_> = part(mirror, PI).into_iter().chain(part(mirror, -PI)).collect();
+    let thetas = crowded(theta_o, [-theta_o, 0.5 * PI - theta_o]);
+    let phis = crowded(mirror, [PI, -PI]);
     let mut found = Vec::with_capacity(thetas.len() * phis.len());
     for &(theta, theta_weight) in &thetas {
         for &(phi, phi_weight) in &phis {
@@ -176,6 +176,13 @@ pub(crate) fn hemisphere(wo: DVec3) -> Vec<(DVec3, f64)> {
         }
     }
     found
+}
+
+/// Points and weights of two intervals that begin at `start`; by the third power they crowd there.
+fn crowded(start: f64, spans: [f64; 2]) -> Vec<(f64, f64)> {
+    let rule = luthier_optics::quadrature::gauss_legendre(POINTS);
+    let points = spans.into_iter().flat_map(|span| rule.iter().map(move |&(u, weight)| (span, u, weight)));
+    points.map(|(span, u, weight)| (start + span * u * u * u, 3.0 * u * u * weight * span.abs())).collect()
 }
 
 #[cfg(test)]

@@ -72,13 +72,12 @@ impl Reference {
     /// The reference of a stack at some probes, with a first few samples.
     pub(crate) fn new(stack: &Stack, color: Color, probes: Vec<Probe>) -> Self {
         let spectrum = spectrum(stack, color);
-        let first = |probe: Probe| {
+        let probes = probes.into_par_iter().map(|probe| {
             let mut tallies = Tallies { tallies: vec![Tally::default(); spectrum.len()], batches: 0 };
             more(&spectrum, &probe, &mut tallies);
             (probe, tallies)
-        };
-        let probes = probes.into_par_iter().map(first).collect();
-        Self { spectrum, probes }
+        });
+        Self { probes: probes.collect(), spectrum }
     }
 
     /// The values at all probes.
@@ -99,8 +98,7 @@ impl Reference {
 
     /// Doubles the samples of some probes; `false` if one of them has as many as it may have.
     pub(crate) fn refine(&mut self, numbers: &[usize]) -> bool {
-        let is_open = |number: &usize| samples(self.probes[*number].1.batches + 1) <= MOST;
-        if !numbers.iter().all(is_open) {
+        if numbers.iter().any(|&number| samples(self.probes[number].1.batches + 1) > MOST) {
             return false;
         }
         let spectrum = &self.spectrum;

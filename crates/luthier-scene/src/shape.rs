@@ -65,10 +65,9 @@ fn code(layer: &Layer, has_slab: bool) -> String {
 
 /// Distance of two shapes: letters that only one of them has, layer by layer from the bottom; a layer more or less weighs ten.
 pub(crate) fn distance(a: &str, b: &str) -> usize {
-    let layers = |shape: &str| shape.split('/').rev().map(str::to_owned).collect::<Vec<_>>();
-    let (a, b) = (layers(a), layers(b));
-    let only = |a: &str, b: &str| a.chars().filter(|c| !b.contains(*c)).count();
-    let unlike: usize = a.iter().zip(&b).map(|(a, b)| only(a, b) + only(b, a)).sum();
+    let [a, b] = [a, b].map(|shape| shape.rsplit('/').collect::<Vec<_>>());
+    let pairs = a.iter().zip(&b).flat_map(|(a, b)| [(a, b), (b, a)]);
+    let unlike: usize = pairs.map(|(a, b)| a.chars().filter(|c| !b.contains(*c)).count()).sum();
     unlike + 10 * a.len().abs_diff(b.len())
 }
 
