@@ -1,6 +1,7 @@
 //! Lights without a body, and their words in the kernel's buffer.
 
 use crate::GpuError;
+use crate::context::word;
 use crate::error::{check_direction, setting};
 
 /// A light without a visible body. Linear RGB; +y is up.
@@ -65,7 +66,6 @@ impl Light {
 
     /// The words of a light in `picture.wgsl`: direction and 0, or position and 1; then its colour.
     pub(crate) fn words(&self) -> [[f32; 4]; 2] {
-        let word = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
         match self {
             Self::Directional { direction, irradiance } => {
                 let length = direction.iter().map(|x| x * x).sum::<f32>().sqrt();

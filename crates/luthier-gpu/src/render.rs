@@ -8,7 +8,7 @@ use luthier_environment::{ALPHAS, Blur, Environment};
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, material_buffer};
 
-use crate::context::Pass;
+use crate::context::{Pass, word};
 use crate::error::setting;
 use crate::floor::Grounded;
 use crate::mesh;
@@ -159,9 +159,10 @@ impl Scene {
         if self.manifest.materials[material as usize].shows_lobes() {
             return Ok(self.bindings.has_surroundings());
         }
-        let is_known =
-            |layer: &LayerRecord| layer.tiles[TableKind::Fgd].is_some() || layer.tiles[TableKind::Film].is_some();
-        Ok(self.interfaces(material).all(|layer| has_reflectance(layer) && is_known(layer)))
+        Ok(self.interfaces(material).all(|layer| {
+            let has_albedo = layer.tiles[TableKind::Fgd].is_some() || layer.tiles[TableKind::Film].is_some();
+            has_reflectance(layer) && has_albedo
+        }))
     }
 
     /// Whether a mesh has the texture coordinates that the materials need.
@@ -226,15 +227,15 @@ impl Scene {
         if self.form() != Form::Baked && settings.environment_samples == 0 {
             return Err(GpuError::Prefiltered { form: self.form() });
         }
-        let lacks = |material: &&u32| {
-            let hides = !self.bindings.has_surroundings() && self.manifest.materials[**material as usize].shows_lobes();
-            hides || !self.interfaces(**material).all(has_reflectance)
-        };
-        if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
-            let material = self.manifest.materials[material as usize].name.clone();
-            return Err(GpuError::NoReflectance { material });
+        let prefiltered = materials.iter().filter(|_| settings.environment_samples == 0);
+        for &material in prefiltered.clone() {
+            let entry = &self.manifest.materials[material as usize];
+            let hides = !self.bindings.has_surroundings() && entry.shows_lobes();
+            if hides || !self.interfaces(material).all(has_reflectance) {
+                return Err(GpuError::NoReflectance { material: entry.name.clone() });
+            }
         }
-        for &material in materials.iter().filter(|_| settings.environment_samples == 0) {
+        for &material in prefiltered {
             if self.has_layer_maps(material)? {
                 let material = self.manifest.materials[material as usize].name.clone();
                 return Err(GpuError::LayerMaps { material });
@@ -334,10 +335,12 @@ impl Scene {
 
     /// The environment by its blurred maps, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
     fn prefiltered_around(&self) -> String {
-        let body = |kind, call| if self.reads(kind) { call } else { "vec3<f32>(0.0)" };
-        let fresnel = body(TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)");
-        let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
-        let film = body(TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)");
+        let [fresnel, fgd, film] = [
+            (TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)"),
+            (TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb"),
+            (TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)"),
+        ]
+        .map(|(kind, call)| if self.reads(kind) { call } else { "vec3<f32>(0.0)" });
         let shown = if self.bindings.has_surroundings() {
             let place = if self.has_places() { "surface, " } else { "" };
             format!(
@@ -359,8 +362,6 @@ impl Scene {
     /// The words of `Render` in `picture.wgsl`.
     pub(crate) fn inputs(&self, parts: &[Shown], materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
         let used = self.blurs();
-        // Maps: the environment, irradiance, then a chain for each distribution in use.
-        let chain_of = |layer: &LayerRecord| first_map(&used, blur_of(layer)) as f32;
         let mut words: Vec<[u32; 4]> = parts.iter().map(|part| part.word()).collect();
         let lights = words.len();
         words.extend(settings.lights.iter().flat_map(Light::words).map(bits));
@@ -378,7 +379,8 @@ impl Scene {
             first += entry.records().count() * 4;
         }
         for layer in entries.iter().flat_map(MaterialEntry::records) {
-            words.extend(layer_words(layer, chain_of(layer)).map(bits));
+            // Maps: the environment, irradiance, then a chain for each distribution in use.
+            words.extend(layer_words(layer, first_map(&used, blur_of(layer)) as f32).map(bits));
         }
         for (i, entry) in entries.iter().enumerate() {
             let first = words.len();
@@ -417,16 +419,16 @@ impl Scene {
     }
 
     fn header(&self, settings: &RenderSettings, [lights, headers, maps]: [u32; 3]) -> Vec<[u32; 4]> {
-        let [eye, target, right, up] = settings.camera.words();
+        let [mut eye, mut target, right, up] = settings.camera.words();
         let (backdrop, behind) = match settings.backdrop {
             Backdrop::Plain(color) => (color, 0.0),
             Backdrop::Environment => ([0.0; 3], 1.0),
         };
-        let with = |[x, y, z, _]: [f32; 4], w: f32| bits([x, y, z, w]);
+        (eye[3], target[3]) = (settings.exposure, behind);
         let [r, g, b] = backdrop.map(f32::to_bits);
         let header: [[u32; 4]; HEADER_WORDS] = [
-            with(eye, settings.exposure),
-            with(target, behind),
+            bits(eye),
+            bits(target),
             bits(right),
             bits(up),
             [r, g, b, settings.size],
@@ -441,16 +443,10 @@ impl Scene {
 
     /// The slope distributions of all layers, in the order of their chains.
     fn blurs(&self) -> Vec<Blur> {
-        let layers = || {
-            self.manifest
-                .materials
-                .iter()
-                .filter(|m| !m.shows_lobes())
-                .flat_map(MaterialEntry::records)
-                .filter(|l| l.kind != LayerKind::Diffuse)
-        };
-        let is_used = |blur: &Blur| layers().any(|l| blur_of(l) == *blur);
-        [Blur::Ggx, Blur::Beckmann].into_iter().filter(is_used).collect()
+        let materials = self.manifest.materials.iter().filter(|m| !m.shows_lobes());
+        let layers = materials.flat_map(MaterialEntry::records).filter(|l| l.kind != LayerKind::Diffuse);
+        let used: Vec<Blur> = layers.map(blur_of).collect();
+        [Blur::Ggx, Blur::Beckmann].into_iter().filter(|blur| used.contains(blur)).collect()
     }
 }
 
@@ -509,19 +505,15 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
         LayerKind::Conductor => 1.0,
         LayerKind::Diffuse => 2.0,
     };
-    let tile = |tile: Option<u32>| tile.map_or(-1.0, |t| t as f32);
+    let [fresnel, fgd, film] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film]
+        .map(|kind| layer.tiles[kind].map_or(-1.0, |tile| tile as f32));
+    // Layers without a film divide 0 by the guard.
     let film_fraction = layer.film_thickness_nm / layer.film_thickness_max_nm.max(1e-30);
-    let rgbw = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
     [
         [kind, layer.alpha as f32, layer.eta as f32, chain],
-        [
-            tile(layer.tiles[TableKind::Fresnel]),
-            tile(layer.tiles[TableKind::Fgd]),
-            tile(layer.tiles[TableKind::Film]),
-            film_fraction as f32,
-        ],
-        rgbw(layer.optical_depth, layer.critical_cot_sq),
-        rgbw(layer.albedo, 0.0),
+        [fresnel, fgd, film, film_fraction as f32],
+        word(layer.optical_depth.map(|v| v as f32), layer.critical_cot_sq as f32),
+        word(layer.albedo.map(|v| v as f32), 0.0),
     ]
 }
 

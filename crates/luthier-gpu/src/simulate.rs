@@ -1,9 +1,9 @@
 //! Simulation of stacks by random walks of light: values for pairs of directions, and pictures that gather samples.
 
 use luthier_lut::Image;
-use luthier_manifest::{LAYER_WORDS, LayerRecord, MATERIAL_WORDS, MaterialEntry};
+use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS, MaterialEntry};
 
-use crate::context::{Context, Pass};
+use crate::context::{Context, Pass, word};
 use crate::error::setting;
 use crate::evaluate::WORKGROUP;
 use crate::render::{HEADER_WORDS, PIXELS_PER_WORKGROUP};
@@ -66,8 +66,8 @@ impl Sums {
     fn of(&self, samples: u32) -> Simulated {
         let n = f64::from(samples);
         let mean = self.values.map(|sum| sum / n);
-        let variance = |c: usize| (self.squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0).max(1.0);
-        Simulated { mean, std_err: [0, 1, 2].map(|c: usize| variance(c).sqrt()) }
+        let variance = [0, 1, 2].map(|c| (self.squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0).max(1.0));
+        Simulated { mean, std_err: variance.map(f64::sqrt) }
     }
 }
 
@@ -111,8 +111,7 @@ impl Scene {
                 let seed = settings.seed ^ (number as u32).wrapping_mul(0x9e37_79b9);
                 let mut words = vec![[material, seed, done, per_thread]];
                 for (wi, wo) in chunk {
-                    let word = |d: &[f32; 3]| [d[0].to_bits(), d[1].to_bits(), d[2].to_bits(), 0];
-                    words.extend([word(wi), word(wo)]);
+                    words.extend([wi, wo].map(|direction| word(*direction, 0.0).map(f32::to_bits)));
                 }
                 let threads = blocks as usize * chunk.len();
                 let out = self.context.run(&Pass {
@@ -208,9 +207,8 @@ impl Scene {
 
     fn check_simulated(&self, material: u32) -> Result<(), GpuError> {
         let entry = &self.manifest.materials[material as usize];
-        let refused = |what| Err(GpuError::NotSimulated { material: entry.name.clone(), what });
         match beyond(entry) {
-            Some(what) => refused(what),
+            Some(what) => Err(GpuError::NotSimulated { material: entry.name.clone(), what }),
             None => Ok(()),
         }
     }
@@ -218,8 +216,7 @@ impl Scene {
 
 /// The part of a material that the simulation does not know.
 fn beyond(entry: &MaterialEntry) -> Option<&'static str> {
-    let has_film = |layer: &LayerRecord| layer.film_thickness_max_nm > 0.0 || layer.film_thickness_nm > 0.0;
-    if entry.layers.iter().any(has_film) {
+    if entry.layers.iter().any(|layer| layer.film_thickness_max_nm > 0.0 || layer.film_thickness_nm > 0.0) {
         return Some("films");
     }
     if entry.layers.iter().any(|layer| layer.reradiation.is_some()) {
@@ -309,7 +306,7 @@ impl Simulation {
     }
 
     fn picture(&self, value: impl Fn(Simulated) -> [f64; 3]) -> Image {
-        let of = |sums: &Sums| value(sums.of(self.samples.max(1))).map(|v| v as f32);
-        Image { width: self.size, height: self.size, channels: 3, data: self.sums.iter().flat_map(of).collect() }
+        let values = self.sums.iter().flat_map(|sums| value(sums.of(self.samples.max(1))).map(|v| v as f32));
+        Image { width: self.size, height: self.size, channels: 3, data: values.collect() }
     }
 }
