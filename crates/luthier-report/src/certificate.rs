@@ -48,9 +48,10 @@ impl ErrorMap {
         worst: (f64, [f64; 2]),
         error: impl Fn([f64; 2]) -> f64,
     ) -> Self {
-        let middle = |[from, to]: [f64; 2], i: usize| from * libm::pow(to / from, (i as f64 + 0.5) / Self::SIDE as f64);
-        let places = (0..Self::SIDE).flat_map(|y| (0..Self::SIDE).map(move |x| (x, y)));
-        let errors = places.map(|(x, y)| error([middle(ranges[0], x), middle(ranges[1], y)])).collect();
+        let cells = (0..Self::SIDE).flat_map(|y| (0..Self::SIDE).map(move |x| [(x, ranges[0]), (y, ranges[1])]));
+        let middles = cells
+            .map(|cell| cell.map(|(i, [from, to])| from * libm::pow(to / from, (i as f64 + 0.5) / Self::SIDE as f64)));
+        let errors = middles.map(error).collect();
         Self { title: title.to_owned(), axes: axes.map(str::to_owned), ranges, columns: Self::SIDE, errors, worst }
     }
 

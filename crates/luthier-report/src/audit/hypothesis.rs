@@ -106,9 +106,10 @@ impl Hypothesis {
         if self.terms != stated.terms {
             let mut sorted = [self.terms.clone(), stated.terms.clone()];
             sorted.iter_mut().for_each(|terms| terms.sort_by_key(|t| t.name()));
-            let names = |terms: &[Term]| terms.iter().map(|t| t.name()).collect::<Vec<_>>().join(",");
+            let [is, should] =
+                [&self.terms, &stated.terms].map(|terms| terms.iter().map(|t| t.name()).collect::<Vec<_>>().join(","));
             let swapped = if sorted[0] == sorted[1] { "channels swapped: " } else { "" };
-            add("channels", format!("{swapped}{} where {} was stated", names(&self.terms), names(&stated.terms)));
+            add("channels", format!("{swapped}{is} where {should} was stated"));
         }
         match self.encoding {
             Encoding::Linear => {}
@@ -123,14 +124,14 @@ impl Hypothesis {
 }
 
 fn nodes(found: &AxisSpec, stated: &AxisSpec, place: &str) -> String {
-    let offset = |nodes| match nodes {
+    let offsets = [found.nodes, stated.nodes].map(|nodes| match nodes {
         Nodes::Offset(offset) => Some(offset - 0.5),
         Nodes::Ends => None,
-    };
-    match (offset(found.nodes), offset(stated.nodes)) {
-        (None, _) => format!("half-texel remap in {place}: the first and last nodes are the ends of the axis"),
-        (Some(0.0), None) => format!("no half-texel remap in {place}: nodes are texel centres of 0..1"),
-        (Some(by), _) => {
+    });
+    match offsets {
+        [None, _] => format!("half-texel remap in {place}: the first and last nodes are the ends of the axis"),
+        [Some(0.0), None] => format!("no half-texel remap in {place}: nodes are texel centres of 0..1"),
+        [Some(by), _] => {
             let size = if by.abs() < 0.75 { "half a texel" } else { "a texel" };
             let way = if by > 0.0 { "high" } else { "low" };
             format!("{size} off in {place}: coordinates too {way}")

@@ -54,8 +54,9 @@ impl Subject<'_> {
         // A row has texels to spare.
         let xs = if ys.len() == 1 { spread(self.image.width, most * most) } else { xs };
         let ys = if xs.len() == 1 { spread(self.image.height, most * most) } else { ys };
-        let value = |x, y| self.channels.iter().map(|&c| f64::from(self.image.texel(x, y)[c])).collect();
-        ys.iter().flat_map(|&y| xs.iter().map(move |&x| ([x, y], value(x, y)))).collect()
+        let places = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y]));
+        let texels = places.map(|[x, y]| ([x, y], self.image.texel(x, y)));
+        texels.map(|(at, texel)| (at, self.channels.iter().map(|&c| f64::from(texel[c])).collect())).collect()
     }
 
     fn has_negative(&self) -> bool {
@@ -141,13 +142,13 @@ fn coarse(subject: &Subject, stated: &Hypothesis, truth: &Truth) -> Vec<Fit> {
 }
 
 fn squared_errors(h: &Hypothesis, values: &[f64], components: [f64; 3], alpha: f64) -> f64 {
-    let error = |(c, &stored): (usize, &f64)| {
+    let errors = values.iter().enumerate().map(|(c, &stored)| {
         let off = (h.comparable(c, stored, alpha) - h.terms[c].of(components)).abs();
         // Also what is not a number.
         let off = if off < CAP { off } else { CAP };
         off * off
-    };
-    values.iter().enumerate().map(error).sum()
+    });
+    errors.sum()
 }
 
 fn fit(
@@ -221,29 +222,28 @@ fn alternatives(stated: &AxisSpec, quantities: &[Quantity], nodes: &[Nodes]) -> 
 
 /// One step away: nodes of one axis or both, the start of the slope axis, its floor.
 fn neighbours(h: &Hypothesis, stated: &Hypothesis) -> Vec<Hypothesis> {
-    let mut all = Vec::new();
-    let mut add = |layout: Layout| all.push(Hypothesis { layout, ..h.clone() });
+    let mut layouts = Vec::new();
     let layout = h.layout;
     for nodes in Nodes::MISTAKEN {
         let angle = AxisSpec { nodes, ..layout.angle };
-        add(Layout { angle, ..layout });
+        layouts.push(Layout { angle, ..layout });
         if let Some(slope) = layout.slope {
             let slope = Some(AxisSpec { nodes, ..slope });
-            add(Layout { slope, ..layout });
-            add(Layout { angle, slope, ..layout });
+            layouts.push(Layout { slope, ..layout });
+            layouts.push(Layout { angle, slope, ..layout });
         }
     }
     if let Some(slope) = layout.slope {
         for roughness in FLOORS {
             let value = slope.quantity.of_canonical(roughness * roughness);
-            add(Layout { slope: Some(AxisSpec { floor: value, ..slope }), ..layout });
+            layouts.push(Layout { slope: Some(AxisSpec { floor: value, ..slope }), ..layout });
             if slope.mapping != Mapping::Logarithmic {
-                add(Layout { slope: Some(AxisSpec { min: value, ..slope }), ..layout });
+                layouts.push(Layout { slope: Some(AxisSpec { min: value, ..slope }), ..layout });
             }
         }
         let same = stated.layout.slope.filter(|s| s.quantity == slope.quantity && s.mapping == slope.mapping);
         let plain = same.map_or(0.0, |s| s.min);
-        add(Layout { slope: Some(AxisSpec { floor: 0.0, min: plain, ..slope }), ..layout });
+        layouts.push(Layout { slope: Some(AxisSpec { floor: 0.0, min: plain, ..slope }), ..layout });
     }
-    all
+    layouts.into_iter().map(|layout| Hypothesis { layout, ..h.clone() }).collect()
 }

@@ -192,14 +192,14 @@ impl<'a> Truth<'a> {
             Model::Albedo { distribution, .. } => {
                 let Some((weights, curves)) = &self.spectrum else { return vec![[0.0; 3]; 2] };
                 let facets = FacetStatistics::new(*distribution, alpha, cos, EFFORT, 1);
-                let rgb = |albedos: Vec<f64>| {
+                let bounces = [facets.albedo(curves), facets.single_scattering(curves)].map(|albedos| {
                     let mut rgb = [0.0; 3];
                     for (weight, albedo) in weights.iter().zip(albedos) {
                         (0..3).for_each(|c| rgb[c] += weight[c] * albedo);
                     }
                     rgb
-                };
-                vec![rgb(facets.albedo(curves)), rgb(facets.single_scattering(curves))]
+                });
+                bounces.into()
             }
         }
     }
@@ -244,11 +244,11 @@ struct Grid {
 
 impl Grid {
     fn new(size: [usize; 2], f: impl Fn(f64, f64) -> Vec<[f64; 3]> + Sync) -> Self {
-        let node = |i: usize, n: usize| if n < 2 { 0.0 } else { i as f64 / (n - 1) as f64 };
         let rows: Vec<Vec<[f64; 3]>> = (0..size[1] * size[0])
             .into_par_iter()
             .map(|k| {
-                let (s, t) = (node(k % size[0], size[0]), node(k / size[0], size[1]));
+                let [s, t] = [(k % size[0], size[0]), (k / size[0], size[1])]
+                    .map(|(i, n)| if n < 2 { 0.0 } else { i as f64 / (n - 1) as f64 });
                 f(libm::acos(s * s), t * t)
             })
             .collect();
@@ -257,9 +257,8 @@ impl Grid {
     }
 
     fn at(&self, variant: usize, [theta, alpha]: [f64; 2]) -> [f64; 3] {
-        let at = |value: f64, nodes: usize| cubic_stencil(value.clamp(0.0, 1.0).sqrt() * (nodes - 1) as f64, nodes);
-        let (x, wx) = at(libm::cos(theta), self.size[0]);
-        let (y, wy) = at(alpha, self.size[1]);
+        let [(x, wx), (y, wy)] = [(libm::cos(theta), self.size[0]), (alpha, self.size[1])]
+            .map(|(value, nodes)| cubic_stencil(value.clamp(0.0, 1.0).sqrt() * (nodes - 1) as f64, nodes));
         let mut out = [0.0; 3];
         for (j, wy) in wy.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
             for (i, wx) in wx.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {

@@ -104,14 +104,15 @@ pub struct StabilitySummary {
 impl StabilitySummary {
     /// Counts cells.
     pub fn of(suite: &Stability) -> Self {
-        let count = |verdict| suite.cells.iter().filter(|c| c.verdict == verdict).count() as u64;
+        let [holds, degrades, fails] = [Verdict::Holds, Verdict::Degrades, Verdict::Fails]
+            .map(|verdict| suite.cells.iter().filter(|c| c.verdict == verdict).count() as u64);
         Self {
             generator: suite.generator.clone(),
             device: suite.device.clone(),
             cells: suite.cells.len() as u64,
-            holds: count(Verdict::Holds),
-            degrades: count(Verdict::Degrades),
-            fails: count(Verdict::Fails),
+            holds,
+            degrades,
+            fails,
             unexplained: suite.unexplained().count() as u64,
             not_finite: suite.not_finite().count() as u64,
         }

@@ -64,12 +64,12 @@ pub(crate) fn exception(
         .filter(|(_, count)| *count > 0)
         .collect();
     tally.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let statistics = || comparison.sets.iter().map(|(_, s)| s);
+    let statistics = comparison.sets.iter().map(|(_, s)| s);
     Some(Exception {
         material: material.to_owned(),
         compared,
-        samples: statistics().map(|s| 3 * s.pairs - s.not_finite).sum(),
-        samples_above: statistics().map(|s| s.above_target).sum(),
+        samples: statistics.clone().map(|s| 3 * s.pairs - s.not_finite).sum(),
+        samples_above: statistics.map(|s| s.above_target).sum(),
         least_angle_deg: misses.iter().map(Miss::angle_deg).fold(90.0, f64::min),
         set,
         worst: worst.clone(),

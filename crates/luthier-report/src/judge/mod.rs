@@ -121,8 +121,8 @@ pub fn judge(
     };
     let mut findings = Vec::new();
     let remembered = Remembered::new(settings.memory, subject);
-    let mut scanned = || step("tables");
-    let tables = scan::scan(subject, &references, &remembered, settings.pairs_per_set, &mut scanned, &mut findings)?;
+    let pairs = settings.pairs_per_set;
+    let tables = scan::scan(subject, &references, &remembered, pairs, &mut || step("tables"), &mut findings)?;
 
     let bench = Bench { subject, references: &references, remembered: &remembered, device, settings };
     let mut materials = Vec::with_capacity(manifest.materials.len());
@@ -303,9 +303,8 @@ fn at_places_of(
 
 /// Names of the models in use.
 fn models(manifest: &Manifest) -> String {
-    let used = |model: &ShadingModel| manifest.materials.iter().any(|m| m.model == *model);
-    let names: Vec<&str> = ShadingModel::ALL.into_iter().filter(used).map(ShadingModel::name).collect();
-    names.join(", ")
+    let used = ShadingModel::ALL.into_iter().filter(|model| manifest.materials.iter().any(|m| m.model == *model));
+    used.map(ShadingModel::name).collect::<Vec<_>>().join(", ")
 }
 
 /// Pairs, the device's values there, and those of f64 arithmetic on the tables with 8-bit and exact weights.

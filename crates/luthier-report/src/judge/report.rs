@@ -201,11 +201,20 @@ impl Report {
         at_places.max_by(|a, b| a.1.max_error().total_cmp(&b.1.max_error()))
     }
 
+    /// The comparisons of a material that [`Report::max_error`] covers.
+    pub(crate) fn judged<'a>(
+        &self,
+        material: &'a MaterialReport,
+    ) -> impl Iterator<Item = &'a Comparison> + Clone + use<'a> {
+        let with_device = self.device.is_some();
+        material.comparisons.iter().filter(move |comparison| comparison.compared.is_judged(with_device))
+    }
+
     /// Place of the largest error of the shaders (without a device, of the tables); nothing without materials.
     pub fn worst(&self) -> Option<WorstCase<'_>> {
         let mut worst: Option<WorstCase<'_>> = None;
         for material in &self.materials {
-            for comparison in material.comparisons.iter().filter(|c| c.compared.is_judged(self.device.is_some())) {
+            for comparison in self.judged(material) {
                 for (set, statistics) in &comparison.sets {
                     let error = statistics.max_error();
                     if worst.is_none_or(|w| error > w.error) {
@@ -221,11 +230,10 @@ impl Report {
     /// The largest error of f32 arithmetic, measured like [`Report::max_error`]: of the table-reading shader against
     /// f64 on the same tables, and of the table-free one against its reference. Nothing when no shader was run.
     pub fn max_arithmetic_error(&self) -> Option<f64> {
-        let arithmetic = |m: &MaterialReport| {
-            let of = |compared| m.comparison(compared).map_or(0.0, Comparison::max_error);
-            of(Compared::Arithmetic).max(of(Compared::FullDevice))
-        };
-        self.device.as_ref().map(|_| self.materials.iter().map(arithmetic).fold(0.0, f64::max))
+        self.device.as_ref()?;
+        let compared = [Compared::Arithmetic, Compared::FullDevice];
+        let comparisons = self.materials.iter().flat_map(|m| compared.map(|compared| m.comparison(compared)));
+        Some(comparisons.flatten().map(Comparison::max_error).fold(0.0, f64::max))
     }
 
     /// Whether [`Report::max_error`] is within the budget and every limit is held; nothing without any.
@@ -245,18 +253,19 @@ impl Report {
 
     /// The largest colour difference of what [`Report::max_error`] covers, under a light: the material besides.
     pub fn worst_seen(&self, light: SeenLight) -> Option<(f64, &str)> {
-        let judged = |c: &&Comparison| c.compared.is_judged(self.device.is_some());
-        let seen = |m: &MaterialReport| {
-            let all = m.comparisons.iter().filter(judged).flat_map(|c| &c.seen).filter(|s| s.light == light);
-            all.map(|s| s.max).fold(0.0, f64::max)
-        };
-        self.materials.iter().map(|m| (seen(m), m.name.as_str())).max_by(|a, b| a.0.total_cmp(&b.0))
+        let all = self.materials.iter().map(|m| {
+            let seen = self.judged(m).flat_map(|c| &c.seen).filter(|s| s.light == light);
+            (seen.map(|s| s.max).fold(0.0, f64::max), m.name.as_str())
+        });
+        all.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// The largest error of the models that ship against the reference: lobe error, the material and all of that comparison.
     pub fn worst_model(&self) -> Option<(&str, &AgainstReference)> {
-        let shipped = |m: &MaterialReport| m.against_reference.iter().position(|a| a.model == m.model);
-        let all = self.materials.iter().filter_map(|m| Some((m.name.as_str(), &m.against_reference[shipped(m)?])));
+        let all = self.materials.iter().filter_map(|m| {
+            let shipped = m.against_reference.iter().find(|a| a.model == m.model)?;
+            Some((m.name.as_str(), shipped))
+        });
         all.max_by(|a, b| a.1.lobe_err.total_cmp(&b.1.lobe_err))
     }
 

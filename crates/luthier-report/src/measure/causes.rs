@@ -234,7 +234,7 @@ pub(crate) struct Miss {
 impl Miss {
     /// All pairs with a finite sample that misses.
     pub(crate) fn among(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Vec<Self> {
-        let each = |((&pair, found), expected): ((&Pair, &Rgb), &Rgb)| {
+        let misses = pairs.iter().zip(found).zip(expected).filter_map(|((&pair, found), expected)| {
             let bright = brightest(expected);
             let mut worst: Option<(usize, f64)> = None;
             for channel in 0..3 {
@@ -246,8 +246,8 @@ impl Miss {
             let (channel, error) = worst?;
             let (found, expected, scale) = (found[channel], expected[channel], bright.max(FLOOR));
             (error > TARGET_MAX_REL_ERR).then_some(Self { pair, channel, found, expected, scale })
-        };
-        pairs.iter().zip(found).zip(expected).filter_map(each).collect()
+        });
+        misses.collect()
     }
 
     /// A pair, whether it misses or not.

@@ -68,15 +68,13 @@ pub(crate) struct WeightsVote {
 
 impl WeightsVote {
     pub(crate) fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
-        let sum = |expected: &[Rgb]| {
+        for (sum, expected) in [(&mut self.eight_bit, eight_bit), (&mut self.exact, exact)] {
             let errors = device.iter().zip(expected).flat_map(|(d, e)| {
                 let bright = brightest(e);
                 [0, 1, 2].map(|c: usize| relative_error(d[c], e[c], bright, FLOOR))
             });
-            errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>()
-        };
-        self.eight_bit += sum(eight_bit);
-        self.exact += sum(exact);
+            *sum += errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>();
+        }
     }
 
     /// Adds the sums of another.

@@ -87,8 +87,10 @@ impl DirectionSet {
             Self::Random => (direction(1.0 - a, b), direction(1.0 - c, d)),
             Self::Grazing => {
                 let [i_grazes, o_grazes] = GRAZES[variant];
-                let cos = |grazes, u| if grazes { log_uniform(GRAZING_COS_MIN, u) } else { 1.0 - u };
-                (direction(cos(i_grazes, a), b), direction(cos(o_grazes, c), d))
+                let [wi, wo] = [(i_grazes, a, b), (o_grazes, c, d)].map(|(grazes, u, turn)| {
+                    direction(if grazes { log_uniform(GRAZING_COS_MIN, u) } else { 1.0 - u }, turn)
+                });
+                (wi, wo)
             }
             Self::Highlight | Self::Glancing => {
                 let cos = if self == Self::Highlight { 1.0 - a } else { log_uniform(GLANCING_COS_MIN, a) };

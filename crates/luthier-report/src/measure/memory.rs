@@ -4,7 +4,7 @@ use std::fmt::{Debug, Write as _};
 
 use luthier_layers::lobes::{Lobes, Varied};
 use luthier_lut::TableKind;
-use luthier_manifest::{LayerRecord, MaterialEntry, Tiles};
+use luthier_manifest::{MaterialEntry, Tiles};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -33,22 +33,22 @@ pub fn contents(subject: &Subject<'_>, device: &dyn Device) -> Vec<Value> {
 
 /// Hashes of all tiles.
 fn hashes(subject: &Subject<'_>) -> Vec<(TableKind, Vec<String>)> {
-    let of = |kind| {
-        let table = subject.table(kind).ok().flatten()?;
+    let tables = subject.manifest.tables.iter().filter_map(|table| {
+        let table = subject.table(table.kind).ok().flatten()?;
         let (layout, texels) = (&table.entry.layout, table.texels);
         let axes =
             json!([layout.x, layout.y, layout.apron, layout.base, table.entry.format, texels.channels]).to_string();
-        let hash = |tile: u32| {
+        let tiles = (0..layout.tiles).map(|tile| {
             let ([x, y], [width, height]) = (layout.origin(tile), layout.tile_size());
             let mut hash = Sha256::new_with_prefix(&axes);
             for (row, column) in (y..y + height).flat_map(|row| (x..x + width).map(move |column| (row, column))) {
                 texels.texel(column, row).iter().for_each(|value| hash.update(value.to_bits().to_le_bytes()));
             }
             hex(&hash.finalize())
-        };
-        Some((kind, (0..layout.tiles).map(hash).collect()))
-    };
-    subject.manifest.tables.iter().filter_map(|table| of(table.kind)).collect()
+        });
+        Some((table.entry.kind, tiles.collect()))
+    });
+    tables.collect()
 }
 
 /// The memory of a judgement, with the hashes of all tiles.
@@ -132,29 +132,29 @@ impl<'a> Remembered<'a> {
         if self.memory.is_none() {
             return Value::Null;
         }
-        let user = |(number, layer): (usize, usize)| {
+        let users = users(subject, kind, tile).into_iter();
+        let users = users.map(|(number, layer)| {
             json!([nameless(&subject.manifest.materials[number]), subject.stacks[number], layer])
-        };
-        let users: Vec<Value> = users(subject, kind, tile).into_iter().map(user).collect();
+        });
+        let users: Vec<Value> = users.collect();
         json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users, "pairs": pairs_per_set })
     }
 
     /// A material by its content: its record, its stack, and the texels of the tiles that it reads.
     fn content(&self, subject: &Subject<'_>, number: usize) -> Value {
         let entry = &subject.manifest.materials[number];
-        let hashes = |record: &LayerRecord| {
-            let of = |kind: TableKind| {
+        let hashes = entry.layers.iter().map(|record| {
+            TableKind::ALL.map(|kind| {
                 let first = record.tiles[kind]?;
                 let count = tiles(entry, kind);
                 Some((first..first + count).map(|tile| self.hash(kind, tile)).collect::<Vec<_>>())
-            };
-            TableKind::ALL.map(of)
-        };
+            })
+        });
         json!({
             "name": entry.name,
             "entry": nameless(entry),
             "stack": subject.stacks[number],
-            "tiles": entry.layers.iter().map(hashes).collect::<Vec<_>>(),
+            "tiles": hashes.collect::<Vec<_>>(),
         })
     }
 

@@ -29,10 +29,11 @@ pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<Us
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
         let run = run(material, kind);
-        let reads = |l: &usize| {
-            material.layers[*l].tiles[kind].is_some_and(|first| tile >= first && run.contains(&(tile - first)))
-        };
-        out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
+        for (l, layer) in material.layers.iter().enumerate() {
+            if layer.tiles[kind].is_some_and(|first| tile >= first && run.contains(&(tile - first))) {
+                out.push((m, l));
+            }
+        }
     }
     out
 }

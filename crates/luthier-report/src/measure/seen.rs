@@ -46,8 +46,7 @@ impl SeenLight {
     /// L*a*b* of a value of `f cos_theta_i`.
     fn lab(self, value: Rgb) -> [f64; 3] {
         let light = self.rgb();
-        let shown = |c: usize| (std::f64::consts::PI * value[c] * light[c]).clamp(0.0, 1.0);
-        lab([shown(0), shown(1), shown(2)])
+        lab([0, 1, 2].map(|c: usize| (std::f64::consts::PI * value[c] * light[c]).clamp(0.0, 1.0)))
     }
 }
 
@@ -96,36 +95,37 @@ impl SeenBy {
     }
 
     pub(crate) fn finish(self) -> Vec<Seen> {
-        let seen = |(light, mut gathered): (SeenLight, Gathered)| {
+        let seen = SeenLight::ALL.into_iter().zip(self.0).map(|(light, mut gathered)| {
             let differences = &mut gathered.differences;
             let count = differences.len();
-            let of_all = |sum: f64| if count == 0 { 0.0 } else { sum / count as f64 };
-            let (mean, above) = (differences.iter().sum(), differences.iter().filter(|d| **d > 1.0).count() as f64);
+            let sums = [differences.iter().sum(), differences.iter().filter(|d| **d > 1.0).count() as f64];
+            let [mean, above_one] = sums.map(|sum: f64| if count == 0 { 0.0 } else { sum / count as f64 });
             differences.sort_by(f64::total_cmp);
             Seen {
                 light,
                 max: differences.last().copied().unwrap_or(0.0),
                 p99: differences.get((count * 99).div_ceil(100).saturating_sub(1)).copied().unwrap_or(0.0),
-                mean: of_all(mean),
-                above_one: of_all(above),
+                mean,
+                above_one,
                 worst: gathered.worst.map(|(_, pair)| pair),
             }
-        };
-        SeenLight::ALL.into_iter().zip(self.0).map(seen).collect()
+        });
+        seen.collect()
     }
 }
 
 /// Mean and largest CIEDE2000 difference of the pixels of two RGB pictures of one size, `shown` being the tone curve of a value.
 pub fn picture_color_difference(a: &Image, b: &Image, shown: impl Fn(f32) -> f32) -> [f64; 2] {
-    let color = |p: &[f32]| lab([0, 1, 2].map(|c: usize| f64::from(shown(p[c])).clamp(0.0, 1.0)));
-    let pixels = || a.data.chunks_exact(3).zip(b.data.chunks_exact(3));
+    let pixels = a.data.chunks_exact(3).zip(b.data.chunks_exact(3));
+    let count = pixels.len().max(1) as f64;
     let (mut sum, mut max) = (0.0, 0.0_f64);
-    for (a, b) in pixels() {
-        let difference = ciede2000(color(a), color(b));
+    for (a, b) in pixels {
+        let [a, b] = [a, b].map(|p| lab([0, 1, 2].map(|c: usize| f64::from(shown(p[c])).clamp(0.0, 1.0))));
+        let difference = ciede2000(a, b);
         sum += difference;
         max = max.max(difference);
     }
-    [sum / pixels().count().max(1) as f64, max]
+    [sum / count, max]
 }
 
 #[cfg(test)]

@@ -129,22 +129,22 @@ pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics
             }
         }
     }
-    let summary = |floor: f64| {
+    let [relative, relative_dim, relative_peak] = [FLOOR, DIM_FLOOR, PEAK_FRACTION * peak].map(|floor| {
         // A set whose reference is zero throughout has no peak to be relative to.
         let floor = if floor > 0.0 { floor } else { FLOOR };
         summarise(
             samples.iter().map(|&(found, expected, bright)| relative_error(found, expected, bright, floor)).collect(),
         )
-    };
+    });
     Statistics {
         pairs: pairs.len() as u64,
         not_finite,
         not_finite_at,
         peak,
         max_abs_err,
-        relative: summary(FLOOR),
-        relative_dim: summary(DIM_FLOOR),
-        relative_peak: summary(PEAK_FRACTION * peak),
+        relative,
+        relative_dim,
+        relative_peak,
         above_target,
         worst,
     }

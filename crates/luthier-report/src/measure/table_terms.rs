@@ -65,8 +65,8 @@ impl Table<'_> {
             return self.row(tile, cos_theta, weights);
         }
         let [first, second] = [tile, tile + 1].map(|tile| self.parts(tile, cos_theta, weights));
-        let mixed = |(a, b): (&[f64; 4], &[f64; 4])| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));
-        Row::of_parts(&first.iter().zip(&second).map(mixed).collect::<Vec<_>>(), self.has_base())
+        let parts = first.iter().zip(&second).map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i])));
+        Row::of_parts(&parts.collect::<Vec<_>>(), self.has_base())
     }
 
     fn parts(&self, tile: u32, cos_theta: f64, weights: Weights) -> Vec<[f64; 4]> {
@@ -96,12 +96,12 @@ impl AngleAxis {
     pub(crate) fn of(table: &Table<'_>) -> Result<Self, ReportError> {
         let kind = table.entry.kind;
         let (layout, facts) = (&table.entry.layout, kind.facts());
-        let refuse = |reason| Err(ReportError::Layout { kind, reason });
         if facts.y.is_some() && layout.y.is_none() {
-            return refuse("it has no second axis");
+            return Err(ReportError::Layout { kind, reason: "it has no second axis" });
         }
         if !facts.x.contains(&layout.x.quantity.as_str()) {
-            return refuse("its x axis is not of a quantity that such tables have");
+            let reason = "its x axis is not of a quantity that such tables have";
+            return Err(ReportError::Layout { kind, reason });
         }
         Ok(if layout.x.quantity.starts_with("theta") { Self::Theta } else { Self::CosTheta })
     }
@@ -163,11 +163,11 @@ impl Here {
     /// Fractional number of the tile of lobes, and the factor on slopes that its rows are divided by.
     fn tile(&self, varying: &VaryingRecord) -> (f64, f64) {
         let last = f64::from(varying.tiles) - 1.0;
-        let from_root = |factor: f64| 1.0 - factor.clamp(0.0, 1.0).sqrt();
+        let [alpha, slab] = [self.alpha_factor, self.slab_factor].map(|factor| 1.0 - factor.clamp(0.0, 1.0).sqrt());
         let place = match varying.factor {
             // A step before the root of 0.
-            VaryingFactor::AlphaFactor => (from_root(self.alpha_factor) * (last + 1.0)).min(last),
-            VaryingFactor::SlabFactor => from_root(self.slab_factor) * last,
+            VaryingFactor::AlphaFactor => (alpha * (last + 1.0)).min(last),
+            VaryingFactor::SlabFactor => slab * last,
             VaryingFactor::FilmFactor => {
                 let [most, least] = varying.factors.unwrap_or([1.0, 0.0]);
                 ((most - self.film_factor) / (most - least)).clamp(0.0, 1.0) * last
@@ -236,17 +236,17 @@ impl<'a> TableTerms<'a> {
     ) -> Result<Self, ReportError> {
         let mut terms = Self::new(subject, material, weights)?;
         let entry = &subject.manifest.materials[material];
-        let f0 = |(layer, record): (usize, &LayerRecord)| {
+        let passing = entry.layers.iter().enumerate().find_map(|(layer, record)| {
             let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
             Some((layer, [0, 1, 2].map(|c: usize| (1.0 - own[c]) / (1.0 - nominal[c]).max(1e-6))))
-        };
+        });
         let sample = &place.sample;
         terms.here = Here {
             part,
             alpha_factor: sample.alpha_factor,
             slab_factor: sample.slab_factor,
             film_factor: sample.film_factor,
-            passing: entry.layers.iter().enumerate().find_map(f0),
+            passing,
         };
         if let (Part::Bare, Some(patina)) = (part, &entry.constants.patina) {
             terms.records = std::iter::once(&patina.bare).chain(entry.layers.iter().skip(2)).cloned().collect();
@@ -378,19 +378,19 @@ impl ShaderTerms for TableTerms<'_> {
         };
         let axis = ViewAxis::new(2, critical);
         let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
-        let painted = |PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() };
-        let (wide, base) = (Wide::new(lobes.falloff, axis), lobes.painted.map(painted));
-        let frame = Frame { index: lobes.index, wide, axes, base };
-        let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
+        let base = lobes.painted;
+        let base = base.map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
+        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes, base };
+        let cos_theta = axis.cosine(wo.z);
         let row = match (axes, lobes.varying) {
-            (Some(axes), _) => axes.row(wo, |number| row(tile + number as u32)),
+            (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(&varying);
                 let first = (place as u32).min(varying.tiles.saturating_sub(2));
                 let share = place - f64::from(first);
-                table.row_between(tile + first, share, axis.cosine(wo.z), self.weights).spread(spread)
+                table.row_between(tile + first, share, cos_theta, self.weights).spread(spread)
             }
-            (None, None) => row(tile),
+            (None, None) => table.row(tile, cos_theta, self.weights),
         };
         Some(Below::new(frame, row, wo))
     }

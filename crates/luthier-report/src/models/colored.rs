@@ -89,9 +89,9 @@ impl ColorView {
                 });
                 view.families.push(sums);
             }
-            let channels = || (0..3).filter(|c| view.albedo(*c) > 0.0);
-            let lobe = channels().map(|c| view.lobe_floor(c) / settings.noise);
-            let albedo = channels().map(|c| view.deviation(c, |_| 1.0) / settings.albedo_std_err);
+            let channels = (0..3).filter(|c| view.albedo(*c) > 0.0);
+            let lobe = channels.clone().map(|c| view.lobe_floor(c) / settings.noise);
+            let albedo = channels.map(|c| view.deviation(c, |_| 1.0) / settings.albedo_std_err);
             let lack = lobe.chain(albedo).fold(0.0, f64::max);
             if lack <= 1.0 || wanted >= most {
                 return view;

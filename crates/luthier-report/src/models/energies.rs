@@ -32,6 +32,11 @@ impl Energies {
         energies
     }
 
+    /// Variance of a sum of the energies with factors; 0 without paths.
+    pub(super) fn variance(&self, factor: impl Fn(usize) -> f64) -> f64 {
+        self.noise.as_ref().map_or(0.0, |paths| paths.variance(factor))
+    }
+
     /// The energies of functions `f cos_theta_i` of the light direction, several at once: Gauss-Legendre quadrature over every patch. Points are
     /// doubled, where a function changes most, until half the changes of all patches are 5e-4 or less in all. Of functions that are symmetric
     /// about the plane of the eye one half is integrated.
@@ -53,7 +58,6 @@ impl Energies {
             });
             sum
         };
-        let difference = |a: [f64; N], b: [f64; N]| std::array::from_fn(|i| a[i] - b[i]);
         let patches = cells.patches();
         // Patches that change by no more than this are content on their own.
         let share = 2.0 * CONTENT / patches.len() as f64;
@@ -61,21 +65,23 @@ impl Energies {
             .into_iter()
             .filter(|patch| !is_symmetric || patch.is_left())
             .map(|patch| {
-                let energy = integrate(&patch, 1);
-                Refined { patch, level: 1, energy, change: difference(energy, integrate(&patch, 0)) }
+                let (energy, coarser) = (integrate(&patch, 1), integrate(&patch, 0));
+                Refined { patch, level: 1, energy, change: std::array::from_fn(|i| energy[i] - coarser[i]) }
             })
             .collect();
         let copies = if is_symmetric { 2.0 } else { 1.0 };
         loop {
             let moved: [f64; N] =
                 std::array::from_fn(|i| copies * refined.iter().map(|r| 0.5 * r.change[i].abs()).sum::<f64>());
-            let open = |r: &&mut Refined<N>| r.change.iter().any(|c| c.abs() > share) && r.level + 1 < rules.len();
             let mut changed = false;
             if moved.iter().any(|moved| *moved > CONTENT) {
-                for r in refined.iter_mut().filter(open) {
-                    let finer = integrate(&r.patch, r.level + 1);
-                    *r = Refined { level: r.level + 1, energy: finer, change: difference(finer, r.energy), ..*r };
-                    changed = true;
+                for r in refined.iter_mut().filter(|r| r.level + 1 < rules.len()) {
+                    if r.change.iter().any(|c| c.abs() > share) {
+                        let finer = integrate(&r.patch, r.level + 1);
+                        let change = std::array::from_fn(|i| finer[i] - r.energy[i]);
+                        *r = Refined { level: r.level + 1, energy: finer, change, ..*r };
+                        changed = true;
+                    }
                 }
             }
             if !changed {

@@ -35,8 +35,9 @@ impl Histogram {
 
     /// The histogram of families that have as many paths each, `count` in all.
     pub(super) fn of_families(families: Vec<Vec<f64>>, count: f64) -> Self {
-        let mean = |cell: usize| families.iter().map(|energies| energies[cell]).sum::<f64>() / families.len() as f64;
-        Self { energies: (0..CELLS).map(mean).collect(), squares: vec![0.0; CELLS], count, families }
+        let sums = (0..CELLS).map(|cell| families.iter().map(|energies| energies[cell]).sum::<f64>());
+        let energies = sums.map(|sum| sum / families.len() as f64).collect();
+        Self { energies, squares: vec![0.0; CELLS], count, families }
     }
 
     /// Variance of the mean of the families' values.

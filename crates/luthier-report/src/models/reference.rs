@@ -10,7 +10,7 @@ use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::JointPaths;
 use luthier_optics::Rgb;
-use luthier_optics::stack::{Base, Stack};
+use luthier_optics::stack::{Base, Layer, Stack};
 use rayon::prelude::*;
 
 use super::cells::{CELLS, Cells, mirrored};
@@ -77,23 +77,22 @@ impl Reference {
         let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(&subject.stack, subject.wavelengths_nm[c], c));
         let is_symmetric = is_isotropic(&subject.stack);
         let sets = JointPaths::new(&stacks);
-        let view = |theta_deg: &f64| {
-            let cells = Cells::new(direction(*theta_deg, PHI_DEG));
+        let views = thetas_deg.par_iter().map(|&theta_deg| {
+            let cells = Cells::new(direction(theta_deg, PHI_DEG));
             let (histograms, paths) = trace(&sets, &cells, is_symmetric, settings);
-            TracedView { theta_deg: *theta_deg, cells, histograms, paths }
-        };
-        let views = thetas_deg.par_iter().map(view).collect();
+            TracedView { theta_deg, cells, histograms, paths }
+        });
+        let views = views.collect();
         Self { wavelengths_nm: subject.wavelengths_nm, stacks, is_symmetric, views }
     }
 
     /// Errors of what is shown at all views: angle by angle, and at each wavelength by wavelength.
     pub fn errors(&self, shown: Shown<'_>) -> Vec<ViewError> {
-        let errors = |view: &TracedView| {
+        let errors = self.views.par_iter().map(|view| {
             let found = self.energies(shown, &view.cells);
             [0, 1, 2].map(|c: usize| compare(&found[c], &view.histograms[c], self.wavelengths_nm[c], view.theta_deg))
-        };
-        let errors: Vec<[ViewError; 3]> = self.views.par_iter().map(errors).collect();
-        errors.into_iter().flatten().collect()
+        });
+        errors.collect::<Vec<[ViewError; 3]>>().into_iter().flatten().collect()
     }
 
     /// Paths that were traced, of all views.
@@ -102,12 +101,11 @@ impl Reference {
     }
 
     fn energies(&self, shown: Shown<'_>, cells: &Cells) -> [Energies; 3] {
-        let model = |model: &dyn Model| {
-            let values = |wi| [0, 1, 2].map(|c: usize| model.eval(&self.stacks[c], wi, cells.wo));
-            Energies::of_values(values, cells, self.is_symmetric)
-        };
         match shown {
-            Shown::Model(given) => model(given),
+            Shown::Model(model) => {
+                let values = |wi| [0, 1, 2].map(|c: usize| model.eval(&self.stacks[c], wi, cells.wo));
+                Energies::of_values(values, cells, self.is_symmetric)
+            }
             Shown::Values(values) => Energies::of_values(|wi| values(wi, cells.wo), cells, self.is_symmetric),
             Shown::Lobes(lobes) => Energies::of_values(lobes.seen(&self.stacks, cells.wo), cells, self.is_symmetric),
         }
@@ -116,8 +114,8 @@ impl Reference {
 
 /// Whether no surface looks other along one axis than along the other.
 pub(super) fn is_isotropic(stack: &Stack) -> bool {
-    let is_round = |surface: &luthier_optics::stack::Surface| surface.alpha_x == surface.alpha_y;
-    stack.layers.iter().all(|layer| matches!(layer.base, Base::Diffuse(_)) || is_round(&layer.surface))
+    let mut layers = stack.layers.iter();
+    layers.all(|Layer { base, surface, .. }| matches!(base, Base::Diffuse(_)) || surface.alpha_x == surface.alpha_y)
 }
 
 /// Light by cell and wavelength, from one direction, and the number of paths.
@@ -138,17 +136,18 @@ fn trace(sets: &[JointPaths], cells: &Cells, is_symmetric: bool, settings: Refer
                 });
             }
             traced = wanted;
-            let of = |c: usize| {
-                let energy = |sums: &[Rgb], cell: usize| {
-                    let sum =
-                        if is_symmetric { 0.5 * (sums[cell][c] + sums[mirrored(cell)][c]) } else { sums[cell][c] };
-                    single[cell][c] + sum / traced as f64
-                };
-                let family = |sums: &Vec<Rgb>| (0..CELLS).map(|cell| energy(sums, cell)).collect();
-                Histogram::of_families(sums.iter().map(family).collect(), (traced * FAMILIES) as f64)
-            };
             let channels = paths.channels();
-            let found = [0, 1, 2].map(|c: usize| channels[c].then(|| of(c)));
+            let found = [0, 1, 2].map(|c: usize| {
+                let families = sums.iter().map(|sums| {
+                    let energies = (0..CELLS).map(|cell| {
+                        let (own, opposite) = (sums[cell][c], sums[mirrored(cell)][c]);
+                        let sum = if is_symmetric { 0.5 * (own + opposite) } else { own };
+                        single[cell][c] + sum / traced as f64
+                    });
+                    energies.collect()
+                });
+                channels[c].then(|| Histogram::of_families(families.collect(), (traced * FAMILIES) as f64))
+            });
             // How many times as many paths would do.
             let lack = found.iter().flatten().map(|histogram| {
                 let lobe = histogram.lobe_floor() / settings.noise;
@@ -172,14 +171,16 @@ fn trace(sets: &[JointPaths], cells: &Cells, is_symmetric: bool, settings: Refer
 
 /// Energy by cell of the light that meets one facet of the first interface alone.
 fn first_facets(sets: &[JointPaths], cells: &Cells, is_symmetric: bool) -> Vec<Rgb> {
-    let sum = |of: &dyn Fn(&JointPaths) -> Rgb| {
-        sets.iter().map(of).fold([0.0; 3], |sum, rgb| [0, 1, 2].map(|c: usize| sum[c] + rgb[c]))
-    };
-    let rough = Energies::of_values(|wi| sum(&|paths| paths.first_facet(wi, cells.wo)), cells, is_symmetric);
-    let mirrored = sum(&|paths| paths.mirrored(cells.wo));
-    let energy =
-        |cell: usize| [0, 1, 2].map(|c: usize| rough[c].energies[cell] + if cell == 0 { mirrored[c] } else { 0.0 });
-    (0..CELLS).map(energy).collect()
+    let rough =
+        Energies::of_values(|wi| sum(sets.iter().map(|set| set.first_facet(wi, cells.wo))), cells, is_symmetric);
+    let mirrored = sum(sets.iter().map(|paths| paths.mirrored(cells.wo)));
+    let energies = (0..CELLS)
+        .map(|cell| [0, 1, 2].map(|c: usize| rough[c].energies[cell] + if cell == 0 { mirrored[c] } else { 0.0 }));
+    energies.collect()
+}
+
+fn sum(colors: impl Iterator<Item = Rgb>) -> Rgb {
+    colors.fold([0.0; 3], |sum, rgb| [0, 1, 2].map(|c: usize| sum[c] + rgb[c]))
 }
 
 #[cfg(test)]
@@ -187,7 +188,7 @@ mod tests {
     use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
     use luthier_layers::registry::model;
     use luthier_optics::ior::{Ior, IorSample};
-    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Surface};
+    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Slab, Surface};
 
     use super::*;
 

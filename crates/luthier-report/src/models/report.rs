@@ -80,6 +80,13 @@ pub struct Worst {
     pub theta_deg: f64,
 }
 
+impl Worst {
+    /// The largest; zeros of none, which no list of angles leads to.
+    fn among(all: impl Iterator<Item = Self>) -> Self {
+        all.max_by(|a, b| a.quantity.error.total_cmp(&b.quantity.error)).unwrap_or_default()
+    }
+}
+
 /// Errors of one view: at a wavelength, from a direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ViewError {
@@ -137,15 +144,11 @@ impl ModelsReport {
 
 impl ModelErrors {
     pub(super) fn new(row: &Row, views: Vec<ViewError>) -> Self {
-        let worst = |of: fn(&ViewError) -> Worst| {
-            // There are always views: the list of angles is not empty.
-            views.iter().map(of).max_by(|a, b| a.quantity.error.total_cmp(&b.quantity.error)).unwrap_or_default()
-        };
         Self {
             name: row.name(),
             is_model: matches!(row, Row::Model(_)),
-            albedo: worst(|view| view.worst(view.albedo, 0.0)),
-            lobe: worst(|view| view.worst(view.lobe, view.lobe_floor)),
+            albedo: Worst::among(views.iter().map(|view| view.worst(view.albedo, 0.0))),
+            lobe: Worst::among(views.iter().map(|view| view.worst(view.lobe, view.lobe_floor))),
             views,
         }
     }

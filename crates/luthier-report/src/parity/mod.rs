@@ -4,6 +4,8 @@ mod page;
 mod sets;
 mod tolerances;
 
+use std::collections::BTreeMap;
+
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::ShaderTerms;
 use luthier_manifest::{ColorMode, Form, ShadingModel};
@@ -221,7 +223,7 @@ fn compare(
     numbers.sort_unstable();
     numbers.dedup();
     // Energies of rough interfaces take seconds, and are prepared when they are first asked for: here, all at once.
-    let prepared: Vec<(u32, References)> = numbers
+    let prepared: BTreeMap<u32, References> = numbers
         .into_par_iter()
         .map(|number| {
             let references = references(subject, number as usize);
@@ -235,7 +237,6 @@ fn compare(
             Ok((number, references))
         })
         .collect::<Result<_, ReportError>>()?;
-    let of = |number| prepared.iter().find(|(n, _)| *n == number).map(|(_, references)| references);
     let has_full = subject.manifest.has(Form::Full);
     let mut blocks = Vec::new();
     let mut vote = WeightsVote::default();
@@ -245,7 +246,7 @@ fn compare(
         let count = pairs_per_set.div_ceil(materials.len().max(1) as u32);
         for &number in materials {
             let material = number as usize;
-            let Some(references) = of(number) else { continue };
+            let Some(references) = prepared.get(&number) else { continue };
             let References { layers, twin, .. } = references;
             let pairs = set.pairs(count, layers);
             let tables =
@@ -288,11 +289,11 @@ fn compare(
     };
     let mut baked =
         row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
-    baked.parts = parts(subject, &blocks, weights, &baked, of)?;
+    baked.parts = parts(subject, &blocks, weights, &baked, &prepared)?;
     let at = at_places(subject, case.material as usize, Some((device, weights)), pairs_per_set, PLACES_SEED)?;
     baked.places = at.and_then(|at| at.shader);
-    let full = || row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None);
-    let full = has_full.then(full);
+    let full =
+        has_full.then(|| row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None));
     Ok(std::iter::once(baked).chain(full).collect())
 }
 
@@ -301,19 +302,19 @@ fn references(subject: &Subject<'_>, material: usize) -> References {
 }
 
 /// The parts of the largest table error.
-fn parts<'a>(
+fn parts(
     subject: &Subject<'_>,
     blocks: &[Block],
     weights: Weights,
     row: &ParityRow,
-    of: impl Fn(u32) -> Option<&'a References>,
+    references: &BTreeMap<u32, References>,
 ) -> Result<Vec<Part>, ReportError> {
     let Some((set, worst)) = &row.worst_table else { return Ok(Vec::new()) };
     let at = blocks.iter().filter(|block| block.set == *set).find_map(|block| {
         block.pairs.iter().position(|pair| *pair == (worst.wi, worst.wo)).map(|index| (block, index))
     });
     let Some((block, index)) = at else { return Ok(Vec::new()) };
-    let Some(references) = of(block.material as u32) else { return Ok(Vec::new()) };
+    let Some(references) = references.get(&(block.material as u32)) else { return Ok(Vec::new()) };
     let tables = TableTerms::new(subject, block.material, weights)?;
     let twin: &Twin = &references.twin;
     let factors = Factors { twin, exact: references.baked(), tables: Some(&tables), on_device: false };

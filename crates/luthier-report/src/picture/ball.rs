@@ -48,8 +48,7 @@ pub fn render_ball(
         .map(|(y, row)| {
             let mut variance = 0.0;
             for (x, texel) in row.chunks_exact_mut(3).enumerate() {
-                let at = |i: usize| 2.0 * (i as f64 + 0.5) / f64::from(size) - 1.0;
-                let Some(place) = Place::hit([at(x), -at(y)]) else { continue };
+                let Some(place) = Place::hit([x as u32, y as u32], size) else { continue };
                 for (channel, (stack, value)) in stacks.iter().zip(texel).enumerate() {
                     let seen = place.seen(model, stack, lights, channel);
                     *value = seen.mean as f32;
@@ -73,10 +72,9 @@ pub fn render_ball_of<E>(
     size: u32,
     values: impl FnOnce(&[(DVec3, DVec3)]) -> Result<Vec<[Estimate; 3]>, E>,
 ) -> Result<BallPicture, E> {
-    let at = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0;
     let (mut pairs, mut of) = (Vec::new(), Vec::new());
     for pixel in 0..size * size {
-        let Some(place) = Place::hit([at(pixel % size), -at(pixel / size)]) else { continue };
+        let Some(place) = Place::hit([pixel % size, pixel / size], size) else { continue };
         let wo = place.local(place.to_eye);
         for light in lights {
             let wi = place.local(DVec3::from_array(light.direction).normalize());
@@ -108,10 +106,11 @@ struct Place {
 }
 
 impl Place {
-    /// Point of the ball that the ray through a point of the picture meets; -1 to 1 in both coordinates.
-    fn hit([x, y]: [f64; 2]) -> Option<Self> {
+    /// Point of the ball that the ray through the middle of a pixel meets.
+    fn hit(pixel: [u32; 2], size: u32) -> Option<Self> {
+        let [right, down] = pixel.map(|i| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0);
         let eye = DVec3::new(0.0, 0.0, EYE);
-        let ray = (DVec3::new(x * HALF_EXTENT, y * HALF_EXTENT, 0.0) - eye).normalize();
+        let ray = (DVec3::new(right * HALF_EXTENT, -down * HALF_EXTENT, 0.0) - eye).normalize();
         let along = -eye.dot(ray);
         let depth_sq = 1.0 - (eye + along * ray).length_squared();
         if depth_sq <= 0.0 {

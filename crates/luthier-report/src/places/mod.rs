@@ -155,11 +155,11 @@ pub fn at_places(
         })
         .collect();
     let weights = device.map_or(Weights::EightBit, |(_, weights)| weights);
-    let rows = |spot: &Spot| {
+    let read = spots.par_iter().map(|spot| {
         let rows = Rows::new(subject, material, &spot.place, weights)?;
         Ok(rows.eval(wide(spot.pair.0), wide(spot.pair.1)))
-    };
-    let read: Vec<Rgb> = spots.par_iter().map(rows).collect::<Result<_, ReportError>>()?;
+    });
+    let read: Vec<Rgb> = read.collect::<Result<_, ReportError>>()?;
     let shader = match device {
         Some((device, _)) => {
             let at: Vec<(PlaceValues, Pair)> = spots.iter().map(|spot| (spot.place.clone(), spot.pair)).collect();
@@ -171,14 +171,14 @@ pub fn at_places(
     // Energies and lobes of each place would take seconds.
     let is_closed = !(entry.model.is_statistical() || entry.model.is_fitted());
     let tables = is_closed.then(|| {
-        let exact = |spot: &Spot| {
+        let all = spots.iter().cloned().zip(read);
+        let resolved = all.filter(|(Spot { pair: (wi, wo), .. }, _)| wi[2].min(wo[2]) >= DOMAIN_COS_THETA as f32);
+        let (near, read): (Vec<Spot>, Vec<Rgb>) = resolved.unzip();
+        let exact = near.par_iter().map(|spot| {
             let exact = rows::exact(subject, material, &spot.place);
             exact.map_or([f64::NAN; 3], |exact| exact.eval(wide(spot.pair.0), wide(spot.pair.1)))
-        };
-        let is_resolved = |spot: &Spot| spot.pair.0[2].min(spot.pair.1[2]) >= DOMAIN_COS_THETA as f32;
-        let (near, read): (Vec<Spot>, Vec<Rgb>) =
-            spots.iter().cloned().zip(read).filter(|(spot, _)| is_resolved(spot)).unzip();
-        PlaceErrors::new(&near, &read, &near.par_iter().map(exact).collect::<Vec<_>>())
+        });
+        PlaceErrors::new(&near, &read, &exact.collect::<Vec<_>>())
     });
     Ok(Some(AtPlaces { varies: places.quantities(), places: spots.len() as u64, shader, tables, simulated: None }))
 }
@@ -186,18 +186,16 @@ pub fn at_places(
 /// A place in words: what is not as where there are no textures.
 pub(crate) fn words(place: &PlaceValues) -> String {
     let none = PlaceValues::NONE;
-    let vector = |name: &str, v: [f32; 3]| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]);
     let mut out = Vec::new();
-    let mut number = |name: &str, value: f32, plain: f32| {
+    for (name, value, plain) in [
+        ("alpha_factor", place.alpha_factor, none.alpha_factor),
+        ("slab_factor", place.slab_factor, none.slab_factor),
+        ("film_factor", place.film_factor, none.film_factor),
+        ("patina", place.patina.unwrap_or(-1.0), -1.0),
+    ] {
         if value != plain {
             out.push(format!("{name} {value:.4}"));
         }
-    };
-    number("alpha_factor", place.alpha_factor, none.alpha_factor);
-    number("slab_factor", place.slab_factor, none.slab_factor);
-    number("film_factor", place.film_factor, none.film_factor);
-    if let Some(amount) = place.patina {
-        number("patina", amount, -1.0);
     }
     for (name, value) in
         [("normal", place.normal), ("inner_normal", place.inner_normal), ("flake_normal", place.flake_normal)]
@@ -222,4 +220,8 @@ pub(crate) fn words(place: &PlaceValues) -> String {
         }
     }
     if out.is_empty() { "no textures".to_owned() } else { out.join(", ") }
+}
+
+fn vector(name: &str, [x, y, z]: [f32; 3]) -> String {
+    format!("{name} ({x:.3}, {y:.3}, {z:.3})")
 }

@@ -56,11 +56,11 @@ impl Places {
     /// Quantities that vary, in words.
     pub fn quantities(&self) -> Vec<String> {
         let constants = &self.entry.constants;
-        let map = |(slot, layer, _): &(MapSlot, Option<u32>, _)| match layer {
+        let maps = self.ranges.iter().map(|(slot, layer, _)| match layer {
             Some(layer) if *layer > 0 => format!("{} of layer {}", slot.name(), layer + 1),
             _ => slot.name().to_owned(),
-        };
-        let mut names: Vec<String> = self.ranges.iter().map(map).collect();
+        });
+        let mut names: Vec<String> = maps.collect();
         let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
         names.extend(self.film.map(|_| "film".to_owned()));
         names.extend(constants.flakes.filter(|_| !has_flake_map).map(|_| "flakes".to_owned()));

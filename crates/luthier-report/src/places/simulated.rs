@@ -71,14 +71,13 @@ pub struct SimulatedAt {
 impl SimulatedAt {
     /// Quantities that are farther off than they may be, noise aside, each with what was found and the limit.
     pub fn misses(&self) -> Vec<(&'static str, f64, f64)> {
-        let beyond = |[error, noise]: [f64; 2], limit: f64, margin: f64| error > limit + margin * noise;
         [
             ("lobe error", self.lobe, LOBE_AT_PLACES, 1.5),
             ("error of the albedo", self.albedo, ALBEDO_AT_PLACES, UNCERTAINTY_MARGIN),
             ("error of grazing light", self.grazing, GRAZING_AT_PLACES, UNCERTAINTY_MARGIN),
         ]
         .into_iter()
-        .filter(|(_, pair, limit, margin)| beyond(*pair, *limit, *margin))
+        .filter(|(_, [error, noise], limit, margin)| *error > limit + margin * noise)
         .map(|(name, [error, _], limit, _)| (name, error, limit))
         .collect()
     }
@@ -154,14 +153,14 @@ pub fn simulated(
             all.into_iter().map(move |theta_deg| (number, theta_deg))
         })
         .collect();
-    let judged = |&(number, theta_deg): &(u64, f64)| {
+    let found = views.par_iter().map(|&(number, theta_deg)| {
         let values = upright(places.place(settings.seed, number), entry);
         let Some(here) = meant(stack, &rows::place(&values, entry), entry) else { return Ok(None) };
         let view = ColorView::new(&here, &color, entry.wavelengths_nm, theta_deg, settings.reference);
         let rows = Rows::new(subject, material, &values, Weights::Exact)?;
         Ok(Some(seen(number, &values, theta_deg, &view, |wi, wo| rows.eval(wi, wo))))
-    };
-    let found: Vec<Option<(SimulatedAt, u64)>> = views.par_iter().map(judged).collect::<Result<_, ReportError>>()?;
+    });
+    let found: Vec<Option<(SimulatedAt, u64)>> = found.collect::<Result<_, ReportError>>()?;
     let (views, paths): (Vec<SimulatedAt>, Vec<u64>) = found.into_iter().flatten().unzip();
     Ok((!views.is_empty()).then(|| SimulatedErrors { views, paths: paths.iter().sum() }))
 }
@@ -199,8 +198,8 @@ fn seen(
 /// The place without normals, where patina is whole or not at all.
 fn upright(values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
     let PlaceValues { normal, flake_normal, .. } = PlaceValues::NONE;
-    let whole = |amount: f32| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 };
-    PlaceValues { normal, flake_normal, patina: values.patina.map(whole), ..values }
+    let patina = values.patina.map(|amount| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 });
+    PlaceValues { normal, flake_normal, patina, ..values }
 }
 
 /// Whether patina that has grown whole is its layers and nothing else.

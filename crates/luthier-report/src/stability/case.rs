@@ -147,9 +147,10 @@ fn singular(cases: &mut Cases) {
     cases.add("furnace-1", "white furnace: mirror of alpha 1", in_air(vec![mirror(1.0)]));
     let coated = in_air(vec![coat(0.1, 1.5, 0.0), mirror(0.1)]);
     cases.add("furnace-2", "white furnace: coat of alpha 0.1, index 1.5, over a mirror of alpha 0.1", coated.clone());
-    let white = |n| in_air(vec![coat(0.1, n, 0.0), diffuse([1.0; 3], 0.0)]);
-    cases.add("furnace-3", "white furnace: coat of alpha 0.1, index 1.5, over white", white(1.5));
-    cases.add("furnace-4", "white furnace: coat of alpha 0.1, index 4, over white", white(4.0));
+    for (id, n) in [("furnace-3", 1.5), ("furnace-4", 4.0)] {
+        let title = format!("white furnace: coat of alpha 0.1, index {n}, over white");
+        cases.add(id, &title, in_air(vec![coat(0.1, n, 0.0), diffuse([1.0; 3], 0.0)]));
+    }
     let smooth = in_air(vec![coat(0.0, 1.5, 0.0), mirror(0.0)]);
     cases.add("q-zero", "smooth coat over a smooth mirror, seen at grazing angles: 1 - R21 Rb goes to 0", smooth).aim =
         Aim::Grazing;

@@ -217,13 +217,13 @@ impl Stability {
     pub fn new(generator: &str, device: Option<String>, cells: Vec<Cell>) -> Self {
         let all = cases();
         let domains = derived(&all, &cells);
-        let info = |case: &StressCase| CaseInfo {
+        let cases = all.iter().map(|case| CaseInfo {
             id: case.id.clone(),
             title: case.title.clone(),
             swept: case.swept.map(|(quantity, value)| (quantity.name().to_owned(), value)),
             truth: models::truth_name(case).to_owned(),
-        };
-        let cases = all.iter().map(info).collect();
+        });
+        let cases = cases.collect();
         Self { generator: generator.to_owned(), device, cases, cells, formulas: formulas(), domains }
     }
 

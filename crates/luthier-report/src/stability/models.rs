@@ -180,24 +180,17 @@ const POINTS: [usize; 2] = [20, 28];
 /// half.
 fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
     let rule = gauss_legendre(points);
-    let crowded = |start: f64, length: f64| {
-        rule.iter()
-            .map(move |&(t, weight)| {
-                let t4 = t * t * t * t;
-                (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
-            })
-            .collect::<Vec<_>>()
-    };
     let theta_o = libm::atan2(wo.x, wo.z);
     let is_isotropic = stack.layers.iter().all(|layer| layer.surface.alpha_x == layer.surface.alpha_y);
-    let mut phis = crowded(PI, -PI);
+    let mut phis = crowded(&rule, PI, -PI);
     if is_isotropic {
         phis.iter_mut().for_each(|(_, weight)| *weight *= 2.0);
     } else {
-        phis.extend(crowded(PI, PI));
+        phis.extend(crowded(&rule, PI, PI));
     }
     let mut sum = 0.0;
-    for (theta, d_theta) in crowded(theta_o, -theta_o).into_iter().chain(crowded(theta_o, FRAC_PI_2 - theta_o)) {
+    let thetas = [-theta_o, FRAC_PI_2 - theta_o].into_iter().flat_map(|length| crowded(&rule, theta_o, length));
+    for (theta, d_theta) in thetas {
         let (sin_theta, cos_theta) = libm::sincos(theta);
         for &(phi, d_phi) in &phis {
             let (sin_phi, cos_phi) = libm::sincos(phi);
@@ -206,6 +199,15 @@ fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> 
         }
     }
     sum
+}
+
+/// Points and weights of a rule over an interval, which by the fifth power crowd at its start.
+fn crowded(rule: &[(f64, f64)], start: f64, length: f64) -> Vec<(f64, f64)> {
+    let points = rule.iter().map(|&(t, weight)| {
+        let t4 = t * t * t * t;
+        (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
+    });
+    points.collect()
 }
 
 /// The first law that is broken, and by how much.

@@ -44,10 +44,10 @@ pub(crate) fn pareto(
     limit: Option<(f64, &str)>,
 ) -> String {
     let finite: Vec<&Choice> = choices.iter().filter(|c| c.error.is_finite() && c.price.is_finite()).collect();
-    let prices = || finite.iter().map(|c| c.price);
+    let prices = finite.iter().map(|c| c.price);
     let x = match kind {
-        Price::Bytes => Scale::decades(prices(), 1.0),
-        Price::Cost => Scale::round(prices()),
+        Price::Bytes => Scale::decades(prices, 1.0),
+        Price::Cost => Scale::round(prices),
     };
     let y = Scale::decades(finite.iter().map(|c| c.error).chain(limit.map(|l| l.0)), SMALLEST);
     let margin = Margin { left: 44.0, right: 16.0, top: 24.0, bottom: 38.0 };

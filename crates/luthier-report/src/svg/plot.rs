@@ -81,16 +81,16 @@ const LEGEND: f64 = 17.0;
 impl Plot {
     /// The file.
     pub fn to_svg(&self) -> String {
-        let values = |i: usize| self.curves.iter().flat_map(move |curve| curve.points.iter().map(move |p| p[i]));
-        let scale = |axis: &PlotAxis, i: usize| {
+        let [x, y] = [(&self.x, 0), (&self.y, 1)].map(|(axis, i): (_, usize)| {
             let [min, max] = axis.range;
+            let values = self.curves.iter().flat_map(|curve| curve.points.iter().map(move |p| p[i]));
             // `Scale` counts its ticks from the lower end.
-            if axis.step > 0.0 { Scale::linear(min, max, axis.step) } else { Scale::decades(values(i), SMALLEST) }
-        };
+            if axis.step > 0.0 { Scale::linear(min, max, axis.step) } else { Scale::decades(values, SMALLEST) }
+        });
         let legend = LEGEND * self.curves.len() as f64;
         let margin = Margin { left: 50.0, right: 16.0, top: 26.0 + legend, bottom: 40.0 };
         let [width, height] = [SIZE[0], SIZE[1] + legend];
-        let mut frame = Frame::new([width, height], margin, scale(&self.x, 0), scale(&self.y, 1));
+        let mut frame = Frame::new([width, height], margin, x, y);
         frame.x_axis(&self.x.label);
         frame.y_axis(&self.y.label);
         for (i, curve) in self.curves.iter().enumerate() {

@@ -117,8 +117,8 @@ pub(crate) fn escape(text: &str) -> String {
 
 /// A pair of directions in words.
 pub(crate) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
-    let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
-    let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
+    let [phi_i, phi_o] = [wi, wo].map(|w| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees());
+    let turn = libm::fabs(libm::remainder(phi_o - phi_i, 360.0));
     format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta_deg(wi)), number_deg(theta_deg(wo)), turn)
 }
 

@@ -137,10 +137,10 @@ fn readers(table: &Table<'_>, subject: &Subject<'_>, is_wanted: &dyn Fn(u32) -> 
             let entry = &subject.manifest.materials[m];
             let color = color(entry);
             let distribution = layer.surface.distribution;
-            let known = |r: &Reader| {
+            let is_known = readers.iter().any(|r| {
                 r.tile == tile && r.interface == interface && r.color == color && r.distribution == distribution
-            };
-            if readers.iter().any(known) {
+            });
+            if is_known {
                 continue;
             }
             let transparent = matches!(layer.base, Base::Dielectric { .. });
@@ -164,12 +164,12 @@ fn crossing(interface: &Interface, color: &Color) -> Vec<Crossing> {
         spectra.extend([once, twice]);
     }
     let sampled = interface.at_nodes(&color.sparse_nodes(&spectra, CROSSED_TOLERANCE));
-    let each = |(weight, at): (Rgb, luthier_optics::interface::Monochrome)| Crossing {
+    let crossings = sampled.nodes.into_iter().map(|(weight, at)| Crossing {
         weight,
         eta: at.below.re / at.above.re,
         curve: ReflectanceCurves::new(1, |_, cos_theta| at.reflectance(cos_theta)),
-    };
-    sampled.nodes.into_iter().map(each).collect()
+    });
+    crossings.collect()
 }
 
 /// A table's value at a point, estimated: RGB, and the luminance of the part that never crossed.

@@ -31,10 +31,9 @@ pub(super) fn scan(
     let regular = coordinates(axis, POINTS_PER_CELL).into_iter().map(|u| angle.cos_and_sin_sq(axis.decode(u)).0);
     let grazing = (0..GRAZING_POINTS).map(|n| 1e-6 * libm::pow(1e5, coordinate(n, GRAZING_POINTS)));
     let cosines: Vec<f64> = regular.chain(grazing).map(|c| c.clamp(0.0, 1.0)).collect();
-    let record = |(material, layer): User| &subject.manifest.materials[material].layers[layer];
     let mut scan = Scan::default();
     for &(material, layer) in users {
-        let record = record((material, layer));
+        let record = &subject.manifest.materials[material].layers[layer];
         // Rows over the cosine below the interface are met at their nodes too.
         let inside = cosines.iter().map(|&c| incident_cosine(record.critical_cot_sq, c));
         let inside = inside.filter(|_| record.critical_cot_sq > 0.0);
@@ -47,7 +46,7 @@ pub(super) fn scan(
             }
         }
     }
-    let first = users.first().map(|&user| record(user));
+    let first = users.first().map(|&(material, layer)| &subject.manifest.materials[material].layers[layer]);
     let steps = (90.0 / CURVE_STEP_DEG) as u32;
     let rgb = (0..=steps).map(|n| {
         let cos_theta = libm::cos((CURVE_STEP_DEG * f64::from(n)).to_radians());

@@ -12,7 +12,6 @@ mod thickness;
 
 use luthier_layers::twins::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
-use luthier_manifest::MaterialEntry;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
@@ -43,17 +42,17 @@ pub(crate) fn scan(
 ) -> Result<Vec<TableReport>, ReportError> {
     let exact: Vec<&Exact> = references.iter().map(References::baked).collect();
     let exact = exact.as_slice();
-    let inputs = |kind, tile| remembered.tile(subject, kind, tile, pairs_per_set);
     let mut known: Vec<Vec<Option<Found>>> = Vec::with_capacity(TableKind::ALL.len());
     for kind in TableKind::ALL {
         let tiles = subject.table(kind)?.map_or(0, |table| table.entry.layout.tiles);
-        known.push((0..tiles).map(|tile| remembered.recall(TILE, &inputs(kind, tile))).collect());
+        let inputs = (0..tiles).map(|tile| remembered.tile(subject, kind, tile, pairs_per_set));
+        known.push(inputs.map(|inputs| remembered.recall(TILE, &inputs)).collect());
     }
     let mut reports = Vec::new();
     let mut albedo = None;
     if let Some(table) = subject.table(TableKind::Fgd)? {
-        let is_wanted = |tile: u32| known[TableKind::Fgd as usize][tile as usize].is_none();
-        albedo = Some(albedo::scan(&table, subject, &is_wanted, points(pairs_per_set), step)?);
+        let known = &known[TableKind::Fgd as usize];
+        albedo = Some(albedo::scan(&table, subject, &|t| known[t as usize].is_none(), points(pairs_per_set), step)?);
     } else {
         (0..STEPS).for_each(|_| step());
     }
@@ -83,7 +82,7 @@ pub(crate) fn scan(
             };
             let Found { judge, not_finite, curves, uncertainty } = known.unwrap_or_else(|| {
                 let found = Found::from(measured.unwrap_or_default());
-                remembered.keep(TILE, &inputs(kind, number), &found);
+                remembered.keep(TILE, &remembered.tile(subject, kind, number, pairs_per_set), &found);
                 found
             });
             tiles.push(TileReport {
@@ -115,8 +114,8 @@ pub(crate) fn scan(
 fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     let materials = &subject.manifest.materials;
     let layers = materials.iter().flat_map(|m| m.layers.iter().enumerate().map(move |(l, layer)| (m, l, layer)));
-    let reads = |m: &MaterialEntry, first: u32| (first..first + tiles(m, kind)).contains(&tile);
-    let layers = layers.filter(|(m, _, layer)| layer.tiles[kind].is_some_and(|first| reads(m, first)));
+    let layers = layers
+        .filter(|(m, _, layer)| layer.tiles[kind].is_some_and(|first| (first..first + tiles(m, kind)).contains(&tile)));
     let bare = materials
         .iter()
         .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| patina.bare.tiles[kind] == Some(tile)));

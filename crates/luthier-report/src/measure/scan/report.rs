@@ -50,6 +50,11 @@ pub struct TileReport {
 }
 
 impl TileReport {
+    /// Whether a layer of a material reads the tile.
+    pub(crate) fn is_read_by(&self, material: &str) -> bool {
+        self.users.iter().any(|user| user.split('/').next() == Some(material))
+    }
+
     /// Error of the tile as sampled and the aim of the bake, if the error exceeds the aim: the error that was measured here or that the
     /// baker states, whichever is more.
     pub fn miss(&self) -> Option<(f64, f64)> {

@@ -23,11 +23,10 @@ pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Sub
     let (mut low, mut high, mut tilted) = (f64::INFINITY, f64::NEG_INFINITY, 0_u64);
     for (x, y) in (y0..y0 + height).flat_map(|y| (x0..x0 + width).map(move |x| (x, y))) {
         let texel = table.texels.texel(x, y);
-        let at = |c: usize| f64::from(texel[c]);
-        let d = at(0);
+        let d = f64::from(texel[0]);
         (low, high) = (low.min(d), high.max(d));
         // Written so that a value that is not a number is a doubt.
-        let agrees = d.is_finite() && (!has_slopes || is_norm([at(1), at(2)], at(3)));
+        let agrees = d.is_finite() && (!has_slopes || is_norm([1, 2, 3].map(|c: usize| f64::from(texel[c]))));
         tilted += u64::from(!agrees);
     }
     if tilted > 0 {
@@ -54,7 +53,7 @@ pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Sub
 }
 
 /// Whether a factor is `sqrt(1 + dx^2 + dy^2)`, as half floats have it.
-fn is_norm([dx, dy]: [f64; 2], factor: f64) -> bool {
+fn is_norm([dx, dy, factor]: [f64; 3]) -> bool {
     let expected = libm::sqrt(1.0 + dx * dx + dy * dy);
     (factor - expected).abs() <= HALF_FLOAT * expected
 }

@@ -28,8 +28,9 @@ impl Kind {
 
 /// The model with the smallest error; the first of those that are equal as printed.
 pub(super) fn best_model(material: &MaterialModels, kind: Kind) -> Option<&ModelErrors> {
-    let printed = |m: &&ModelErrors| (kind.of(m).quantity.error * 1e3).round();
-    material.models.iter().filter(|m| m.is_model).min_by(|a, b| printed(a).total_cmp(&printed(b)))
+    let models = material.models.iter().filter(|m| m.is_model);
+    let printed = models.map(|m| ((kind.of(m).quantity.error * 1e3).round(), m));
+    printed.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, m)| m)
 }
 
 /// The tables of an error.
@@ -94,14 +95,15 @@ pub(super) fn best(report: &ModelsReport) -> String {
 
 /// Numbers to the right; columns whose head ends in a space, and the first, are text.
 pub(super) fn table(head: &[String], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let line = |cells: &[String]| {
-        format!("| {} |\n", cells.iter().map(|cell| cell.trim_end()).collect::<Vec<_>>().join(" | "))
-    };
     let rule: Vec<String> =
         (0..head.len()).map(|i| if i == 0 || head[i].ends_with(' ') { "---" } else { "---:" }.to_owned()).collect();
     let mut out = line(head) + &line(&rule);
     rows.into_iter().for_each(|row| out.push_str(&line(&row)));
     out
+}
+
+fn line(cells: &[String]) -> String {
+    format!("| {} |\n", cells.iter().map(|cell| cell.trim_end()).collect::<Vec<_>>().join(" | "))
 }
 
 /// Three decimals: the reference knows no more. Errors that are no number are shown.

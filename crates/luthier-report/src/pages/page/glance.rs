@@ -9,8 +9,7 @@ use super::summary::shown;
 use super::trade::{FAMILY, of_shaders};
 use super::{anchor, of_material};
 use crate::judge::evidence::Exhibits;
-use crate::judge::report::{Compared, Comparison, MaterialReport, Report};
-use crate::measure::scan::report::TableReport;
+use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::pages::chart;
 use crate::svg::{Spot, field, legend};
 use crate::text::format::{bytes, error, escape, none, number};
@@ -49,12 +48,11 @@ fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64>
 
 /// Bytes of the tiles that a material reads.
 fn table_bytes(report: &Report, material: &MaterialReport) -> f64 {
-    let reads = |user: &String| user.split('/').next() == Some(material.name.as_str());
-    let of = |table: &TableReport| {
-        let read = table.tiles.iter().filter(|tile| tile.users.iter().any(reads)).count();
+    let bytes = report.tables.iter().map(|table| {
+        let read = table.tiles.iter().filter(|tile| tile.is_read_by(&material.name)).count();
         table.texel_bytes as f64 * read as f64 / table.tiles.len().max(1) as f64
-    };
-    report.tables.iter().map(of).sum()
+    });
+    bytes.sum()
 }
 
 /// Least, median and largest.
@@ -64,9 +62,9 @@ fn spread(mut values: Vec<f64>) -> Option<[f64; 3]> {
 }
 
 fn facts(out: &mut String, report: &Report) {
-    let all = || report.materials.iter();
-    let errors = all().filter_map(|m| m.comparison(judged(report))).map(|c| c.max_error()).collect();
-    let of = |form| spread(all().filter_map(|m| cycles(report, m, form)).collect());
+    let errors = report.materials.iter().filter_map(|m| m.comparison(judged(report))).map(|c| c.max_error()).collect();
+    let [baked, full] =
+        ["baked", "full"].map(|form| spread(report.materials.iter().filter_map(|m| cycles(report, m, form)).collect()));
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
     let accurate = spread(errors).map_or((none(), "no material".to_owned()), |[least, median, largest]| {
         let most = format!(
@@ -76,11 +74,11 @@ fn facts(out: &mut String, report: &Report) {
         );
         (error(median), most)
     });
-    let fast = of("baked").map_or_else(
+    let fast = baked.map_or_else(
         || ("not measured".to_owned(), "run luthier cost --json, then luthier report --cost FILE".to_owned()),
         |[least, median, most]| {
-            let full = of("full")
-                .map_or_else(String::new, |[_, full, _]| format!("; median of the full form {}", number(full)));
+            let full =
+                full.map_or_else(String::new, |[_, full, _]| format!("; median of the full form {}", number(full)));
             let family = FAMILY.to_uppercase();
             let range =
                 format!("median; {} to {} per wave of 64 threads on {family}{full}", number(least), number(most));
@@ -105,8 +103,7 @@ fn facts(out: &mut String, report: &Report) {
 
 /// Number of values that were compared, and of those that are not finite.
 pub(super) fn samples(report: &Report) -> (u64, u64) {
-    let judged = |c: &&Comparison| c.compared.is_judged(report.device.is_some());
-    let sets = report.materials.iter().flat_map(|m| m.comparisons.iter().filter(judged)).flat_map(|c| &c.sets);
+    let sets = report.materials.iter().flat_map(|m| report.judged(m)).flat_map(|c| &c.sets);
     sets.fold((0, 0), |(all, bad), (_, s)| (all + 3 * s.pairs, bad + s.not_finite))
 }
 
@@ -166,14 +163,10 @@ fn chart(out: &mut String, report: &Report) {
 
 /// A small picture of each material, which leads to what the page says of it.
 fn thumbnails(out: &mut String, report: &Report, exhibits: &Exhibits) {
-    let baked = |index: usize| {
-        let all = exhibits.pictures.get(index)?;
-        all.iter().find(|e| e.caption == "baked").or(all.first())
-    };
-    let seen =
-        report.materials.iter().enumerate().filter_map(|(index, material)| Some((index, material, baked(index)?)));
     let mut links = String::new();
-    for (index, material, picture) in seen {
+    for (index, (material, pictures)) in report.materials.iter().zip(&exhibits.pictures).enumerate() {
+        let baked = pictures.iter().find(|e| e.caption == "baked");
+        let Some(picture) = baked.or(pictures.first()) else { continue };
         let _ = write!(
             links,
             "<a href=\"#{}\"{} data-tip=\"{name}: {}\"><img alt=\"{name}\" src=\"data:image/png;base64,{}\"/></a>",

@@ -20,8 +20,7 @@ impl Kernel {
 
     /// Positive weights that sum to 1, and negative ones that sum to -1.
     pub(super) fn balanced(self) -> Self {
-        let part = |sign: f64| self.0.iter().map(|w| (sign * w).max(0.0)).sum::<f64>();
-        let (positive, negative) = (part(1.0), part(-1.0));
+        let [positive, negative] = [1.0, -1.0].map(|sign| self.0.iter().map(|w| (sign * w).max(0.0)).sum::<f64>());
         Self(self.0.iter().map(|w| if *w > 0.0 { w / positive } else { w / negative }).collect())
     }
 }

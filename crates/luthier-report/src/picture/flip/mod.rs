@@ -56,9 +56,10 @@ impl Seen {
         let size = [image.width as usize, image.height as usize];
         let pixels: Vec<[f64; 3]> =
             image.texels().map(|t| opponent([0, 1, 2].map(|c| f64::from(t[c]).clamp(0.0, 1.0)))).collect();
-        let plane = |c: usize| pixels.iter().map(|p| p[c]).collect::<Vec<f64>>();
-
-        let filtered = SENSITIVITY.map(|(channel, terms)| sensed(&plane(channel), size, terms, pixels_per_degree));
+        let filtered = SENSITIVITY.map(|(channel, terms)| {
+            let plane: Vec<f64> = pixels.iter().map(|p| p[channel]).collect();
+            sensed(&plane, size, terms, pixels_per_degree)
+        });
         let lab = (0..pixels.len()).map(|i| hunt_lab(clipped_rgb([0, 1, 2].map(|c| filtered[c][i])))).collect();
 
         let lightness: Vec<f64> = pixels.iter().map(|p| (p[0] + 16.0) / 116.0).collect();
@@ -68,12 +69,12 @@ impl Seen {
         let flat = Kernel::new(radius, gauss).normalised();
         let slope = Kernel::new(radius, |x| -x * gauss(x)).balanced();
         let bump = Kernel::new(radius, |x| (x * x / (deviation * deviation) - 1.0) * gauss(x)).balanced();
-        let strength = |kernel: &Kernel| {
-            let across = convolved(&lightness, size, kernel, &flat);
-            let down = convolved(&lightness, size, &flat, kernel);
+        let [edges, points] = [slope, bump].map(|kernel| {
+            let across = convolved(&lightness, size, &kernel, &flat);
+            let down = convolved(&lightness, size, &flat, &kernel);
             across.iter().zip(down).map(|(x, y)| (x * x + y * y).sqrt()).collect()
-        };
-        Self { lab, edges: strength(&slope), points: strength(&bump) }
+        });
+        Self { lab, edges, points }
     }
 }
 
