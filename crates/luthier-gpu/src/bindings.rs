@@ -10,7 +10,7 @@ use luthier_export::{Package, PackageError};
 
 use crate::GpuError;
 
-/// One binding that a shader names.
+/// A resource that a shader binds.
 #[derive(Debug)]
 enum Resource {
     Table(wgpu::TextureView, TexelFormat),
@@ -18,7 +18,7 @@ enum Resource {
     Materials,
     /// The levels of an environment.
     Environment,
-    /// Its irradiance.
+    /// The irradiance of an environment.
     Irradiance,
 }
 
@@ -38,7 +38,7 @@ impl ShaderBindings {
     /// Uploads the tables that the shader reads.
     pub(crate) fn new(context: &Context, package: &Package, interface: &Interface) -> Result<Self, GpuError> {
         let mut resources = Vec::new();
-        // The full form reads no table.
+        // A shader binds only the tables that it reads: the full form binds none.
         for entry in package.manifest.bindings.iter().filter(|entry| interface.binds(&entry.name)) {
             resources.push((entry.binding, resource(context, package, entry)?));
         }

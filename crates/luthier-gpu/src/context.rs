@@ -24,7 +24,7 @@ pub(crate) struct Context {
     pub(crate) device: wgpu::Device,
     queue: wgpu::Queue,
     faults: Arc<Faults>,
-    /// How much more work one submission holds than on an adapter of which nothing is known.
+    /// Factor on the work of one submission: 1 on an adapter whose speed is unknown.
     pub(crate) batch: u32,
 }
 
@@ -79,7 +79,7 @@ impl Context {
         }
     }
 
-    /// Fails when the device was lost or complained where nobody listened.
+    /// Fails if the device was lost, or reported an error outside any error scope.
     fn check(&self, what: &str) -> Result<(), GpuError> {
         if let Some(reason) = get(&self.faults.lost) {
             return Err(GpuError::Lost(reason));
@@ -202,13 +202,13 @@ impl Context {
     }
 }
 
-/// Buffers of a pass that is run to be timed; what it writes is not read.
+/// Buffers of a pass that is timed. Its outputs are not read.
 #[derive(Debug)]
 pub(crate) struct TimedPass {
     group: wgpu::BindGroup,
-    /// A pair of timestamps, the buffer that they are resolved to, and one to read; where the device has timestamps.
+    /// A pair of timestamps, the buffer that they are resolved to, and one to read; `None` if the device has no timestamps.
     clock: Option<(wgpu::QuerySet, wgpu::Buffer, wgpu::Buffer)>,
-    /// The last word of the outputs, to wait for where it has none.
+    /// The outputs: without timestamps, their first word is read to wait for the pass.
     outputs: wgpu::Buffer,
     last: wgpu::Buffer,
 }
@@ -219,7 +219,7 @@ impl TimedPass {
     }
 }
 
-/// Bytes of a pair of timestamps.
+/// Bytes of a pair of timestamps, and of one word of outputs.
 const STAMPS: u64 = 16;
 
 impl Context {
@@ -290,7 +290,7 @@ impl Context {
     }
 }
 
-/// Keeps the first message only: the rest follows from it.
+/// Keeps the first message only: later faults follow from the first.
 fn put(slot: &Mutex<Option<String>>, message: String) {
     slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
 }

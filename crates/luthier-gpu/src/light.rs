@@ -5,6 +5,14 @@ use crate::context::word;
 use crate::error::{check_direction, setting};
 
 /// A light without a visible body. Linear RGB; +y is up.
+///
+/// ```
+/// use luthier_gpu::Light;
+///
+/// let sun = Light::Directional { direction: [0.0, 1.0, 0.0], irradiance: [3.0; 3] };
+/// let red = sun.with_color([1.0, 0.0, 0.0]);
+/// assert_eq!(red, Light::Directional { direction: [0.0, 1.0, 0.0], irradiance: [1.0, 0.0, 0.0] });
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
     /// Far away.

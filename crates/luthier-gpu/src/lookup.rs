@@ -52,7 +52,7 @@ impl Scene {
     }
 }
 
-/// The expression that reads a table, in terms of `at`: its components in their order are those of the look-up's arguments.
+/// The expression that reads a table: the components of `at`, in order, become the arguments of the look-up.
 fn call(FunctionEntry { name, parameters, value }: &FunctionEntry) -> String {
     let mut components = "xyzw".chars();
     let mut arguments = Vec::with_capacity(parameters.len());

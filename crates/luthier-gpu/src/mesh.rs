@@ -6,8 +6,7 @@ use crate::Shape;
 use crate::context::word;
 use crate::floor::FADE;
 
-/// The parts of the kernel that depend on the shape: markers in `shading.wgsl`, `around` and `render.wgsl`, and what stands there for closed shapes and for
-/// meshes.
+/// Markers in `shading.wgsl`, `around` and `render.wgsl`, with the text that replaces each for closed shapes and for meshes.
 const MARKERS: [(&str, &str, &str); 9] = [
     ("$place", "", ", place: Place"),
     ("$radiance", "environment_radiance(frame * wi)", "mesh_radiance(place, frame * wi, seed)"),
@@ -45,7 +44,7 @@ pub(crate) fn kernel(shape: Shape, around: &str) -> [String; 4] {
     [rays, shading, around, render]
 }
 
-/// The words of a mesh, the first of which has this number.
+/// The words of a mesh; `first` is the number of its first word.
 pub(crate) fn words(mesh: &Mesh, light_angular_radius: f32, first: usize) -> Vec<[u32; 4]> {
     let nodes = mesh.bvh().nodes();
     let nodes_at = first + 2;

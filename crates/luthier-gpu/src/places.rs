@@ -7,10 +7,10 @@ use crate::{GpuError, Scene};
 
 const KERNEL: &str = include_str!("wgsl/places.wgsl");
 
-/// Words of a pair and its place, before those of its layers.
+/// Number of words of a pair and its place, without the layers.
 const PAIR_WORDS: usize = 7;
 
-/// Words of a layer.
+/// Number of words of a layer.
 const LAYER_WORDS: usize = 2;
 
 /// A place, and directions to the light and to the eye.
@@ -22,8 +22,8 @@ impl Scene {
         self.interface.has("LuthierPlace")
     }
 
-    /// `luthier_eval_at` of a material: `f cos_theta_i`, linear RGB, at a place for each pair of directions. Values that the shader has no member
-    /// for are left out: no material of the bake varies in these.
+    /// `luthier_eval_at` of a material: `f cos_theta_i`, linear RGB, at a place for each pair of directions. The shader's place has members only for
+    /// quantities that vary in some material of the bake; the others are ignored.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`], [`GpuError::Refused`] for a shader without places, and whatever the device reports.
