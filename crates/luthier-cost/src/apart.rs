@@ -7,7 +7,7 @@ use std::process::{Command, ExitCode, Stdio};
 
 use crate::{Compiled, CostError, FOREIGN_VARIABLES, Family, Kernel, assembly, compile};
 
-/// First word of the command line of a process that is to compile.
+/// First word of the command line of a process that compiles.
 const PROBE: &str = "cost-probe";
 
 /// Word that asks for machine code in place of counts.
@@ -20,8 +20,8 @@ const DEVICE_FAILURE: u8 = 4;
 const DRIVER_FOLDERS: [&str; 4] =
     ["/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d"];
 
-/// Compiles the kernels of standard input, where this process was started by [`compile_apart`] or [`assembly_apart`]: the exit code of
-/// the process. `None` in every other process. A program that calls these two calls this first.
+/// Answers as a probe: compiles the kernels of standard input and returns the exit code, if [`compile_apart`] or [`assembly_apart`] started this
+/// process. Returns `None` in every other process. The `main` of a program that calls these two calls this first.
 pub fn answer() -> Option<ExitCode> {
     let mut words = std::env::args_os().skip(1);
     if words.next()? != PROBE {
@@ -31,7 +31,7 @@ pub fn answer() -> Option<ExitCode> {
     Some(match reply(&words) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Where nobody listens there is nobody to tell.
+            // A closed standard error leaves the exit code alone to tell.
             let _ = writeln!(io::stderr().lock(), "error: {error}");
             ExitCode::from(DEVICE_FAILURE)
         }
@@ -63,7 +63,7 @@ fn failed_to(action: &'static str) -> impl FnOnce(io::Error) -> CostError {
 /// [`compile`] in a process of its own: this program, started anew. Its `main` has to call [`answer`] first.
 ///
 /// # Errors
-/// Those of [`compile`], and [`CostError::Process`] or [`CostError::Probe`] where no process can be asked.
+/// Those of [`compile`], and [`CostError::Process`] or [`CostError::Probe`] if the process cannot be started or does not answer.
 pub fn compile_apart(family: Family, kernels: &[Kernel]) -> Result<Compiled, CostError> {
     let compiled: Compiled = serde_json::from_str(&ask(family, &[], kernels)?)?;
     if compiled.counts.len() != kernels.len() {
@@ -95,7 +95,7 @@ fn ask(family: Family, words: &[&str], kernels: &[Kernel]) -> Result<String, Cos
     let mut child = command.spawn().map_err(failed_to("start the probe"))?;
     let input = serde_json::to_vec(kernels)?;
     if let Some(mut stdin) = child.stdin.take() {
-        // A probe that ended early says why by itself.
+        // A probe that ended early reports the reason on standard error, which is read below.
         let _ = stdin.write_all(&input);
     }
     let output = child.wait_with_output().map_err(failed_to("wait for the probe"))?;
@@ -109,7 +109,8 @@ fn ask(family: Family, words: &[&str], kernels: &[Kernel]) -> Result<String, Cos
     }))
 }
 
-/// The descriptions of RADV, for the loader to load nothing else; `None` leaves the choice to the user's own variables.
+/// Paths of the descriptions of RADV, so that the loader loads no other driver. `None` if the user's own variables choose drivers, or if none is
+/// found.
 fn drivers() -> Option<OsString> {
     if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().any(|name| std::env::var_os(name).is_some()) {
         return None;

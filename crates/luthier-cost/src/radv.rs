@@ -14,7 +14,7 @@ use crate::{Compiled, CostError, Counts, Family, Kernel, Resource};
 /// [`Family::environment`].
 ///
 /// # Errors
-/// [`CostError::NoDriver`] where there is no loader or no RADV; [`CostError::Vulkan`] when the driver refuses a kernel.
+/// [`CostError::NoDriver`] if there is no loader or no RADV; [`CostError::Vulkan`] when the driver refuses a kernel.
 pub fn compile(family: Family, kernels: &[Kernel]) -> Result<Compiled, CostError> {
     let device = NullDevice::open()?;
     let counts = kernels.iter().map(|kernel| device.pipeline(kernel)?.counts(family)).collect::<Result<_, _>>()?;
@@ -194,7 +194,7 @@ impl Pipeline<'_> {
         })
     }
 
-    /// The representation that RADV names so.
+    /// The internal representation that RADV calls `Assembly`.
     fn assembly(&self) -> Result<String, CostError> {
         let executable = vk::PipelineExecutableInfoKHR::default().pipeline(self.pipeline);
         let call = self.of.executables.fp().get_pipeline_executable_internal_representations_khr;
@@ -255,7 +255,7 @@ fn value(statistic: &vk::PipelineExecutableStatisticKHR<'_>) -> i64 {
     }
 }
 
-/// A text of fixed room.
+/// A text from an array of fixed size.
 fn text(characters: &[c_char]) -> String {
     let bytes: Vec<u8> = characters.iter().map(|&c| c as u8).collect();
     CStr::from_bytes_until_nul(&bytes).map_or_else(|_| String::new(), |text| text.to_string_lossy().into_owned())

@@ -11,7 +11,18 @@ use crate::{Compiled, CostError, Counts, Family};
 /// Version of the JSON.
 const SCHEMA: u32 = 1;
 
-/// All that was counted. The JSON of it is described in docs/measurements/README.md.
+/// Counts of many shaders. docs/measurements/README.md describes the JSON.
+///
+/// ```
+/// use luthier_cost::{Compiled, CostReport, Counts, Family};
+///
+/// let compiled = Compiled { driver: "radv 25".to_owned(), device: "null".to_owned(), counts: Vec::new() };
+/// let mut report = CostReport::default();
+/// report.add_family(Family::Gcn5, &compiled, Counts::default());
+/// let json: serde_json::Value = serde_json::from_str(&report.to_json()?)?;
+/// assert_eq!((&json["driver"], &json["families"][0]["chip"]), (&"radv 25".into(), &"vega10".into()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct CostReport {
     /// Program and version.
@@ -58,7 +69,7 @@ pub struct CostRow {
 }
 
 impl CostReport {
-    /// Adds a family that kernels were compiled for; `harness` is what every row of it is without.
+    /// Adds a family that kernels were compiled for. `harness` has the counts that are subtracted from every row of the family.
     pub fn add_family(&mut self, family: Family, compiled: &Compiled, harness: Counts) {
         self.driver.clone_from(&compiled.driver);
         let (chip, device) = (family.chip().to_owned(), compiled.device.clone());
@@ -68,7 +79,7 @@ impl CostReport {
     /// JSON, a row of it per line.
     ///
     /// # Errors
-    /// [`CostError::Exchange`] where a number is none of JSON's.
+    /// [`CostError::Exchange`], should a value have no JSON.
     pub fn to_json(&self) -> Result<String, CostError> {
         Ok(format!(
             "{{\n  \"schema\": {SCHEMA},\n  \"generator\": {},\n  \"driver\": {},\n  \"families\": {},\n  \"rows\": {}\n}}\n",
@@ -89,7 +100,7 @@ impl CostReport {
         out
     }
 
-    /// The beginning of a page: its title, the command line that makes it, and how counts are to be read. The last line is not ended.
+    /// The beginning of a page: its title, the command line that makes it, and the meaning of counts. It ends without a line break.
     pub fn introduction(&self, title: &str, command: &str) -> String {
         let chips: Vec<String> = self
             .families

@@ -8,13 +8,14 @@ use luthier_optics::color_difference::{ciede2000, lab};
 
 use crate::probe::Probe;
 
-/// Values darker than this count as this in relative errors: a tenth of a white diffuse surface under unit light, as in reports.
+/// Floor of the divisor of relative errors: a tenth of the value of a white diffuse surface under unit light, as in reports. Without it,
+/// errors in the dark would be unbounded.
 pub const FLOOR: f64 = 0.1 * FRAC_1_PI;
 
-/// Standard errors that count as the noise of the reference: 95 %.
+/// Number of standard errors that count as the noise of the reference: a 95 % interval.
 const SIGMAS: f64 = 2.0;
 
-/// The noise that is allowed, as a share of the budget.
+/// Largest noise of a decision, as a share of the limit.
 const NOISE_SHARE: f64 = 0.25;
 
 /// A value of the reference: mean and standard error per channel.
@@ -27,7 +28,7 @@ pub struct Value {
 }
 
 impl Value {
-    /// The divisor of errors.
+    /// Divisor of relative errors.
     fn scale(&self) -> f64 {
         self.rgb.iter().fold(FLOOR, |a, b| a.max(*b))
     }
@@ -59,7 +60,7 @@ impl Miss {
         let mut abs = [0.0_f64; 2];
         for ((found, expected), std_err) in found.iter().zip(&reference.rgb).zip(&reference.std_err) {
             let miss = (found - expected).abs();
-            // What is not finite is as wrong as can be, and stays comparable.
+            // A value that is not finite gets the largest error, which still sorts among others.
             let miss = if miss.is_finite() { miss } else { f64::MAX };
             abs = [abs[0].max(miss), abs[1].max(*std_err)];
         }

@@ -9,6 +9,18 @@ use luthier_material::{Light, View};
 use luthier_optics::stack::{Base, Stack};
 
 /// Directions at which a model is compared with the reference.
+///
+/// ```
+/// use luthier_material::{Light, View};
+/// use luthier_optics::ior::Ior;
+/// use luthier_optics::stack::Stack;
+/// use luthier_scene::{Probe, probes};
+///
+/// let (bare, view) = (Stack { exterior: Ior::vacuum(), layers: vec![] }, View { angles_deg: [0.0, 60.0], footprint_deg: 0.0 });
+/// // Light from everywhere is compared at three views.
+/// let found = probes(&bare, &[Light::Environment], &view);
+/// assert!(found.len() == 3 && found.iter().all(|probe| matches!(probe, Probe::Sky { .. })));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Probe {
     /// `f cos theta_i` for a pair of directions.
@@ -48,22 +60,22 @@ fn tenths_deg(radians: f64) -> f64 {
     (10.0 * radians.to_degrees()).round() / 10.0
 }
 
-/// Azimuth of the eye in the surface's frame: neither along nor across what is anisotropic.
+/// Azimuth of the eye in the surface's frame: neither along nor across the axes of an anisotropic surface.
 const AZIMUTH_DEG: f64 = 30.0;
 /// Steps over the range of view angles, and of a point light's angles to the eye.
 const STEPS: [f64; 3] = [0.0, 0.5, 1.0];
-/// Azimuths about the eye, from that of the light: where the normal leans.
+/// Azimuths about the eye, counted from the light, towards which normals lean.
 const LEANS_DEG: [f64; 3] = [0.0, 90.0, 180.0];
-/// Slopes away from the half vector over the slope parameter: top, flank and foot of a highlight.
+/// Slopes of normals away from the half vector, over the slope parameter: top, flank and foot of a highlight.
 const FLANKS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
-/// The light stays this far above the horizon (cosine).
+/// Least cosine of light and eye.
 const COS_THETA_MIN: f64 = 0.05;
 
 /// The directions of a scene.
 ///
-/// A curved thing shows every normal in the range of view angles. For each light, at three view angles and three azimuths about the
-/// eye, normals are set up and both directions brought into their frames; and where the normal is the half vector or leans from it by 1/2,
-/// 1 and 2 times each slope parameter, the highlights. Light from everywhere is seen at the three view angles.
+/// A curved object shows every normal in the range of view angles. For each light, normals lean from the eye by three view angles at three
+/// azimuths, and both directions are turned into the frame of each normal. Highlights have normals at the half vector, and at slopes of 1/2, 1
+/// and 2 times each slope parameter from it. Light from everywhere is seen at the three view angles.
 pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
     let [least, most] = view.angles_deg;
     let thetas = STEPS.map(|step| (least + step * (most - least)).to_radians());
@@ -91,7 +103,7 @@ pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
             // The normal of the highlight, if it is in view.
             if (thetas[0]..=thetas[2]).contains(&(0.5 * apart)) {
                 for (i, alpha) in alphas(stack).into_iter().enumerate() {
-                    // Its top is the same for all.
+                    // The top of the highlight is common to all slope parameters.
                     for flank in FLANKS.into_iter().skip(usize::from(i > 0)) {
                         found.extend(beside(apart, libm::atan(flank * alpha)));
                     }
@@ -103,8 +115,8 @@ pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
     found
 }
 
-/// The stack as a pixel sees it: its footprint is added to the slopes of every interface, and what is smoother than the smallest slope
-/// parameter of the models has that one. Light mirrored by smooth interfaces is then a lobe, in the models as in the reference.
+/// The stack as a pixel sees it. The footprint widens the slopes of every interface, and slope parameters are at least the smallest of the models.
+/// Smooth interfaces then reflect a lobe instead of a single direction, in the models as in the reference.
 pub fn footprint(stack: &Stack, footprint_deg: f64) -> Stack {
     let slope = libm::tan(footprint_deg.to_radians());
     let mut stack = stack.clone();
@@ -139,11 +151,11 @@ fn beside(apart: f64, tilt: f64) -> Option<Probe> {
     in_frame(direction(apart, 0.0), half * libm::cos(tilt) + DVec3::Y * libm::sin(tilt))
 }
 
-/// Eye and light in the frame of a normal; `None` where the light is at or below the horizon.
+/// Eye and light in the frame of a normal; `None` if one of them is near or below the horizon.
 fn in_frame(light: DVec3, normal: DVec3) -> Option<Probe> {
     let eye = DVec3::Z;
     let along = eye - normal * eye.dot(normal);
-    // Seen along the normal, any tangent will do; the light's is as good as another.
+    // If the eye lies along the normal, any tangent will do. The guard keeps `normalize` away from rounding errors of zero.
     let along = if along.length() > 1e-9 { along } else { DVec3::X - normal * normal.x };
     let (x, z) = (along.normalize(), normal);
     let y = z.cross(x);
@@ -163,7 +175,8 @@ fn direction(theta: f64, phi: f64) -> DVec3 {
 /// Points along each of four parts of the hemisphere.
 const POINTS: usize = 24;
 
-/// Directions over the hemisphere and their weights for the integral over solid angle; they crowd at the mirror direction of `wo`.
+/// Directions over the hemisphere with their weights for an integral over solid angle. They crowd at the mirror direction of `wo`, because lobes
+/// are narrow there.
 pub(crate) fn hemisphere(wo: DVec3) -> Vec<(DVec3, f64)> {
     let theta_o = libm::acos(wo.z.clamp(0.0, 1.0));
     let mirror = libm::atan2(-wo.y, -wo.x);
