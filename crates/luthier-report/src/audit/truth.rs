@@ -91,14 +91,14 @@ impl Term {
         }
     }
 
-    /// Factor on a file's value before it is compared: densities are compared as pi alpha^2 D, which has no poles.
+    /// Factor on a file's value before the comparison. Densities are compared as pi alpha^2 D, because D itself has a pole at small alpha.
     pub(super) fn scale(self, alpha: f64) -> f64 {
         if self == Self::Density { PI * alpha * alpha } else { 1.0 }
     }
 }
 
 impl Model {
-    /// Terms that its channels may hold.
+    /// Terms that channels of the model may hold.
     pub fn terms(&self) -> &'static [Term] {
         match self {
             Self::SplitSum { .. } => &[Term::Scale, Term::Bias, Term::Albedo],
@@ -107,21 +107,21 @@ impl Model {
         }
     }
 
-    /// Whether it depends on a micro-surface, and needs a second axis.
+    /// Whether the model depends on a micro-surface, and needs a second axis.
     pub fn has_slope(&self) -> bool {
         !matches!(self, Self::Reflectance { .. })
     }
 }
 
-/// Effort of albedos with all bounces: only the noise of the walks is left.
+/// Effort of albedos with all bounces: enough for the noise of the walks to be the only error.
 const EFFORT: Effort = Effort { first: 24, later: 24 };
 /// Wavelengths of the three-wavelength values, nm: CONVENTIONS.md.
 const WAVELENGTHS: [f64; 3] = [645.0, 525.0, 445.0];
 
-/// The stated model and those that a table might hold instead, exact and fast.
+/// The stated model and the models that a table might hold instead, each as exact values and as fast ones.
 pub(super) struct Truth<'a> {
     model: &'a Model,
-    /// Names of the models, which follow `fits better as`.
+    /// Names of the models; they follow the words `fits better as`.
     pub(super) variants: Vec<String>,
     /// Index of the stated model.
     pub(super) stated: usize,
@@ -216,7 +216,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// One variant, by cubics between the nodes of a grid: to rank hypotheses.
+    /// One variant, by cubics between the nodes of a grid: exact enough to rank hypotheses.
     pub(super) fn fast(&self, variant: usize, at: [f64; 2]) -> [f64; 3] {
         match &self.grid {
             Some(grid) => grid.at(variant, at),
@@ -235,7 +235,8 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// Values over the roots of the cosine and of alpha, which spread what changes fastest: grazing angles and low alpha.
+/// Values on a grid over the square roots of the cosine and of alpha. Roots put most nodes at grazing angles and low alpha, where values change
+/// fastest.
 struct Grid {
     size: [usize; 2],
     variants: usize,

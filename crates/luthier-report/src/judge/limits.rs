@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::judge::report::Report;
 use crate::measure::seen::SeenLight;
 
-/// A limit and what it was compared with.
+/// A limit and the value that it was compared with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Origin of the limit: a material file, or the command line.
@@ -16,11 +16,11 @@ pub struct Limit {
     pub quantity: String,
     /// The limit.
     pub limit: f64,
-    /// Value that was found; `None` where it is not finite, or where nothing was found that it could be compared with.
+    /// Value that was found; `None` if it is not finite, or if nothing was measured for the limit.
     pub found: Option<f64>,
     /// Source of the value: measured here, or stated by the baker.
     pub found_by: String,
-    /// Whether what was found is at most the limit.
+    /// Whether the value is at most the limit.
     pub is_held: bool,
 }
 
@@ -54,7 +54,7 @@ const BOTH: &str = "measured here; of tables that are not, stated by the baker";
 
 const LARGER: &str = "measured here or stated by the baker, whichever is larger";
 
-/// Holds a report against the budgets of its materials and those asked for. What was not measured holds no limit.
+/// Compares a report with the budgets of its materials and with those asked for. A quantity that was not measured breaks its limit.
 pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit> {
     let mut out = Vec::new();
     for FileBudget { material, budget } in files {
@@ -81,14 +81,14 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
             out.extend(limit.map(|limit| made(&material.source, quantity, limit, found, by)));
         }
     }
-    // Random directions may pass by what a tile misses.
+    // Random directions may miss the place of the largest error of a tile, so tiles are held to the aim of the bake as well.
     let missed = report.tables.iter().flat_map(|table| table.tiles.iter().map(|tile| (table.kind.name(), tile)));
     let missed = missed.filter_map(|(kind, tile)| Some((tile.miss()?.0, kind, &tile.name)));
     if let Some((found, kind, tile)) = missed.max_by(|a, b| a.0.total_cmp(&b.0)) {
         let quantity = format!("tables: absolute error of {kind} tile {tile}, which misses what the bake aimed at");
         out.extend(report.budget.map(|limit| made("command line", &quantity, limit, Some(found), LARGER)));
     }
-    // A budget of the tables is none of lobes that are another stack's: these have limits of their own.
+    // A budget of tables does not apply to lobes that are another stack's: these have limits of their own.
     for material in report.materials.iter().filter(|_| report.budget.is_some()) {
         let at = material.at_places.iter().filter_map(|at| at.simulated.as_ref());
         let views = at.flat_map(|simulated| &simulated.views);

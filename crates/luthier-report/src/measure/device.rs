@@ -14,7 +14,8 @@ pub trait Device {
     /// Name of the adapter, as the report shows it.
     fn name(&self) -> String;
 
-    /// All that decides its values but the numbers and texels of a material: the adapter, its driver, the text of the shaders. Results are kept under it.
+    /// Identity of the values beside the material's own numbers and texels: adapter, driver, text of the shaders. It is a part of the key under which
+    /// a [`Memory`](crate::Memory) keeps results.
     fn identity(&self) -> String;
 
     /// `f cos_theta_i`, linear RGB, of a material for pairs `(wi, wo)` of unit directions: one value per pair, in
@@ -59,7 +60,7 @@ fn checked(
     Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
 }
 
-/// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
+/// Vote on the interpolation weights of a device: the weights with the smaller sum of squared relative errors over all materials win.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct WeightsVote {
     eight_bit: f64,
@@ -77,7 +78,7 @@ impl WeightsVote {
         }
     }
 
-    /// Adds the sums of another.
+    /// Adds the sums of another vote.
     pub(crate) fn merge(&mut self, other: Self) {
         self.eight_bit += other.eight_bit;
         self.exact += other.exact;

@@ -1,4 +1,4 @@
-//! Results of earlier judgements, by the content of what was judged: texels, records and stacks, whatever their names and numbers in a bake.
+//! Results of earlier judgements, keyed by content: texels, records and stacks. Names and numbers in a bake do not count.
 
 use std::fmt::{Debug, Write as _};
 
@@ -15,7 +15,7 @@ use crate::measure::readers::{tiles, users};
 use crate::measure::references::References;
 use crate::measure::subject::Subject;
 
-/// Where the results of earlier judgements are. It may forget at any time.
+/// Store of results of earlier judgements. It may forget at any time.
 pub trait Memory: Sync {
     /// The result of a kind for these inputs.
     fn recall(&self, kind: &'static str, inputs: &Value) -> Option<String>;
@@ -24,7 +24,7 @@ pub trait Memory: Sync {
     fn keep(&self, kind: &'static str, inputs: &Value, result: String);
 }
 
-/// All that decides what a device shows of each material: its shaders, the record, the stack, and the texels of the tiles that it reads.
+/// Key of the device's values of each material: shaders, record, stack, and texels of the tiles that the material reads.
 pub fn contents(subject: &Subject<'_>, device: &dyn Device) -> Vec<Value> {
     let hashed = Remembered { memory: None, tiles: hashes(subject) };
     let materials = 0..subject.manifest.materials.len();
@@ -58,7 +58,7 @@ pub(crate) struct Remembered<'a> {
 }
 
 impl<'a> Remembered<'a> {
-    /// Tiles are hashed where there is a memory. The tables of the subject have been checked.
+    /// Hashes the tiles, if there is a memory. The tables of the subject must have been checked.
     pub(crate) fn new(memory: Option<&'a dyn Memory>, subject: &Subject<'_>) -> Self {
         Self { memory, tiles: memory.map(|_| hashes(subject)).unwrap_or_default() }
     }
@@ -68,14 +68,14 @@ impl<'a> Remembered<'a> {
         serde_json::from_str(&self.memory?.recall(kind, inputs)?).ok()
     }
 
-    /// Keeps a value: what JSON has no word for, as numbers that are not finite, is judged again.
+    /// Keeps a value. A value without JSON, such as an infinite number, is not kept and judged again.
     pub(crate) fn keep<T: Serialize>(&self, kind: &'static str, inputs: &Value, value: &T) {
         if let (Some(memory), Ok(text)) = (self.memory, serde_json::to_string(value)) {
             memory.keep(kind, inputs, text);
         }
     }
 
-    /// Gives exact terms their lobes, if the model has any: those that were fitted to this stack before, or such as are fitted now.
+    /// Gives exact terms their lobes, if the model has any. Lobes that were fitted to the stack before are recalled, others are fitted now.
     pub(crate) fn fit(&self, references: &References, entry: &MaterialEntry) {
         if self.memory.is_none() || !entry.shows_lobes() {
             return;
@@ -91,7 +91,7 @@ impl<'a> Remembered<'a> {
         });
     }
 
-    /// All that decides the comparisons of a material. Its maps are in its record, by their hashes.
+    /// Key of the comparisons of a material. The record contains its maps, by their hashes.
     pub(crate) fn material(
         &self,
         subject: &Subject<'_>,
@@ -114,7 +114,7 @@ impl<'a> Remembered<'a> {
         settings: Option<(u32, &dyn Debug)>,
     ) -> Value {
         let entry = &subject.manifest.materials[number];
-        // Where tiles lie decides the last digits of a device, and of nothing else.
+        // The place of tiles changes the last digits of a device's values, and nothing else.
         let on_device = device.map(|device| {
             let layouts: Vec<_> = subject.manifest.tables.iter().map(|table| &table.layout).collect();
             json!([device.identity(), layouts, entry.layers])
@@ -127,7 +127,7 @@ impl<'a> Remembered<'a> {
         })
     }
 
-    /// All that decides the scan of a tile: its texels, and the layers that read it.
+    /// Key of the scan of a tile: its texels, and the layers that read it.
     pub(crate) fn tile(&self, subject: &Subject<'_>, kind: TableKind, tile: u32, pairs_per_set: u32) -> Value {
         if self.memory.is_none() {
             return Value::Null;

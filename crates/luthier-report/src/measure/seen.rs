@@ -1,4 +1,4 @@
-//! Appearance of errors: colour differences as a person with a display sees them.
+//! Appearance of errors: colour differences on a display.
 
 use luthier_lut::Image;
 use luthier_optics::Rgb;
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::Pair;
 
-/// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, each channel clipped to what a Rec.709 display
-/// shows, seen by an eye that is adapted to D65.
+/// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, clipped per channel to the range of a Rec.709 display, and
+/// seen by an eye that is adapted to D65.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SeenLight {
-    /// D65, as bright as makes a white diffuser that is lit along its normal the white of the display.
+    /// D65, so bright that a white diffuser lit along its normal is the white of the display.
     Daylight,
-    /// Light 16 times as bright as `Daylight` (four stops): shows the parts that are dark there, with highlights clipped.
+    /// Light 16 times as bright as `Daylight` (four stops): it shows errors in dark colours, and clips highlights.
     BrightDaylight,
     /// CIE illuminant A of the luminance of `Daylight`.
     Incandescent,
@@ -33,8 +33,8 @@ impl SeenLight {
         }
     }
 
-    /// Its colour, linear Rec.709. Incandescent: the tristimulus values (1.09850, 1, 0.35585) of illuminant A (CIE 15), by the matrix of
-    /// IEC 61966-2-1.
+    /// Colour of the light, linear Rec.709. `Incandescent` has the tristimulus values (1.09850, 1, 0.35585) of illuminant A (CIE 15), converted by the
+    /// matrix of IEC 61966-2-1.
     fn rgb(self) -> Rgb {
         match self {
             Self::Daylight => [1.0; 3],
@@ -61,20 +61,20 @@ pub struct Seen {
     pub p99: f64,
     /// Mean.
     pub mean: f64,
-    /// Share of the pairs whose difference is above 1: just seen of two patches side by side.
+    /// Share of the pairs whose difference is above 1, which is just visible between two patches side by side.
     pub above_one: f64,
-    /// The pair of the largest.
+    /// The pair with the largest difference.
     pub worst: Option<Pair>,
 }
 
-/// Differences of one light, as they come in.
+/// Differences under one light, filled set by set.
 #[derive(Debug, Clone, Default)]
 struct Gathered {
     differences: Vec<f64>,
     worst: Option<(f64, Pair)>,
 }
 
-/// Differences under all lights, as they come in.
+/// Differences under all lights, filled set by set.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SeenBy([Gathered; SeenLight::ALL.len()]);
 

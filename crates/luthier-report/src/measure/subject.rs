@@ -8,7 +8,7 @@ use luthier_optics::stack::Stack;
 
 use crate::error::ReportError;
 
-/// Subject of a judgement: a bake as its users get it, and the surfaces that it was made from.
+/// Subject of a judgement: a bake as it ships, and the surfaces that it was made from.
 #[derive(Debug, Clone)]
 pub struct Subject<'a> {
     /// The manifest of the bake.
@@ -17,7 +17,7 @@ pub struct Subject<'a> {
     pub textures: Vec<(TableKind, Image)>,
     /// The surfaces that the materials describe, parallel to the materials of the manifest.
     pub stacks: Vec<Stack>,
-    /// The maps of the materials: places are judged where there are some.
+    /// The maps of the materials. Materials with maps are judged at places.
     pub maps: Vec<SurfaceMap>,
 }
 
@@ -28,7 +28,7 @@ pub struct SurfaceMap {
     pub material: u32,
     /// Quantity that the map varies.
     pub slot: MapSlot,
-    /// The layer that it is of; `None` for those of the whole surface.
+    /// The layer that the map varies; `None` for a map of the whole surface.
     pub layer: Option<u32>,
     /// Its texels.
     pub picture: Picture,

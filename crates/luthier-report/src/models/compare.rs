@@ -1,4 +1,4 @@
-//! Two errors of one view.
+//! The two errors of one view: of the albedo and of the lobe.
 
 use std::f64::consts::PI;
 
@@ -8,8 +8,8 @@ use super::report::{Quantity, ViewError};
 
 /// The errors of energies against the reference, with their standard errors.
 ///
-/// The lobe error's is to first order, for fixed signs of the differences. Where the difference in a cell is noise, its
-/// absolute value is not: it adds to the lobe error. [`ViewError::lobe_floor`] is what that comes to when all differences are noise.
+/// The standard error of the lobe error is of first order, for fixed signs of the differences. In a cell whose difference is noise, its absolute
+/// value still adds to the lobe error. [`ViewError::lobe_floor`] is the lobe error if all differences are noise.
 pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f64, theta_deg: f64) -> ViewError {
     let albedo_ref = reference.albedo();
     let albedo = found.energies.iter().sum::<f64>();
@@ -45,13 +45,13 @@ pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f6
     }
 }
 
-/// An energy as a share of some light; any energy is infinitely much of none.
+/// An energy as a share of some light. Without light, any energy is an infinite share.
 fn share_of(light: f64, energy: f64) -> f64 {
     if energy == 0.0 { 0.0 } else { energy / light }
 }
 
-/// Energy that noise moves on average, from the sum of the standard deviations of all cells: half the mean absolute values of normal
-/// variables, which are sqrt(2 / pi) of their deviations.
+/// Energy that noise moves on average, from the sum of the standard deviations of all cells. It is half the sum of mean absolute values, and the mean
+/// absolute value of a normal variable is sqrt(2 / pi) times its deviation.
 pub(super) fn energy_that_noise_moves(deviations: f64) -> f64 {
     0.5 * libm::sqrt(2.0 / PI) * deviations
 }

@@ -1,8 +1,8 @@
 //! The reference of a material from angles of the caller's choice: traced once, for all that is compared with it.
 //!
-//! Three things make it cheap. Wavelengths that go the same ways share their paths ([`JointPaths`]). Light that meets one facet of the first
-//! interface alone has no noise: it comes from its closed form, by quadrature over the cells. Where all surfaces are isotropic, the light is
-//! its own mirror image in the plane of the eye, so that a cell has the mean of both sides. Every view has as many paths as its noise asks for.
+//! Four things make it cheap. Wavelengths with equal directions of refraction share their paths ([`JointPaths`]). Light that meets one facet of the
+//! first interface alone has a closed form, which is integrated over the cells without noise. If all surfaces are isotropic, the light is its own
+//! mirror image in the plane of the eye, so that a cell takes the mean of both sides. Every view has as many paths as its noise requires.
 
 use glam::DVec3;
 use luthier_layers::lobes::Lobes;
@@ -22,9 +22,9 @@ use super::{ModelSubject, PHI_DEG, ViewError, direction};
 /// Settings of a reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReferenceSettings {
-    /// Lobe error that its random numbers may make, see [`ViewError::lobe_floor`].
+    /// Largest lobe error from noise, see [`ViewError::lobe_floor`].
     pub noise: f64,
-    /// Standard error that its albedos may have.
+    /// Largest standard error of albedos.
     pub albedo_std_err: f64,
     /// The most paths of a view, for the wavelengths that share them. A view that needs more keeps its noise.
     pub most: u64,
@@ -51,7 +51,7 @@ struct TracedView {
     paths: u64,
 }
 
-/// A model or lobes that are compared with a reference.
+/// A model, lobes or a function to compare with a reference.
 #[derive(Clone, Copy)]
 pub enum Shown<'a> {
     /// A model, given the stack at each wavelength.
@@ -68,11 +68,11 @@ const FAMILIES: u64 = 16;
 /// Paths of a family before the first look at the noise.
 const FIRST_PATHS: u64 = 1024;
 
-/// Factors on the number of paths from one look at the noise to the next, at least and at most.
+/// Least and largest factor on the number of paths between two looks at the noise.
 const GROWTH: [f64; 2] = [1.2, 4.0];
 
 impl Reference {
-    /// Traces a material from angles against the normal. The result depends on the arguments only, not on the number of threads.
+    /// Traces a material from angles against the normal. The result does not depend on the number of threads.
     pub fn new(subject: &ModelSubject, thetas_deg: &[f64], settings: ReferenceSettings) -> Self {
         let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(&subject.stack, subject.wavelengths_nm[c], c));
         let is_symmetric = is_isotropic(&subject.stack);
@@ -86,7 +86,7 @@ impl Reference {
         Self { wavelengths_nm: subject.wavelengths_nm, stacks, is_symmetric, views }
     }
 
-    /// Errors of what is shown at all views: angle by angle, and at each wavelength by wavelength.
+    /// Errors at all views: angle by angle, and within an angle wavelength by wavelength.
     pub fn errors(&self, shown: Shown<'_>) -> Vec<ViewError> {
         let errors = self.views.par_iter().map(|view| {
             let found = self.energies(shown, &view.cells);
@@ -112,7 +112,7 @@ impl Reference {
     }
 }
 
-/// Whether no surface looks other along one axis than along the other.
+/// Whether all surfaces are isotropic.
 pub(super) fn is_isotropic(stack: &Stack) -> bool {
     let mut layers = stack.layers.iter();
     layers.all(|Layer { base, surface, .. }| matches!(base, Base::Diffuse(_)) || surface.alpha_x == surface.alpha_y)
@@ -148,7 +148,7 @@ fn trace(sets: &[JointPaths], cells: &Cells, is_symmetric: bool, settings: Refer
                 });
                 channels[c].then(|| Histogram::of_families(families.collect(), (traced * FAMILIES) as f64))
             });
-            // How many times as many paths would do.
+            // Noise over the limit. Paths have to grow by its square.
             let lack = found.iter().flatten().map(|histogram| {
                 let lobe = histogram.lobe_floor() / settings.noise;
                 let albedo = histogram.variance(|_| 1.0).sqrt() / settings.albedo_std_err;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ModelErrors, ModelSettings, ModelSubject, Row, THETAS_DEG, ViewError, judge_material};
 
-/// Stands for the lobe error of a model that reflects light where the reference reflects none, which no JSON holds.
+/// Cap on lobe errors. A model that reflects light off a black reference has an infinite one, which JSON cannot hold.
 const MOST: f64 = 1e6;
 
 /// A model against the reference of whole stacks: the largest errors over the views of [`crate::judge_models`].
@@ -60,8 +60,8 @@ impl AgainstReference {
     }
 }
 
-/// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. With the settings of
-/// [`crate::judge_models`], its figures.
+/// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. Equal settings give the figures of
+/// [`crate::judge_models`].
 pub fn judge_shading_models(subject: &ModelSubject, settings: ModelSettings) -> Vec<AgainstReference> {
     let rows = ShadingModel::ALL.into_iter().filter_map(|shading| {
         let model = models().into_iter().find(|model| model.info().name == shading.name())?;

@@ -58,7 +58,7 @@ pub struct Parity {
     pub rows: Vec<ParityRow>,
 }
 
-/// One shader of one material, over all sets.
+/// Errors of one shader of one material, over all sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ParityRow {
     /// The model.
@@ -75,21 +75,21 @@ pub struct ParityRow {
     pub not_finite: u64,
     /// The device against the reference.
     pub total: ErrorSummary,
-    /// f64 on the tables, read with the device's weights, against the reference; nothing for a form without tables.
+    /// f64 on the tables, read with the device's weights, against the reference; `None` for a form without tables.
     pub table: Option<ErrorSummary>,
     /// The device against f64 on the same tables; without tables, against the reference.
     pub arithmetic: ErrorSummary,
-    /// The weights that explain the device's values best; nothing for a form without tables.
+    /// The weights that explain the device's values best; `None` for a form without tables.
     pub weights: Option<Weights>,
     /// Largest table and arithmetic error of every set.
     pub sets: Vec<(ParitySet, [f64; 2])>,
-    /// The pair with the largest table error, and the set it is in.
+    /// The pair with the largest table error, with its set.
     pub worst_table: Option<(ParitySet, WorstPair)>,
     /// The pair with the largest arithmetic error.
     pub worst_arithmetic: Option<(ParitySet, WorstPair)>,
     /// Parts of the error of the shader at the pair with the largest table error, largest first.
     pub parts: Vec<Part>,
-    /// The form `baked` at random places, against f64 on the same tables; nothing for a material that is the same everywhere.
+    /// The form `baked` at random places, against f64 on the same tables; `None` for a material that is the same everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub places: Option<PlaceErrors>,
 }
@@ -128,12 +128,12 @@ impl ParityRow {
         known.filter(|known| max <= known.limit).map_or(Verdict::Broken, Verdict::Explained)
     }
 
-    /// Whether the shader is what its tables are at random places: 99 of 100 samples within [`AT_PLACES`].
+    /// Whether the shader agrees with f64 on its tables at random places: 99 of 100 samples within [`AT_PLACES`].
     pub fn holds_at_places(&self) -> bool {
         self.places.as_ref().is_none_or(|at| at.not_finite == 0 && at.relative_dim.p99 <= AT_PLACES)
     }
 
-    /// Whether nothing is unexplained: all samples finite, all tolerances met or the reason listed.
+    /// Whether all samples are finite, and all tolerances are met or the reason is listed.
     pub fn holds(&self) -> bool {
         self.not_finite == 0
             && self.holds_at_places()
@@ -189,7 +189,7 @@ pub fn parity(
     Ok(rows)
 }
 
-/// Values at the pairs of a set, of one material.
+/// Values of one material at the pairs of a set.
 struct Block {
     set: ParitySet,
     material: usize,
@@ -222,7 +222,7 @@ fn compare(
     let mut numbers: Vec<u32> = std::iter::once(case.material).chain(case.polished.iter().copied()).collect();
     numbers.sort_unstable();
     numbers.dedup();
-    // Energies of rough interfaces take seconds, and are prepared when they are first asked for: here, all at once.
+    // Energies of rough interfaces take seconds and are computed at their first use. Asking for them here computes all in parallel.
     let prepared: BTreeMap<u32, References> = numbers
         .into_par_iter()
         .map(|number| {

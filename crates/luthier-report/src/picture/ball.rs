@@ -21,7 +21,7 @@ pub struct DistantLight {
     pub irradiance: Rgb,
 }
 
-/// A picture and how noisy it is.
+/// A picture with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallPicture {
     /// Radiance, linear RGB; black around the ball.
@@ -30,8 +30,8 @@ pub struct BallPicture {
     pub noise: f64,
 }
 
-/// The unit ball of a material under some lights, `size` pixels square, seen from (0, 0, 7): one ray through the middle of each
-/// pixel, the model at three wavelengths (nm) taken as R, G and B. Tangents follow the parallels, as in `luthier preview`.
+/// Renders the unit ball of a material under some lights, `size` pixels square, seen from (0, 0, 7). Each pixel has one ray through its middle; three
+/// wavelengths (nm) are taken as R, G and B. Tangents follow the parallels, as in `luthier preview`.
 pub fn render_ball(
     model: &dyn Model,
     stack: &Stack,
@@ -62,8 +62,8 @@ pub fn render_ball(
     BallPicture { image, noise }
 }
 
-/// The ball of [`render_ball`] from values of `f cos_theta_i`, which `values` has for all pairs of unit directions to a light and to the eye, in the
-/// local frame: as many as it is given, in their order. Pairs with both directions above the horizon are asked for, no others.
+/// Renders the ball of [`render_ball`] from the values of a function. `values` gets all pairs of unit directions to a light and to the eye, in the local
+/// frame, both above the horizon, and returns `f cos_theta_i` for each, in their order.
 ///
 /// # Errors
 /// That of `values`.

@@ -1,4 +1,4 @@
-//! Pictures beside each other: how far two are apart, in numbers and as a person would notice; sheets of many.
+//! Comparison of two pictures, in numbers and by visibility; contact sheets of many.
 
 pub(crate) mod ball;
 pub(crate) mod flip;
@@ -29,7 +29,7 @@ pub struct PictureComparison {
     pub flip: Image,
 }
 
-/// Compares two linear RGB pictures; FLIP sees them as a display shows them, `shown` being the tone curve of a value.
+/// Compares two linear RGB pictures. FLIP compares them as a display shows them, after the tone curve `shown`.
 ///
 /// # Errors
 /// [`ReportError::Pictures`] unless both are RGB of the same size.
@@ -53,8 +53,8 @@ pub fn compare_pictures(a: &Image, b: &Image, shown: impl Fn(f32) -> f32) -> Res
     })
 }
 
-/// Absolute difference of what a display shows, brightened by the largest power of two that keeps it within 1; and that power. `shown` is
-/// the tone curve of a value.
+/// Absolute difference of two pictures on a display, after the tone curve `shown`. It is brightened by the largest power of two that keeps it within 1;
+/// the power is returned too.
 pub fn brightened_difference(a: &Image, b: &Image, shown: impl Fn(f32) -> f32) -> (Image, u32) {
     let mut image = a.clone();
     image.data.iter_mut().zip(&b.data).for_each(|(a, b)| *a = (shown(*a).min(1.0) - shown(*b).min(1.0)).abs());

@@ -1,8 +1,8 @@
-//! The judge at places: shaders and rows of a material whose maps vary it, where all that they vary is drawn at random.
+//! The judge at places: shaders and tables of materials that vary over the surface, at random values of all varying quantities.
 //!
-//! Three things are compared, each with the next: the shader on the device; the f64 evaluation of the tables that ship, at the same place ([`Rows`]); what the
-//! tables stand for. Of a model with closed terms these are the exact terms at the place. Of `lobes` it is the simulation of the stack that the material file means
-//! there ([`simulated`]).
+//! A chain of three is compared, each with the next: the shader on the device; the f64 evaluation of the tables that ship, at the same place ([`Rows`]);
+//! and the truth. For a model with closed terms the truth is exact terms at the place. For `lobes` it is the simulation of the stack that the material
+//! file means there ([`simulated`]).
 
 mod ranges;
 mod rows;
@@ -25,10 +25,10 @@ use crate::measure::statistics::{ErrorSummary, FLOOR, brightest, relative_error,
 use crate::measure::subject::Subject;
 use crate::measure::table_terms::Weights;
 
-/// Family of the random places, unless another is asked for.
+/// Default seed of the random places.
 pub const PLACES_SEED: u64 = 37;
 
-/// Floor of the errors that places are held to: |difference| over max(brightest channel, this).
+/// Floor of the errors at places: |difference| over max(brightest channel, this).
 pub const PLACE_FLOOR: f64 = 0.01;
 
 /// Errors of values at random places and pairs of directions.
@@ -44,7 +44,7 @@ pub struct PlaceErrors {
     pub worst: Option<WorstPlace>,
 }
 
-/// A place and a pair of directions, and the channel that is worst there.
+/// The worst sample: a place, a pair of directions and a channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WorstPlace {
     /// Number of the place, see [`Places::place`].
@@ -106,12 +106,12 @@ pub struct AtPlaces {
     pub varies: Vec<String>,
     /// Places, each with a pair of directions.
     pub places: u64,
-    /// The shader on the device against f64 on the tables that ship; nothing without a device.
+    /// The shader on the device against f64 on the tables that ship; `None` without a device.
     pub shader: Option<PlaceErrors>,
-    /// f64 on the tables that ship against exact terms at the place, where both directions are within 89.5 degrees: closer to the horizon the
-    /// resonances of a film are narrower than the steps of the spectrum that the terms sum. Nothing for models whose terms have no closed form.
+    /// f64 on the tables that ship against exact terms at the place, for directions within 89.5 degrees. Closer to the horizon the resonances of a film
+    /// are narrower than the spectral steps of the terms. `None` for models whose terms have no closed form.
     pub tables: Option<PlaceErrors>,
-    /// Rows of `lobes` against the simulation of the stack at the place; nothing for other models.
+    /// Rows of `lobes` against the simulation of the stack at the place; `None` for other models.
     pub simulated: Option<SimulatedErrors>,
 }
 
@@ -130,8 +130,8 @@ pub(crate) struct Spot {
     pair: Pair,
 }
 
-/// Compares the shader of a material, on a device that reads tables with some weights, with f64 on the tables that ship, and these with exact terms, at so many
-/// random places, each with a pair of directions of its own; `None` for a material that is the same everywhere.
+/// Compares the shader of a material with f64 on the tables that ship, and these with exact terms, at `count` random places, each with its own pair of
+/// directions. `device` comes with the weights with which it reads tables. `None` for a material that is the same everywhere.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -145,7 +145,7 @@ pub fn at_places(
     let Some(places) = Places::of(subject, material) else { return Ok(None) };
     let entry = &subject.manifest.materials[material];
     let layers = luthier_layers::layers::Layers::isotropic_rgb(&subject.stacks[material]).layers;
-    // All over the hemisphere, and in highlights.
+    // Half of the pairs lie anywhere in the hemisphere, half in highlights.
     let sets = [DirectionSet::Random, DirectionSet::Highlight];
     let pairs = sets.map(|set| set.pairs(count.div_ceil(2), &layers));
     let spots: Vec<Spot> = (0..u64::from(count))
@@ -168,7 +168,7 @@ pub fn at_places(
         }
         None => None,
     };
-    // Energies and lobes of each place would take seconds.
+    // Exact energies and lobes would take seconds for each place.
     let is_closed = !(entry.model.is_statistical() || entry.model.is_fitted());
     let tables = is_closed.then(|| {
         let all = spots.iter().cloned().zip(read);
@@ -183,7 +183,7 @@ pub fn at_places(
     Ok(Some(AtPlaces { varies: places.quantities(), places: spots.len() as u64, shader, tables, simulated: None }))
 }
 
-/// A place in words: what is not as where there are no textures.
+/// A place in words: the values that differ from a place without textures.
 pub(crate) fn words(place: &PlaceValues) -> String {
     let none = PlaceValues::NONE;
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! The f64 evaluation of rows as they ship, at a place.
+//! The f64 evaluation of shipped tables at a place.
 
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
@@ -40,7 +40,7 @@ impl<'a> Rows<'a> {
     /// As [`Self::new`].
     pub fn at(subject: &'a Subject<'_>, material: usize, place: &Place, weights: Weights) -> Result<Self, ReportError> {
         let entry = &subject.manifest.materials[material];
-        // Whatever is wrong with the tables is wrong without a place, too.
+        // Terms at a place are an `Option`: errors of the tables are reported here, without a place.
         TableTerms::new(subject, material, weights)?;
         let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
         let terms = |part, _: &_, _: &_| TableTerms::at(subject, material, weights, place, part).ok();
@@ -61,7 +61,7 @@ pub(super) fn exact(subject: &Subject<'_>, material: usize, values: &PlaceValues
     Shaded::with(entry.model, stack, nm, color(entry), &place(values, entry), parts(entry))
 }
 
-/// The place of the f64 twin: exactly the numbers that the device gets.
+/// The place of the f64 twin, with exactly the numbers of the device.
 pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
     let layers = values.layers.iter().map(|own| LayerSample {
         normal: wide(own.normal),

@@ -1,4 +1,4 @@
-//! Ways to write or to store one function: those that ship, and those that were rejected, each with its error.
+//! Ways to write or to store one function: formulations that ship and formulations that were rejected, each with its error.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,7 +18,7 @@ use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Known pitfalls of layered models and of their tables, and the cases that stand for one; a pitfall without cases has formulations.
+/// Known pitfalls of layered models and of their tables, with the cases that show them. A pitfall without cases has formulations.
 pub const PITFALLS: [(&str, &[&str]); 24] = [
     ("D in f16", &[]),
     ("D table, alpha axis linear, 512", &[]),
@@ -46,35 +46,35 @@ pub const PITFALLS: [(&str, &[&str]); 24] = [
     ("hardware bilinear filtering", &[]),
 ];
 
-/// Row of formulations that belong to none of the [`PITFALLS`].
+/// Row of formulations beside the [`PITFALLS`].
 const EXTREMES: &str = "denormal and huge arguments";
 
 /// One way to write or to store a function.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormulaResult {
-    /// Entry of the [`PITFALLS`], or another subject of the formulation.
+    /// Pitfall (one of [`PITFALLS`]), or another subject.
     pub row: String,
     /// The formulation, and its precision.
     pub formulation: String,
     /// Whether it ships.
     pub ships: bool,
-    /// Quantity that the error is of, and the truth that it is against.
+    /// Quantity of the error, and the truth that it is compared with.
     pub measure: String,
-    /// The error; `None` where values are not finite.
+    /// The error; `None` if values are not finite.
     pub error: Option<f64>,
     /// Largest error with which it holds.
     pub tolerance: f64,
-    /// Reason why a formulation that does not hold is not used, or the one that is used.
+    /// Reason why the formulation is not used, or the formulation that is used instead.
     pub reason: String,
 }
 
 impl FormulaResult {
-    /// Whether it is within its tolerance.
+    /// Whether the error is within the tolerance.
     pub fn holds(&self) -> bool {
         self.error.is_some_and(|error| error <= self.tolerance)
     }
 
-    /// Whether it holds, or does not ship and says why.
+    /// Whether the formulation holds, or does not ship and has a reason.
     pub fn is_as_expected(&self) -> bool {
         self.holds() || (!self.ships && !self.reason.is_empty())
     }
@@ -129,7 +129,7 @@ pub fn formulas() -> Vec<FormulaResult> {
     out.0
 }
 
-/// Rounded to a half float, by way of single precision as tables are: `half` converts doubles in one step or in two, by the machine.
+/// Rounds to a half float by way of single precision, as tables do. `half` converts doubles in one step or in two, depending on the machine.
 fn halved(value: f64) -> f64 {
     half::f16::from_f32(value as f32).to_f64()
 }
@@ -204,7 +204,7 @@ fn storage_of_d(out: &mut Collector) {
             error,
             "1/m^2 is far from linear between two rows.",
         );
-        // The rows that ship are a ratio of 1000^(1/511) apart; half the slope of a lobe is its error.
+        // The rows that ship are a ratio of 1000^(1/511) apart. Halfway between two rows the error is largest.
         let ratio = libm::pow(1000.0, 0.5 / 511.0);
         let error = largest((0..400).map(|i| {
             let theta = 4.0 * m * f64::from(i) / 400.0;
@@ -414,12 +414,12 @@ fn energies(out: &mut Collector) {
     out.ours("gold F0 red", "half float", truth, (halved(red) / 1.0376 - 1.0).abs(), 1e-3);
 }
 
-/// Median slope of the half vectors of light that a mirror of alpha `base` below a coat of index 1.5 sends back at normal incidence, the
-/// coat's own reflection taken off: for a bare GGX surface it is alpha.
+/// Median slope of half vectors of the light that a mirror of alpha `base` sends back through a coat of index 1.5 at normal incidence, without the
+/// coat's own reflection. For a bare GGX surface the median is alpha.
 fn median_alpha(coat: f64, base: f64) -> f64 {
     let glass = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.0 };
     let mut lights: Vec<(f64, f64)> = Vec::new();
-    // A base of the coat's own index is black.
+    // A base of the coat's own index is black: subtracting its light leaves that of the mirror.
     for (sign, ior) in [(1.0, Complex64::new(0.0, 1.0)), (-1.0, Complex64::new(1.5, 0.0))] {
         let layers = [(coat, 1.0, glass), (base, 1.5, MonochromeBelow::Conductor { ior })];
         let layers = layers.map(|(alpha, above, below)| MonochromeLayer {
@@ -486,12 +486,12 @@ fn filtering(out: &mut Collector) {
 /// Values from the smallest denormal to the largest number.
 const EXTREME: [f64; 12] = [0.0, 5e-324, 1e-310, 1e-150, 1e-30, 1e-7, 1e-3, 1.0, 10.0, 1e30, 1e150, f64::MAX];
 
-/// Excess of a share over 0..=1; NaN for a value that is none.
+/// Distance of a share from 0..=1; NaN for a value that is not finite.
 fn beyond_unit(value: f64) -> f64 {
     if value.is_finite() { (value - 1.0).max(-value).max(0.0) } else { f64::NAN }
 }
 
-/// 0 for a number that is not negative; infinite ones count as such where a limit is.
+/// Distance of a number below 0; NaN stays. Infinity is allowed, because some of these functions have an infinite limit.
 fn beyond_zero(value: f64) -> f64 {
     if value.is_nan() { f64::NAN } else { (-value).max(0.0) }
 }
@@ -501,7 +501,7 @@ fn extremes(out: &mut Collector) {
     let alphas = || EXTREME.into_iter().filter(|value| *value > 0.0 && *value <= 1.0);
     let range = "arguments from the least to the largest double, cosines down to 0: distance from the interval 0 to 1";
     let indices = || EXTREME.into_iter().flat_map(|n| EXTREME.map(|k| Complex64::new(n, k)));
-    // The modulus of what is squared twice must be a number: of real materials it is below 1e3.
+    // The formulas square moduli twice, which overflows beyond 1e75. Indices of real materials are below 1e3.
     let bare = largest(
         indices()
             .filter(|ior| ior.l1_norm() > 1e-75 && ior.l1_norm() < 1e75)

@@ -3,7 +3,16 @@
 use super::frame::{Frame, Margin};
 use super::scale::Scale;
 
-/// Curves over one quantity: an SVG file that stands alone.
+/// Curves over one quantity, as an SVG file that stands alone.
+///
+/// ```
+/// use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
+///
+/// let curve = Curve { name: "u^2".to_owned(), color: PlotColor::Red, points: vec![[0.0, 0.0], [0.5, 0.25], [1.0, 1.0]] };
+/// let [x, y] = ["u", "square"].map(|label| PlotAxis::new(label, [0.0, 1.0], 0.5));
+/// let svg = Plot { title: "a square".to_owned(), x, y, curves: vec![curve] }.to_svg();
+/// assert!(svg.starts_with("<svg xmlns=") && svg.contains(">u^2<"));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
     /// Description of the picture, for screen readers.
@@ -21,7 +30,7 @@ pub struct Plot {
 pub struct PlotAxis {
     /// Quantity and unit.
     pub label: String,
-    /// Ends. Of no consequence on a logarithmic axis, which takes the decades of the values.
+    /// Ends. A logarithmic axis ignores them and takes the decades of the values.
     pub range: [f64; 2],
     /// Step from one labelled tick to the next; 0 makes the axis logarithmic.
     pub step: f64,

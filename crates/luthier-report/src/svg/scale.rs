@@ -8,7 +8,7 @@ pub(crate) struct Scale {
     min: f64,
     max: f64,
     log: bool,
-    /// Distance of labelled ticks on a linear scale; on a logarithmic one, decades, or 0 for ticks at 1, 2 and 5 of each.
+    /// Distance of labelled ticks on a linear scale. On a logarithmic scale 0 means ticks at 1, 2 and 5 of each decade; other values mean whole decades.
     step: f64,
 }
 

@@ -11,8 +11,8 @@ use crate::measure::table_terms::Weights;
 /// Points along each axis in every cell of a tile.
 const POINTS_PER_CELL: u32 = 2;
 
-/// An escape tile against the share of a lobe inside the medium below the layers that read it that is not totally reflected there (Belcour
-/// 2018, sec. 5), over the cosine outside, in the domain of the albedos.
+/// Compares an escape tile with the share of a lobe that is not totally reflected (Belcour 2018, sec. 5), in the domain of the albedos. The lobe
+/// lies in the medium below the layers that read the tile; the axis is the cosine outside.
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let layout = &table.entry.layout;
     let (x, y) = (&layout.x, layout.y.as_ref()?);

@@ -18,7 +18,7 @@ const GRAZING_POINTS: u32 = 256;
 /// Degrees between the points of a drawn curve.
 const CURVE_STEP_DEG: f64 = 1.5;
 
-/// A Fresnel row against every interface that reads it: a row that two different interfaces share is wrong for one.
+/// Compares a Fresnel row with every interface that reads it. A row that two different interfaces share is wrong for one of them.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -34,7 +34,7 @@ pub(super) fn scan(
     let mut scan = Scan::default();
     for &(material, layer) in users {
         let record = &subject.manifest.materials[material].layers[layer];
-        // Rows over the cosine below the interface are met at their nodes too.
+        // Rows over the cosine below the interface are also read at their nodes.
         let inside = cosines.iter().map(|&c| incident_cosine(record.critical_cot_sq, c));
         let inside = inside.filter(|_| record.critical_cot_sq > 0.0);
         for cos_theta in cosines.iter().copied().chain(inside) {

@@ -24,14 +24,14 @@ use crate::measure::subject::Subject;
 
 pub(crate) use albedo::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, STEPS, points};
 
-/// The kind of scans in memories.
+/// Key of scans of tiles in a memory.
 const TILE: &str = "judge-tile";
 
 /// 1/phi and 1/phi^2 of the plastic number: steps of the two-dimensional additive recurrence (Roberts 2018).
 const R2: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_2];
 
-/// Reports every table of the subject; `references[m]` has the exact terms that the tables of material `m` stand for. Tiles that were scanned before, for the same
-/// readers, are not scanned again. `step` is called [`STEPS`] times in all.
+/// Reports every table of the subject. `references[m]` has the exact terms for the tables of material `m`. Tiles that were scanned before for equal
+/// readers are not scanned again. `step` is called [`STEPS`] times in all.
 pub(crate) fn scan(
     subject: &Subject<'_>,
     references: &[References],
@@ -110,7 +110,7 @@ pub(crate) fn scan(
     Ok(reports)
 }
 
-/// Names of those that read a tile somewhere: the layers, and what lies bare where no patina has grown.
+/// Names of the readers of a tile: layers, and the bare layers under a patina.
 fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     let materials = &subject.manifest.materials;
     let layers = materials.iter().flat_map(|m| m.layers.iter().enumerate().map(move |(l, layer)| (m, l, layer)));
@@ -122,7 +122,7 @@ fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     layers.map(|(m, l, _)| format!("{}/{l}", m.name)).chain(bare.map(|m| format!("{}/bare", m.name))).collect()
 }
 
-/// Findings of the scan of a tile.
+/// Raw results of the scan of a tile.
 #[derive(Default)]
 struct Measured {
     scan: Scan,
@@ -156,7 +156,7 @@ struct Scan {
 }
 
 impl Scan {
-    /// Takes a sample in; whether it is the worst so far.
+    /// Adds a sample and returns whether it is the worst so far.
     fn add(&mut self, at: &[f64], channel: usize, expected: f64, sampled: f64) -> bool {
         let error = (expected - sampled).abs();
         if !error.is_finite() {
@@ -180,7 +180,7 @@ impl Scan {
     }
 }
 
-/// Coordinates of a scan along an axis: so many stratified points in every cell, never on a node; then the nodes, which balancing moves.
+/// Coordinates of a scan along an axis: stratified points in every cell, never on a node; then the nodes, because balancing moves their values.
 fn coordinates(axis: &Axis, points_per_cell: u32) -> Vec<f64> {
     let count = axis.intervals() * points_per_cell;
     let nodes = (0..axis.size).map(|i| axis.node_coordinate(f64::from(i)));

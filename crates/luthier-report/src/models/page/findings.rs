@@ -1,9 +1,9 @@
-//! Findings from the numbers, in words and by model. Every sentence is made from them.
+//! Findings in words and by model. Every sentence is made from the numbers.
 
 use super::tables::{Kind, number, table};
 use crate::models::{CONTROL, ModelErrors, ModelsReport};
 
-/// An albedo this much above 1 is no matter of noise or quadrature.
+/// Excess of an albedo over 1 that noise and quadrature do not explain.
 const GAIN: f64 = 0.005;
 
 /// Largest error that counts as close, of either kind.

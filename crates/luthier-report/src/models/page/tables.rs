@@ -4,7 +4,7 @@ use luthier_model::ShadingModel;
 
 use crate::models::{MaterialModels, ModelErrors, ModelsReport, Worst};
 
-/// The heading of what is no model: it comes last.
+/// The heading of rows that are no models. It comes last.
 const REFERENCE: &str = "The reference itself";
 
 /// The heading of models without one.
@@ -26,7 +26,7 @@ impl Kind {
     }
 }
 
-/// The model with the smallest error; the first of those that are equal as printed.
+/// The model with the smallest error; the first of several that print as equal.
 pub(super) fn best_model(material: &MaterialModels, kind: Kind) -> Option<&ModelErrors> {
     let models = material.models.iter().filter(|m| m.is_model);
     let printed = models.map(|m| ((kind.of(m).quantity.error * 1e3).round(), m));
@@ -93,7 +93,7 @@ pub(super) fn best(report: &ModelsReport) -> String {
     format!("\n## The best model of each material\n\n{}", table(&head, rows))
 }
 
-/// Numbers to the right; columns whose head ends in a space, and the first, are text.
+/// A table in Markdown. Numbers are aligned to the right; the first column, and columns whose head ends in a space, are text.
 pub(super) fn table(head: &[String], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let rule: Vec<String> =
         (0..head.len()).map(|i| if i == 0 || head[i].ends_with(' ') { "---" } else { "---:" }.to_owned()).collect();
@@ -106,7 +106,7 @@ fn line(cells: &[String]) -> String {
     format!("| {} |\n", cells.iter().map(|cell| cell.trim_end()).collect::<Vec<_>>().join(" | "))
 }
 
-/// Three decimals: the reference knows no more. Errors that are no number are shown.
+/// A number in three decimals, as many as the reference is good for; infinite errors in words.
 pub(super) fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.3}") } else { "infinite".to_owned() }
 }

@@ -22,7 +22,7 @@ pub(crate) fn series(compared: Compared) -> Series {
     Series { class, mark, name: compared.name() }
 }
 
-/// A row per material, a mark per comparison at its largest error; with the budget, or the target if there is none.
+/// A row for each material, with a mark for the largest error of each comparison. A line shows the budget, or the target if there is none.
 pub(crate) fn max_by_material(report: &Report, compared: &[Compared]) -> String {
     const ROW: f64 = 24.0;
     let comparisons = report.materials.iter().flat_map(|m| compared.iter().filter_map(|c| m.comparison(*c)));

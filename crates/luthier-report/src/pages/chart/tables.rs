@@ -1,4 +1,4 @@
-//! Charts of what the tables hold and how well.
+//! Charts of the contents, errors and sizes of tables.
 
 use crate::measure::scan::report::{AlphaPoint, ReflectanceCurve, TableReport};
 use crate::svg::frame::{Frame, Margin};

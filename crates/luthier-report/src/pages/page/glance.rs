@@ -30,12 +30,12 @@ pub(super) fn line(report: &Report, material: &MaterialReport) -> String {
     format!("{found} · {paid}")
 }
 
-/// The comparison that stands for the error of a material: the baked shader, or, when none was run, its tables.
+/// The comparison whose error stands for a material: the baked shader, or, without a device, its tables.
 fn judged(report: &Report) -> Compared {
     shown(report)[0]
 }
 
-/// Cycles of the shader that ships, in a form: of this shader if costs were given, else of one for layers of the same kinds.
+/// Cycles of the shader that ships, in a form: its own if costs were given, else those of a shader for layers of equal kinds.
 fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64> {
     let Some(costs) = &report.costs else {
         let cost = material.shape_cost?;
@@ -101,7 +101,7 @@ fn facts(out: &mut String, report: &Report) {
     out.push_str("</dl>\n");
 }
 
-/// Number of values that were compared, and of those that are not finite.
+/// Number of compared values, and number of values that are not finite.
 pub(super) fn samples(report: &Report) -> (u64, u64) {
     let sets = report.materials.iter().flat_map(|m| report.judged(m)).flat_map(|c| &c.sets);
     sets.fold((0, 0), |(all, bad), (_, s)| (all + 3 * s.pairs, bad + s.not_finite))
@@ -161,7 +161,7 @@ fn chart(out: &mut String, report: &Report) {
     );
 }
 
-/// A small picture of each material, which leads to what the page says of it.
+/// A small picture of each material, linked to its section.
 fn thumbnails(out: &mut String, report: &Report, exhibits: &Exhibits) {
     let mut links = String::new();
     for (index, (material, pictures)) in report.materials.iter().zip(&exhibits.pictures).enumerate() {

@@ -1,4 +1,4 @@
-//! The three levels of error side by side, and never in one figure; then the limits.
+//! The three levels of error, side by side but never added up; then the limits.
 
 use std::fmt::Write;
 

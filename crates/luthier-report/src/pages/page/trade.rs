@@ -11,7 +11,7 @@ use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::svg::{Choice, Mark, Price, Series, legend, pareto};
 use crate::text::format::{axis, bytes, error, escape, none, number};
 
-/// The instruction set that charts show; tables have all.
+/// The instruction set in charts. Tables list all.
 pub(super) const FAMILY: &str = "rdna2";
 
 const CANDIDATE: Series = Series { class: "s-tables", name: "candidate of the search", mark: Mark::Diamond };
@@ -132,7 +132,7 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
     out.push_str("</div>");
 }
 
-/// Bytes of the tiles of a kind that a material reads, or that any does, and their largest error as measured here.
+/// Bytes of the tiles of a kind that a material reads (any material, if `None`), and their largest error as measured here.
 fn shipped(report: &Report, kind: TableKind, material: Option<&str>) -> Option<(f64, f64)> {
     let table = report.tables.iter().find(|t| t.kind == kind)?;
     let read = table.tiles.iter().filter(|t| material.map_or(!t.users.is_empty(), |name| t.is_read_by(name)));
@@ -200,7 +200,7 @@ pub(super) struct Shader<'a> {
 pub(super) fn of_shaders<'a>(report: &Report, material: &MaterialReport, costs: &'a Costs) -> Vec<Shader<'a>> {
     let reads_d = report.tables.iter().any(|t| t.kind == TableKind::Distribution);
     let rows = costs.rows.iter().filter(|r| r.material == material.name && !r.constant);
-    // Shaders that read no table of D are listed as closed whatever the bake has.
+    // A shader that reads no table of D is always listed as closed, even if the bake has such a table.
     let ours = rows.clone().filter(|r| {
         let key = (r.model, &r.form, &r.family);
         let has_other = rows.clone().any(|o| (o.model, &o.form, &o.family) == key && o.closed != r.closed);
@@ -224,7 +224,7 @@ fn models(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>]) {
             let compared = if row.form == "full" { Compared::FullDevice } else { Compared::BakedDevice };
             material.comparison(compared)?.max_error()
         } else {
-            // Without the reference, errors are those of shaders against their model: only the model that ships has some.
+            // Without the reference, errors are those of shaders against their model, and only the shaders of the model that ships were run.
             return None;
         };
         let is_chosen = row.model == material.model && row.form == "baked";

@@ -1,4 +1,4 @@
-//! LDR-FLIP: the difference that a person sees who flips between two pictures.
+//! LDR-FLIP: the visible difference when a viewer flips between two pictures.
 //!
 //! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild. FLIP: A Difference Evaluator for
 //! Alternating Images. Proc. ACM Comput. Graph. Interact. Tech. 3, 2 (2020). Section numbers are of that paper;
@@ -36,16 +36,16 @@ pub(crate) fn flip(reference: &Image, test: &Image, pixels_per_degree: f64) -> I
             let edges = (a.edges[i] - b.edges[i]).abs();
             let points = (a.points[i] - b.points[i]).abs();
             let feature = libm::pow(edges.max(points) / std::f64::consts::SQRT_2, FEATURE_EXPONENT);
-            // A pixel of the same colour differs by its features only as far as its colour does.
+            // The feature difference lowers the exponent: a pixel of equal colour stays at 0, whatever its features.
             libm::pow(color, 1.0 - feature) as f32
         })
         .collect();
     Image { width: reference.width, height: reference.height, channels: 1, data }
 }
 
-/// Features of one picture that are compared.
+/// One picture, prepared for the comparison.
 struct Seen {
-    /// Filtered by the contrast sensitivity, in Hunt-adjusted L*a*b*.
+    /// Pixels filtered by the contrast sensitivity, in Hunt-adjusted L*a*b*.
     lab: Vec<[f64; 3]>,
     edges: Vec<f64>,
     points: Vec<f64>,
