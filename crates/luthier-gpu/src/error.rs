@@ -94,7 +94,7 @@ pub enum GpuError {
         /// Number of materials.
         count: usize,
     },
-    /// No such surface.
+    /// A surface number that the bake does not have.
     #[error("no surface {surface}: the bake has {count}")]
     NoSurface {
         /// The number asked for.

@@ -69,7 +69,7 @@ pub enum SceneFailure {
     Unheld {
         /// A line for each form that was tried.
         reasons: String,
-        /// Advice to the user; empty where there is none.
+        /// Advice to the user, possibly empty.
         hint: &'static str,
     },
     /// The chosen models cannot be baked.

@@ -67,10 +67,9 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
         let by = if read.clone().all(|tile| tile.judge.is_some()) { HERE } else { BOTH };
         let chosen: Vec<&Candidate> = report.searches.iter().filter_map(|s| s.front.get(s.chosen)).collect();
         let cost = Some(chosen.iter().map(|c| c.cost).sum()).filter(|_| !report.searches.is_empty());
-        let max_rel = largest(&chosen, |c| Some(c.error.max_rel));
         let stated = [
             ("tables: largest absolute error", budget.max_abs, measured, by),
-            ("tables: largest relative error", budget.max_rel, max_rel, BAKER),
+            ("tables: largest relative error", budget.max_rel, largest(&chosen, |c| Some(c.error.max_rel)), BAKER),
             ("tables: largest CIEDE2000", budget.delta_e, largest(&chosen, |c| c.error.delta_e), BAKER),
             ("bytes of all tables", budget.max_bytes.map(|b| b as f64), Some(bytes(report)), HERE),
             ("estimated cost of one read of every searched table", budget.max_cost, cost, BAKER),

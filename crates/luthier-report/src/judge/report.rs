@@ -203,12 +203,8 @@ impl Report {
     }
 
     /// The comparisons of a material that [`Report::max_error`] covers.
-    pub(crate) fn judged<'a>(
-        &self,
-        material: &'a MaterialReport,
-    ) -> impl Iterator<Item = &'a Comparison> + Clone + use<'a> {
-        let with_device = self.device.is_some();
-        material.comparisons.iter().filter(move |comparison| comparison.compared.is_judged(with_device))
+    pub(crate) fn judged<'a>(&'a self, material: &'a MaterialReport) -> impl Iterator<Item = &'a Comparison> + Clone {
+        material.comparisons.iter().filter(move |comparison| comparison.compared.is_judged(self.device.is_some()))
     }
 
     /// Place of the largest error of the shaders, or, without a device, of the tables; `None` without materials.

@@ -136,8 +136,7 @@ impl<'a> Remembered<'a> {
         let users = users.map(|(number, layer)| {
             json!([nameless(&subject.manifest.materials[number]), subject.stacks[number], layer])
         });
-        let users: Vec<Value> = users.collect();
-        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users, "pairs": pairs_per_set })
+        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users.collect::<Vec<_>>(), "pairs": pairs_per_set })
     }
 
     /// A material by its content: its record, its stack, and the texels of the tiles that it reads.

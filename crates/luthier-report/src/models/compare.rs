@@ -16,16 +16,14 @@ pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f6
     let moved: f64 = found.energies.iter().zip(&reference.energies).map(|(e, r)| (e - r).abs()).sum();
     let lobe = share_of(albedo_ref, 0.5 * moved);
     let differences = found.energies.iter().zip(&reference.energies).map(|(e, r)| e - r);
-    let half_signs = differences.map(|d| if d > 0.0 || d < 0.0 { 0.5_f64.copysign(d) } else { 0.0 });
-    let half_signs: Vec<f64> = half_signs.collect();
+    let half_signs: Vec<f64> =
+        differences.map(|d| if d > 0.0 || d < 0.0 { 0.5_f64.copysign(d) } else { 0.0 }).collect();
     let of_reference = reference.variance(|cell| half_signs[cell] + lobe);
     let lobe_std_err = libm::sqrt(of_reference + found.variance(|cell| half_signs[cell]));
-    let lobe_noise: f64 = (0..reference.energies.len())
-        .map(|cell: usize| {
-            let own = found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell));
-            libm::sqrt(reference.cell_variance(cell) + own)
-        })
-        .sum();
+    let variances = (0..reference.energies.len()).map(|cell: usize| {
+        reference.cell_variance(cell) + found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell))
+    });
+    let lobe_noise: f64 = variances.map(libm::sqrt).sum();
     ViewError {
         wavelength_nm,
         theta_deg,

@@ -143,7 +143,7 @@ pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option
 mod tests {
     use super::*;
 
-    /// A filter in hardware widens tolerances of what it is read for: the arithmetic of forms with tables.
+    /// A filter in hardware widens the tolerance of arithmetic in forms with tables, and no other.
     #[test]
     fn hardware_filters_widen_arithmetic_alone() {
         for model in ShadingModel::ALL {

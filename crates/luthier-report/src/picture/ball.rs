@@ -8,7 +8,7 @@ use luthier_optics::Rgb;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
-/// Distance of the eye from the centre, and half the side of what the picture shows there: a long lens from +z.
+/// Distance of the eye from the centre, and half the side of the picture at the centre: a long lens from +z.
 const EYE: f64 = 7.0;
 const HALF_EXTENT: f64 = 1.22;
 

@@ -119,7 +119,7 @@ fn is_for(info: &ModelInfo, case: &StressCase) -> bool {
     }
 }
 
-/// Whether albedos are compared: not those of densities, nor of models that look different from place to place.
+/// Whether albedos are compared. Densities have none, and models of places have a different one at each place.
 fn has_albedo(info: &ModelInfo) -> bool {
     !matches!(info.kind, Kind::Density | Kind::Place)
 }

@@ -30,7 +30,7 @@ pub(crate) struct Spot {
     pub(crate) tip: String,
     /// Colour and mark of the spot.
     pub(crate) series: Series,
-    /// Whether the name stands beside the mark, where there is room.
+    /// Whether the name stands beside the mark, if there is room.
     pub(crate) is_named: bool,
 }
 

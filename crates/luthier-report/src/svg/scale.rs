@@ -28,7 +28,7 @@ impl Scale {
         Self::linear(0.0, step * libm::ceil(largest / step - 1e-9), step)
     }
 
-    /// The scale for the page's script: kind and ends, those of a logarithmic scale as powers of ten.
+    /// The scale for the page's script: kind and ends. Ends of a logarithmic scale are exponents of ten.
     pub(crate) fn describe(&self) -> String {
         format!("{} {} {}", if self.log { "log" } else { "lin" }, self.min, self.max)
     }
