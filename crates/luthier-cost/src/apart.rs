@@ -7,7 +7,7 @@ use std::process::{Command, ExitCode, Stdio};
 
 use crate::{Compiled, CostError, FOREIGN_VARIABLES, Family, Kernel, assembly, compile};
 
-/// First word of the command line of a process that is to compile.
+/// First word of the command line of a process that compiles.
 const PROBE: &str = "cost-probe";
 
 /// Word that asks for machine code in place of counts.
@@ -20,8 +20,8 @@ const DEVICE_FAILURE: u8 = 4;
 const DRIVER_FOLDERS: [&str; 4] =
     ["/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d"];
 
-/// Compiles the kernels of standard input, where this process was started by [`compile_apart`] or [`assembly_apart`]: the exit code of
-/// the process. `None` in every other process. A program that calls these two calls this first.
+/// Answers as a probe: compiles the kernels of standard input and returns the exit code, if [`compile_apart`] or [`assembly_apart`] started this
+/// process. Returns `None` in every other process. The `main` of a program that calls these two calls this first.
 pub fn answer() -> Option<ExitCode> {
     let mut words = std::env::args_os().skip(1);
     if words.next()? != PROBE {
@@ -31,7 +31,7 @@ pub fn answer() -> Option<ExitCode> {
     Some(match reply(&words) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Where nobody listens there is nobody to tell.
+            // A closed standard error leaves the exit code alone to tell.
             let _ = writeln!(io::stderr().lock(), "error: {error}");
             ExitCode::from(DEVICE_FAILURE)
         }
@@ -52,14 +52,18 @@ fn reply(words: &[String]) -> Result<(), CostError> {
         serde_json::to_string(&compile(family, &kernels)?)?
     };
     let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.map_err(|source| CostError::Process { action: "answer", source })
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(failed_to("answer"))
+}
+
+/// The error of a step with the probe that the system refuses.
+fn failed_to(action: &'static str) -> impl FnOnce(io::Error) -> CostError {
+    move |source| CostError::Process { action, source }
 }
 
 /// [`compile`] in a process of its own: this program, started anew. Its `main` has to call [`answer`] first.
 ///
 /// # Errors
-/// Those of [`compile`], and [`CostError::Process`] or [`CostError::Probe`] where no process can be asked.
+/// Those of [`compile`], and [`CostError::Process`] or [`CostError::Probe`] if the process cannot be started or does not answer.
 pub fn compile_apart(family: Family, kernels: &[Kernel]) -> Result<Compiled, CostError> {
     let compiled: Compiled = serde_json::from_str(&ask(family, &[], kernels)?)?;
     if compiled.counts.len() != kernels.len() {
@@ -78,8 +82,7 @@ pub fn assembly_apart(family: Family, kernel: &Kernel) -> Result<String, CostErr
 
 /// Standard output of this program as the probe of a family.
 fn ask(family: Family, words: &[&str], kernels: &[Kernel]) -> Result<String, CostError> {
-    let lost = |action| move |source| CostError::Process { action, source };
-    let program = std::env::current_exe().map_err(lost("find this program"))?;
+    let program = std::env::current_exe().map_err(failed_to("find this program"))?;
     let mut command = Command::new(program);
     command.args([PROBE, family.name()]).args(words).envs(family.environment());
     for variable in FOREIGN_VARIABLES {
@@ -89,38 +92,41 @@ fn ask(family: Family, words: &[&str], kernels: &[Kernel]) -> Result<String, Cos
         command.env("VK_DRIVER_FILES", &drivers).env("VK_ICD_FILENAMES", &drivers);
     }
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(lost("start the probe"))?;
+    let mut child = command.spawn().map_err(failed_to("start the probe"))?;
     let input = serde_json::to_vec(kernels)?;
     if let Some(mut stdin) = child.stdin.take() {
-        // A probe that ended early says why by itself.
+        // A probe that ended early reports the reason on standard error, which is read below.
         let _ = stdin.write_all(&input);
     }
-    let output = child.wait_with_output().map_err(lost("wait for the probe"))?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let output = child.wait_with_output().map_err(failed_to("wait for the probe"))?;
     if output.status.success() {
-        return Ok(text(&output.stdout));
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
-    let said = text(&output.stderr);
-    let error = said.lines().find_map(|line| line.strip_prefix("error: "));
-    let unsaid = || format!("the probe of {family} ended with {}: {said}", output.status);
-    Err(CostError::Probe(error.map_or_else(unsaid, str::to_owned)))
+    let said = String::from_utf8_lossy(&output.stderr);
+    Err(CostError::Probe(match said.lines().find_map(|line| line.strip_prefix("error: ")) {
+        Some(error) => error.to_owned(),
+        None => format!("the probe of {family} ended with {}: {said}", output.status),
+    }))
 }
 
-/// The descriptions of RADV, for the loader to load nothing else; `None` leaves the choice to the user's own variables.
+/// Paths of the descriptions of RADV, so that the loader loads no other driver. `None` if the user's own variables choose drivers, or if none is
+/// found.
 fn drivers() -> Option<OsString> {
     if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().any(|name| std::env::var_os(name).is_some()) {
         return None;
     }
-    let is_radv = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        name.starts_with("radeon_icd") && name.ends_with(".json")
-    };
-    let in_folder = |folder: &str| {
-        let entries = std::fs::read_dir(Path::new(folder)).into_iter().flatten().flatten();
-        let mut found: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_radv).collect();
-        found.sort();
-        found
-    };
-    let found: Vec<PathBuf> = DRIVER_FOLDERS.into_iter().flat_map(in_folder).collect();
+    let mut found = Vec::new();
+    for folder in DRIVER_FOLDERS {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut here: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| is_radv(path)).collect();
+        here.sort();
+        found.extend(here);
+    }
     if found.is_empty() { None } else { std::env::join_paths(found).ok() }
+}
+
+/// Whether a file is by its name a description of RADV.
+fn is_radv(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with("radeon_icd") && name.ends_with(".json")
 }

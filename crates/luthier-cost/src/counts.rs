@@ -3,18 +3,25 @@
 use serde::{Deserialize, Serialize};
 
 /// Counts that RADV's compiler (ACO) reports of one kernel, for one wave of 64.
+///
+/// ```
+/// use luthier_cost::Counts;
+///
+/// let harness = Counts { instructions: 10, vgprs: 8, ..Counts::default() };
+/// let shader = Counts { instructions: 250, vgprs: 40, ..Counts::default() };
+/// // Registers belong to the whole kernel and are not subtracted.
+/// assert_eq!(shader.beyond(&harness), Counts { instructions: 240, vgprs: 40, ..Counts::default() });
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Instructions, of all branches.
     pub instructions: i64,
     /// Cycles per wave by the compiler's model of the pipeline with all its waves in flight: those of the busiest unit, or the latency
-    /// over the number of waves, whichever is more. What lies under a branch counts three quarters where threads may differ, and half
-    /// where they agree.
+    /// over the number of waves, whichever is more. Code under a branch counts three quarters if threads may differ, and half if they agree.
     pub inverse_throughput: i64,
     /// Cycles from the first instruction to the last for one wave alone, memory at the compiler's fixed estimate.
     pub latency: i64,
-    /// Cycles of one SIMD that the vector instructions of all branches take to issue: no branch is guessed to be skipped, and no
-    /// latency is in it.
+    /// Cycles of one SIMD to issue the vector instructions of all branches. No branch counts as skipped, and latency is not included.
     pub issue_cycles: i64,
     /// Vector registers.
     pub vgprs: i64,
@@ -28,12 +35,12 @@ pub struct Counts {
     pub texture_reads: i64,
     /// Reads of buffers, vector and scalar, as issued.
     pub buffer_reads: i64,
-    /// Branches, the taken and the others.
+    /// Branches, taken or not.
     pub branches: i64,
 }
 
 impl Counts {
-    /// The rest of each count beyond that of another kernel. Registers, waves and spills are of the whole kernel and stay.
+    /// The counts less those of another kernel. Registers, waves and spills belong to the whole kernel and stay.
     pub fn beyond(&self, harness: &Self) -> Self {
         Self {
             instructions: self.instructions - harness.instructions,
@@ -52,9 +59,9 @@ impl Counts {
 /// Counts of some kernels, as a driver compiled them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Compiled {
-    /// Name of the driver and its version, as it gives them.
+    /// Name and version of the driver, in its own words.
     pub driver: String,
-    /// Name of the device that it stands in for.
+    /// Name of the device that the null device stands for.
     pub device: String,
     /// One for each kernel, in order.
     pub counts: Vec<Counts>,

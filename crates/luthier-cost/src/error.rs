@@ -10,7 +10,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CostError {
-    /// A driver that is missing, or not the one needed.
+    /// The driver is missing, or it is another one.
     #[error(
         "Mesa's RADV driver is needed to compile for these GPUs, and {0}; no GPU is (Debian and Ubuntu: apt-get install \
          mesa-vulkan-drivers libvulkan1)"
@@ -24,7 +24,7 @@ pub enum CostError {
         /// The code that came back.
         result: ash::vk::Result,
     },
-    /// The driver reports no such statistic.
+    /// The driver does not report a statistic.
     #[error("the driver does not report `{name}`; it reports: {known}")]
     NoStatistic {
         /// Name of the statistic, as RADV has it.
@@ -35,10 +35,10 @@ pub enum CostError {
     /// A shader that cannot be emitted.
     #[error(transparent)]
     Shader(#[from] ShaderError),
-    /// A family that there is not.
+    /// An unknown family.
     #[error(transparent)]
     Family(#[from] UnknownName),
-    /// A process of its own that cannot be had.
+    /// A probe, the process that compiles, cannot be started or asked.
     #[error("cannot {action}: {source}")]
     Process {
         /// Action that failed.
@@ -46,10 +46,10 @@ pub enum CostError {
         /// Error of the system.
         source: io::Error,
     },
-    /// A failure in a process of its own, as it told it.
+    /// A failure of a probe, in its own words.
     #[error("{0}")]
     Probe(String),
-    /// Kernels or counts that are not what processes exchange.
+    /// Kernels or counts that are not valid JSON.
     #[error("JSON of kernels or counts: {0}")]
     Exchange(#[from] serde_json::Error),
 }

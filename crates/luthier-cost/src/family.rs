@@ -4,6 +4,14 @@ use serde::{Deserialize, Serialize};
 
 luthier_lut::named! {
     /// An instruction set that Mesa's RADV driver compiles for.
+    ///
+    /// ```
+    /// use luthier_cost::Family;
+    ///
+    /// // Four plain instructions and a reciprocal: GCN issues them one after the other, RDNA side by side.
+    /// assert_eq!([Family::Gcn5, Family::Rdna2].map(|family| family.issue_cycles(4, 1)), [32, 10]);
+    /// assert_eq!("rdna3".parse::<Family>().unwrap().chip(), "gfx1100");
+    /// ```
     #[derive(Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum Family("family") {
@@ -35,14 +43,14 @@ impl Family {
         }
     }
 
-    /// Variables that the process must have when the Vulkan loader is first called: the null device of this family, and no
-    /// cache of compiled shaders.
+    /// Variables that the process must have before its first call of the Vulkan loader: they ask for the null device of this family, and turn
+    /// the cache of compiled shaders off.
     pub fn environment(self) -> [(&'static str, &'static str); 2] {
         [("RADV_FORCE_FAMILY", self.chip()), ("MESA_SHADER_CACHE_DISABLE", "true")]
     }
 }
 
-/// Variables that change what RADV compiles, or which layers come between: to be absent.
+/// Variables that change the code of RADV, or load layers in front of it. They must be absent.
 pub const FOREIGN_VARIABLES: [&str; 8] = [
     "RADV_DEBUG",
     "RADV_PERFTEST",

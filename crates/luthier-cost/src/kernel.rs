@@ -5,12 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::CostError;
 
-/// Stands in for a shader: all that is left is the harness.
+/// Replaces a shader to measure the harness alone.
 const EMPTY: &str =
     "fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {\n    return wi * wo;\n}\n";
 
-/// Schlick's form with the reflectance at normal incidence of a complex index (Elek 2010, `FresnelTermNP`), in the place of the
-/// exact equations.
+/// Schlick's form with the reflectance at normal incidence of a complex index (Elek 2010, `FresnelTermNP`). It replaces the exact equations.
 const APPROXIMATE_FRESNEL: &str = include_str!("wgsl/approximate_fresnel.wgsl");
 
 /// Code that surrounds the evaluation.
@@ -29,16 +28,24 @@ pub struct Style {
     pub form: Form,
     /// The numbers of the one material are constants of the code.
     pub constant: bool,
-    /// Fresnel reflectance of bare interfaces is approximated; of the form `full`.
+    /// Fresnel reflectance of bare interfaces is approximated. Only the form `full` has such code.
     pub approximate: bool,
 }
 
-/// A compute kernel to compile, with what it binds.
+/// A compute kernel to compile, with its bindings.
+///
+/// ```
+/// use luthier_cost::{Harness, Kernel};
+///
+/// // Elek's surroundings bind two textures and a sampler besides the two buffers of the bare harness.
+/// let [bare, mapped] = [Harness::Bare, Harness::NormalMapped].map(|harness| Kernel::empty(harness).unwrap());
+/// assert_eq!((bare.bindings.len(), mapped.bindings.len()), (2, 5));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Kernel {
     /// SPIR-V words; one entry point.
     pub spirv: Vec<u32>,
-    /// All that it may name.
+    /// All resources that the kernel may use.
     pub bindings: Vec<Binding>,
 }
 
@@ -68,25 +75,25 @@ pub enum Resource {
 }
 
 impl Kernel {
-    /// The evaluation of the shader of a set, in a harness. The material's number comes from a uniform buffer, as a draw call would
-    /// give it.
+    /// The shader of a set, evaluated in a harness. The material's number comes from a uniform buffer, as in a draw call.
     ///
     /// # Errors
     /// Those of [`emit`] and [`emit_constant`].
     pub fn of_set(set: &MaterialSet<'_>, style: Style, harness: Harness) -> Result<Self, CostError> {
-        let resource = |kind: &str| match kind {
-            "buffer" => Resource::Storage,
-            "sampler" => Resource::Sampler,
-            _ => Resource::Texture,
-        };
         let face = bindings(set, style.form);
         let face = face.iter().filter(|entry| !(style.constant && entry.resource == "buffer"));
-        let shader = face.map(|e| Binding { group: 0, binding: e.binding, resource: resource(&e.resource) });
+        let shader = face.map(|entry| {
+            let resource = match entry.resource.as_str() {
+                "buffer" => Resource::Storage,
+                "sampler" => Resource::Sampler,
+                _ => Resource::Texture,
+            };
+            Binding { group: 0, binding: entry.binding, resource }
+        });
         Self::new(&shader_text(set, style)?, shader, harness)
     }
 
-    /// The harness alone. The two directions are multiplied, so that both are read: three instructions that are not in the
-    /// others.
+    /// The harness alone. It multiplies the two directions, so that both are read: three instructions that other kernels lack.
     ///
     /// # Errors
     /// A defect of the harness.
@@ -120,7 +127,7 @@ pub fn shader_text(set: &MaterialSet<'_>, style: Style) -> Result<String, CostEr
     Ok(if style.approximate { approximated(&text) } else { text })
 }
 
-/// The text with the approximation in the place of the exact function, where it has that.
+/// The text with the exact Fresnel function, if there is one, replaced by the approximation.
 fn approximated(text: &str) -> String {
     let Some((before, rest)) = text.split_once("fn luthier_fresnel(") else { return text.to_owned() };
     let after = rest.split_once("\n}\n").map_or("", |(_, after)| after);

@@ -3,7 +3,7 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! Mesa's RADV driver makes a device without hardware when it is told a family of chips; its compiler then runs in full, and reports
+//! Mesa's RADV driver offers a device without hardware if a variable names a family of chips. Its compiler then runs in full, and reports
 //! instructions, registers, and cycles by its own model of the pipeline ([`Counts`]). The numbers depend on the kernels and the version
 //! of the driver only. Nothing can run on such a device.
 //!
@@ -11,8 +11,8 @@
 //! [`Family::environment`], one per family. [`compile_apart`] starts one, of a program whose `main` begins with [`answer`].
 //! [`CostReport`] holds the counts of many shaders, and writes them as JSON and as a page.
 //!
-//! Simplifications: a texture read counts as issued, without cache misses; all branches of a kernel count, the taken and the others, so
-//! that a set of several models costs the sum of them; uniform registers and interpolation are free.
+//! Simplifications: a texture read counts as issued, without cache misses. All branches of a kernel count, taken or not, so that a set of several
+//! models costs their sum. Uniform registers and interpolation are free.
 //!
 //! Out of scope: files, arguments, time on a real device (`luthier-gpu`).
 

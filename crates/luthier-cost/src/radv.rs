@@ -14,7 +14,7 @@ use crate::{Compiled, CostError, Counts, Family, Kernel, Resource};
 /// [`Family::environment`].
 ///
 /// # Errors
-/// [`CostError::NoDriver`] where there is no loader or no RADV; [`CostError::Vulkan`] when the driver refuses a kernel.
+/// [`CostError::NoDriver`] if there is no loader or no RADV; [`CostError::Vulkan`] when the driver refuses a kernel.
 pub fn compile(family: Family, kernels: &[Kernel]) -> Result<Compiled, CostError> {
     let device = NullDevice::open()?;
     let counts = kernels.iter().map(|kernel| device.pipeline(kernel)?.counts(family)).collect::<Result<_, _>>()?;
@@ -176,8 +176,7 @@ impl Pipeline<'_> {
         let found = found.map_err(|result| failed("the driver gives no statistics", result))?;
         let statistics: BTreeMap<String, i64> = found.iter().map(|s| (text(&s.name), value(s))).collect();
         let get = |name: &'static str| {
-            let known = || statistics.keys().cloned().collect::<Vec<_>>().join(", ");
-            statistics.get(name).copied().ok_or_else(|| CostError::NoStatistic { name, known: known() })
+            statistics.get(name).copied().ok_or_else(|| no_statistic(name, statistics.keys().cloned()))
         };
         let code = Code::of(&self.assembly()?);
         Ok(Counts {
@@ -195,7 +194,7 @@ impl Pipeline<'_> {
         })
     }
 
-    /// The representation that RADV names so.
+    /// The internal representation that RADV calls `Assembly`.
     fn assembly(&self) -> Result<String, CostError> {
         let executable = vk::PipelineExecutableInfoKHR::default().pipeline(self.pipeline);
         let call = self.of.executables.fp().get_pipeline_executable_internal_representations_khr;
@@ -216,10 +215,7 @@ impl Pipeline<'_> {
         result.result().map_err(|result| failed("the driver gives no machine code", result))?;
         let names = found.iter().map(|r| text(&r.name));
         let code = names.zip(texts).find(|(name, _)| name == "Assembly").map(|(_, text)| text);
-        let code = code.ok_or_else(|| CostError::NoStatistic {
-            name: "Assembly",
-            known: found.iter().map(|r| text(&r.name)).collect::<Vec<_>>().join(", "),
-        })?;
+        let code = code.ok_or_else(|| no_statistic("Assembly", found.iter().map(|r| text(&r.name))))?;
         Ok(String::from_utf8_lossy(&code).trim_end_matches('\0').to_owned())
     }
 }
@@ -259,10 +255,14 @@ fn value(statistic: &vk::PipelineExecutableStatisticKHR<'_>) -> i64 {
     }
 }
 
-/// A text of fixed room.
+/// A text from an array of fixed size.
 fn text(characters: &[c_char]) -> String {
     let bytes: Vec<u8> = characters.iter().map(|&c| c as u8).collect();
     CStr::from_bytes_until_nul(&bytes).map_or_else(|_| String::new(), |text| text.to_string_lossy().into_owned())
+}
+
+fn no_statistic(name: &'static str, known: impl Iterator<Item = String>) -> CostError {
+    CostError::NoStatistic { name, known: known.collect::<Vec<_>>().join(", ") }
 }
 
 fn no_radv() -> CostError {

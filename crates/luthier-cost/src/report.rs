@@ -11,7 +11,18 @@ use crate::{Compiled, CostError, Counts, Family};
 /// Version of the JSON.
 const SCHEMA: u32 = 1;
 
-/// All that was counted. The JSON of it is described in docs/measurements/README.md.
+/// Counts of many shaders. docs/measurements/README.md describes the JSON.
+///
+/// ```
+/// use luthier_cost::{Compiled, CostReport, Counts, Family};
+///
+/// let compiled = Compiled { driver: "radv 25".to_owned(), device: "null".to_owned(), counts: Vec::new() };
+/// let mut report = CostReport::default();
+/// report.add_family(Family::Gcn5, &compiled, Counts::default());
+/// let json: serde_json::Value = serde_json::from_str(&report.to_json()?)?;
+/// assert_eq!((&json["driver"], &json["families"][0]["chip"]), (&"radv 25".into(), &"vega10".into()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct CostReport {
     /// Program and version.
@@ -58,7 +69,7 @@ pub struct CostRow {
 }
 
 impl CostReport {
-    /// Adds a family that kernels were compiled for; `harness` is what every row of it is without.
+    /// Adds a family that kernels were compiled for. `harness` has the counts that are subtracted from every row of the family.
     pub fn add_family(&mut self, family: Family, compiled: &Compiled, harness: Counts) {
         self.driver.clone_from(&compiled.driver);
         let (chip, device) = (family.chip().to_owned(), compiled.device.clone());
@@ -68,17 +79,14 @@ impl CostReport {
     /// JSON, a row of it per line.
     ///
     /// # Errors
-    /// [`CostError::Exchange`] where a number is none of JSON's.
+    /// [`CostError::Exchange`], should a value have no JSON.
     pub fn to_json(&self) -> Result<String, CostError> {
-        let lines = |values: Vec<String>| format!("[\n    {}\n  ]", values.join(",\n    "));
-        let families = self.families.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-        let rows = self.rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
         Ok(format!(
             "{{\n  \"schema\": {SCHEMA},\n  \"generator\": {},\n  \"driver\": {},\n  \"families\": {},\n  \"rows\": {}\n}}\n",
             serde_json::to_string(&self.generator)?,
             serde_json::to_string(&self.driver)?,
-            lines(families),
-            lines(rows),
+            json_lines(&self.families)?,
+            json_lines(&self.rows)?,
         ))
     }
 
@@ -92,7 +100,7 @@ impl CostReport {
         out
     }
 
-    /// The beginning of a page: its title, the command line that makes it, and how counts are to be read. The last line is not ended.
+    /// The beginning of a page: its title, the command line that makes it, and the meaning of counts. It ends without a line break.
     pub fn introduction(&self, title: &str, command: &str) -> String {
         let chips: Vec<String> = self
             .families
@@ -141,27 +149,34 @@ impl CostReport {
                 continue;
             }
             seen.push(key);
-            let same = || {
-                let of = |other: &&CostRow| (other.model, other.form, other.closed, other.constant) == key;
-                self.rows.iter().filter(|other| other.family == family).filter(of)
-            };
-            let range = |count: &dyn Fn(&Counts) -> i64| {
-                let values = || same().map(|other| count(&other.counts));
-                let (least, most) = (values().min().unwrap_or(0), values().max().unwrap_or(0));
-                if least == most { least.to_string() } else { format!("{least}..{most}") }
-            };
+            let same = self.rows.iter().filter(|other| other.family == family);
+            let same = same.filter(|other| (other.model, other.form, other.closed, other.constant) == key);
+            let counts: Vec<Counts> = same.map(|other| other.counts).collect();
             let _ = writeln!(
                 out,
                 "| {} | {} | {} | {} | {} | {} |",
                 row.model.name(),
                 style_name(row.model, row.form, row.closed, row.constant),
-                range(&|c| c.inverse_throughput),
-                range(&|c| c.issue_cycles),
-                range(&|c| c.vgprs),
-                range(&|c| c.texture_reads),
+                range(&counts, |c| c.inverse_throughput),
+                range(&counts, |c| c.issue_cycles),
+                range(&counts, |c| c.vgprs),
+                range(&counts, |c| c.texture_reads),
             );
         }
         let spilling = self.rows.iter().filter(|row| row.family == family && row.counts.spills > 0).count();
         let _ = writeln!(out, "\nShaders that spill registers: {spilling}.");
     }
+}
+
+/// A JSON list with one value per line.
+fn json_lines(values: &[impl Serialize]) -> Result<String, CostError> {
+    let values = values.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+    Ok(format!("[\n    {}\n  ]", values.join(",\n    ")))
+}
+
+/// The smallest and the largest of some counts.
+fn range(counts: &[Counts], count: fn(&Counts) -> i64) -> String {
+    let least = counts.iter().map(count).min().unwrap_or(0);
+    let most = counts.iter().map(count).max().unwrap_or(0);
+    if least == most { least.to_string() } else { format!("{least}..{most}") }
 }

@@ -10,7 +10,7 @@ use luthier_export::{Package, PackageError};
 
 use crate::GpuError;
 
-/// One binding that a shader names.
+/// A resource that a shader binds.
 #[derive(Debug)]
 enum Resource {
     Table(wgpu::TextureView, TexelFormat),
@@ -18,7 +18,7 @@ enum Resource {
     Materials,
     /// The levels of an environment.
     Environment,
-    /// Its irradiance.
+    /// The irradiance of an environment.
     Irradiance,
 }
 
@@ -38,7 +38,7 @@ impl ShaderBindings {
     /// Uploads the tables that the shader reads.
     pub(crate) fn new(context: &Context, package: &Package, interface: &Interface) -> Result<Self, GpuError> {
         let mut resources = Vec::new();
-        // The full form reads no table.
+        // A shader binds only the tables that it reads: the full form binds none.
         for entry in package.manifest.bindings.iter().filter(|entry| interface.binds(&entry.name)) {
             resources.push((entry.binding, resource(context, package, entry)?));
         }
@@ -90,33 +90,29 @@ pub(crate) fn material_words(package: &Package) -> Vec<[f32; 4]> {
 }
 
 fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Result<Resource, GpuError> {
-    let unknown = || GpuError::Binding { name: entry.name.clone(), resource: entry.resource.clone() };
-    match entry.resource.as_str() {
-        "buffer" => Ok(Resource::Materials),
-        "sampler" => {
+    let found = match (entry.resource.as_str(), entry.name.as_str()) {
+        ("buffer", _) => Some(Resource::Materials),
+        ("sampler", name) => {
             let sampler = context.guarded("sampler", || {
                 context.device.create_sampler(&wgpu::SamplerDescriptor {
-                    label: Some(&entry.name),
+                    label: Some(name),
                     mag_filter: wgpu::FilterMode::Linear,
                     min_filter: wgpu::FilterMode::Linear,
                     mipmap_filter: wgpu::MipmapFilterMode::Linear,
                     ..Default::default()
                 })
             })?;
-            Ok(Resource::Sampler(sampler))
+            Some(Resource::Sampler(sampler))
         }
-        "texture_2d<f32>" => {
-            let named = |kind: &TableKind| entry.name.strip_prefix("luthier_") == Some(kind.name());
-            let kind = TableKind::ALL.into_iter().find(named).ok_or_else(unknown)?;
-            table(context, package, kind)
+        ("texture_2d<f32>", name) => {
+            let kind = TableKind::ALL.into_iter().find(|kind| name.strip_prefix("luthier_") == Some(kind.name()));
+            kind.map(|kind| table(context, package, kind)).transpose()?
         }
-        "texture_cube<f32>" => match entry.name.as_str() {
-            "luthier_environment_map" => Ok(Resource::Environment),
-            "luthier_irradiance_map" => Ok(Resource::Irradiance),
-            _ => Err(unknown()),
-        },
-        _ => Err(unknown()),
-    }
+        ("texture_cube<f32>", "luthier_environment_map") => Some(Resource::Environment),
+        ("texture_cube<f32>", "luthier_irradiance_map") => Some(Resource::Irradiance),
+        _ => None,
+    };
+    found.ok_or_else(|| GpuError::Binding { name: entry.name.clone(), resource: entry.resource.clone() })
 }
 
 fn table(context: &Context, package: &Package, kind: TableKind) -> Result<Resource, GpuError> {
@@ -167,17 +163,16 @@ fn layout_entry(binding: u32, resource: &Resource) -> BindGroupLayoutEntry {
 
 /// Layout of group 1: `kernel_inputs` and `kernel_outputs`.
 pub(crate) fn kernel_layout(context: &Context) -> Result<wgpu::BindGroupLayout, GpuError> {
-    let entry = |binding, read_only| BindGroupLayoutEntry {
+    let entries = [(0, true), (1, false)].map(|(binding, read_only)| BindGroupLayoutEntry {
         binding,
         visibility: ShaderStages::COMPUTE,
         ty: storage(read_only),
         count: None,
-    };
+    });
     context.guarded("kernel bindings", || {
-        context.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("kernel"),
-            entries: &[entry(0, true), entry(1, false)],
-        })
+        context
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("kernel"), entries: &entries })
     })
 }
 

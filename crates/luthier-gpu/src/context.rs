@@ -12,13 +12,19 @@ use crate::GpuError;
 /// needs longer than this has hung.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
-/// A device, its queue, and what went wrong outside any call that could say so.
+/// Usage of a buffer that a kernel fills.
+const WRITTEN: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::COPY_SRC);
+
+/// Usage of a buffer that is read on the host.
+const READABLE: wgpu::BufferUsages = wgpu::BufferUsages::MAP_READ.union(wgpu::BufferUsages::COPY_DST);
+
+/// A device, its queue, and the faults that it reported outside any call.
 #[derive(Debug, Clone)]
 pub(crate) struct Context {
     pub(crate) device: wgpu::Device,
     queue: wgpu::Queue,
     faults: Arc<Faults>,
-    /// How much more work one submission holds than on an adapter of which nothing is known.
+    /// Factor on the work of one submission: 1 on an adapter whose speed is unknown.
     pub(crate) batch: u32,
 }
 
@@ -68,18 +74,18 @@ impl Context {
         ];
         match found.into_iter().flatten().next() {
             Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { what: what.to_owned() }),
-            Some(error) => Err(GpuError::Refused { what: what.to_owned(), message: chain(&error) }),
+            Some(error) => Err(refused(what, chain(&error))),
             None => self.check(what).map(|()| value),
         }
     }
 
-    /// Fails when the device was lost or complained where nobody listened.
+    /// Fails if the device was lost, or reported an error outside any error scope.
     fn check(&self, what: &str) -> Result<(), GpuError> {
         if let Some(reason) = get(&self.faults.lost) {
             return Err(GpuError::Lost(reason));
         }
         match get(&self.faults.uncaptured) {
-            Some(message) => Err(GpuError::Refused { what: what.to_owned(), message }),
+            Some(message) => Err(refused(what, message)),
             None => Ok(()),
         }
     }
@@ -99,6 +105,28 @@ impl Context {
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: None },
             texture.size(),
         );
+    }
+
+    fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let label = Some(label);
+        self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
+    }
+
+    /// Group 1 of a kernel.
+    fn kernel_group(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        inputs: &wgpu::Buffer,
+        outputs: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("kernel"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: inputs.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: outputs.as_entire_binding() },
+            ],
+        })
     }
 
     /// Fills a level of a face of a cube.
@@ -140,16 +168,15 @@ impl Context {
         match self.device.poll(wait) {
             Ok(_) => {}
             Err(wgpu::PollError::Timeout) => return Err(GpuError::Timeout { seconds: TIMEOUT.as_secs() }),
-            Err(error) => return Err(GpuError::Refused { what: what.to_owned(), message: error.to_string() }),
+            Err(error) => return Err(refused(what, error)),
         }
         self.check(what)?;
-        let refused = |message: String| GpuError::Refused { what: what.to_owned(), message };
         match receiver.try_recv() {
             Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(refused(error.to_string())),
-            Err(_) => return Err(refused("the result was never mapped".to_owned())),
+            Ok(Err(error)) => return Err(refused(what, error)),
+            Err(_) => return Err(refused(what, "the result was never mapped")),
         }
-        let view = readback.get_mapped_range(..).map_err(|error| refused(error.to_string()))?;
+        let view = readback.get_mapped_range(..).map_err(|error| refused(what, error))?;
         let words = bytemuck::pod_collect_to_vec::<u8, T>(&view);
         drop(view);
         readback.unmap();
@@ -158,26 +185,9 @@ impl Context {
 
     fn submit(&self, pass: &Pass<'_>, bytes: u64) -> (wgpu::Buffer, wgpu::SubmissionIndex) {
         let inputs = self.upload("kernel_inputs", pass.inputs);
-        let outputs = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("kernel_outputs"),
-            size: bytes,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
-        let readback = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: bytes,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let kernel_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("kernel"),
-            layout: &pass.pipeline.get_bind_group_layout(1),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: inputs.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: outputs.as_entire_binding() },
-            ],
-        });
+        let outputs = self.buffer("kernel_outputs", bytes, WRITTEN);
+        let readback = self.buffer("readback", bytes, READABLE);
+        let kernel_group = self.kernel_group(pass.pipeline, &inputs, &outputs);
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -192,13 +202,13 @@ impl Context {
     }
 }
 
-/// Buffers of a pass that is run to be timed; what it writes is not read.
+/// Buffers of a pass that is timed. Its outputs are not read.
 #[derive(Debug)]
 pub(crate) struct TimedPass {
     group: wgpu::BindGroup,
-    /// A pair of timestamps, the buffer that they are resolved to, and one to read; where the device has timestamps.
+    /// A pair of timestamps, the buffer that they are resolved to, and one to read; `None` if the device has no timestamps.
     clock: Option<(wgpu::QuerySet, wgpu::Buffer, wgpu::Buffer)>,
-    /// The last word of the outputs, to wait for where it has none.
+    /// The outputs: without timestamps, their first word is read to wait for the pass.
     outputs: wgpu::Buffer,
     last: wgpu::Buffer,
 }
@@ -209,7 +219,7 @@ impl TimedPass {
     }
 }
 
-/// Bytes of a pair of timestamps.
+/// Bytes of a pair of timestamps, and of one word of outputs.
 const STAMPS: u64 = 16;
 
 impl Context {
@@ -220,37 +230,21 @@ impl Context {
         output_words: usize,
     ) -> Result<TimedPass, GpuError> {
         self.guarded("timing", || {
-            let buffer = |label, size, usage| {
-                self.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size,
-                    usage,
-                    mapped_at_creation: false,
-                })
-            };
             let inputs = self.upload("kernel_inputs", inputs);
             let bytes = (output_words * size_of::<[f32; 4]>()) as u64;
-            let outputs = buffer("kernel_outputs", bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("kernel"),
-                layout: &pipeline.get_bind_group_layout(1),
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: inputs.as_entire_binding() },
-                    wgpu::BindGroupEntry { binding: 1, resource: outputs.as_entire_binding() },
-                ],
-            });
-            let readable = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let outputs = self.buffer("kernel_outputs", bytes, WRITTEN);
+            let group = self.kernel_group(pipeline, &inputs, &outputs);
             let clock = self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then(|| {
                 let queries = self.device.create_query_set(&wgpu::QuerySetDescriptor {
                     label: Some("clock"),
                     ty: wgpu::QueryType::Timestamp,
                     count: 2,
                 });
-                let resolved =
-                    buffer("clock", STAMPS, wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
-                (queries, resolved, buffer("clock readback", STAMPS, readable))
+                let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+                let resolved = self.buffer("clock", STAMPS, usage);
+                (queries, resolved, self.buffer("clock readback", STAMPS, READABLE))
             });
-            let last = buffer("readback", STAMPS, readable);
+            let last = self.buffer("readback", STAMPS, READABLE);
             TimedPass { group, clock, outputs, last }
         })
     }
@@ -296,13 +290,22 @@ impl Context {
     }
 }
 
-/// Keeps the first message only: the rest follows from it.
+/// Keeps the first message only: later faults follow from the first.
 fn put(slot: &Mutex<Option<String>>, message: String) {
     slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
 }
 
 fn get(slot: &Mutex<Option<String>>) -> Option<String> {
     slot.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+fn refused(what: &str, message: impl ToString) -> GpuError {
+    GpuError::Refused { what: what.to_owned(), message: message.to_string() }
+}
+
+/// A `vec4` word of a kernel's buffer.
+pub(crate) fn word([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
+    [x, y, z, w]
 }
 
 /// The message of an error; for validation wgpu puts the whole chain of causes into it.

@@ -94,7 +94,7 @@ pub enum GpuError {
         /// Number of materials.
         count: usize,
     },
-    /// No such surface.
+    /// A surface number that the bake does not have.
     #[error("no surface {surface}: the bake has {count}")]
     NoSurface {
         /// The number asked for.
@@ -135,7 +135,7 @@ pub enum GpuError {
         /// Name of the material.
         material: String,
     },
-    /// A part of a material that the simulation does not know.
+    /// A part of a material that the simulation does not support.
     #[error("`{material}`: the simulation takes no {what}")]
     NotSimulated {
         /// Name of the material.
@@ -143,7 +143,7 @@ pub enum GpuError {
         /// The part.
         what: &'static str,
     },
-    /// A material that varies over its surface, or has a direction on it, and a mesh that has no coordinates there.
+    /// A material that needs texture coordinates, because it varies or is anisotropic, on a mesh without them.
     #[error(
         "the mesh has no texture coordinates, and `{material}` needs them: {reason}. Export the mesh with UVs, or take another material"
     )]
@@ -153,7 +153,7 @@ pub enum GpuError {
         /// Property that needs them.
         reason: &'static str,
     },
-    /// Blurred maps of the environment know nothing of the textures of single layers.
+    /// Blurred maps of the environment ignore the textures of single layers.
     #[error("`{material}` has maps of single layers, which only samples of the environment show")]
     LayerMaps {
         /// Name of the material.

@@ -20,7 +20,7 @@ impl Scene {
         self.values("evaluation", &self.evaluate, pairs, |chunk| pair_words(material, chunk))
     }
 
-    /// Runs a kernel that gives a colour for each of some elements, which are words in its input.
+    /// Runs a kernel that gives one colour for each element; `words` encodes elements for the kernel's input.
     pub(crate) fn values<T, W: bytemuck::NoUninit>(
         &self,
         what: &'static str,

@@ -8,13 +8,14 @@ use luthier_mesh::Mesh;
 
 use crate::Light;
 
-/// Distances from the axis at which a floor begins to fade into what is behind, and has faded.
+/// Distances from the axis at which a floor begins to fade into the background, and at which it is gone.
 pub(crate) const FADE: [f32; 2] = [2.5, 9.0];
 
-/// Squared radius of the sphere that shades a floor in place of the shown part, which fills about so much of the unit sphere.
+/// Squared radius of the sphere that shades a floor in place of the shown part. The part lies in the unit sphere and covers about 40 % of its
+/// disc.
 const BALL_SQ: f64 = 0.4;
 
-/// An environment with a floor in its lower half, and all that decides it.
+/// An environment with a floor in its lower half, and the inputs that it was made from.
 #[derive(Debug)]
 pub(crate) struct Grounded {
     from: Arc<Environment>,
@@ -25,7 +26,7 @@ pub(crate) struct Grounded {
 }
 
 impl Grounded {
-    /// The surroundings of a mesh; `None` where it has no floor.
+    /// The surroundings of a mesh; `None` if the mesh has no floor.
     pub(crate) fn new(
         from: &Arc<Environment>,
         lights: &[Light],
@@ -37,14 +38,14 @@ impl Grounded {
         Ok(Some(Self { from: Arc::clone(from), lights: lights.to_vec(), mesh: Arc::clone(mesh), environment }))
     }
 
-    /// Whether the same decides other surroundings.
+    /// Whether these inputs made it.
     pub(crate) fn is_of(&self, from: &Arc<Environment>, lights: &[Light], mesh: &Arc<Mesh>) -> bool {
         Arc::ptr_eq(&self.from, from) && self.lights == lights && Arc::ptr_eq(&self.mesh, mesh)
     }
 }
 
-/// An environment whose lower half shows a matte floor at a depth below the origin, as it is seen from there: lit by the upper half and by lights, shaded by
-/// a sphere about the origin, and fading into the environment with the distance. Radiance and albedo are linear RGB.
+/// An environment whose lower half shows a matte floor, `depth` below the origin and seen from there. The upper half and the lights light the
+/// floor, a sphere about the origin shades it, and it fades into the environment with the distance. Radiance and albedo are linear RGB.
 fn with_floor(
     from: &Environment,
     lights: &[Light],

@@ -8,10 +8,11 @@ use luthier_export::Package;
 
 use crate::{GpuError, Scene};
 
-/// Work of one submission on a discrete GPU, in those of other adapters: it takes milliseconds there, and waiting for it less.
+/// Factor on the work of one submission on a discrete GPU. There a submission of the size for other adapters takes milliseconds, so that waiting
+/// for each would cost more than the work.
 const DISCRETE_BATCH: u32 = 16;
 
-/// An open device.
+/// An open device. Without a GPU, a software driver serves: [`Gpu::open_named`] takes `llvmpipe`.
 #[derive(Debug)]
 pub struct Gpu {
     pub(crate) context: Context,
@@ -39,7 +40,7 @@ impl Gpu {
     fn choose(part: Option<&str>) -> Result<Self, GpuError> {
         let wanted = part.unwrap_or_default().to_lowercase();
         let mut found = Vec::new();
-        // OpenGL is asked only where nothing else serves: it is the weaker interface to the same adapters.
+        // OpenGL comes last: it is the weaker interface to the same adapters.
         for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
             let mut adapters = adapters(backends);
             found.extend(adapters.iter().map(|a| label(&a.get_info())));
@@ -78,7 +79,7 @@ impl Gpu {
         self.info.name.clone()
     }
 
-    /// Driver and its version; empty where the system does not say.
+    /// Driver and its version; empty if the system does not tell.
     pub fn driver(&self) -> String {
         format!("{} {}", self.info.driver, self.info.driver_info).trim().to_owned()
     }
@@ -106,7 +107,7 @@ impl Gpu {
 fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
-    // No debug layers of the driver: wgpu validates by itself, and the same in every build profile.
+    // No debug layers of the driver: wgpu validates by itself, alike in every build profile.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));

@@ -1,4 +1,4 @@
-//! The runtime: takes the package of a bake, and nothing else, binds the emitted shader on a wgpu device, evaluates it
+//! The runtime: it takes the package of a bake, and nothing else. It binds the emitted shader on a wgpu device, evaluates it
 //! for arrays of directions, reads its tables, renders pictures, and simulates the layers that the package records.
 //!
 #![doc = include_str!("../README.md")]

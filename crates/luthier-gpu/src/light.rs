@@ -1,9 +1,18 @@
 //! Lights without a body, and their words in the kernel's buffer.
 
 use crate::GpuError;
+use crate::context::word;
 use crate::error::{check_direction, setting};
 
 /// A light without a visible body. Linear RGB; +y is up.
+///
+/// ```
+/// use luthier_gpu::Light;
+///
+/// let sun = Light::Directional { direction: [0.0, 1.0, 0.0], irradiance: [3.0; 3] };
+/// let red = sun.with_color([1.0, 0.0, 0.0]);
+/// assert_eq!(red, Light::Directional { direction: [0.0, 1.0, 0.0], irradiance: [1.0, 0.0, 0.0] });
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
     /// Far away.
@@ -65,7 +74,6 @@ impl Light {
 
     /// The words of a light in `picture.wgsl`: direction and 0, or position and 1; then its colour.
     pub(crate) fn words(&self) -> [[f32; 4]; 2] {
-        let word = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
         match self {
             Self::Directional { direction, irradiance } => {
                 let length = direction.iter().map(|x| x * x).sum::<f32>().sqrt();

@@ -26,9 +26,9 @@ impl Scene {
     /// # Errors
     /// [`GpuError::NoTable`], [`GpuError::NoTile`], and whatever the device reports.
     pub fn lookup(&self, kind: TableKind, tile: u32, values: &[[f32; 2]]) -> Result<Vec<[f32; 4]>, GpuError> {
-        let missing = || GpuError::NoTable { kind, form: self.form() };
-        let function = self.look_up(kind).ok_or_else(missing)?;
-        let table = self.manifest.table(kind).ok_or_else(missing)?;
+        let (Some(function), Some(table)) = (self.look_up(kind), self.manifest.table(kind)) else {
+            return Err(GpuError::NoTable { kind, form: self.form() });
+        };
         let count = table.layout.tiles;
         if tile >= count {
             return Err(GpuError::NoTile { kind, tile, count });
@@ -52,7 +52,7 @@ impl Scene {
     }
 }
 
-/// The expression that reads a table, in terms of `at`: its components in their order are those of the look-up's arguments.
+/// The expression that reads a table: the components of `at`, in order, become the arguments of the look-up.
 fn call(FunctionEntry { name, parameters, value }: &FunctionEntry) -> String {
     let mut components = "xyzw".chars();
     let mut arguments = Vec::with_capacity(parameters.len());

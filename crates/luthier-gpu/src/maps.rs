@@ -3,6 +3,7 @@
 use luthier_lut::Image;
 use luthier_manifest::{MapSlot, MaterialEntry};
 
+use crate::context::word;
 use crate::{GpuError, Map, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
@@ -15,22 +16,21 @@ const TEXELS_MAX: usize = 1 << 22;
 const OWN_WORDS: usize = 8;
 
 impl Scene {
-    /// The words of a material's maps, then their texels. `first` is where they begin.
+    /// The words of a material's maps, then their texels. `first` is the number of the first word.
     pub(crate) fn map_words(&self, material: usize, entry: &MaterialEntry, first: usize) -> Vec<[u32; 4]> {
         let mut headers = self.no_map_words();
         let mut texels = Vec::new();
         let behind = first + headers.len();
         for map in self.maps.iter().filter(|map| map.material as usize == material) {
-            let is_own = |layer: &u32| map.slot != MapSlot::Albedo && map.slot.layer_feature(*layer).is_some();
-            let own = map.layer.filter(is_own);
-            let word = match own {
+            let own = map.layer.filter(|&layer| map.slot != MapSlot::Albedo && map.slot.layer_feature(layer).is_some());
+            let number = match own {
                 None => slot_word(map.slot),
                 Some(layer) => MAP_WORDS + OWN_WORDS * layer as usize + own_word(map.slot),
             };
-            // Layers that the model does not read have no words. Of whole surfaces the topmost map counts.
-            let Some(header) = headers.get_mut(word).filter(|header| header[1] == 0) else { continue };
+            // Layers that the model does not read have no words. If several maps vary the whole surface, the topmost counts.
+            let Some(header) = headers.get_mut(number).filter(|header| header[1] == 0) else { continue };
             let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
-            // Two words more in front of the texels where the map lies otherwise than the texture coordinates.
+            // A map with a transform of its own has its rows as two words before the texels.
             let transform = stated.and_then(|stated| stated.transform);
             let at = (behind + texels.len()) as u32;
             texels.extend(
@@ -47,9 +47,9 @@ impl Scene {
             texels.extend(image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
         if let Some(patina) = &entry.constants.patina {
-            let bits = |[r, g, b]: [f64; 3], w: f64| [r, g, b, w].map(|v| (v as f32).to_bits());
-            headers[5] = bits(patina.diffuse_albedo, patina.base_alpha.unwrap_or(-1.0));
-            headers[6] = bits(patina.tarnish, 0.0);
+            let [albedo, tarnish] = [patina.diffuse_albedo, patina.tarnish].map(|rgb| rgb.map(|v| v as f32));
+            headers[5] = word(albedo, patina.base_alpha.unwrap_or(-1.0) as f32).map(f32::to_bits);
+            headers[6] = word(tarnish, 0.0).map(f32::to_bits);
         }
         headers.extend(texels);
         headers
@@ -67,7 +67,7 @@ impl Scene {
         shown.map(|(layer, _)| layer as usize + 1).max().unwrap_or(0)
     }
 
-    /// Whether a material has maps of single layers or of its albedo, which the blurred environment does not show.
+    /// Whether a material has maps of single layers or of its albedo. The blurred environment does not show these.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`](crate::GpuError::NoMaterial).
@@ -109,8 +109,8 @@ impl Scene {
             .replace("$words", &format!("{MAP_WORDS}u"))
             .replace("$own", &format!("{OWN_WORDS}u"))
             .replace("$fill", &fill.join("\n    "));
-        let call = |i| format!("surface.layers[{i}] = shading_layer_place(material, {i}u, maps.uv);");
-        let mut calls: Vec<String> = (0..count).map(call).collect();
+        let calls = (0..count).map(|i| format!("surface.layers[{i}] = shading_layer_place(material, {i}u, maps.uv);"));
+        let mut calls: Vec<String> = calls.collect();
         if self.interface.calls("luthier_metallic_place") {
             calls.push("surface = shading_metallic(surface, material, maps.uv);".to_owned());
             return (functions + include_str!("wgsl/surface_metallic.wgsl"), calls);
@@ -118,9 +118,9 @@ impl Scene {
         (functions, calls)
     }
 
-    /// `ShadingSurface`, what the emitted shader takes for a place, and the functions that fill, read and use it.
+    /// WGSL of `ShadingSurface` (the place, as the emitted shader takes it) and of the functions that fill, read and use it.
     pub(crate) fn surface_functions(&self) -> String {
-        // What fluorescent bases send out is no factor times the light.
+        // A fluorescent base moves light between channels, so its value is no factor per channel times the light.
         let takes_light = self.interface.calls("luthier_eval_lit");
         if !self.has_places() {
             let lit = match takes_light {
@@ -181,7 +181,7 @@ impl Scene {
     }
 }
 
-/// The texels of a map, RGBA; of more than [`TEXELS_MAX`] averages. Flakes are told apart, and are not averaged.
+/// The texels of a map, RGBA, averaged down to at most [`TEXELS_MAX`]. Normals of flakes are never averaged: texels are different flakes.
 fn shrunk(map: &Map) -> Image {
     let mut image = map.picture.image();
     while map.slot != MapSlot::FlakeNormal && image.texel_count() > TEXELS_MAX {

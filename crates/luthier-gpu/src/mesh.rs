@@ -3,10 +3,10 @@
 use luthier_mesh::Mesh;
 
 use crate::Shape;
+use crate::context::word;
 use crate::floor::FADE;
 
-/// The parts of the kernel that depend on the shape: markers in `shading.wgsl`, `around` and `render.wgsl`, and what stands there for closed shapes and for
-/// meshes.
+/// Markers in `shading.wgsl`, `around` and `render.wgsl`, with the text that replaces each for closed shapes and for meshes.
 const MARKERS: [(&str, &str, &str); 9] = [
     ("$place", "", ", place: Place"),
     ("$radiance", "environment_radiance(frame * wi)", "mesh_radiance(place, frame * wi, seed)"),
@@ -30,22 +30,22 @@ const BEHIND: &str = "fn render_behind(hit: Hit, ray: vec3<f32>, behind: vec3<f3
 /// The modules of a picture that depend on the shape; `around` is the one that shows the environment.
 pub(crate) fn kernel(shape: Shape, around: &str) -> [String; 4] {
     let is_mesh = shape == Shape::Mesh;
-    let filled = |text: &str| {
+    let texts = [include_str!("wgsl/shading.wgsl"), around, include_str!("wgsl/render.wgsl")];
+    let [shading, around, render] = texts.map(|text| {
         MARKERS.iter().fold(text.to_owned(), |text, (marker, closed, mesh)| {
             text.replace(marker, if is_mesh { mesh } else { closed })
         })
-    };
+    });
     let rays = if is_mesh {
         [include_str!("wgsl/mesh.wgsl"), BEHIND].join("\n")
     } else {
         include_str!("wgsl/shape.wgsl").to_owned()
     };
-    [rays, filled(include_str!("wgsl/shading.wgsl")), filled(around), filled(include_str!("wgsl/render.wgsl"))]
+    [rays, shading, around, render]
 }
 
-/// The words of a mesh, the first of which has this number.
+/// The words of a mesh; `first` is the number of its first word.
 pub(crate) fn words(mesh: &Mesh, light_angular_radius: f32, first: usize) -> Vec<[u32; 4]> {
-    let float = |v: [f32; 3], w: f32| [v[0], v[1], v[2], w].map(f32::to_bits);
     let nodes = mesh.bvh().nodes();
     let nodes_at = first + 2;
     let triangles_at = nodes_at + 2 * nodes.len();
@@ -56,18 +56,16 @@ pub(crate) fn words(mesh: &Mesh, light_angular_radius: f32, first: usize) -> Vec
         [plain_at as u32, FADE[0].to_bits(), FADE[1].to_bits(), light_angular_radius.to_bits()],
     ];
     for node in nodes {
-        let bits = |[x, y, z]: [f32; 3], w: u32| [x.to_bits(), y.to_bits(), z.to_bits(), w];
-        words.extend([bits(node.low, node.next), bits(node.high, 8 * node.first + node.count)]);
+        let corners = [(node.low, node.next), (node.high, 8 * node.first + node.count)];
+        words.extend(corners.map(|([x, y, z], w)| [x.to_bits(), y.to_bits(), z.to_bits(), w]));
     }
     words.extend(mesh.triangles().iter().map(|t| [t.corners[0], t.corners[1], t.corners[2], t.part]));
     for (vertex, open) in mesh.vertices().iter().zip(mesh.openness()) {
         let [x, y, z, sign] = vertex.tangent;
-        words.extend([
-            float(vertex.position, vertex.uv[0]),
-            float(vertex.normal, vertex.uv[1]),
-            float([x, y, z], sign * (1.0 + open)),
-        ]);
+        let own =
+            [word(vertex.position, vertex.uv[0]), word(vertex.normal, vertex.uv[1]), [x, y, z, sign * (1.0 + open)]];
+        words.extend(own.map(|word| word.map(f32::to_bits)));
     }
-    words.extend(mesh.plain().iter().map(|color| float(*color, 0.0)));
+    words.extend(mesh.plain().iter().map(|color| word(*color, 0.0).map(f32::to_bits)));
     words
 }

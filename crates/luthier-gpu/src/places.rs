@@ -2,14 +2,15 @@
 
 use luthier_manifest::{LayerValues, PlaceValues};
 
+use crate::context::word;
 use crate::{GpuError, Scene};
 
 const KERNEL: &str = include_str!("wgsl/places.wgsl");
 
-/// Words of a pair and its place, before those of its layers.
+/// Number of words of a pair and its place, without the layers.
 const PAIR_WORDS: usize = 7;
 
-/// Words of a layer.
+/// Number of words of a layer.
 const LAYER_WORDS: usize = 2;
 
 /// A place, and directions to the light and to the eye.
@@ -21,8 +22,8 @@ impl Scene {
         self.interface.has("LuthierPlace")
     }
 
-    /// `luthier_eval_at` of a material: `f cos_theta_i`, linear RGB, at a place for each pair of directions. Values that the shader has no member
-    /// for are left out: no material of the bake varies in these.
+    /// `luthier_eval_at` of a material: `f cos_theta_i`, linear RGB, at a place for each pair of directions. The shader's place has members only for
+    /// quantities that vary in some material of the bake; the others are ignored.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`], [`GpuError::Refused`] for a shader without places, and whatever the device reports.
@@ -36,13 +37,12 @@ impl Scene {
     }
 
     fn places_kernel(&self, layers: usize) -> String {
-        let at = |word: usize, part: &str| format!("kernel_inputs[first + {word}u].{part}");
         let mut fill: Vec<String> = [
-            ("inner_normal", format!("place.inner_normal = {};", at(3, "xyz"))),
-            ("flake_normal", format!("place.flake_normal = {};", at(4, "xyz"))),
-            ("base_color", format!("place.base_color = {};", at(5, "xyz"))),
-            ("patina", format!("place.patina = {};", at(5, "w"))),
-            ("slope_variance", format!("place.slope_variance = {};", at(1, "w"))),
+            ("inner_normal", format!("place.inner_normal = {};", input(3, "xyz"))),
+            ("flake_normal", format!("place.flake_normal = {};", input(4, "xyz"))),
+            ("base_color", format!("place.base_color = {};", input(5, "xyz"))),
+            ("patina", format!("place.patina = {};", input(5, "w"))),
+            ("slope_variance", format!("place.slope_variance = {};", input(1, "w"))),
         ]
         .into_iter()
         .filter(|(member, _)| self.interface.fills("LuthierPlace", member))
@@ -51,16 +51,16 @@ impl Scene {
         for layer in 0..layers {
             let [first, second] = [0, 1].map(|word| PAIR_WORDS + LAYER_WORDS * layer + word);
             let members = [
-                ("normal", at(first, "xyz")),
-                ("slab_factor", at(first, "w")),
-                ("alpha_factors", at(second, "xy")),
-                ("tangent", format!("luthier_tangent({})", at(second, "zw"))),
+                ("normal", input(first, "xyz")),
+                ("slab_factor", input(first, "w")),
+                ("alpha_factors", input(second, "xy")),
+                ("tangent", format!("luthier_tangent({})", input(second, "zw"))),
             ];
             let members = members.iter().filter(|(member, _)| self.interface.fills("LuthierLayerPlace", member));
             fill.extend(members.map(|(member, value)| format!("place.layers[{layer}].{member} = {value};")));
         }
         if self.interface.calls("luthier_metallic_place") {
-            let [color, metallic] = ["xyz", "w"].map(|part| at(6, part));
+            let [color, metallic] = ["xyz", "w"].map(|part| input(6, part));
             let next = format!("luthier_metallic_place(place, material, {color}, {metallic})");
             fill.push(format!("if {metallic} >= 0.0 {{ place = {next}; }}"));
         }
@@ -70,23 +70,27 @@ impl Scene {
     }
 }
 
+/// An expression of the kernel: some components of a word of a pair.
+fn input(word: usize, components: &str) -> String {
+    format!("kernel_inputs[first + {word}u].{components}")
+}
+
 /// The words of a pair and its place, with so many layers.
 fn words(material: u32, (place, wi, wo): &Spot, layers: usize) -> Vec<[f32; 4]> {
-    let with = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
     let (color, metallic) = place.metallic.unwrap_or(([0.0; 3], -1.0));
     let mut words = vec![
-        with(*wi, material as f32),
-        with(*wo, place.slope_variance),
-        with(place.normal, place.alpha_factor),
-        with(place.inner_normal, place.slab_factor),
-        with(place.flake_normal, place.film_factor),
-        with(place.base_color.unwrap_or([-1.0; 3]), place.patina.unwrap_or(-1.0)),
-        with(color, metallic),
+        word(*wi, material as f32),
+        word(*wo, place.slope_variance),
+        word(place.normal, place.alpha_factor),
+        word(place.inner_normal, place.slab_factor),
+        word(place.flake_normal, place.film_factor),
+        word(place.base_color.unwrap_or([-1.0; 3]), place.patina.unwrap_or(-1.0)),
+        word(color, metallic),
     ];
     for layer in 0..layers {
         let own = place.layers.get(layer).unwrap_or(&LayerValues::NONE);
         let ([ax, ay], [tx, ty]) = (own.alpha_factors, own.tangent);
-        words.extend([with(own.normal, own.slab_factor), [ax, ay, tx, ty]]);
+        words.extend([word(own.normal, own.slab_factor), [ax, ay, tx, ty]]);
     }
     words
 }

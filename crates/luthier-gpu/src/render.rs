@@ -8,7 +8,7 @@ use luthier_environment::{ALPHAS, Blur, Environment};
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, material_buffer};
 
-use crate::context::Pass;
+use crate::context::{Pass, word};
 use crate::error::setting;
 use crate::floor::Grounded;
 use crate::mesh;
@@ -18,7 +18,7 @@ use crate::{Camera, GpuError, Light, Scene, Shape, Shown, Sky};
 /// Evaluations per submission: about a second on a software adapter.
 const EVALUATIONS_PER_PASS: u32 = 1 << 21;
 
-/// Evaluations per submission where someone waits for the pass to end.
+/// Evaluations per submission of a watched rendering, whose caller waits for the pass to end.
 const EVALUATIONS_PER_SHORT_PASS: u32 = 1 << 18;
 
 /// Side of a workgroup, pixels.
@@ -27,14 +27,14 @@ pub(crate) const PIXELS_PER_WORKGROUP: u32 = 8;
 /// `vec4` words before `words` in `picture.wgsl`.
 pub(crate) const HEADER_WORDS: usize = 9;
 
-/// Turns of loops that one thread makes in a submission, by a generous count. Software adapters end loops after 65,535 turns in all, without a
-/// word.
+/// Turns of loops that one thread makes in a submission, by a generous count. Software adapters silently end loops after 65,535 turns in all;
+/// half of that leaves room for an error of the count.
 const TURNS_PER_PASS: u32 = 1 << 15;
 
-/// Of these, what a ray through a mesh takes: a few hundred at most in meshes of a million triangles.
+/// Turns of a ray through a mesh: at most a few hundred, even with a million triangles.
 const RAY_TURNS: u32 = 256;
 
-/// Background behind the shape. It takes no part in the light.
+/// Background behind the shape. It does not light the shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Backdrop {
     /// A colour in the middle that darkens towards the corners.
@@ -45,6 +45,16 @@ pub enum Backdrop {
 
 /// Lighting and view of a shape. Radiance and irradiance are linear RGB in the same arbitrary unit; +y is up, +z points
 /// to the eye.
+///
+/// ```
+/// use luthier_gpu::{RenderSettings, Shape};
+///
+/// let settings = RenderSettings { size: 64, ..RenderSettings::new(Shape::Torus)? };
+/// assert_eq!(settings.camera, Shape::Torus.camera());
+/// // Only the shape `mesh` needs triangles.
+/// assert!(settings.mesh.is_none() && RenderSettings::new(Shape::Mesh)?.mesh.is_some());
+/// # Ok::<(), luthier_gpu::GpuError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct RenderSettings {
     /// Side of the picture in pixels, 1 to 4096.
@@ -64,13 +74,13 @@ pub struct RenderSettings {
     pub light_angular_radius: f32,
     /// Light from all around.
     pub environment: Arc<Environment>,
-    /// 0 reads maps that were blurred beforehand. Above, up to 4096: the shader is asked for the environment in that many directions per lobe of the
-    /// material and sample of the pixel, which is slow and noisy and has no other error. `luthier_sample` draws them for the place; where a shader
-    /// lacks it (`functions` of a bake), the slopes of layer records do, with the roughness and the normal of the place.
+    /// 0 reads maps that were blurred beforehand. 1 to 4096 evaluates the shader for light from that many directions of the environment, per lobe of
+    /// the material and sample of the pixel: slow and noisy, but without any other error. `luthier_sample` draws the directions for the place. A
+    /// shader without it (`functions` of a bake) draws from the slopes of layer records, with the roughness and the normal of the place.
     pub environment_samples: u32,
     /// Slopes, along the tangent and the bitangent, of the inner boundary of films against the outer one, on top of those
-    /// that follow from a varying thickness (Granier and Heidrich 2003, section 7.2). Models without a second boundary, and
-    /// sets of materials in which nothing varies, know nothing of it.
+    /// that follow from a varying thickness (Granier and Heidrich 2003, section 7.2). Models without a second boundary ignore it, and so do
+    /// sets of materials in which nothing varies.
     pub film_tilt: [f32; 2],
     /// Behind the shape.
     pub backdrop: Backdrop,
@@ -83,7 +93,7 @@ impl RenderSettings {
     /// The defaults for a shape: its camera, one light from the left, the studio of [`Sky::default`].
     ///
     /// # Errors
-    /// None that the default sky could cause; the type is that of [`Environment::sky`].
+    /// Never with the default sky; [`Environment::sky`] can fail with others.
     pub fn new(shape: Shape) -> Result<Self, GpuError> {
         Ok(Self {
             size: 512,
@@ -106,18 +116,18 @@ impl Scene {
     /// Renders a shape, one material for each of its parts ([`Shape::materials`]): linear RGB, `settings.size` squared, not
     /// tone mapped; highlights exceed 1.
     ///
-    /// Lights go through `luthier_eval`. So does the environment where `environment_samples` is set. Otherwise its
-    /// reflection is split in two factors (Karis 2013): each interface reflects its albedo (the FGD table where the layer
-    /// has a tile of it, else Fresnel) times the environment blurred by the lobe that the surface has at normal
-    /// incidence, around the mirrored direction; a diffuse base reflects its albedo times irradiance / pi; layers above
-    /// attenuate both by Fresnel transmission and absorption along the refracted directions. Simplifications of this way:
-    /// the lobe does not stretch towards grazing angles, the base counts as Lambert, light from everywhere enters at its
-    /// mean cosine 2/3, nothing bounces between layers. The albedo holds all bounces within one interface, `luthier_eval`
-    /// the first; and below a coat `luthier_eval` spreads a lobe over eta^2 the solid angle without dimming it
-    /// (Weidlich and Wilkie's eq. 3.1 lacks 1 / eta^2), where this way keeps to the energy that came in.
+    /// `luthier_eval` shades lights, and also the environment if `environment_samples` is set. Otherwise the reflection of the environment is split in
+    /// two factors (Karis 2013). Each interface reflects its albedo (from the FGD table if the layer has a tile, else Fresnel) times the environment
+    /// around the mirrored direction, blurred by the lobe of the surface at normal incidence. A diffuse base reflects its albedo times irradiance / pi.
+    /// Layers above attenuate both by Fresnel transmission, and by absorption along the refracted directions.
     ///
-    /// A material of the model `lobes` has the energies of its rows instead: `luthier_environment` of the emitted shader reads cubes that were blurred
-    /// beforehand. The samples of a pixel turn its directions. `docs/pages/environment.md` has its errors.
+    /// The split simplifies: the lobe does not stretch towards grazing angles, the base counts as Lambert, light from everywhere enters at its mean
+    /// cosine 2/3, nothing bounces between layers. It also differs from `luthier_eval` in energy. The albedo holds all bounces within one interface,
+    /// `luthier_eval` only the first. Below a coat `luthier_eval` spreads a lobe over eta^2 the solid angle without dimming it (Weidlich and Wilkie's
+    /// eq. 3.1 lacks 1 / eta^2); the split conserves energy.
+    ///
+    /// A material of the model `lobes` uses the energies of its rows: `luthier_environment` of the emitted shader reads cubes that were blurred
+    /// beforehand, and the samples of a pixel turn its directions. `docs/pages/environment.md` has its errors.
     ///
     /// # Errors
     /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::NoReflectance`] for a material without
@@ -126,7 +136,7 @@ impl Scene {
         self.render_shown(&parts(materials), settings)
     }
 
-    /// Renders as [`Scene::render`] does, parts that may be surfaces. Particles of a surface turn the frame as a normal map does.
+    /// Renders as [`Scene::render`] does; parts may be surfaces. Particles of a surface turn the frame as a normal map does.
     ///
     /// # Errors
     /// As [`Scene::render`], and [`GpuError::NoSurface`].
@@ -135,8 +145,8 @@ impl Scene {
         Ok(image.expect("nobody stops it"))
     }
 
-    /// Renders as [`Scene::render_shown`] does, for someone who watches: before every pass, of which each takes a fraction of a second on a software
-    /// adapter where meshes are small, `goes_on` is told how many are done, and of how many. The result is `None` when it said no.
+    /// Renders as [`Scene::render_shown`] does, in short passes that can be watched. Before every pass, `goes_on` gets the number of passes done and of
+    /// all; the result is `None` if it returns false. A pass takes a fraction of a second on a software adapter, unless the mesh is large.
     ///
     /// # Errors
     /// As [`Scene::render_shown`].
@@ -149,8 +159,8 @@ impl Scene {
         self.render_passes(parts, settings, goes_on, EVALUATIONS_PER_SHORT_PASS * self.context.batch)
     }
 
-    /// Whether [`Scene::render`] knows the albedo of every interface of a material without samples of the environment: bakes have these
-    /// tables where a shader reads them or someone asked for them.
+    /// Whether the bake has the albedo of every interface of a material, which [`Scene::render`] needs without samples of the environment. A bake has
+    /// these tables if its shader reads them, or if they were requested.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`].
@@ -159,9 +169,10 @@ impl Scene {
         if self.manifest.materials[material as usize].shows_lobes() {
             return Ok(self.bindings.has_surroundings());
         }
-        let is_known =
-            |layer: &LayerRecord| layer.tiles[TableKind::Fgd].is_some() || layer.tiles[TableKind::Film].is_some();
-        Ok(self.interfaces(material).all(|layer| has_reflectance(layer) && is_known(layer)))
+        Ok(self.interfaces(material).all(|layer| {
+            let has_albedo = layer.tiles[TableKind::Fgd].is_some() || layer.tiles[TableKind::Film].is_some();
+            has_reflectance(layer) && has_albedo
+        }))
     }
 
     /// Whether a mesh has the texture coordinates that the materials need.
@@ -188,8 +199,8 @@ impl Scene {
         entry.flat_map(MaterialEntry::records).filter(|layer| layer.kind != LayerKind::Diffuse)
     }
 
-    /// Renders as [`Scene::render`] does, for someone who may change their mind: `stop` is asked before every pass, of which each takes a
-    /// fraction of a second on a software adapter. The result is `None` when `stop` said so.
+    /// Renders as [`Scene::render`] does, unless `stop` returns true: then the result is `None`. It is asked before every pass; a pass takes a fraction
+    /// of a second on a software adapter.
     ///
     /// # Errors
     /// As [`Scene::render`].
@@ -202,7 +213,8 @@ impl Scene {
         self.render_watched(&parts(materials), settings, &|_, _| !stop())
     }
 
-    /// The surroundings of the shown part where no rays are sent to the floor: the floor is in them. They are kept for the next picture.
+    /// The surroundings of the shown part, with the floor of its mesh in them: blurred maps have no rays that could meet a floor. They are kept for
+    /// the next picture.
     fn grounded(&self, settings: &RenderSettings) -> Result<Arc<Environment>, GpuError> {
         let RenderSettings { environment, lights, mesh, .. } = settings;
         let Some(mesh) = mesh else { return Ok(Arc::clone(environment)) };
@@ -226,15 +238,15 @@ impl Scene {
         if self.form() != Form::Baked && settings.environment_samples == 0 {
             return Err(GpuError::Prefiltered { form: self.form() });
         }
-        let lacks = |material: &&u32| {
-            let hides = !self.bindings.has_surroundings() && self.manifest.materials[**material as usize].shows_lobes();
-            hides || !self.interfaces(**material).all(has_reflectance)
-        };
-        if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
-            let material = self.manifest.materials[material as usize].name.clone();
-            return Err(GpuError::NoReflectance { material });
+        let prefiltered = materials.iter().filter(|_| settings.environment_samples == 0);
+        for &material in prefiltered.clone() {
+            let entry = &self.manifest.materials[material as usize];
+            let hides = !self.bindings.has_surroundings() && entry.shows_lobes();
+            if hides || !self.interfaces(material).all(has_reflectance) {
+                return Err(GpuError::NoReflectance { material: entry.name.clone() });
+            }
         }
-        for &material in materials.iter().filter(|_| settings.environment_samples == 0) {
+        for &material in prefiltered {
             if self.has_layer_maps(material)? {
                 let material = self.manifest.materials[material as usize].name.clone();
                 return Err(GpuError::LayerMaps { material });
@@ -262,7 +274,7 @@ impl Scene {
         let shares = shares(settings, lobes);
         let per_pixel =
             shares.iter().map(|[_, samples, _, directions]| samples * (1 + directions * lobes)).max().unwrap_or(1);
-        // Rays take longer than what they are for, and most so on slow GPUs: a pass with them stays as short everywhere.
+        // Rays through a mesh take longer than evaluations, and the ratio differs between GPUs: a pass with rays is equally small on all adapters.
         let cost = if settings.shape == Shape::Mesh { 4 * self.context.batch } else { 1 };
         let rows = (evaluations / size.saturating_mul(per_pixel).saturating_mul(cost).max(1)).clamp(1, size);
         let mut data = vec![0.0; (size * size * 3) as usize];
@@ -291,7 +303,7 @@ impl Scene {
         Ok(Some(Image { width: size, height: size, channels: 3, data }))
     }
 
-    /// The material buffer: all materials as they are, then all again with slopes widened by the lights.
+    /// The material buffer: all materials, then all again with slopes widened by the lights.
     pub(crate) fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
         let mut materials = self.manifest.materials.clone();
         materials.extend(self.manifest.materials.iter().map(|m| m.widened(angular_radius.into())));
@@ -315,7 +327,7 @@ impl Scene {
         .join("\n")
     }
 
-    /// The environment by directions that the shader draws; by those of layer records where it has no such functions.
+    /// WGSL that samples the environment: in directions that the shader draws, or, if it has no such functions, from the slopes of layer records.
     fn drawn_around(&self) -> String {
         if !self.interface.calls("luthier_sample") {
             return include_str!("wgsl/around/by_records.wgsl").to_owned();
@@ -324,7 +336,7 @@ impl Scene {
             true => "luthier_prepare_at(surface, material, wo)",
             false => "luthier_prepare(material, wo)",
         };
-        // What fluorescent bases send out is no factor times the light.
+        // A fluorescent base moves light between channels, so its value is no factor per channel times the light.
         let reflected = match self.interface.calls("luthier_light_lit") {
             true => "luthier_light_lit(prepared, wi, $radiance) / drawn.pdf",
             false => "drawn.weight * $radiance",
@@ -332,12 +344,15 @@ impl Scene {
         include_str!("wgsl/around/drawn.wgsl").replace("$prepared", prepared).replace("$reflected", reflected)
     }
 
-    /// The environment by its blurred maps, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
+    /// WGSL that reads the blurred maps of the environment, with the look-ups that the shader has. Missing look-ups give black: a set of diffuse bases
+    /// has no Fresnel table and needs none.
     fn prefiltered_around(&self) -> String {
-        let body = |kind, call| if self.reads(kind) { call } else { "vec3<f32>(0.0)" };
-        let fresnel = body(TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)");
-        let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
-        let film = body(TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)");
+        let [fresnel, fgd, film] = [
+            (TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)"),
+            (TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb"),
+            (TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)"),
+        ]
+        .map(|(kind, call)| if self.reads(kind) { call } else { "vec3<f32>(0.0)" });
         let shown = if self.bindings.has_surroundings() {
             let place = if self.has_places() { "surface, " } else { "" };
             format!(
@@ -359,8 +374,6 @@ impl Scene {
     /// The words of `Render` in `picture.wgsl`.
     pub(crate) fn inputs(&self, parts: &[Shown], materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
         let used = self.blurs();
-        // Maps: the environment, irradiance, then a chain for each distribution in use.
-        let chain_of = |layer: &LayerRecord| first_map(&used, blur_of(layer)) as f32;
         let mut words: Vec<[u32; 4]> = parts.iter().map(|part| part.word()).collect();
         let lights = words.len();
         words.extend(settings.lights.iter().flat_map(Light::words).map(bits));
@@ -378,7 +391,8 @@ impl Scene {
             first += entry.records().count() * 4;
         }
         for layer in entries.iter().flat_map(MaterialEntry::records) {
-            words.extend(layer_words(layer, chain_of(layer)).map(bits));
+            // Maps: the environment, irradiance, then a chain for each distribution in use.
+            words.extend(layer_words(layer, first_map(&used, blur_of(layer)) as f32).map(bits));
         }
         for (i, entry) in entries.iter().enumerate() {
             let first = words.len();
@@ -417,23 +431,23 @@ impl Scene {
     }
 
     fn header(&self, settings: &RenderSettings, [lights, headers, maps]: [u32; 3]) -> Vec<[u32; 4]> {
-        let [eye, target, right, up] = settings.camera.words();
+        let [mut eye, mut target, right, up] = settings.camera.words();
         let (backdrop, behind) = match settings.backdrop {
             Backdrop::Plain(color) => (color, 0.0),
             Backdrop::Environment => ([0.0; 3], 1.0),
         };
-        let with = |[x, y, z, _]: [f32; 4], w: f32| bits([x, y, z, w]);
+        (eye[3], target[3]) = (settings.exposure, behind);
         let [r, g, b] = backdrop.map(f32::to_bits);
         let header: [[u32; 4]; HEADER_WORDS] = [
-            with(eye, settings.exposure),
-            with(target, behind),
+            bits(eye),
+            bits(target),
             bits(right),
             bits(up),
             [r, g, b, settings.size],
             [settings.samples, 0, settings.shape.number(), settings.environment_samples],
             [settings.lights.len() as u32, self.manifest.materials.len() as u32, 0, lights],
             [headers, maps, settings.film_tilt[0].to_bits(), settings.film_tilt[1].to_bits()],
-            // Those of a pass.
+            // Every pass writes its share of samples here.
             [0; 4],
         ];
         header.to_vec()
@@ -441,27 +455,21 @@ impl Scene {
 
     /// The slope distributions of all layers, in the order of their chains.
     fn blurs(&self) -> Vec<Blur> {
-        let layers = || {
-            self.manifest
-                .materials
-                .iter()
-                .filter(|m| !m.shows_lobes())
-                .flat_map(MaterialEntry::records)
-                .filter(|l| l.kind != LayerKind::Diffuse)
-        };
-        let is_used = |blur: &Blur| layers().any(|l| blur_of(l) == *blur);
-        [Blur::Ggx, Blur::Beckmann].into_iter().filter(is_used).collect()
+        let materials = self.manifest.materials.iter().filter(|m| !m.shows_lobes());
+        let layers = materials.flat_map(MaterialEntry::records).filter(|l| l.kind != LayerKind::Diffuse);
+        let used: Vec<Blur> = layers.map(blur_of).collect();
+        [Blur::Ggx, Blur::Beckmann].into_iter().filter(|blur| used.contains(blur)).collect()
     }
 }
 
-/// The samples of a pixel and the directions of each, in shares that one submission has: first sample, number, first direction, number. A material
-/// has so many lobes, the cosine counted.
+/// Shares of the samples of a pixel and of their directions, one for each submission: first sample, number of samples, first direction, number of
+/// directions. `lobes` counts those of a material, and the cosine as one.
 fn shares(settings: &RenderSettings, lobes: u32) -> Vec<[u32; 4]> {
     let (samples, directions) = (settings.samples * settings.samples, settings.environment_samples);
-    // Boxes and triangles that a ray goes through.
+    // Turns for the boxes and triangles that a ray passes.
     let ray = if settings.shape == Shape::Mesh { RAY_TURNS } else { 0 };
     let lights = settings.lights.len() as u32;
-    // Densities of all lobes for each direction, and what an evaluation may turn. A place that a direction shows may look at all lights.
+    // For each direction: the densities of all lobes, the loops of an evaluation, and rays. A place that a ray meets may look at all lights.
     let per_direction = lobes * (16 + lobes * lobes) + lobes * ray * (1 + lights);
     let per_sample = directions.saturating_mul(per_direction).saturating_add(256 + ray * (2 + lights));
     if per_sample <= TURNS_PER_PASS {
@@ -476,12 +484,13 @@ fn shares(settings: &RenderSettings, lobes: u32) -> Vec<[u32; 4]> {
     (0..samples).flat_map(|sample| parts.clone().map(move |(first, count)| [sample, 1, first, count])).collect()
 }
 
-/// Materials as what is seen.
+/// Parts that show these materials.
 fn parts(materials: &[u32]) -> Vec<Shown> {
     materials.iter().copied().map(Shown::Material).collect()
 }
 
-/// Number of the first map that a slope distribution has blurred, where the maps of these follow the environment and its irradiance.
+/// Number of the first map that is blurred by a slope distribution. Maps 0 and 1 are the environment and its irradiance; the chains of the used
+/// distributions follow.
 fn first_map(used: &[Blur], blur: Blur) -> u32 {
     2 + (used.iter().position(|other| *other == blur).unwrap_or(0) * ALPHAS.len()) as u32
 }
@@ -493,7 +502,7 @@ fn has_reflectance(layer: &LayerRecord) -> bool {
 fn blur_of(layer: &LayerRecord) -> Blur {
     match layer.distribution {
         Distribution::Ggx | Distribution::Abc(_) => Blur::Ggx,
-        // Blinn's is near Beckmann's; the shifted gamma distribution falls as it does far from the normal.
+        // Blinn's distribution is near Beckmann's; the shifted gamma distribution falls like Beckmann's far from the normal.
         Distribution::Beckmann | Distribution::Blinn | Distribution::Sgd(_) => Blur::Beckmann,
     }
 }
@@ -509,19 +518,15 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
         LayerKind::Conductor => 1.0,
         LayerKind::Diffuse => 2.0,
     };
-    let tile = |tile: Option<u32>| tile.map_or(-1.0, |t| t as f32);
+    let [fresnel, fgd, film] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film]
+        .map(|kind| layer.tiles[kind].map_or(-1.0, |tile| tile as f32));
+    // Layers without a film divide 0 by the guard.
     let film_fraction = layer.film_thickness_nm / layer.film_thickness_max_nm.max(1e-30);
-    let rgbw = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
     [
         [kind, layer.alpha as f32, layer.eta as f32, chain],
-        [
-            tile(layer.tiles[TableKind::Fresnel]),
-            tile(layer.tiles[TableKind::Fgd]),
-            tile(layer.tiles[TableKind::Film]),
-            film_fraction as f32,
-        ],
-        rgbw(layer.optical_depth, layer.critical_cot_sq),
-        rgbw(layer.albedo, 0.0),
+        [fresnel, fgd, film, film_fraction as f32],
+        word(layer.optical_depth.map(|v| v as f32), layer.critical_cot_sq as f32),
+        word(layer.albedo.map(|v| v as f32), 0.0),
     ]
 }
 

@@ -30,9 +30,9 @@ pub struct Scene {
     pub(crate) evaluate: wgpu::ComputePipeline,
     pub(crate) places: OnceLock<wgpu::ComputePipeline>,
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
-    /// Of closed shapes and of meshes, each by blurred maps of the environment and by directions.
+    /// Renderers of closed shapes, then of meshes; each first by blurred maps of the environment, then by directions.
     pub(crate) render: [[OnceLock<wgpu::ComputePipeline>; 2]; 2],
-    /// Of pairs and of simulated pictures, each with walks and with one facet.
+    /// Simulations of pairs, then of pictures; each first with one facet, then with walks.
     pub(crate) simulations: [OnceLock<wgpu::ComputePipeline>; 4],
     pub(crate) grounded: Mutex<Option<Grounded>>,
 }
@@ -71,8 +71,7 @@ impl Scene {
         })
     }
 
-    /// The scene with the same shader and other materials, tables and maps: nothing is compiled. `None` where the shader of this package
-    /// is another one.
+    /// A scene with the materials, tables and maps of another package, without compiling. `None` if the shader of that package differs.
     ///
     /// # Errors
     /// [`PackageError::NoShader`](crate::PackageError::NoShader), and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
@@ -145,7 +144,7 @@ impl Scene {
     }
 }
 
-/// Compiles the shader with a kernel behind it. The entry point of every kernel is its only one.
+/// Compiles the shader with a kernel appended. Every kernel has one entry point.
 fn compile(
     context: &Context,
     layout: &wgpu::PipelineLayout,

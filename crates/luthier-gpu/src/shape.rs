@@ -5,7 +5,15 @@ use glam::DVec3;
 use crate::GpuError;
 use crate::error::setting;
 
-/// Shape that is looked at. All shapes are about the origin, +y is up.
+/// Shape of a picture. All shapes are centred on the origin; +y is up.
+///
+/// ```
+/// use luthier_gpu::Shape;
+///
+/// // A grid shows 25 materials from +z; a plane lies flat, and its camera is above it.
+/// assert_eq!(Shape::Grid.materials(), 25);
+/// assert!(Shape::Plane.camera().eye[1] > 0.0 && Shape::Sphere.camera().eye[1] == 0.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// The unit sphere. Tangents follow the parallels.
@@ -30,7 +38,7 @@ pub struct Camera {
     pub eye: [f32; 3],
     /// Point that the camera looks at; +y of the world is up in the picture.
     pub target: [f32; 3],
-    /// Half the side of what the picture shows at the distance of the target.
+    /// Half the side of the picture, measured at the distance of the target.
     pub half_extent: f32,
 }
 

@@ -7,7 +7,7 @@ use crate::{GpuError, Scene};
 pub enum Shown {
     /// One material everywhere.
     Material(u32),
-    /// A surface: what its shader picks at each place.
+    /// A surface: the shader picks a material at each place.
     Surface(u32),
 }
 
@@ -22,7 +22,7 @@ impl Shown {
 }
 
 impl Scene {
-    /// The materials that are seen, by number, each once.
+    /// Numbers of the materials that parts show, each once.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`], [`GpuError::NoSurface`].
@@ -47,7 +47,7 @@ impl Scene {
         Ok(materials)
     }
 
-    /// `shading_pick`: what a part shows at a place.
+    /// WGSL of `shading_pick`: the material and the normal of a part at a place.
     pub(crate) fn pick_function(&self) -> &'static str {
         if self.interface.calls("luthier_pick") {
             "fn shading_pick(part: vec4<u32>, uv: vec2<f32>) -> ShadingPick {\n    \

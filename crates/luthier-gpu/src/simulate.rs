@@ -1,35 +1,35 @@
 //! Simulation of stacks by random walks of light: values for pairs of directions, and pictures that gather samples.
 
 use luthier_lut::Image;
-use luthier_manifest::{LAYER_WORDS, LayerRecord, MATERIAL_WORDS, MaterialEntry};
+use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS, MaterialEntry};
 
-use crate::context::{Context, Pass};
+use crate::context::{Context, Pass, word};
 use crate::error::setting;
 use crate::evaluate::WORKGROUP;
 use crate::render::{HEADER_WORDS, PIXELS_PER_WORKGROUP};
 use crate::surroundings::Surroundings;
 use crate::{GpuError, RenderSettings, Scene, Shape, Shown};
 
-/// The most layers of a stack, as the kernels have room for.
+/// The most layers of a stack: the size of arrays in the kernels.
 const LAYERS_MOST: usize = 8;
 
-/// Samples of one thread in a submission: far from the 65,535 turns of loops after which software adapters end them.
+/// Samples of one thread in a submission. Software adapters end loops after 65,535 turns; this stays far below.
 const SAMPLES_PER_THREAD: u32 = 32;
 
 /// Samples per submission: a second or two on a software adapter. Discrete GPUs take more.
 const SAMPLES_PER_PASS: u32 = 1 << 19;
 
-/// Light at a rough interface.
+/// Treatment of light at a rough interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Facets {
-    /// It walks between facets until it leaves, and none is lost: `layered-mc` of luthier-layers.
+    /// Light walks between facets until it leaves, so that none is lost: `layered-mc` of luthier-layers.
     #[default]
     Walk,
-    /// It meets one facet, and what others block is lost: `layered-mc-one-facet`.
+    /// Light meets one facet, and light that other facets block is lost: `layered-mc-one-facet`.
     One,
 }
 
-/// How light is followed.
+/// Settings of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SimulationSettings {
     /// Light at rough interfaces.
@@ -66,20 +66,20 @@ impl Sums {
     fn of(&self, samples: u32) -> Simulated {
         let n = f64::from(samples);
         let mean = self.values.map(|sum| sum / n);
-        let variance = |c: usize| (self.squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0).max(1.0);
-        Simulated { mean, std_err: [0, 1, 2].map(|c: usize| variance(c).sqrt()) }
+        let variance = [0, 1, 2].map(|c| (self.squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0).max(1.0));
+        Simulated { mean, std_err: variance.map(f64::sqrt) }
     }
 }
 
 impl Scene {
-    /// `f cos_theta_i` of a material for pairs `(wi, wo)`: unit vectors in the local frame, away from the surface. The mean of random walks of
-    /// light through its stack at three wavelengths; zero where a direction is below the horizon. Equal arguments give equal values on
-    /// one device.
+    /// `f cos_theta_i` of a material for pairs `(wi, wo)`: unit vectors in the local frame, away from the surface. Each value is the mean of random
+    /// walks of light through the stack at three wavelengths, and zero if a direction is below the horizon. Equal arguments give equal values on one
+    /// device.
     ///
     /// Paths are position-free (Guo, Hasan and Zhao 2018) over Smith micro-surfaces, with indices, slopes, turns, slabs and the diffuse base of the
-    /// layer records. The mean is unbiased but for single precision, and for what paths of more than 512 events or walks of more than 256 facets
-    /// would bring: less than one part in a million. Slope parameters are at least 0.001, as records have them. Transparent layers whose index
-    /// hangs on the wavelength take three paths a sample.
+    /// layer records. The mean is unbiased, except for single precision and for the light of paths beyond 512 events or of walks beyond 256 facets,
+    /// which is less than one part in a million. Slope parameters are at least 0.001, as in the records. A sample takes three paths if the index of
+    /// a transparent layer depends on the wavelength.
     ///
     /// # Errors
     /// [`GpuError::NotSimulated`] for films, fluorescent bases and surfaces that vary; [`GpuError::NoMaterial`], [`GpuError::Setting`] for no
@@ -103,16 +103,15 @@ impl Scene {
             let blocks = (SAMPLES_PER_PASS * self.context.batch / SAMPLES_PER_THREAD / chunk.len() as u32).max(1);
             let mut done = 0;
             while done < samples {
-                // Whole threads, or one block of what is left.
+                // Blocks of whole threads; the last samples, fewer than a thread takes, are one block.
                 let left = samples - done;
                 let per_thread = left.min(SAMPLES_PER_THREAD);
                 let blocks = (left / per_thread).min(blocks);
-                // Chunks have seeds of their own: their pairs count from 0.
+                // Pairs count from 0 in every chunk, so each chunk needs a seed of its own.
                 let seed = settings.seed ^ (number as u32).wrapping_mul(0x9e37_79b9);
                 let mut words = vec![[material, seed, done, per_thread]];
                 for (wi, wo) in chunk {
-                    let word = |d: &[f32; 3]| [d[0].to_bits(), d[1].to_bits(), d[2].to_bits(), 0];
-                    words.extend([word(wi), word(wo)]);
+                    words.extend([wi, wo].map(|direction| word(*direction, 0.0).map(f32::to_bits)));
                 }
                 let threads = blocks as usize * chunk.len();
                 let out = self.context.run(&Pass {
@@ -133,8 +132,8 @@ impl Scene {
         Ok(all)
     }
 
-    /// A picture of a shape to simulate, one material for each of its parts, lit and seen as [`Scene::render`] has it: lights widen slopes, and the environment is met by paths that
-    /// leave the stack. `environment_samples` counts for nothing. No sample is taken yet.
+    /// A picture of a shape to simulate, without samples so far: one material for each part, lit and seen as in [`Scene::render`]. Lights widen slopes,
+    /// and paths that leave the stack meet the environment. `environment_samples` is ignored.
     ///
     /// # Errors
     /// As [`Scene::simulate`] and [`Scene::render`].
@@ -208,18 +207,16 @@ impl Scene {
 
     fn check_simulated(&self, material: u32) -> Result<(), GpuError> {
         let entry = &self.manifest.materials[material as usize];
-        let refused = |what| Err(GpuError::NotSimulated { material: entry.name.clone(), what });
         match beyond(entry) {
-            Some(what) => refused(what),
+            Some(what) => Err(GpuError::NotSimulated { material: entry.name.clone(), what }),
             None => Ok(()),
         }
     }
 }
 
-/// The part of a material that the simulation does not know.
+/// The first part of a material that the simulation does not support.
 fn beyond(entry: &MaterialEntry) -> Option<&'static str> {
-    let has_film = |layer: &LayerRecord| layer.film_thickness_max_nm > 0.0 || layer.film_thickness_nm > 0.0;
-    if entry.layers.iter().any(has_film) {
+    if entry.layers.iter().any(|layer| layer.film_thickness_max_nm > 0.0 || layer.film_thickness_nm > 0.0) {
         return Some("films");
     }
     if entry.layers.iter().any(|layer| layer.reradiation.is_some()) {
@@ -246,7 +243,7 @@ pub struct Simulation {
 
 impl Simulation {
     /// Adds samples to every pixel. Samples go over the squares of a pixel in turn, so that multiples of the square of
-    /// [`RenderSettings::samples`] cover it evenly. Samples in several calls are those of one.
+    /// [`RenderSettings::samples`] cover it evenly. Several calls give the same samples as one.
     ///
     /// # Errors
     /// Whatever the device reports.
@@ -254,8 +251,8 @@ impl Simulation {
         self.add_unless(samples, &|| false).map(|_| ())
     }
 
-    /// Adds samples as [`Simulation::add`] does, and asks between submissions whether to stop. Returns whether all were added; where they were not, the
-    /// picture is of those before this call.
+    /// Adds samples as [`Simulation::add`] does, and asks between submissions whether to stop. Returns whether all were added; if not, the picture is
+    /// that from before the call.
     ///
     /// # Errors
     /// Whatever the device reports.
@@ -303,13 +300,14 @@ impl Simulation {
         self.picture(|simulated| simulated.mean)
     }
 
-    /// Standard error of every pixel and channel, by the spread of its samples. Where samples cover a pixel evenly it is a little too large.
+    /// Standard error of every pixel and channel, by the spread of its samples. It is a little too large if samples cover the pixel evenly, because
+    /// then a part of the spread is no noise.
     pub fn noise(&self) -> Image {
         self.picture(|simulated| simulated.std_err)
     }
 
     fn picture(&self, value: impl Fn(Simulated) -> [f64; 3]) -> Image {
-        let of = |sums: &Sums| value(sums.of(self.samples.max(1))).map(|v| v as f32);
-        Image { width: self.size, height: self.size, channels: 3, data: self.sums.iter().flat_map(of).collect() }
+        let values = self.sums.iter().flat_map(|sums| value(sums.of(self.samples.max(1))).map(|v| v as f32));
+        Image { width: self.size, height: self.size, channels: 3, data: values.collect() }
     }
 }

@@ -22,7 +22,7 @@ impl Surroundings {
         })
     }
 
-    /// Black all around, for shaders that are run for lights alone.
+    /// Black cubes, for shaders that show lights alone.
     pub(crate) fn black(context: &Context) -> Result<Self, GpuError> {
         let black = [Level { width: 0.0, images: vec![Image::zeros(1, 1, 3); 6] }];
         Ok(Self { environment: cube(context, "black", &black)?, irradiance: cube(context, "black", &black)? })
@@ -54,7 +54,7 @@ fn cube(context: &Context, label: &str, levels: &[Level]) -> Result<wgpu::Textur
     })
 }
 
-/// RGB with a fourth channel of 1, within what half floats hold.
+/// RGB with a fourth channel of 1, clamped to 65504: the largest half float.
 fn opaque(image: &Image) -> Image {
     let data = image.texels().flat_map(|t| [t[0], t[1], t[2], 1.0].map(|v| v.min(65504.0))).collect();
     Image { channels: 4, data, ..*image }

@@ -1,4 +1,4 @@
-//! Timing of evaluations, by timestamp queries where the adapter has them.
+//! Timing of evaluations, by timestamp queries if the adapter has them.
 
 use std::time::Instant;
 
@@ -8,10 +8,10 @@ use crate::{GpuError, Scene};
 
 const KERNEL: &str = include_str!("wgsl/time.wgsl");
 
-/// Evaluations of one thread, as in the kernel.
+/// Evaluations of one thread. The kernel has the same number.
 const PER_THREAD: u32 = 16;
 
-/// An evaluation of one scene to time again and again.
+/// An evaluation of one scene, prepared to be timed many times.
 #[derive(Debug)]
 pub struct Stopwatch<'a> {
     scene: &'a Scene,
@@ -21,8 +21,8 @@ pub struct Stopwatch<'a> {
 }
 
 impl Scene {
-    /// Prepares timing of `luthier_eval` for pairs `(wi, wo)` of a material, or of all but `luthier_eval` where `is_empty`. The pairs
-    /// are gone through until there are at least `evaluations`.
+    /// Prepares timing of `luthier_eval` for pairs `(wi, wo)` of a material. With `is_empty` the kernel runs without `luthier_eval`, to measure the
+    /// rest. The pairs repeat until there are at least `evaluations`.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`], and whatever the device reports.
@@ -45,8 +45,8 @@ impl Scene {
 }
 
 impl Stopwatch<'_> {
-    /// Nanoseconds per evaluation of several: `repeats` runs of each, after `warm_up` that do not count. They take turns, so that a clock that drifts
-    /// favours none.
+    /// Nanoseconds per evaluation of several watches: `repeats` runs of each, after `warm_up` runs that do not count. The watches take turns, so
+    /// that a drifting clock favours none.
     ///
     /// # Errors
     /// Whatever the device reports.
@@ -68,7 +68,7 @@ impl Stopwatch<'_> {
         self.workgroups * WORKGROUP as u32 * PER_THREAD
     }
 
-    /// Whether runs are timed by the device's own clock; otherwise by that of the host, submission and waiting included.
+    /// Whether the device's own clock times the runs. If not, the host's clock does, and times include submission and waiting.
     pub fn has_timestamps(&self) -> bool {
         self.pass.has_timestamps()
     }

@@ -2,14 +2,24 @@
 
 use luthier_lut::Image;
 
-/// Map from radiance to the values of a display, before its transfer function. Each channel by itself, 0 to 0; the display
-/// clips what is above 1.
+/// Map from radiance to the values of a display, before its transfer function. It treats each channel by itself and keeps 0; the
+/// display clips values above 1.
+///
+/// ```
+/// use luthier_gpu::ToneMapping;
+///
+/// // The default leaves colours of a well exposed picture alone and bends highlights below 1.
+/// assert_eq!(ToneMapping::default().value(0.5), 0.5);
+/// assert!(ToneMapping::default().value(20.0) < 1.0);
+/// // Reinhard: 1 / (1 + 1).
+/// assert_eq!(ToneMapping::Reinhard.value(1.0), 0.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ToneMapping {
     /// Values as they are.
     None,
-    /// Values as they are to 0.8, then bent smoothly towards 1: `0.8 + 0.2 e / (1 + e)` with `e = (x - 0.8) / 0.2`. The default, because
-    /// colours of a well exposed picture stay what they are.
+    /// Values up to 0.8 stay; above, they are bent smoothly towards 1: `0.8 + 0.2 e / (1 + e)` with `e = (x - 0.8) / 0.2`. This is the
+    /// default, because it keeps the colours of a well exposed picture.
     #[default]
     Shoulder,
     /// `x / (1 + x)` (Reinhard et al. 2002, eq. 3).

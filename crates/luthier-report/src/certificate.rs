@@ -20,9 +20,19 @@ const BELOW: f64 = 40.0;
 const TICKS: [f64; 13] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
 
 /// An error over two quantities, on a grid that is even in the logarithms.
+///
+/// ```
+/// use luthier_report::ErrorMap;
+///
+/// let worst = (1e-3, [0.01, 1.0]);
+/// let map = ErrorMap::sample("mine", ["cos_theta", "alpha"], [[0.01, 1.0]; 2], worst, |[cos, _]| 1e-5 / cos);
+/// // The first column of cells begins at the lower end, where the error is largest.
+/// assert_eq!(map.errors.len(), ErrorMap::SIDE * ErrorMap::SIDE);
+/// assert!(map.errors[0] > map.errors[1] && map.errors[0] < 1e-3);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorMap {
-    /// Title of the map: which table.
+    /// Title of the map: the name of the table.
     pub title: String,
     /// Names of the quantities, across and down.
     pub axes: [String; 2],
@@ -32,7 +42,7 @@ pub struct ErrorMap {
     pub columns: usize,
     /// Errors at the middles of the cells, row by row from the lower end of the second quantity on.
     pub errors: Vec<f64>,
-    /// Largest error of the whole table, and its place in both quantities.
+    /// Largest error of the whole table, with its place in both quantities.
     pub worst: (f64, [f64; 2]),
 }
 
@@ -48,9 +58,10 @@ impl ErrorMap {
         worst: (f64, [f64; 2]),
         error: impl Fn([f64; 2]) -> f64,
     ) -> Self {
-        let middle = |[from, to]: [f64; 2], i: usize| from * libm::pow(to / from, (i as f64 + 0.5) / Self::SIDE as f64);
-        let places = (0..Self::SIDE).flat_map(|y| (0..Self::SIDE).map(move |x| (x, y)));
-        let errors = places.map(|(x, y)| error([middle(ranges[0], x), middle(ranges[1], y)])).collect();
+        let cells = (0..Self::SIDE).flat_map(|y| (0..Self::SIDE).map(move |x| [(x, ranges[0]), (y, ranges[1])]));
+        let middles = cells
+            .map(|cell| cell.map(|(i, [from, to])| from * libm::pow(to / from, (i as f64 + 0.5) / Self::SIDE as f64)));
+        let errors = middles.map(error).collect();
         Self { title: title.to_owned(), axes: axes.map(str::to_owned), ranges, columns: Self::SIDE, errors, worst }
     }
 
@@ -121,12 +132,12 @@ impl ErrorMap {
     }
 }
 
-/// Everything that the page of one table says.
+/// The page of one table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// Title: the table in words.
     pub title: String,
-    /// The verdict in a line, and whether a limit is held, where one is stated.
+    /// The verdict in a line; and whether the limit is held, if one is stated.
     pub verdict: (String, Option<bool>),
     /// Facts: name and value.
     pub facts: Vec<(String, String)>,

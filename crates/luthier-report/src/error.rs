@@ -10,7 +10,7 @@ use luthier_manifest::Form;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The stacks are not those of the manifest.
+    /// The number of stacks is not that of the materials in the manifest.
     #[error("the manifest has {manifest} materials, {stacks} stacks were given; bake and report from the same files")]
     MaterialCount {
         /// Number of materials in the manifest.
@@ -63,7 +63,7 @@ pub enum ReportError {
         /// Kind of the table.
         kind: TableKind,
     },
-    /// A material is shaded by a model that the judge has no reference for.
+    /// The judge has no reference for the model of a material.
     #[error("the shaders evaluate `{material}` with the model `{}`, which has no reference here", model.name())]
     Model {
         /// The material.

@@ -8,22 +8,26 @@
 //!
 //! - tables are read back through the sampler of `luthier-lut` at points of the judge's own choosing;
 //! - shaders are compared with `luthier_layers::twins::real_time` over deterministic sets of directions;
-//! - the error of the baked shader is split into the error of the tables and that of f32 arithmetic;
-//! - the difference between three wavelengths and the spectrum is shown apart, because it is not an error of the bake;
-//! - materials that maps or effects vary are judged at random places ([`Places`]): shader, f64 on the tables that ship ([`Rows`]), and exact terms or
-//!   the simulation of the stack that is meant there;
-//! - colour differences say which errors are visible under which light ([`Seen`]);
+//! - the error of the baked shader is split into an error of the tables and an error of f32 arithmetic;
+//! - the difference between three wavelengths and the spectrum is a separate figure, because it is not an error of the bake;
+//! - materials that vary over the surface are judged at random places ([`Places`]): the shader, f64 on the tables that ship ([`Rows`]), and exact terms or
+//!   the simulation of the stack at the place;
+//! - colour differences show which errors are visible under which light ([`Seen`]);
 //! - samples that miss [`TARGET_MAX_REL_ERR`] are listed with the factor that causes the error;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
-//! [`audit()`] judges a table of another program against the function that it should hold.
-//! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
-//! [`render_ball`] makes one in f64, [`render_ball_of`] one from values of any source, [`sheet()`] puts many on one, [`Plot`] draws curves. [`Spread`] is for times of a stopwatch.
-//! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
-//! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
-//! [`judge_models`] compares every reflectance model with the Monte Carlo simulation of whole stacks.
-//! [`Certificate`] is the page of one table that travels alone.
-//! [`stability`] runs every method on stacks where methods fail, and finds the domain of each.
+//! The caller adds the rest of a page (searches, costs, pictures, models against the reference) to the report: [`Costs`],
+//! [`Exhibits`], [`judge_shading_models`]. [`limits()`] compares the report with budgets.
+//!
+//! Other judgements stand alone:
+//!
+//! - [`audit()`] judges a table of another program against the function that it should hold;
+//! - [`parity`] compares the shaders of all models with their f64 twins;
+//! - [`judge_models`] compares every reflectance model with the Monte Carlo simulation of whole stacks;
+//! - [`stability`] runs every method on stacks where methods fail, and finds the domain of each;
+//! - [`compare_pictures`] compares two pictures, [`render_ball`] renders one in f64, [`render_ball_of`] from values of any source, and [`sheet()`] puts
+//!   many on one;
+//! - [`Certificate`] is the page of one table, [`Plot`] draws curves, and [`Spread`] summarises times of a stopwatch.
 //!
 //! A room uses the rooms above it in this list, and none below:
 //!
@@ -37,9 +41,9 @@
 //!
 //! `audit`, `certificate` and `picture` stand beside these and use the first row alone.
 //!
-//! Simplifications: of thickness maps only the properties that follow from the stack are checked (range, normalisation), because
-//! their truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
-//! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
+//! Simplifications: the judge checks only the range and the normalisation of thickness maps, which follow from the stack; the maps themselves are noise
+//! functions or images that only the baker has. The estimate of albedos uses the walks and the quadrature of `luthier-optics`, as the baker does, but
+//! with other seeds, numbers and colour treatment.
 
 mod audit;
 mod certificate;

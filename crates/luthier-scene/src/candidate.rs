@@ -19,6 +19,16 @@ use crate::shape::shape;
 use crate::simplify::{LeaveOut, variants};
 
 /// A way to shade a material.
+///
+/// ```
+/// use luthier_manifest::Form;
+/// use luthier_scene::{Candidate, CostTable};
+///
+/// let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
+/// let chalk = luthier_material::parse("chalk.toml", chalk, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap();
+/// let all = Candidate::all(&chalk.material, Form::Full, &CostTable::shipped());
+/// assert!(all.len() > 1 && all.is_sorted_by_key(|candidate| candidate.cost));
+/// ```
 #[derive(Debug)]
 pub struct Candidate {
     /// The model.
@@ -29,14 +39,14 @@ pub struct Candidate {
     pub color: ColorMode,
     /// Parts that are left out.
     pub left_out: Vec<LeaveOut>,
-    /// The material without that, with model and colour as settings: what is baked if it is chosen.
+    /// The material to bake: without the parts that are left out, with model and colour as settings.
     pub material: Material,
     /// Cycles per wave of 64 on RDNA2.
     pub cost: f64,
-    /// Whether the cost is that of a similar surface.
+    /// Whether the cost is that of a similar surface, because the costs lack this one.
     pub cost_is_of_similar: bool,
     values: OnceLock<Vec<Rgb>>,
-    /// Values without a footprint, of a model whose tables know no other roughness.
+    /// Values without a footprint, for a model whose tables hold the nominal roughness only.
     sharp_values: OnceLock<Vec<Rgb>>,
 }
 
@@ -49,16 +59,17 @@ pub(crate) fn color_of(mode: ColorMode, material: &Material) -> Color {
 }
 
 impl Candidate {
-    /// The candidates for a material, cheapest first; of equal cost those that leave out less first, then the material's own colour.
+    /// The candidates for a material, cheapest first. Among equal costs, those that leave out fewer parts come first, then those in the colour of
+    /// the material.
     ///
-    /// A candidate leaves out a part of the material only if that makes it cheaper. No candidate leaves out flakes or a patina.
+    /// A candidate leaves out a part of the material only if it becomes cheaper. No candidate leaves out flakes or a patina.
     pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
         let own = material.bake.color.unwrap_or_default();
         let colors: &[ColorMode] = match (form, own) {
             (Form::Baked, ColorMode::Spectral) => &[ColorMode::Spectral, ColorMode::ThreeWavelengths],
             _ => &[ColorMode::ThreeWavelengths],
         };
-        // The reference has no effects: a model that leaves one out is not judged by what it lacks.
+        // The reference has no effects, so that its errors do not show a missing one: models without an effect of the material are no candidates.
         let effects = [
             (Feature::Flakes, material.effects.flakes.is_some()),
             (Feature::Patina, material.effects.patina.is_some()),
@@ -66,9 +77,8 @@ impl Candidate {
         let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map.slot)));
         let mut asked: Vec<Feature> = maps.filter_map(|(i, slot)| slot.layer_feature(i)).collect();
         asked.extend(effects.iter().filter(|(_, has)| *has).map(|(effect, _)| *effect));
-        let shows = |model: ShadingModel| asked.iter().all(|&effect| model.honours(effect, form));
         let mut found: Vec<Self> = Vec::new();
-        for model in ShadingModel::ALL.into_iter().filter(|&model| shows(model)) {
+        for model in ShadingModel::ALL.into_iter().filter(|model| asked.iter().all(|&part| model.honours(part, form))) {
             let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);
             for (left_out, simple) in variants(material) {
                 let Some((cost, cost_is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };
@@ -94,8 +104,9 @@ impl Candidate {
                 }
             }
         }
-        let key = |c: &Self| (c.left_out.len(), usize::from(c.color != own));
-        found.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(key(a).cmp(&key(b))));
+        // The second sort is stable: candidates of equal cost keep the order of the first.
+        found.sort_by_key(|c| (c.left_out.len(), c.color != own));
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         found
     }
 
@@ -107,8 +118,8 @@ impl Candidate {
         })
     }
 
-    /// The candidate's values at probes on exact terms, and on those of tables that stand for them. Rows of lobes are of the roughness that was
-    /// simulated: neither has a footprint there.
+    /// The candidate's values at probes: on exact terms, and on terms of tables. Rows of lobes were simulated at the nominal roughness, so neither
+    /// has a footprint for a fitted model.
     pub(crate) fn values_with(
         &self,
         terms: &(impl ShaderTerms + Sync),
@@ -128,7 +139,7 @@ impl Candidate {
     fn values_of(&self, stack: &Stack, terms: &(impl ShaderTerms + Sync), probes: &[Probe]) -> Vec<Rgb> {
         let color = color_of(self.color, &self.material);
         let twin = Twin::new(self.model, stack, self.material.bake.wavelengths_nm(), color);
-        let value = |probe: &Probe| match *probe {
+        let values = probes.par_iter().map(|probe| match *probe {
             Probe::Pair { wi, wo } => twin.eval(terms, wi, wo),
             Probe::Sky { wo } => {
                 let mut sum = [0.0; 3];
@@ -138,11 +149,11 @@ impl Candidate {
                 }
                 sum
             }
-        };
-        probes.par_iter().map(value).collect()
+        });
+        values.collect()
     }
 
-    /// The exact terms that the candidate's tables stand for, or that its form computes.
+    /// The exact terms: those that the tables approximate, or, for the form `full`, those that the shader computes.
     fn exact(&self, stack: &Stack) -> Exact {
         let exact = Exact::new(stack, color_of(self.color, &self.material));
         let is_statistical = self.model.is_statistical();

@@ -11,23 +11,24 @@ use crate::probe::{Probe, footprint, probes};
 use crate::reference::Reference;
 use crate::simplify::LeaveOut;
 
-/// Samples of the reference for one material, at most: about a minute of one core.
+/// The most samples of the reference for one material: about a minute of one core.
 pub const MAX_SAMPLES: u64 = 16_000_000;
 
-/// Relative noise that every direction begins with, for errors of candidates that fail to mean something.
+/// Relative noise of the reference before the first candidate is judged. With more noise, the reported errors of candidates that fail early would
+/// be mostly noise.
 const NOISE_AT_FIRST: f64 = 0.02;
 
-/// Samples that this may take.
+/// The most samples that the first step may take.
 const SAMPLES_AT_FIRST: u64 = 2_000_000;
 
-/// Share of every limit that is the model's.
+/// Share of every limit that models may use.
 pub const MODEL_SHARE: f64 = 0.75;
 
 /// Share of every limit that is left for tables.
 pub const TABLE_SHARE: f64 = 1.0 - MODEL_SHARE;
 
-/// One material of a scene: its candidates, and the reference at the directions of the scene. What was computed serves the next
-/// choice, so that budgets are tightened at little cost.
+/// One material of a scene: its candidates, and the reference at the directions of the scene. Values and samples are kept for the next
+/// choice, so that a tighter budget costs little.
 #[derive(Debug)]
 pub struct Judge {
     name: String,
@@ -60,10 +61,10 @@ impl Judge {
         }
     }
 
-    /// The cheapest candidate that holds [`MODEL_SHARE`] of a budget; where none does, the most accurate of those that are not too dear. Then the
-    /// [`MaterialChoice`] says that it does not hold. Its `chosen` is a number of [`Self::candidates`], too.
+    /// The cheapest candidate that holds [`MODEL_SHARE`] of a budget. If none holds, the choice is the most accurate candidate within `max_cost`, and
+    /// the [`MaterialChoice`] says that it does not hold. Its `chosen` is an index into [`Self::candidates`], too.
     ///
-    /// `None` where there is nothing to choose from: every candidate is dearer than `max_cost`.
+    /// `None` if every candidate costs more than `max_cost`.
     pub fn choose(&mut self, budget: &SceneBudget, max_cost: Option<f64>) -> Option<MaterialChoice> {
         let budget = &budget.scaled(MODEL_SHARE);
         let mut tried: Vec<(SceneCandidate, f64)> = Vec::new();
@@ -84,7 +85,7 @@ impl Judge {
         let chosen = holder.unwrap_or(nearest);
         let cost = tried[chosen].0.cost;
         let cheaper = (0..tried.len()).filter(|&i| tried[i].0.cost < cost);
-        // Of those that cost the same, the most accurate.
+        // Among equal costs, the most accurate.
         let next_cheaper = cheaper.max_by(|&a, &b| {
             let by_cost = tried[a].0.cost.total_cmp(&tried[b].0.cost);
             by_cost.then(tried[b].1.total_cmp(&tried[a].1)).then(b.cmp(&a))
@@ -104,12 +105,12 @@ impl Judge {
         })
     }
 
-    /// Errors of what stands in for the exact terms of a candidate (tables), at the directions of the scene.
+    /// Errors of a candidate on the terms of tables, against exact terms, at the directions of the scene.
     pub fn table_error(&self, candidate: usize, terms: &(impl ShaderTerms + Sync), with_delta_e: bool) -> SceneError {
         let candidate = &self.candidates[candidate];
         let (exact, found) = candidate.values_with(terms, &self.probes, self.footprint_deg);
-        let known = |rgb| Value { rgb, std_err: [0.0; 3] };
-        let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &known(*e), with_delta_e)).collect();
+        let exact = exact.iter().map(|&rgb| Value { rgb, std_err: [0.0; 3] });
+        let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &e, with_delta_e)).collect();
         largest(&misses, &self.probes)
     }
 
@@ -123,7 +124,7 @@ impl Judge {
         &self.probes
     }
 
-    /// A candidate against a budget: what became of it, and error over limit.
+    /// Judges a candidate against a budget: its figures with the verdict, and its largest ratio of an error to a limit.
     fn judge(&mut self, number: usize, budget: &SceneBudget) -> (SceneCandidate, f64) {
         let candidate = &self.candidates[number];
         let found = candidate.values(&self.probes, self.footprint_deg).to_vec();
@@ -157,7 +158,7 @@ impl Judge {
     }
 }
 
-/// A candidate in a few words.
+/// A candidate in a few words: model, colour, parts that are left out.
 pub fn label(candidate: &SceneCandidate) -> String {
     let color = if candidate.color == ColorMode::Spectral { "" } else { " at three wavelengths" };
     let without = if candidate.left_out.is_empty() {
@@ -192,7 +193,7 @@ fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, 
     text
 }
 
-/// The errors of a candidate that have a limit, each beside it.
+/// The errors of a candidate that a budget limits, each with its limit.
 fn errors(SceneCandidate { error, .. }: &SceneCandidate, budget: &SceneBudget) -> String {
     let known = [
         ("relative", budget.max_rel, Some(error.max_rel)),

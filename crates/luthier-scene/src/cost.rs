@@ -9,6 +9,15 @@ use crate::shape::{distance, shape_of};
 pub const COST_DATA: &str = include_str!("../data/cost.json");
 
 /// Costs of shaders by model, form and shape of the surface.
+///
+/// ```
+/// use luthier_manifest::{Form, ShadingModel};
+/// use luthier_scene::CostTable;
+///
+/// // A smooth dielectric of Beckmann slopes over a conductor.
+/// let (cycles, is_of_similar) = CostTable::shipped().cost(ShadingModel::Elek, Form::Baked, "dbx/cb").unwrap();
+/// assert!(cycles > 0.0 && !is_of_similar);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CostTable {
     /// Driver and version.
@@ -35,7 +44,7 @@ pub struct CostRow {
 impl CostTable {
     /// The table that ships, [`COST_DATA`].
     pub fn shipped() -> Self {
-        // A test reads it; should it be broken all the same, nothing has a cost and nothing is chosen by it.
+        // A test reads the data. If it were broken all the same, no shader would have a cost, and no model would be a candidate.
         serde_json::from_str(COST_DATA).unwrap_or_else(|_| Self {
             driver: String::new(),
             family: String::new(),
@@ -43,14 +52,14 @@ impl CostTable {
         })
     }
 
-    /// The table without the costs of a model, which is then no candidate.
+    /// The table without the costs of a model. The model is then no candidate.
     pub(crate) fn without(mut self, model: ShadingModel) -> Self {
         self.rows.retain(|row| row.model != model);
         self
     }
 
-    /// Cost of a shader for a surface of some [`shape`](crate::shape), and whether that is of a similar surface, because this one was
-    /// not measured; of several that are as similar, the dearest.
+    /// Cost of a shader for a surface of some [`shape`](crate::shape). The flag is true if the shape was not measured and the cost is that of the most
+    /// similar one; among equally similar shapes the dearest counts.
     pub fn cost(&self, model: ShadingModel, form: Form, shape: &str) -> Option<(f64, bool)> {
         let wanted = shape_of(model, shape);
         let rows = self.rows.iter().filter(|row| row.model == model && row.form == form);

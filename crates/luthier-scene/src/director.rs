@@ -11,13 +11,13 @@ use thiserror::Error;
 
 use crate::{CostTable, Form, Judge, TABLE_SHARE, label};
 
-/// Limits on the absolute error of tables that are tried, loosest first.
+/// Limits on the absolute error of tables to try, loosest first.
 const TABLE_LEVELS: [f64; 6] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5];
 
-/// Reflectances are about this: a relative limit times it is where the search for tables begins.
+/// Size of an ordinary reflectance. It turns the tightest relative limit of a scene into an absolute one, at which the search for tables begins.
 const REFLECTANCE: f64 = 0.2;
 
-/// A search for the models and tables of a scene. What one step computes serves the next.
+/// A search for the models and tables of a scene. Each step keeps its results for the next.
 pub struct Director<'a> {
     scene: &'a Scene,
     materials: &'a [Material],
@@ -69,7 +69,7 @@ pub enum SceneFailure {
     Unheld {
         /// A line for each form that was tried.
         reasons: String,
-        /// Advice to the user; empty where there is none.
+        /// Advice to the user, possibly empty.
         hint: &'static str,
     },
     /// The chosen models cannot be baked.
@@ -78,7 +78,7 @@ pub enum SceneFailure {
     /// Texels that cannot be read back.
     #[error(transparent)]
     Package(#[from] PackageError),
-    /// Tables that the judge does not take.
+    /// Tables that the judge refuses.
     #[error(transparent)]
     Report(#[from] ReportError),
 }
@@ -87,15 +87,15 @@ pub enum SceneFailure {
 enum Refusal {
     /// No model holds the budget.
     Model(String),
-    /// Tables are too large, too coarse or of the wrong format: without tables it may do.
+    /// Tables are too large, too coarse or of the wrong format. The form without tables may still do.
     Tables(String),
 }
 
 impl<'a> Director<'a> {
-    /// `targets` are the languages of the shaders; their form is chosen with the models. What the store has is not
-    /// computed again.
+    /// A search for the materials of a scene. `targets` are the languages of the shaders; their form is chosen with the models. Results in the store
+    /// are not computed again.
     pub fn new(scene: &'a Scene, materials: &'a [Material], targets: Vec<Target>, store: &'a dyn Store) -> Self {
-        // Rows of lobes have one format.
+        // Rows of lobes exist in one format only: without it, `lobes` is no candidate.
         let has_rows = scene.target.formats.is_none_or(|formats| formats.has(TexelFormat::Rgba16Float));
         let costs = CostTable::shipped();
         Self {
@@ -110,20 +110,20 @@ impl<'a> Director<'a> {
         }
     }
 
-    /// Without models that simulate a stack and fit to it.
+    /// Excludes models that are fitted to a simulation of the stack.
     #[must_use]
     pub fn without_fits(self) -> Self {
         Self { costs: self.costs.without(ShadingModel::Lobes), ..self }
     }
 
-    /// With these groups of functions in the shaders.
+    /// Adds groups of functions to the shaders.
     #[must_use]
     pub fn with_functions(self, functions: Functions) -> Self {
         Self { functions, ..self }
     }
 
-    /// Chooses and bakes, under another limit on the relative error if one is given: with tables, or, where these do not fit the target,
-    /// without.
+    /// Chooses and bakes. `max_rel`, if given, replaces the limits on the relative error. The form `baked` is tried first, and `full` if tables do not
+    /// fit the target. With `allow_miss`, the nearest candidates are taken if none holds.
     pub fn step(&mut self, max_rel: Option<f64>, allow_miss: bool) -> Result<Made, SceneFailure> {
         let budgets: Vec<SceneBudget> = self.scene.materials.iter().map(|m| self.budget(&m.budget, max_rel)).collect();
         let mut reasons = Vec::new();
@@ -160,8 +160,8 @@ impl<'a> Director<'a> {
         };
         let (scene, costs) = (self.scene, &self.costs);
         let judges = judges.get_or_insert_with(|| {
-            let judge = |material| Judge::new(material, form, &scene.lights, &scene.view, costs);
-            self.materials.iter().map(judge).collect()
+            let materials = self.materials.iter();
+            materials.map(|material| Judge::new(material, form, &scene.lights, &scene.view, costs)).collect()
         });
         let mut choices: Vec<MaterialChoice> = Vec::with_capacity(judges.len());
         let mut misses = Vec::new();
@@ -186,7 +186,7 @@ impl<'a> Director<'a> {
             .zip(&choices)
             .map(|(judge, choice)| judge.candidates()[choice.chosen].material.clone())
             .collect();
-        // The judges know the domain of a model better: they have its error.
+        // No refusals by domain: the judges have measured the error of each model.
         let (targets, functions) = (self.targets.clone(), self.functions.clone());
         let bake = Bake {
             targets,
@@ -222,7 +222,7 @@ impl<'a> Director<'a> {
     }
 }
 
-/// Words on the tables that the target has no room for.
+/// Reason why tables do not fit the target: too many bytes, or a format that it lacks.
 fn unfit(scene: &Scene, made: &Made) -> Option<String> {
     let bytes = made.bytes();
     if let Some(most) = scene.target.max_bytes.filter(|most| bytes > *most) {
@@ -233,7 +233,7 @@ fn unfit(scene: &Scene, made: &Made) -> Option<String> {
     Some(format!("the {} table is {}, which the target does not have", foreign.kind.name(), foreign.format.name()))
 }
 
-/// The loosest tables whose errors, under the light of the scene, stay inside what models leave of the budgets.
+/// The loosest tables whose errors, under the light of the scene, stay inside [`TABLE_SHARE`] of the budgets.
 fn tables(
     materials: &[Material],
     bake: &Bake<'_>,
@@ -246,7 +246,7 @@ fn tables(
     let limits: Vec<SceneBudget> = budgets.iter().map(|budget| budget.scaled(TABLE_SHARE)).collect();
     let tightest = limits.iter().filter_map(|limit| limit.max_rel).fold(f64::INFINITY, f64::min);
     let levels = TABLE_LEVELS.into_iter().filter(|level| *level <= REFLECTANCE * tightest);
-    // Last what a bake without any budget has.
+    // The default tables, which have no budget, come last.
     let mut levels: Vec<Option<f64>> = levels.map(Some).chain([None]).collect();
     levels.reverse();
     let mut nearest = String::new();
@@ -254,7 +254,7 @@ fn tables(
         let budget = Budget { max_abs: level, ..Budget::default() };
         let bake = Bake { options: Options { budget, ..bake.options }, ..bake.clone() };
         let package = match bake.package(materials, store) {
-            // Tighter ones cannot be held either.
+            // A budget that no table holds rules out tighter ones.
             Err(Error::Bake(BakeError::Budget { .. })) if level.is_some() => {
                 levels = vec![None];
                 continue;
@@ -291,9 +291,9 @@ fn table_errors(
     let (manifest, textures) = (&package.manifest, package.textures()?);
     let stacks = materials.iter().map(|material| material.stack.clone()).collect();
     let subject = Subject { manifest, textures, stacks, maps: Vec::new() };
-    let error = |number: usize| {
+    let errors = (0..materials.len()).map(|number| {
         let terms = TableTerms::new(&subject, number, Weights::EightBit)?;
         Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))
-    };
-    (0..materials.len()).map(error).collect()
+    });
+    errors.collect()
 }

@@ -8,13 +8,14 @@ use luthier_optics::color_difference::{ciede2000, lab};
 
 use crate::probe::Probe;
 
-/// Values darker than this count as this in relative errors: a tenth of a white diffuse surface under unit light, as in reports.
+/// Floor of the divisor of relative errors: a tenth of the value of a white diffuse surface under unit light, as in reports. Without it,
+/// errors in the dark would be unbounded.
 pub const FLOOR: f64 = 0.1 * FRAC_1_PI;
 
-/// Standard errors that count as the noise of the reference: 95 %.
+/// Number of standard errors that count as the noise of the reference: a 95 % interval.
 const SIGMAS: f64 = 2.0;
 
-/// The noise that is allowed, as a share of the budget.
+/// Largest noise of a decision, as a share of the limit.
 const NOISE_SHARE: f64 = 0.25;
 
 /// A value of the reference: mean and standard error per channel.
@@ -27,7 +28,7 @@ pub struct Value {
 }
 
 impl Value {
-    /// The divisor of errors.
+    /// Divisor of relative errors.
     fn scale(&self) -> f64 {
         self.rgb.iter().fold(FLOOR, |a, b| a.max(*b))
     }
@@ -59,26 +60,22 @@ impl Miss {
         let mut abs = [0.0_f64; 2];
         for ((found, expected), std_err) in found.iter().zip(&reference.rgb).zip(&reference.std_err) {
             let miss = (found - expected).abs();
-            // What is not finite is as wrong as can be, and stays comparable.
+            // A value that is not finite gets the largest error, which still sorts among others.
             let miss = if miss.is_finite() { miss } else { f64::MAX };
             abs = [abs[0].max(miss), abs[1].max(*std_err)];
         }
         let scale = reference.scale();
         let delta_e = with_delta_e.then(|| {
-            let seen = |rgb: Rgb| lab(rgb.map(|v| (PI * v).clamp(0.0, 1.0)));
-            let here = seen(reference.rgb);
             let moved = [0, 1, 2].map(|c| reference.rgb[c] + reference.std_err[c]);
-            [ciede2000(seen(found), here), ciede2000(seen(moved), here)]
+            let colors = [reference.rgb, found, moved].map(|rgb| lab(rgb.map(|v| (PI * v).clamp(0.0, 1.0))));
+            [ciede2000(colors[1], colors[0]), ciede2000(colors[2], colors[0])]
         });
         Self { abs, rel: abs.map(|v| v / scale), delta_e }
     }
 
     pub(crate) fn standing(&self, budget: &SceneBudget) -> Standing {
         let mut all = Standing::Inside;
-        let limited =
-            [(budget.max_abs, Some(self.abs)), (budget.max_rel, Some(self.rel)), (budget.delta_e, self.delta_e)];
-        for (limit, miss) in limited {
-            let (Some(limit), Some([miss, noise])) = (limit, miss) else { continue };
+        for (limit, [miss, noise]) in self.limited(budget) {
             if miss - SIGMAS * noise > limit {
                 return Standing::Outside;
             }
@@ -89,11 +86,15 @@ impl Miss {
         all
     }
 
-    /// Error over limit, the largest of those limited.
+    /// The largest ratio of an error to its limit.
     pub(crate) fn excess(&self, budget: &SceneBudget) -> f64 {
-        let ratio = |limit: Option<f64>, miss: f64| limit.map_or(0.0, |limit| miss / limit);
-        let seen = self.delta_e.map_or(0.0, |[miss, _]| ratio(budget.delta_e, miss));
-        ratio(budget.max_abs, self.abs[0]).max(ratio(budget.max_rel, self.rel[0])).max(seen)
+        self.limited(budget).map(|(limit, [miss, _])| miss / limit).fold(0.0, f64::max)
+    }
+
+    /// Each limit of a budget, with the error that it is for and the standard error of that.
+    fn limited(&self, budget: &SceneBudget) -> impl Iterator<Item = (f64, [f64; 2])> {
+        let all = [(budget.max_abs, Some(self.abs)), (budget.max_rel, Some(self.rel)), (budget.delta_e, self.delta_e)];
+        all.into_iter().filter_map(|(limit, miss)| limit.zip(miss))
     }
 }
 

@@ -3,11 +3,11 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! [`Judge`] holds one material: its candidates (model, colour, what is left out of the stack) in the order of their cost, the
+//! [`Judge`] holds one material: its candidates (model, colour, parts of the stack that are left out) in the order of their cost, the
 //! directions of the scene, and the reference there. [`Judge::choose`] takes the first candidate that holds.
 //!
-//! The errors are those of models against `layered-mc`, the Monte Carlo simulation of the whole stack. Errors of tables and of single precision are
-//! not part of them, and have budgets of their own. Costs are looked up in data that `luthier-lab shapes` made: no driver is needed.
+//! Models are compared with `layered-mc`, the Monte Carlo simulation of the whole stack. Errors of tables and of single precision are not part of
+//! these errors; they have budgets of their own. Costs come from data that `luthier-lab shapes` made: no driver is needed.
 //!
 //! Simplifications: lights are one direction, a range of directions, or equal from everywhere; effects and maps are not judged;
 //! films that vary are judged at their nominal thickness; a pixel's footprint counts as slopes of every interface.

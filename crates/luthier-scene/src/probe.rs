@@ -9,6 +9,18 @@ use luthier_material::{Light, View};
 use luthier_optics::stack::{Base, Stack};
 
 /// Directions at which a model is compared with the reference.
+///
+/// ```
+/// use luthier_material::{Light, View};
+/// use luthier_optics::ior::Ior;
+/// use luthier_optics::stack::Stack;
+/// use luthier_scene::{Probe, probes};
+///
+/// let (bare, view) = (Stack { exterior: Ior::vacuum(), layers: vec![] }, View { angles_deg: [0.0, 60.0], footprint_deg: 0.0 });
+/// // Light from everywhere is compared at three views.
+/// let found = probes(&bare, &[Light::Environment], &view);
+/// assert!(found.len() == 3 && found.iter().all(|probe| matches!(probe, Probe::Sky { .. })));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Probe {
     /// `f cos theta_i` for a pair of directions.
@@ -28,37 +40,45 @@ pub enum Probe {
 impl Probe {
     /// Its angles.
     pub(crate) fn direction(&self) -> SceneDirection {
-        let tenths = |degrees: f64| (10.0 * degrees).round() / 10.0;
-        let theta = |w: DVec3| tenths(libm::acos(w.z.clamp(-1.0, 1.0)).to_degrees());
         match *self {
             Self::Pair { wi, wo } => {
-                let around = libm::atan2(wo.x * wi.y - wo.y * wi.x, wo.x * wi.x + wo.y * wi.y).to_degrees().abs();
-                SceneDirection { eye_deg: theta(wo), light_deg: Some([theta(wi), tenths(around)]) }
+                let around = libm::atan2(wo.x * wi.y - wo.y * wi.x, wo.x * wi.x + wo.y * wi.y).abs();
+                SceneDirection { eye_deg: theta_deg(wo), light_deg: Some([theta_deg(wi), tenths_deg(around)]) }
             }
-            Self::Sky { wo } => SceneDirection { eye_deg: theta(wo), light_deg: None },
+            Self::Sky { wo } => SceneDirection { eye_deg: theta_deg(wo), light_deg: None },
         }
     }
 }
 
-/// Azimuth of the eye in the surface's frame: neither along nor across what is anisotropic.
+/// Angle between a direction and the normal.
+fn theta_deg(w: DVec3) -> f64 {
+    tenths_deg(libm::acos(w.z.clamp(-1.0, 1.0)))
+}
+
+/// An angle in degrees, to a tenth.
+fn tenths_deg(radians: f64) -> f64 {
+    (10.0 * radians.to_degrees()).round() / 10.0
+}
+
+/// Azimuth of the eye in the surface's frame: neither along nor across the axes of an anisotropic surface.
 const AZIMUTH_DEG: f64 = 30.0;
 /// Steps over the range of view angles, and of a point light's angles to the eye.
 const STEPS: [f64; 3] = [0.0, 0.5, 1.0];
-/// Azimuths about the eye, from that of the light: where the normal leans.
+/// Azimuths about the eye, counted from the light, towards which normals lean.
 const LEANS_DEG: [f64; 3] = [0.0, 90.0, 180.0];
-/// Slopes away from the half vector over the slope parameter: top, flank and foot of a highlight.
+/// Slopes of normals away from the half vector, over the slope parameter: top, flank and foot of a highlight.
 const FLANKS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
-/// The light stays this far above the horizon (cosine).
+/// Least cosine of light and eye.
 const COS_THETA_MIN: f64 = 0.05;
 
 /// The directions of a scene.
 ///
-/// A curved thing shows every normal in the range of view angles. For each light, at three view angles and three azimuths about the
-/// eye, normals are set up and both directions brought into their frames; and where the normal is the half vector or leans from it by 1/2,
-/// 1 and 2 times each slope parameter, the highlights. Light from everywhere is seen at the three view angles.
+/// A curved object shows every normal in the range of view angles. For each light, normals lean from the eye by three view angles at three
+/// azimuths, and both directions are turned into the frame of each normal. Highlights have normals at the half vector, and at slopes of 1/2, 1
+/// and 2 times each slope parameter from it. Light from everywhere is seen at the three view angles.
 pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
     let [least, most] = view.angles_deg;
-    let at = |step: f64| (least + step * (most - least)).to_radians();
+    let thetas = STEPS.map(|step| (least + step * (most - least)).to_radians());
     let mut found = Vec::new();
     for light in lights {
         let apart: Vec<f64> = match *light {
@@ -67,24 +87,23 @@ pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
                 STEPS.iter().map(|step| (near + step * (far - near)).to_radians()).collect()
             }
             Light::Environment => {
-                found
-                    .extend(STEPS.iter().map(|step| Probe::Sky { wo: direction(at(*step), AZIMUTH_DEG.to_radians()) }));
+                found.extend(thetas.map(|theta| Probe::Sky { wo: direction(theta, AZIMUTH_DEG.to_radians()) }));
                 continue;
             }
         };
         for apart in apart {
-            for step in STEPS {
+            for theta in thetas {
                 for lean in LEANS_DEG {
-                    found.extend(pair(apart, at(step), lean.to_radians()));
-                    if at(step) == 0.0 {
+                    found.extend(pair(apart, theta, lean.to_radians()));
+                    if theta == 0.0 {
                         break;
                     }
                 }
             }
             // The normal of the highlight, if it is in view.
-            if (at(0.0)..=at(1.0)).contains(&(0.5 * apart)) {
+            if (thetas[0]..=thetas[2]).contains(&(0.5 * apart)) {
                 for (i, alpha) in alphas(stack).into_iter().enumerate() {
-                    // Its top is the same for all.
+                    // The top of the highlight is common to all slope parameters.
                     for flank in FLANKS.into_iter().skip(usize::from(i > 0)) {
                         found.extend(beside(apart, libm::atan(flank * alpha)));
                     }
@@ -96,14 +115,15 @@ pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
     found
 }
 
-/// The stack as a pixel sees it: its footprint is added to the slopes of every interface, and what is smoother than the smallest slope
-/// parameter of the models has that one. Light mirrored by smooth interfaces is then a lobe, in the models as in the reference.
+/// The stack as a pixel sees it. The footprint widens the slopes of every interface, and slope parameters are at least the smallest of the models.
+/// Smooth interfaces then reflect a lobe instead of a single direction, in the models as in the reference.
 pub fn footprint(stack: &Stack, footprint_deg: f64) -> Stack {
     let slope = libm::tan(footprint_deg.to_radians());
     let mut stack = stack.clone();
     for layer in stack.layers.iter_mut().filter(|layer| !matches!(layer.base, Base::Diffuse(_))) {
-        let wider = |alpha: f64| libm::hypot(alpha, slope).clamp(ALPHA_MIN, 1.0);
-        (layer.surface.alpha_x, layer.surface.alpha_y) = (wider(layer.surface.alpha_x), wider(layer.surface.alpha_y));
+        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+            *alpha = libm::hypot(*alpha, slope).clamp(ALPHA_MIN, 1.0);
+        }
     }
     stack
 }
@@ -131,20 +151,19 @@ fn beside(apart: f64, tilt: f64) -> Option<Probe> {
     in_frame(direction(apart, 0.0), half * libm::cos(tilt) + DVec3::Y * libm::sin(tilt))
 }
 
-/// Eye and light in the frame of a normal; `None` where the light is at or below the horizon.
+/// Eye and light in the frame of a normal; `None` if one of them is near or below the horizon.
 fn in_frame(light: DVec3, normal: DVec3) -> Option<Probe> {
     let eye = DVec3::Z;
     let along = eye - normal * eye.dot(normal);
-    // Seen along the normal, any tangent will do; the light's is as good as another.
+    // If the eye lies along the normal, any tangent will do. The guard keeps `normalize` away from rounding errors of zero.
     let along = if along.length() > 1e-9 { along } else { DVec3::X - normal * normal.x };
     let (x, z) = (along.normalize(), normal);
     let y = z.cross(x);
     let (sin, cos) = (libm::sin(AZIMUTH_DEG.to_radians()), libm::cos(AZIMUTH_DEG.to_radians()));
-    let local = |w: DVec3| {
+    let [wi, wo] = [light, eye].map(|w| {
         let (a, b) = (w.dot(x), w.dot(y));
         DVec3::new(cos * a - sin * b, sin * a + cos * b, w.dot(z)).normalize()
-    };
-    let (wi, wo) = (local(light), local(eye));
+    });
     (wi.z >= COS_THETA_MIN && wo.z >= COS_THETA_MIN).then_some(Probe::Pair { wi, wo })
 }
 
@@ -156,19 +175,13 @@ fn direction(theta: f64, phi: f64) -> DVec3 {
 /// Points along each of four parts of the hemisphere.
 const POINTS: usize = 24;
 
-/// Directions over the hemisphere and their weights for the integral over solid angle; they crowd at the mirror direction of `wo`.
+/// Directions over the hemisphere with their weights for an integral over solid angle. They crowd at the mirror direction of `wo`, because lobes
+/// are narrow there.
 pub(crate) fn hemisphere(wo: DVec3) -> Vec<(DVec3, f64)> {
-    let rule = luthier_optics::quadrature::gauss_legendre(POINTS);
     let theta_o = libm::acos(wo.z.clamp(0.0, 1.0));
     let mirror = libm::atan2(-wo.y, -wo.x);
-    // The third power crowds at the start.
-    let part = |start: f64, span: f64| {
-        rule.iter()
-            .map(move |&(u, weight)| (start + span * u * u * u, 3.0 * u * u * weight * span.abs()))
-            .collect::<Vec<_>>()
-    };
-    let thetas: Vec<_> = part(theta_o, -theta_o).into_iter().chain(part(theta_o, 0.5 * PI - theta_o)).collect();
-    let phis: Vec<_> = part(mirror, PI).into_iter().chain(part(mirror, -PI)).collect();
+    let thetas = crowded(theta_o, [-theta_o, 0.5 * PI - theta_o]);
+    let phis = crowded(mirror, [PI, -PI]);
     let mut found = Vec::with_capacity(thetas.len() * phis.len());
     for &(theta, theta_weight) in &thetas {
         for &(phi, phi_weight) in &phis {
@@ -176,6 +189,13 @@ pub(crate) fn hemisphere(wo: DVec3) -> Vec<(DVec3, f64)> {
         }
     }
     found
+}
+
+/// Points and weights of two intervals that begin at `start`; by the third power they crowd there.
+fn crowded(start: f64, spans: [f64; 2]) -> Vec<(f64, f64)> {
+    let rule = luthier_optics::quadrature::gauss_legendre(POINTS);
+    let points = spans.into_iter().flat_map(|span| rule.iter().map(move |&(u, weight)| (span, u, weight)));
+    points.map(|(span, u, weight)| (start + span * u * u * u, 3.0 * u * u * weight * span.abs())).collect()
 }
 
 #[cfg(test)]

@@ -15,22 +15,22 @@ use rayon::prelude::*;
 use crate::error::Value;
 use crate::probe::Probe;
 
-/// Samples at each wavelength to begin with; every refinement doubles them.
+/// First number of samples at each wavelength; every refinement doubles it.
 const FIRST: u64 = 256;
 
-/// Samples at each wavelength of one probe, at most.
+/// The most samples of one probe at each wavelength.
 const MOST: u64 = 1 << 20;
 
-/// Largest change of a reflectance by wavelengths that are left out.
+/// Largest change of a reflectance that leaving out wavelengths may cause.
 const SPECTRUM_TOLERANCE: f64 = 1e-3;
 
 /// Cosines at which spectra are compared to decide which wavelengths are left out.
 const SPECTRUM_COS_THETA: [f64; 3] = [1.0, 0.6, 0.2];
 
-/// `layered-mc` in colour at some probes. The same calls give the same numbers.
+/// `layered-mc` in colour at some probes. Equal calls give equal numbers.
 #[derive(Debug)]
 pub(crate) struct Reference {
-    /// The stack at each wavelength, and what it adds to each channel.
+    /// The stack at each wavelength, with its weight in each channel.
     spectrum: Vec<(Monochrome, Rgb)>,
     probes: Vec<(Probe, Tallies)>,
 }
@@ -51,7 +51,7 @@ struct Tally {
 }
 
 impl Tally {
-    /// The tally with other samples (Chan, Golub and LeVeque 1983).
+    /// This tally merged with more samples (Chan, Golub and LeVeque 1983).
     fn with(self, estimate: Estimate, count: u64) -> Self {
         let n = count as f64;
         let squares = estimate.variance() * n * (n - 1.0);
@@ -72,13 +72,12 @@ impl Reference {
     /// The reference of a stack at some probes, with a first few samples.
     pub(crate) fn new(stack: &Stack, color: Color, probes: Vec<Probe>) -> Self {
         let spectrum = spectrum(stack, color);
-        let first = |probe: Probe| {
+        let probes = probes.into_par_iter().map(|probe| {
             let mut tallies = Tallies { tallies: vec![Tally::default(); spectrum.len()], batches: 0 };
             more(&spectrum, &probe, &mut tallies);
             (probe, tallies)
-        };
-        let probes = probes.into_par_iter().map(first).collect();
-        Self { spectrum, probes }
+        });
+        Self { probes: probes.collect(), spectrum }
     }
 
     /// The values at all probes.
@@ -97,10 +96,9 @@ impl Reference {
         Value { rgb, std_err: variance.map(f64::sqrt) }
     }
 
-    /// Doubles the samples of some probes; `false` if one of them has as many as it may have.
+    /// Doubles the samples of some probes. Returns false, and adds none, if one of them would exceed [`MOST`].
     pub(crate) fn refine(&mut self, numbers: &[usize]) -> bool {
-        let is_open = |number: &usize| samples(self.probes[*number].1.batches + 1) <= MOST;
-        if !numbers.iter().all(is_open) {
+        if numbers.iter().any(|&number| samples(self.probes[number].1.batches + 1) > MOST) {
             return false;
         }
         let spectrum = &self.spectrum;
@@ -116,7 +114,7 @@ impl Reference {
     }
 }
 
-/// Samples after so many batches: each batch after the first doubles them.
+/// Number of samples after some batches: each batch after the first doubles it.
 fn samples(batches: u64) -> u64 {
     if batches == 0 { 0 } else { FIRST << (batches - 1) }
 }
@@ -134,7 +132,7 @@ fn more(spectrum: &[(Monochrome, Rgb)], probe: &Probe, tallies: &mut Tallies) {
     tallies.batches += 1;
 }
 
-/// The wavelengths that a stack needs, one for all channels that do not differ there.
+/// The wavelengths that a stack needs. Channels and wavelengths with equal stacks share one.
 fn spectrum(stack: &Stack, color: Color) -> Vec<(Monochrome, Rgb)> {
     let nodes = color.nodes();
     let interfaces: Vec<Interface> = (0..stack.layers.len()).filter_map(|i| Interface::of(stack, i)).collect();

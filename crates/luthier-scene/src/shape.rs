@@ -19,7 +19,7 @@ pub fn shape(stack: &Stack) -> String {
     codes.join("/")
 }
 
-/// The part of a shape that a model looks at.
+/// The part of a shape that a model reads.
 pub fn shape_of(model: ShadingModel, shape: &str) -> String {
     let facts = model.facts();
     let mut read = match facts.reach {
@@ -31,7 +31,7 @@ pub fn shape_of(model: ShadingModel, shape: &str) -> String {
     if facts.reach == Reach::FirstAndBase && base.is_some() {
         read += "/l";
     }
-    // Lobes are in axes as soon as any layer has some.
+    // One anisotropic layer puts all lobes into axes.
     if facts.is_isotropic || model.is_fitted() {
         read = read.replace('a', "");
     }
@@ -63,12 +63,11 @@ fn code(layer: &Layer, has_slab: bool) -> String {
     code
 }
 
-/// Distance of two shapes: letters that only one of them has, layer by layer from the bottom; a layer more or less weighs ten.
+/// Distance of two shapes: the number of letters that only one of them has, layer by layer from the bottom. A missing layer counts as ten letters.
 pub(crate) fn distance(a: &str, b: &str) -> usize {
-    let layers = |shape: &str| shape.split('/').rev().map(str::to_owned).collect::<Vec<_>>();
-    let (a, b) = (layers(a), layers(b));
-    let only = |a: &str, b: &str| a.chars().filter(|c| !b.contains(*c)).count();
-    let unlike: usize = a.iter().zip(&b).map(|(a, b)| only(a, b) + only(b, a)).sum();
+    let [a, b] = [a, b].map(|shape| shape.rsplit('/').collect::<Vec<_>>());
+    let pairs = a.iter().zip(&b).flat_map(|(a, b)| [(a, b), (b, a)]);
+    let unlike: usize = pairs.map(|(a, b)| a.chars().filter(|c| !b.contains(*c)).count()).sum();
     unlike + 10 * a.len().abs_diff(b.len())
 }
 

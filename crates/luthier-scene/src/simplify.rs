@@ -5,12 +5,21 @@ use luthier_material::{Maps, Material};
 use luthier_optics::stack::{Base, Distribution, FilmThickness, Slab, Surface};
 
 /// A part that a material can do without.
+///
+/// ```
+/// use luthier_manifest::Feature;
+/// use luthier_scene::LeaveOut;
+///
+/// assert_eq!(LeaveOut::from_name("layer 2"), Some(LeaveOut::Layer(2)));
+/// let films = LeaveOut::Feature(Feature::Films);
+/// assert_eq!(LeaveOut::from_name(&films.name()), Some(films));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LeaveOut {
-    /// A feature, wherever the material has it. Films go altogether; of anisotropic surfaces the geometric mean of both slope parameters
-    /// is left.
+    /// A feature, in all layers. Films are removed entirely; an anisotropic surface becomes isotropic with the geometric mean of both slope
+    /// parameters.
     Feature(Feature),
-    /// A transparent layer, by its number from the top; what is below it comes up.
+    /// A transparent layer, by its number from the top. The layers below move up.
     Layer(usize),
 }
 
@@ -38,7 +47,7 @@ impl LeaveOut {
     }
 }
 
-/// A material without some of its parts; `None` where one of them is not there, or cannot be missed.
+/// A material without some of its parts; `None` if one of them is absent, or needed.
 pub fn simplified(material: &Material, left_out: &[LeaveOut]) -> Option<Material> {
     let mut material = material.clone();
     for part in left_out {
@@ -55,7 +64,7 @@ fn leave_out(material: &mut Material, part: LeaveOut) -> bool {
         LeaveOut::Layer(index) => {
             let layers = &mut material.stack.layers;
             let is_coat = layers.get(index).is_some_and(|layer| matches!(layer.base, Base::Dielectric { .. }));
-            // Flakes, patina and maps belong to layers by number.
+            // Flakes, patina and maps name their layer by number, which a removed layer would shift.
             let effects = &material.effects;
             let stays = effects.flakes.is_some() || effects.patina.is_some();
             let found = is_coat && index + 1 < layers.len() && !stays;
@@ -68,7 +77,7 @@ fn leave_out(material: &mut Material, part: LeaveOut) -> bool {
     }
 }
 
-/// Takes a feature away; whether it was there. Layers are left out one by one, by [`LeaveOut::Layer`].
+/// Removes a feature and returns whether it was there. [`LeaveOut::Layer`] removes layers, one by one.
 fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
     let (layers, effects) = (&mut material.stack.layers, &mut material.effects);
     let mut found = false;
@@ -184,7 +193,7 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
     found
 }
 
-/// All that can be left out together: every set of parts that are there, with at most one layer. The whole material first.
+/// Every set of parts that can be left out together, with the remaining material. A set has at most one layer; the whole material comes first.
 pub fn variants(material: &Material) -> Vec<(Vec<LeaveOut>, Material)> {
     let mut found: Vec<(Vec<LeaveOut>, Material)> = Vec::new();
     let layers = (0..material.stack.layers.len()).map(|layer| Some(LeaveOut::Layer(layer)));

@@ -18,7 +18,7 @@ pub(super) enum Encoding {
 impl Encoding {
     pub(super) const ALL: [Self; 3] = [Self::Linear, Self::Srgb, Self::Linearised];
 
-    /// The value that was encoded; linear outside 0..1, where no encoding is.
+    /// The value before it was encoded. Values outside 0..1 stay, because the transfer functions end there.
     pub(super) fn decode(self, v: f64) -> f64 {
         match self {
             Self::Srgb if v > 0.04045 && v <= 1.0 => libm::pow((v + 0.055) / 1.055, 2.4),
@@ -30,12 +30,12 @@ impl Encoding {
     }
 }
 
-/// One way in which a table differs from what is stated.
+/// One way in which a table differs from its statement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mistake {
-    /// Its kind, for programs: `axes`, `flip`, `nodes`, `quantity`, `range`, `model`, `channels`, `encoding`, `clamp`.
+    /// Kind of the mistake, for programs: `axes`, `flip`, `nodes`, `quantity`, `range`, `model`, `channels`, `encoding`, `clamp`.
     pub kind: &'static str,
-    /// Words that follow `fits better as`.
+    /// Description; it follows the words `fits better as`.
     pub text: String,
 }
 
@@ -46,12 +46,12 @@ pub(super) struct Hypothesis {
     pub(super) variant: usize,
     pub(super) terms: Vec<Term>,
     pub(super) encoding: Encoding,
-    /// Whether values below 0 are to be taken as 0.
+    /// Whether values below 0 count as 0.
     pub(super) clamped: bool,
 }
 
 impl Hypothesis {
-    /// The value of a channel as the stated terms would have it, and the factor by which errors are made comparable.
+    /// The stored value of a channel, decoded and scaled so that errors of all terms are comparable.
     pub(super) fn comparable(&self, channel: usize, stored: f64, alpha: f64) -> f64 {
         let value = self.encoding.decode(stored) * self.terms[channel].scale(alpha);
         if self.clamped { value.max(0.0) } else { value }
@@ -90,7 +90,7 @@ impl Hypothesis {
                 };
                 add("quantity", text);
             }
-            // A quantity that was not stated is supposed to begin at 0.
+            // A quantity that was not stated begins at 0 by default.
             let same = found.quantity == stated.quantity && found.mapping == stated.mapping;
             let min = if same { stated.min } else { 0.0 };
             if found.min != min {
@@ -106,9 +106,10 @@ impl Hypothesis {
         if self.terms != stated.terms {
             let mut sorted = [self.terms.clone(), stated.terms.clone()];
             sorted.iter_mut().for_each(|terms| terms.sort_by_key(|t| t.name()));
-            let names = |terms: &[Term]| terms.iter().map(|t| t.name()).collect::<Vec<_>>().join(",");
+            let [is, should] =
+                [&self.terms, &stated.terms].map(|terms| terms.iter().map(|t| t.name()).collect::<Vec<_>>().join(","));
             let swapped = if sorted[0] == sorted[1] { "channels swapped: " } else { "" };
-            add("channels", format!("{swapped}{} where {} was stated", names(&self.terms), names(&stated.terms)));
+            add("channels", format!("{swapped}{is} where {should} was stated"));
         }
         match self.encoding {
             Encoding::Linear => {}
@@ -123,14 +124,14 @@ impl Hypothesis {
 }
 
 fn nodes(found: &AxisSpec, stated: &AxisSpec, place: &str) -> String {
-    let offset = |nodes| match nodes {
+    let offsets = [found.nodes, stated.nodes].map(|nodes| match nodes {
         Nodes::Offset(offset) => Some(offset - 0.5),
         Nodes::Ends => None,
-    };
-    match (offset(found.nodes), offset(stated.nodes)) {
-        (None, _) => format!("half-texel remap in {place}: the first and last nodes are the ends of the axis"),
-        (Some(0.0), None) => format!("no half-texel remap in {place}: nodes are texel centres of 0..1"),
-        (Some(by), _) => {
+    });
+    match offsets {
+        [None, _] => format!("half-texel remap in {place}: the first and last nodes are the ends of the axis"),
+        [Some(0.0), None] => format!("no half-texel remap in {place}: nodes are texel centres of 0..1"),
+        [Some(by), _] => {
             let size = if by.abs() < 0.75 { "half a texel" } else { "a texel" };
             let way = if by > 0.0 { "high" } else { "low" };
             format!("{size} off in {place}: coordinates too {way}")
@@ -138,7 +139,7 @@ fn nodes(found: &AxisSpec, stated: &AxisSpec, place: &str) -> String {
     }
 }
 
-/// Arrangements of terms that a table of so many channels may have.
+/// Arrangements of terms over the channels: the stated one first, then all others without repetition.
 pub(super) fn arrangements(stated: &[Term], terms: &[Term]) -> Vec<Vec<Term>> {
     let mut all = vec![stated.to_vec()];
     let mut grow: Vec<Vec<Term>> = vec![Vec::new()];

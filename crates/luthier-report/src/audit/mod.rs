@@ -1,9 +1,9 @@
-//! The audit of a table of another program: its error, as a shader reads it, against the model that it should hold; and whether
-//! it fits another statement better. [`audit`] tells flips, swaps, shifted nodes, mistaken axes and channels, encodings and masking
-//! terms apart by comparing texels with quadrature under every combination of them.
+//! The audit of a table of another program. It measures the error of sampled reads against the stated model, and searches for a statement that
+//! fits better. [`audit`] tells flips, swaps, shifted nodes, mistaken axes and channels, encodings and masking terms apart: it compares texels with
+//! quadrature under every combination of them.
 //!
 //! Simplifications: a mistake that changes less than the table's noise is not found. Mistakes that cancel are not found either.
-//! Angle and alpha of a one-row table are not looked for across rows.
+//! The search never takes a one-row table for one over both angle and alpha.
 
 mod hypothesis;
 mod page;
@@ -57,6 +57,23 @@ pub enum AuditError {
 }
 
 /// Statement of the contents and the layout of a table.
+///
+/// ```
+/// use luthier_optics::{microfacet::scaled_distribution, stack::Distribution};
+/// use luthier_report::{Model, Statement, Term, audit};
+/// # use luthier_table::{Layout, Nodes};
+/// let (distribution, mut image) = (Distribution::Ggx, luthier_lut::Image::zeros(32, 32, 1));
+/// for (i, texel) in image.data.iter_mut().enumerate() {
+///     // Rows run from large to small alpha.
+///     let [u, alpha] = [i % 32, 31 - i / 32].map(|k| (k as f64 + 0.5) / 32.0);
+///     let (sin, cos) = (u * std::f64::consts::FRAC_PI_2).sin_cos();
+///     *texel = scaled_distribution(distribution, alpha, cos, sin * sin) as f32;
+/// }
+/// let layout = Layout::parse("theta,alpha", Nodes::CENTRES).unwrap();
+/// let (channels, terms, step) = (vec![0], vec![Term::ScaledDensity], f64::from(f32::EPSILON));
+/// let stated = Statement { model: Model::Density { distribution }, layout, channels, terms, min_cos: 0.01, min_alpha: 0.05, step };
+/// assert_eq!(audit(&image, &stated).unwrap().verdict_line(), "fits better as: flipped in y");
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statement {
     /// The function.
@@ -71,7 +88,7 @@ pub struct Statement {
     pub min_cos: f64,
     /// Lowest alpha that counts.
     pub min_alpha: f64,
-    /// Distance of neighbouring values next to 1 in the file's format.
+    /// Distance of neighbouring values near 1 in the file's format: the size of rounding errors.
     pub step: f64,
 }
 
@@ -80,7 +97,7 @@ pub struct Statement {
 pub struct Candidate {
     /// Differences from the statement; none for the statement itself.
     pub mistakes: Vec<Mistake>,
-    /// Root mean square of texels against quadrature; errors above a quarter count as a quarter.
+    /// Root mean square error of texels against quadrature; errors above a quarter count as a quarter.
     pub rms: f64,
 }
 
@@ -90,7 +107,7 @@ pub struct Candidate {
 pub enum AuditVerdict {
     /// No other hypothesis fits better.
     AsStated,
-    /// Another one does: the first candidate.
+    /// The first candidate fits better than the statement.
     FitsBetterAs,
     /// No hypothesis fits.
     FitsNothing,
@@ -105,7 +122,7 @@ pub struct Audit {
     pub verdict: AuditVerdict,
     /// Error as sampled under the statement; places are `cos_theta` and `alpha`.
     pub stated: ErrorStats,
-    /// Error as sampled under the best hypothesis, where that is not the statement.
+    /// Error as sampled under the best hypothesis, if that is not the statement.
     pub remaining: Option<ErrorStats>,
     /// The best hypotheses, the best first; the statement is among them.
     pub candidates: Vec<Candidate>,
@@ -143,7 +160,7 @@ fn against(image: &Image, statement: &Statement, truth: &Truth) -> Audit {
         encoding: Encoding::Linear,
         clamped: false,
     };
-    // Rounding is even over a step.
+    // Rounding errors are uniform over a step, whose standard deviation is 1/sqrt(12) of it.
     let rounding = statement.step / 12.0f64.sqrt();
     let subject = Subject { image, channels: &statement.channels, rounding };
     let fits = search(&subject, &stated, truth);
@@ -198,9 +215,9 @@ fn check(image: &Image, statement: &Statement) -> Result<(), AuditError> {
     }
 }
 
-/// The error of reads through a sampler, at points off the nodes and at the ends of the axes, with the climb of [`measure_scan`] to the worst.
+/// The error of reads through a sampler. [`measure_scan`] reads at points off the nodes and at the ends of the axes, and climbs to the worst.
 fn sampled(subject: &Subject, statement: &Statement, truth: &Truth, h: &Hypothesis) -> ErrorStats {
-    // Coordinates of the scan are the statement's, whatever the hypothesis: both are asked at the same places.
+    // The scan runs over the coordinates of the statement for every hypothesis, so that all are compared at the same places.
     let (angle, slope) = (statement.layout.angle, statement.layout.slope);
     let (points, refinements) = truth.scan();
     let ends = |a: f64, b: f64| (a.min(b), a.max(b));

@@ -9,20 +9,20 @@ use super::hypothesis::{Encoding, Hypothesis, arrangements};
 use super::truth::Truth;
 use luthier_table::{AxisSpec, Layout, Nodes, Quantity};
 
-/// Most that a value counts in a fit: a value that is wildly wrong in a corner does not decide about the rest.
+/// Cap on the error of a value in a fit. Without it, one wildly wrong corner would decide about the whole table.
 const CAP: f64 = 0.25;
-/// A hypothesis with one mistake more must fit this much better to be preferred.
+/// Factor by which a hypothesis must fit better for each additional mistake. Without it, a combination of mistakes that fits noise would win.
 const PENALTY: f64 = 1.25;
-/// Root mean square error below which hypotheses are not told apart: the error of quadrature and rounding.
+/// Root mean square error below which hypotheses are not told apart: the error of the quadrature itself.
 const FLOOR: f64 = 5e-5;
 /// Texels along each axis in the first, second and last round.
 const TEXELS: [u32; 3] = [12, 28, 16];
 /// Hypotheses kept after the first round, and after the second.
 const KEPT: [usize; 2] = [40, 8];
-/// Least roughness that tables stop at: 0.045 and 0.089 are Filament's for 32-bit and 16-bit floats.
+/// Least roughness that tables may stop at: 0.045 and 0.089 are Filament's for 32-bit and 16-bit floats.
 const FLOORS: [f64; 10] = [0.01, 0.02, 0.03, 0.04, 0.045, 0.05, 0.0625, 0.08, 0.089, 0.1];
 
-/// A hypothesis and how it fits.
+/// A hypothesis with its fit.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
     pub(super) hypothesis: Hypothesis,
@@ -32,11 +32,11 @@ pub(super) struct Fit {
     score: f64,
 }
 
-/// The table under judgement: its file's channels, picked and in order.
+/// The table under judgement: the picked channels of its file, in the order of the statement.
 pub(super) struct Subject<'a> {
     pub(super) image: &'a Image,
     pub(super) channels: &'a [usize],
-    /// Root mean square of what rounding to the format costs.
+    /// Root mean square error of rounding to the format.
     pub(super) rounding: f64,
 }
 
@@ -51,11 +51,12 @@ impl Subject<'_> {
             let count = size.min(most);
             (0..count).map(|i| if count < 2 { 0 } else { i * (size - 1) / (count - 1) }).collect()
         });
-        // A row has texels to spare.
+        // A single row may spend the texels of all rows.
         let xs = if ys.len() == 1 { spread(self.image.width, most * most) } else { xs };
         let ys = if xs.len() == 1 { spread(self.image.height, most * most) } else { ys };
-        let value = |x, y| self.channels.iter().map(|&c| f64::from(self.image.texel(x, y)[c])).collect();
-        ys.iter().flat_map(|&y| xs.iter().map(move |&x| ([x, y], value(x, y)))).collect()
+        let places = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y]));
+        let texels = places.map(|[x, y]| ([x, y], self.image.texel(x, y)));
+        texels.map(|(at, texel)| (at, self.channels.iter().map(|&c| f64::from(texel[c])).collect())).collect()
     }
 
     fn has_negative(&self) -> bool {
@@ -70,7 +71,7 @@ fn spread(size: u32, most: u32) -> Vec<u32> {
         .collect()
 }
 
-/// Hypotheses in the order of their fit, the stated one among them. The same for the same input on any number of threads.
+/// Hypotheses in the order of their fit, the stated one among them. The result does not depend on the number of threads.
 pub(super) fn search(subject: &Subject, stated: &Hypothesis, truth: &Truth) -> Vec<Fit> {
     let mut fits = coarse(subject, stated, truth);
     let texels = subject.texels(TEXELS[1]);
@@ -98,7 +99,7 @@ pub(super) fn search(subject: &Subject, stated: &Hypothesis, truth: &Truth) -> V
     fits
 }
 
-/// Sorted by score, duplicates gone.
+/// Sorts by score and removes duplicates.
 fn rank(fits: &mut Vec<Fit>, kept: usize) {
     fits.sort_by(|a, b| a.score.total_cmp(&b.score).then(a.mistakes.cmp(&b.mistakes)));
     let mut seen = BTreeSet::new();
@@ -130,7 +131,7 @@ fn coarse(subject: &Subject, stated: &Hypothesis, truth: &Truth) -> Vec<Fit> {
                     }
                 }
             }
-            // Neighbours are looked at later: a layout needs few delegates.
+            // Later rounds try the neighbours of each survivor: a few hypotheses can stand for a layout.
             found.sort_by(|a, b| a.score.total_cmp(&b.score));
             found.truncate(6);
             found
@@ -141,13 +142,13 @@ fn coarse(subject: &Subject, stated: &Hypothesis, truth: &Truth) -> Vec<Fit> {
 }
 
 fn squared_errors(h: &Hypothesis, values: &[f64], components: [f64; 3], alpha: f64) -> f64 {
-    let error = |(c, &stored): (usize, &f64)| {
+    let errors = values.iter().enumerate().map(|(c, &stored)| {
         let off = (h.comparable(c, stored, alpha) - h.terms[c].of(components)).abs();
-        // Also what is not a number.
+        // Written so that NaN counts as the cap.
         let off = if off < CAP { off } else { CAP };
         off * off
-    };
-    values.iter().enumerate().map(error).sum()
+    });
+    errors.sum()
 }
 
 fn fit(
@@ -181,7 +182,7 @@ fn judge(
     fit(subject, stated, truth, h, squares, texels.len())
 }
 
-/// Swapped or not, both flips, nodes alike on both axes, any quantity of each axis.
+/// All layouts of the first round: axes swapped or not, both flips, equal nodes on both axes, any quantity of each axis.
 fn layouts(stated: &Layout, size: [u32; 2]) -> Vec<Layout> {
     let nodes = &Nodes::MISTAKEN[..4];
     let mut all = vec![*stated];
@@ -191,7 +192,7 @@ fn layouts(stated: &Layout, size: [u32; 2]) -> Vec<Layout> {
             match stated.slope {
                 None => all.push(Layout { angle, slope: None, transposed: *transposed }),
                 Some(slope) => {
-                    // Nodes may be stated apart; alternatives are alike.
+                    // A statement may have different nodes on both axes; alternatives have equal ones.
                     for slope in alternatives(&slope, &Quantity::SLOPES, &[angle.nodes]) {
                         all.push(Layout { angle, slope: Some(slope), transposed: *transposed });
                     }
@@ -219,31 +220,30 @@ fn alternatives(stated: &AxisSpec, quantities: &[Quantity], nodes: &[Nodes]) -> 
     all
 }
 
-/// One step away: nodes of one axis or both, the start of the slope axis, its floor.
+/// Hypotheses one step away: other nodes of one axis or both, another start of the slope axis, another floor.
 fn neighbours(h: &Hypothesis, stated: &Hypothesis) -> Vec<Hypothesis> {
-    let mut all = Vec::new();
-    let mut add = |layout: Layout| all.push(Hypothesis { layout, ..h.clone() });
+    let mut layouts = Vec::new();
     let layout = h.layout;
     for nodes in Nodes::MISTAKEN {
         let angle = AxisSpec { nodes, ..layout.angle };
-        add(Layout { angle, ..layout });
+        layouts.push(Layout { angle, ..layout });
         if let Some(slope) = layout.slope {
             let slope = Some(AxisSpec { nodes, ..slope });
-            add(Layout { slope, ..layout });
-            add(Layout { angle, slope, ..layout });
+            layouts.push(Layout { slope, ..layout });
+            layouts.push(Layout { angle, slope, ..layout });
         }
     }
     if let Some(slope) = layout.slope {
         for roughness in FLOORS {
             let value = slope.quantity.of_canonical(roughness * roughness);
-            add(Layout { slope: Some(AxisSpec { floor: value, ..slope }), ..layout });
+            layouts.push(Layout { slope: Some(AxisSpec { floor: value, ..slope }), ..layout });
             if slope.mapping != Mapping::Logarithmic {
-                add(Layout { slope: Some(AxisSpec { min: value, ..slope }), ..layout });
+                layouts.push(Layout { slope: Some(AxisSpec { min: value, ..slope }), ..layout });
             }
         }
         let same = stated.layout.slope.filter(|s| s.quantity == slope.quantity && s.mapping == slope.mapping);
         let plain = same.map_or(0.0, |s| s.min);
-        add(Layout { slope: Some(AxisSpec { floor: 0.0, min: plain, ..slope }), ..layout });
+        layouts.push(Layout { slope: Some(AxisSpec { floor: 0.0, min: plain, ..slope }), ..layout });
     }
-    all
+    layouts.into_iter().map(|layout| Hypothesis { layout, ..h.clone() }).collect()
 }

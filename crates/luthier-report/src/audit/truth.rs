@@ -91,14 +91,14 @@ impl Term {
         }
     }
 
-    /// Factor on a file's value before it is compared: densities are compared as pi alpha^2 D, which has no poles.
+    /// Factor on a file's value before the comparison. Densities are compared as pi alpha^2 D, because D itself has a pole at small alpha.
     pub(super) fn scale(self, alpha: f64) -> f64 {
         if self == Self::Density { PI * alpha * alpha } else { 1.0 }
     }
 }
 
 impl Model {
-    /// Terms that its channels may hold.
+    /// Terms that channels of the model may hold.
     pub fn terms(&self) -> &'static [Term] {
         match self {
             Self::SplitSum { .. } => &[Term::Scale, Term::Bias, Term::Albedo],
@@ -107,21 +107,21 @@ impl Model {
         }
     }
 
-    /// Whether it depends on a micro-surface, and needs a second axis.
+    /// Whether the model depends on a micro-surface, and needs a second axis.
     pub fn has_slope(&self) -> bool {
         !matches!(self, Self::Reflectance { .. })
     }
 }
 
-/// Effort of albedos with all bounces: only the noise of the walks is left.
+/// Effort of albedos with all bounces: enough for the noise of the walks to be the only error.
 const EFFORT: Effort = Effort { first: 24, later: 24 };
 /// Wavelengths of the three-wavelength values, nm: CONVENTIONS.md.
 const WAVELENGTHS: [f64; 3] = [645.0, 525.0, 445.0];
 
-/// The stated model and those that a table might hold instead, exact and fast.
+/// The stated model and the models that a table might hold instead, each as exact values and as fast ones.
 pub(super) struct Truth<'a> {
     model: &'a Model,
-    /// Names of the models, which follow `fits better as`.
+    /// Names of the models; they follow the words `fits better as`.
     pub(super) variants: Vec<String>,
     /// Index of the stated model.
     pub(super) stated: usize,
@@ -192,14 +192,14 @@ impl<'a> Truth<'a> {
             Model::Albedo { distribution, .. } => {
                 let Some((weights, curves)) = &self.spectrum else { return vec![[0.0; 3]; 2] };
                 let facets = FacetStatistics::new(*distribution, alpha, cos, EFFORT, 1);
-                let rgb = |albedos: Vec<f64>| {
+                let bounces = [facets.albedo(curves), facets.single_scattering(curves)].map(|albedos| {
                     let mut rgb = [0.0; 3];
                     for (weight, albedo) in weights.iter().zip(albedos) {
                         (0..3).for_each(|c| rgb[c] += weight[c] * albedo);
                     }
                     rgb
-                };
-                vec![rgb(facets.albedo(curves)), rgb(facets.single_scattering(curves))]
+                });
+                bounces.into()
             }
         }
     }
@@ -216,7 +216,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// One variant, by cubics between the nodes of a grid: to rank hypotheses.
+    /// One variant, by cubics between the nodes of a grid: exact enough to rank hypotheses.
     pub(super) fn fast(&self, variant: usize, at: [f64; 2]) -> [f64; 3] {
         match &self.grid {
             Some(grid) => grid.at(variant, at),
@@ -235,7 +235,8 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// Values over the roots of the cosine and of alpha, which spread what changes fastest: grazing angles and low alpha.
+/// Values on a grid over the square roots of the cosine and of alpha. Roots put most nodes at grazing angles and low alpha, where values change
+/// fastest.
 struct Grid {
     size: [usize; 2],
     variants: usize,
@@ -244,11 +245,11 @@ struct Grid {
 
 impl Grid {
     fn new(size: [usize; 2], f: impl Fn(f64, f64) -> Vec<[f64; 3]> + Sync) -> Self {
-        let node = |i: usize, n: usize| if n < 2 { 0.0 } else { i as f64 / (n - 1) as f64 };
         let rows: Vec<Vec<[f64; 3]>> = (0..size[1] * size[0])
             .into_par_iter()
             .map(|k| {
-                let (s, t) = (node(k % size[0], size[0]), node(k / size[0], size[1]));
+                let [s, t] = [(k % size[0], size[0]), (k / size[0], size[1])]
+                    .map(|(i, n)| if n < 2 { 0.0 } else { i as f64 / (n - 1) as f64 });
                 f(libm::acos(s * s), t * t)
             })
             .collect();
@@ -257,9 +258,8 @@ impl Grid {
     }
 
     fn at(&self, variant: usize, [theta, alpha]: [f64; 2]) -> [f64; 3] {
-        let at = |value: f64, nodes: usize| cubic_stencil(value.clamp(0.0, 1.0).sqrt() * (nodes - 1) as f64, nodes);
-        let (x, wx) = at(libm::cos(theta), self.size[0]);
-        let (y, wy) = at(alpha, self.size[1]);
+        let [(x, wx), (y, wy)] = [(libm::cos(theta), self.size[0]), (alpha, self.size[1])]
+            .map(|(value, nodes)| cubic_stencil(value.clamp(0.0, 1.0).sqrt() * (nodes - 1) as f64, nodes));
         let mut out = [0.0; 3];
         for (j, wy) in wy.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
             for (i, wx) in wx.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::stability::{Stability, Verdict};
 
-/// Costs of shaders on GPUs: what `luthier cost --json` prints, as far as a report needs it.
+/// Costs of shaders on GPUs: the part of the output of `luthier cost --json` that a report needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Costs {
     /// Program and version.
@@ -39,18 +39,18 @@ pub struct ShaderCost {
     pub texture_reads: i64,
 }
 
-/// The cost of a shader that was compiled for a surface of layers of the same kinds: inverse throughput on RDNA 2, in cycles per wave of 64.
+/// The cost of a shader that was compiled for a surface with layers of equal kinds: inverse throughput on RDNA 2, in cycles per wave of 64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShapeCost {
     /// Cycles of the table-reading form.
     pub baked: u32,
     /// Cycles of the table-free form, if the model has it.
     pub full: Option<u32>,
-    /// Whether the surface is only similar, because none of these layers was compiled.
+    /// Whether the surface is only similar, because none with layers of these kinds was compiled.
     pub is_of_similar: bool,
 }
 
-/// The paths of a reference.
+/// Number and seed of the paths of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReferencePaths {
     /// Per view and wavelength.
@@ -59,7 +59,7 @@ pub struct ReferencePaths {
     pub seed: u64,
 }
 
-/// The pictures of a material, compared: the form `baked` with the form `full`.
+/// Differences between the pictures of a material in the forms `baked` and `full`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PictureErrors {
     /// Side in pixels.
@@ -97,35 +97,36 @@ pub struct StabilitySummary {
     pub fails: u64,
     /// Cells that do not hold and have no explanation.
     pub unexplained: u64,
-    /// Cells of what ships that are NaN or infinite somewhere.
+    /// Cells of shaders and tables that are NaN or infinite somewhere.
     pub not_finite: u64,
 }
 
 impl StabilitySummary {
     /// Counts cells.
     pub fn of(suite: &Stability) -> Self {
-        let count = |verdict| suite.cells.iter().filter(|c| c.verdict == verdict).count() as u64;
+        let [holds, degrades, fails] = [Verdict::Holds, Verdict::Degrades, Verdict::Fails]
+            .map(|verdict| suite.cells.iter().filter(|c| c.verdict == verdict).count() as u64);
         Self {
             generator: suite.generator.clone(),
             device: suite.device.clone(),
             cells: suite.cells.len() as u64,
-            holds: count(Verdict::Holds),
-            degrades: count(Verdict::Degrades),
-            fails: count(Verdict::Fails),
+            holds,
+            degrades,
+            fails,
             unexplained: suite.unexplained().count() as u64,
             not_finite: suite.not_finite().count() as u64,
         }
     }
 }
 
-/// Exhibits that a page shows and no JSON holds.
+/// Exhibits of the page that are not part of the JSON.
 #[derive(Debug, Clone, Default)]
 pub struct Exhibits {
     /// Pictures, a list for each material in the order of the report; empty lists show nothing.
     pub pictures: Vec<Vec<Exhibit>>,
     /// A run of the stability suite.
     pub stability: Option<Stability>,
-    /// Address of a page where every material is shown under its name, as seen from the report.
+    /// Address, relative to the report, of a page that shows every material under its name.
     pub gallery: Option<String>,
 }
 

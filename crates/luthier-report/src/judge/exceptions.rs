@@ -8,7 +8,7 @@ use crate::measure::causes::{Factor, Factors, Miss, Part};
 use crate::measure::directions::DirectionSet;
 use crate::measure::statistics::WorstPair;
 
-/// Pairs whose cause is looked for at most, evenly taken from all that miss.
+/// The most pairs whose cause is measured. They are taken evenly from all pairs that miss.
 const ATTRIBUTED_MAX: usize = 512;
 
 /// A material whose shader misses [`TARGET_MAX_REL_ERR`](crate::TARGET_MAX_REL_ERR) somewhere (without a device: whose tables do).
@@ -16,13 +16,13 @@ const ATTRIBUTED_MAX: usize = 512;
 pub struct Exception {
     /// Name of the material.
     pub material: String,
-    /// Comparison that the shader is part of.
+    /// Comparison in which the shader misses.
     pub compared: Compared,
     /// Finite samples, over all sets.
     pub samples: u64,
-    /// Samples of these that miss the target.
+    /// Samples that miss the target.
     pub samples_above: u64,
-    /// The larger angle to the normal, degrees, of the pair that misses at the steepest.
+    /// Least angle at which a pair misses, degrees: the larger of its two angles to the normal.
     pub least_angle_deg: f64,
     /// The set of the worst pair.
     pub set: DirectionSet,
@@ -30,12 +30,12 @@ pub struct Exception {
     pub worst: WorstPair,
     /// Parts of the error of the worst pair, largest first.
     pub parts: Vec<Part>,
-    /// Numbers of examined pairs on which each factor has the largest part. Examined are all pairs that miss, or some hundred evenly
-    /// taken from them. Most frequent first.
+    /// Number of examined pairs on which each factor has the largest part, most frequent first. Up to some hundred of the pairs that miss are
+    /// examined, evenly taken from all.
     pub tally: Vec<(Factor, u64)>,
 }
 
-/// The exception that a comparison is, if some pair misses.
+/// The exception of a comparison; `None` if no pair misses.
 pub(crate) fn exception(
     material: &str,
     comparison: &Comparison,
@@ -64,12 +64,12 @@ pub(crate) fn exception(
         .filter(|(_, count)| *count > 0)
         .collect();
     tally.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let statistics = || comparison.sets.iter().map(|(_, s)| s);
+    let statistics = comparison.sets.iter().map(|(_, s)| s);
     Some(Exception {
         material: material.to_owned(),
         compared,
-        samples: statistics().map(|s| 3 * s.pairs - s.not_finite).sum(),
-        samples_above: statistics().map(|s| s.above_target).sum(),
+        samples: statistics.clone().map(|s| 3 * s.pairs - s.not_finite).sum(),
+        samples_above: statistics.map(|s| s.above_target).sum(),
         least_angle_deg: misses.iter().map(Miss::angle_deg).fold(90.0, f64::min),
         set,
         worst: worst.clone(),

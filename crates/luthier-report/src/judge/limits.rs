@@ -1,13 +1,13 @@
 //! Limits that a report is held against.
 
 use luthier_lut::Values;
-use luthier_manifest::Budget;
+use luthier_manifest::{Budget, Candidate};
 use serde::{Deserialize, Serialize};
 
 use crate::judge::report::Report;
 use crate::measure::seen::SeenLight;
 
-/// A limit and what it was compared with.
+/// A limit and the value that it was compared with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Origin of the limit: a material file, or the command line.
@@ -16,11 +16,11 @@ pub struct Limit {
     pub quantity: String,
     /// The limit.
     pub limit: f64,
-    /// Value that was found; `None` where it is not finite, or where nothing was found that it could be compared with.
+    /// Value that was found; `None` if it is not finite, or if nothing was measured for the limit.
     pub found: Option<f64>,
     /// Source of the value: measured here, or stated by the baker.
     pub found_by: String,
-    /// Whether what was found is at most the limit.
+    /// Whether the value is at most the limit.
     pub is_held: bool,
 }
 
@@ -54,43 +54,40 @@ const BOTH: &str = "measured here; of tables that are not, stated by the baker";
 
 const LARGER: &str = "measured here or stated by the baker, whichever is larger";
 
-/// Holds a report against the budgets of its materials and those asked for. What was not measured holds no limit.
+/// Compares a report with the budgets of its materials and with those asked for. A quantity that was not measured breaks its limit.
 pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit> {
     let mut out = Vec::new();
     for FileBudget { material, budget } in files {
         let Some(material) = report.materials.get(*material) else { continue };
-        let mut add = |quantity: &str, limit: Option<f64>, found: Option<f64>, by: &str| {
+        // Thickness textures are pictures.
+        let tables = report.tables.iter().filter(|t| t.kind.facts().values != Values::Picture);
+        let read = tables.flat_map(|t| &t.tiles).filter(|tile| tile.is_read_by(&material.name));
+        let measured = read.clone().map(|tile| tile.judge.as_ref().unwrap_or(&tile.baker).max_abs_err);
+        let measured = Some(measured.fold(0.0, f64::max));
+        let by = if read.clone().all(|tile| tile.judge.is_some()) { HERE } else { BOTH };
+        let chosen: Vec<&Candidate> = report.searches.iter().filter_map(|s| s.front.get(s.chosen)).collect();
+        let cost = Some(chosen.iter().map(|c| c.cost).sum()).filter(|_| !report.searches.is_empty());
+        let stated = [
+            ("tables: largest absolute error", budget.max_abs, measured, by),
+            ("tables: largest relative error", budget.max_rel, largest(&chosen, |c| Some(c.error.max_rel)), BAKER),
+            ("tables: largest CIEDE2000", budget.delta_e, largest(&chosen, |c| c.error.delta_e), BAKER),
+            ("bytes of all tables", budget.max_bytes.map(|b| b as f64), Some(bytes(report)), HERE),
+            ("estimated cost of one read of every searched table", budget.max_cost, cost, BAKER),
+            ("lobes: largest lobe error", budget.max_lobe_err, largest(&chosen, |c| c.error.lobe), BAKER),
+            ("lobes: largest error of the albedo", budget.max_albedo_err, largest(&chosen, |c| c.error.albedo), BAKER),
+        ];
+        for (quantity, limit, found, by) in stated {
             out.extend(limit.map(|limit| made(&material.source, quantity, limit, found, by)));
-        };
-        let read = || {
-            let reads = |users: &[String]| users.iter().any(|u| u.split('/').next() == Some(material.name.as_str()));
-            // Thickness textures are pictures.
-            let tables = report.tables.iter().filter(|t| t.kind.facts().values != Values::Picture);
-            tables.flat_map(|t| &t.tiles).filter(move |tile| reads(&tile.users))
-        };
-        let measured = read().map(|tile| tile.judge.as_ref().unwrap_or(&tile.baker).max_abs_err);
-        let by = if read().all(|tile| tile.judge.is_some()) { HERE } else { BOTH };
-        add("tables: largest absolute error", budget.max_abs, Some(measured.fold(0.0, f64::max)), by);
-        let searched = |of: fn(&luthier_manifest::Candidate) -> Option<f64>| {
-            report.searches.iter().filter_map(|s| of(s.front.get(s.chosen)?)).reduce(f64::max)
-        };
-        add("tables: largest relative error", budget.max_rel, searched(|c| Some(c.error.max_rel)), BAKER);
-        add("tables: largest CIEDE2000", budget.delta_e, searched(|c| c.error.delta_e), BAKER);
-        add("bytes of all tables", budget.max_bytes.map(|b| b as f64), Some(bytes(report)), HERE);
-        let cost = report.searches.iter().filter_map(|s| s.front.get(s.chosen)).map(|c| c.cost).sum();
-        let cost = Some(cost).filter(|_| !report.searches.is_empty());
-        add("estimated cost of one read of every searched table", budget.max_cost, cost, BAKER);
-        add("lobes: largest lobe error", budget.max_lobe_err, searched(|c| c.error.lobe), BAKER);
-        add("lobes: largest error of the albedo", budget.max_albedo_err, searched(|c| c.error.albedo), BAKER);
+        }
     }
-    // Random directions may pass by what a tile misses.
+    // Random directions may miss the place of the largest error of a tile, so tiles are held to the aim of the bake as well.
     let missed = report.tables.iter().flat_map(|table| table.tiles.iter().map(|tile| (table.kind.name(), tile)));
     let missed = missed.filter_map(|(kind, tile)| Some((tile.miss()?.0, kind, &tile.name)));
     if let Some((found, kind, tile)) = missed.max_by(|a, b| a.0.total_cmp(&b.0)) {
         let quantity = format!("tables: absolute error of {kind} tile {tile}, which misses what the bake aimed at");
         out.extend(report.budget.map(|limit| made("command line", &quantity, limit, Some(found), LARGER)));
     }
-    // A budget of the tables is none of lobes that are another stack's: these have limits of their own.
+    // A budget of tables does not apply to lobes that are another stack's: these have limits of their own.
     for material in report.materials.iter().filter(|_| report.budget.is_some()) {
         let at = material.at_places.iter().filter_map(|at| at.simulated.as_ref());
         let views = at.flat_map(|simulated| &simulated.views);
@@ -103,21 +100,28 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
             }
         }
     }
-    let mut add = |quantity: &str, limit: Option<f64>, found: Option<f64>| {
-        out.extend(limit.map(|limit| made("command line", quantity, limit, found, HERE)));
-    };
     // Without tables nothing is read wrongly.
     let tables = report.worst_table().map_or(0.0, |(error, ..)| error);
-    add("tables: largest absolute error", asked.max_abs, Some(tables));
     let seen = report.worst_seen(SeenLight::Daylight).map(|(difference, _)| difference);
-    add("shaders: largest CIEDE2000 in daylight", asked.delta_e, seen);
     let flip = report.materials.iter().map(|m| m.picture.as_ref().map(|p| p.flip_mean));
     let flip = flip.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
-    add("pictures: largest mean FLIP", asked.flip, flip);
-    add("bytes of all tables", asked.max_bytes.map(|b| b as f64), Some(bytes(report)));
     let lobe = report.worst_model().map(|(_, model)| model.lobe_err);
-    add("models: largest lobe error against the reference", asked.lobe, lobe);
+    let stated = [
+        ("tables: largest absolute error", asked.max_abs, Some(tables)),
+        ("shaders: largest CIEDE2000 in daylight", asked.delta_e, seen),
+        ("pictures: largest mean FLIP", asked.flip, flip),
+        ("bytes of all tables", asked.max_bytes.map(|b| b as f64), Some(bytes(report))),
+        ("models: largest lobe error against the reference", asked.lobe, lobe),
+    ];
+    for (quantity, limit, found) in stated {
+        out.extend(limit.map(|limit| made("command line", quantity, limit, found, HERE)));
+    }
     out
+}
+
+/// The largest figure of the candidates that have it.
+fn largest(candidates: &[&Candidate], figure: fn(&Candidate) -> Option<f64>) -> Option<f64> {
+    candidates.iter().filter_map(|candidate| figure(candidate)).reduce(f64::max)
 }
 
 fn bytes(report: &Report) -> f64 {

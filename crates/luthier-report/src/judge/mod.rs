@@ -32,27 +32,26 @@ use crate::measure::table_terms::{TableTerms, Weights};
 use crate::places::{AtPlaces, PLACES_SEED, SimulatedErrors, SimulatedSettings, at_places, simulated};
 use crate::text::format;
 
-/// Factor by which the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
-/// points.
+/// Factor by which the judge's largest table error may exceed the baker's before it is a finding. Both scan finitely many points, so that
+/// smaller differences mean nothing.
 const BAKER_MARGIN: f64 = 1.05;
 
-/// The kinds of votes and of judgements of materials in memories.
+/// Keys of votes and of judgements of materials in a memory.
 const VOTE: &str = "judge-vote";
 const JUDGED: &str = "judged";
 
 /// Settings of a judgement.
 #[derive(Clone)]
 pub struct Settings<'a> {
-    /// Pairs of directions in every set of every material, at least 1. Albedos are estimated at a point for every 64 of them,
-    /// 4 to 48.
+    /// Pairs of directions in every set of every material, at least 1. Albedos are estimated at one point for every 64 pairs, at 4 to 48 in all.
     pub pairs_per_set: u32,
     /// Limit on [`Report::max_error`].
     pub budget: Option<f64>,
-    /// Facts that the caller knows about the run: shown and stored as given.
+    /// Facts about the run from the caller, shown and stored as given.
     pub provenance: Vec<(String, String)>,
-    /// Results of earlier judgements: what has not changed since is not judged again.
+    /// Results of earlier judgements: unchanged tiles and materials are not judged again.
     pub memory: Option<&'a dyn Memory>,
-    /// Simulation of materials of the model `lobes` at places that their maps give; `None` for none.
+    /// Simulation of materials of the model `lobes` at places of their maps; `None` skips it.
     pub simulated: Option<SimulatedSettings>,
     /// Called after every part of the table scan and every set of every material.
     pub progress: Option<&'a dyn Fn(Progress<'_>)>,
@@ -84,7 +83,7 @@ pub struct Progress<'a> {
     pub done: u64,
     /// Steps in all.
     pub total: u64,
-    /// The material at hand; `tables` while these are scanned.
+    /// The current material; `tables` during the scan of tables.
     pub subject: &'a str,
 }
 
@@ -121,8 +120,8 @@ pub fn judge(
     };
     let mut findings = Vec::new();
     let remembered = Remembered::new(settings.memory, subject);
-    let mut scanned = || step("tables");
-    let tables = scan::scan(subject, &references, &remembered, settings.pairs_per_set, &mut scanned, &mut findings)?;
+    let pairs = settings.pairs_per_set;
+    let tables = scan::scan(subject, &references, &remembered, pairs, &mut || step("tables"), &mut findings)?;
 
     let bench = Bench { subject, references: &references, remembered: &remembered, device, settings };
     let mut materials = Vec::with_capacity(manifest.materials.len());
@@ -202,7 +201,7 @@ pub fn judge(
     })
 }
 
-/// Kept judgement of a material: its comparisons, what misses the target, and what was found at places.
+/// Judgement of a material, as a memory keeps it: comparisons, exceptions, and errors at places.
 #[derive(Serialize, Deserialize)]
 struct Judged {
     comparisons: Vec<Comparison>,
@@ -210,7 +209,7 @@ struct Judged {
     at_places: Option<AtPlaces>,
 }
 
-/// All that materials are judged with.
+/// Inputs of the judgement that all materials share.
 struct Bench<'a> {
     subject: &'a Subject<'a>,
     references: &'a [References],
@@ -236,7 +235,7 @@ impl Bench<'_> {
             let tables_exact = evaluate(&references.twin, &exact_weights, &pairs);
             gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
             gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
-            // Without tables there is no other colour.
+            // Only the form without tables computes at three wavelengths.
             let three = entry.model.has(Form::Full).then(|| evaluate(&references.twin, &references.three, &pairs));
             if let Some(three) = &three {
                 let spectral = match entry.color {
@@ -260,7 +259,7 @@ impl Bench<'_> {
         Ok(gathered)
     }
 
-    /// Judges what was gathered, now that the weights of the device are known.
+    /// Judges gathered comparisons. It runs after all materials have voted on the weights of the device.
     fn judge(&self, index: usize, mut gathered: Gathered, weights: Option<Weights>) -> Result<Judged, ReportError> {
         if let Some(weights) = weights {
             gathered.split_arithmetic(weights);
@@ -303,22 +302,21 @@ fn at_places_of(
 
 /// Names of the models in use.
 fn models(manifest: &Manifest) -> String {
-    let used = |model: &ShadingModel| manifest.materials.iter().any(|m| m.model == *model);
-    let names: Vec<&str> = ShadingModel::ALL.into_iter().filter(used).map(ShadingModel::name).collect();
-    names.join(", ")
+    let used = ShadingModel::ALL.into_iter().filter(|model| manifest.materials.iter().any(|m| m.model == *model));
+    used.map(ShadingModel::name).collect::<Vec<_>>().join(", ")
 }
 
 /// Pairs, the device's values there, and those of f64 arithmetic on the tables with 8-bit and exact weights.
 type DeviceRun = (DirectionSet, Vec<Pair>, Vec<Rgb>, [Vec<Rgb>; 2]);
 
-/// The comparisons of one material, as they come in.
+/// The comparisons of one material, filled set by set.
 struct Gathered {
     with_device: bool,
     comparisons: Vec<Comparison>,
     device: Vec<DeviceRun>,
-    /// Colour differences, of comparisons as they come in.
+    /// Colour differences of each comparison.
     seen: Vec<(Compared, SeenBy)>,
-    /// Pairs that miss the target, of the comparisons that are judged.
+    /// Pairs that miss the target, for each judged comparison.
     misses: Vec<(Compared, Vec<Miss>)>,
     vote: WeightsVote,
 }
@@ -367,7 +365,7 @@ impl Gathered {
     }
 }
 
-/// Records whose numbers are not those of the material file. The running maximum of alpha counts: no layer is evaluated
+/// Reports records whose numbers differ from the material file. It compares the running maximum of alpha, because models evaluate no layer
 /// smoother than the one above it.
 fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], findings: &mut Vec<String>) {
     let (mut alpha, mut recorded) = (0.0_f64, 0.0_f64);

@@ -13,7 +13,7 @@ pub const ANGLE_BINS: usize = 30;
 /// Largest relative error (floor [`FLOOR`]) by the larger of the two angles to the normal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AngleProfile {
-    /// Largest errors from 0 to 90 degrees in equal bins, in four significant digits; nothing where no pair fell.
+    /// Largest errors from 0 to 90 degrees in equal bins, in four significant digits; `None` for a bin without pairs.
     pub max: Vec<Option<f64>>,
 }
 
@@ -23,7 +23,7 @@ impl AngleProfile {
         Self { max: vec![None; ANGLE_BINS] }
     }
 
-    /// Takes pairs with their values in; samples that are not finite are left out.
+    /// Adds pairs with their values. Samples that are not finite are ignored.
     pub(crate) fn add(&mut self, pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) {
         for (((wi, wo), found), expected) in pairs.iter().zip(found).zip(expected) {
             let cos = f64::from(wi[2].min(wo[2]));
@@ -41,6 +41,14 @@ impl AngleProfile {
 }
 
 /// Counts of relative errors (floor [`FLOOR`]) in classes of a quarter decade.
+///
+/// ```
+/// use luthier_report::Exceedance;
+///
+/// // Three samples below 1e-9, one from 1e-9 to the next threshold.
+/// let shares = Exceedance { counts: vec![3, 1] }.shares();
+/// assert_eq!(shares, [(1e-9, 0.25), (Exceedance::threshold(1), 0.0)]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Exceedance {
     /// `counts[0]` are below [`Exceedance::MIN`]; `counts[k]` lie from `threshold(k - 1)` to `threshold(k)`; the last

@@ -30,7 +30,7 @@ pub struct Report {
     pub generator: String,
     /// The reflectance model of shaders and reference.
     pub model: String,
-    /// Facts that the caller knows about the run, in the caller's order.
+    /// Facts about the run, in the caller's order.
     pub provenance: Vec<(String, String)>,
     /// The adapter; absent when no shader was run.
     pub device: Option<String>,
@@ -42,20 +42,20 @@ pub struct Report {
     pub pairs_per_set: u32,
     /// The floor of the relative errors: [`crate::FLOOR`].
     pub floor: f64,
-    /// Oddities, in words: values that are not finite, figures of the baker that the judge does not confirm.
+    /// Doubts, in words: values that are not finite, figures of the baker that the judge does not confirm.
     pub findings: Vec<String>,
     /// The target that exceptions miss: [`crate::TARGET_MAX_REL_ERR`].
     pub target_max_rel_err: f64,
-    /// Every material and shader that misses the target somewhere (without a device: every material whose tables, read
-    /// with 8-bit weights, do), in the order of the materials. Samples that are not finite are findings instead.
+    /// Every material and shader that misses the target somewhere, in the order of the materials. Without a device, every material whose tables miss
+    /// it, read with 8-bit weights. Samples that are not finite are findings instead.
     pub exceptions: Vec<Exception>,
-    /// Limits other than [`Report::budget`], and what they were compared with.
+    /// Limits other than [`Report::budget`], with the values that they were compared with.
     pub limits: Vec<Limit>,
     /// Searches of the baker for sizes, mappings and formats of tables, with its own figures.
     pub searches: Vec<Search>,
     /// Costs of shaders, if they were given.
     pub costs: Option<Costs>,
-    /// Reference that the models were compared with, if they were.
+    /// Paths of the reference that models were compared with, if any.
     pub reference: Option<ReferencePaths>,
     /// A run of the stability suite, if one was given.
     pub stability: Option<StabilitySummary>,
@@ -70,9 +70,9 @@ pub struct Report {
 pub struct MaterialReport {
     /// Its name.
     pub name: String,
-    /// The file it was described in.
+    /// Path of the material file.
     pub source: String,
-    /// SHA-256 of it, hex, and of what it names.
+    /// SHA-256, hex, of the material file and of the files that it names.
     pub source_hash: String,
     /// Surface class a-h.
     pub class: String,
@@ -84,16 +84,16 @@ pub struct MaterialReport {
     pub layers: Vec<String>,
     /// Comparisons, each over all sets of directions.
     pub comparisons: Vec<Comparison>,
-    /// The models of shaders against the reference of whole stacks; empty where that was not asked for.
+    /// The models of shaders against the reference of whole stacks; empty unless asked for.
     pub against_reference: Vec<AgainstReference>,
-    /// Shader, tables and lobes at random places that its maps give; `None` where it is the same everywhere.
+    /// Shader, tables and lobes at random places of its maps; `None` for a material that is the same everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_places: Option<AtPlaces>,
     /// Searches for this material alone, by the baker's figures.
     pub alone: Vec<Search>,
-    /// Its pictures, compared.
+    /// Differences between its pictures.
     pub picture: Option<PictureErrors>,
-    /// The cost of its shader, by the kinds of its layers; `None` where the caller does not know it.
+    /// The cost of its shader, by the kinds of its layers; `None` if the caller does not know it.
     pub shape_cost: Option<ShapeCost>,
     /// Reason for the choice of its model: the words of the manifest of a scene.
     pub choice: Option<serde_json::Value>,
@@ -130,7 +130,7 @@ impl Compared {
         }
     }
 
-    /// Whether it is a comparison that [`Report::max_error`] covers in a run with or without a device.
+    /// Whether [`Report::max_error`] covers this comparison, in a run with or without a device.
     pub(crate) fn is_judged(self, with_device: bool) -> bool {
         match self {
             Self::BakedDevice | Self::FullDevice => with_device,
@@ -151,7 +151,7 @@ pub struct Comparison {
     pub by_angle: AngleProfile,
     /// Counts of errors above thresholds, over all sets.
     pub exceedance: Exceedance,
-    /// Colour differences, over all sets, a light each.
+    /// Colour differences over all sets, one entry for each light.
     pub seen: Vec<Seen>,
 }
 
@@ -180,15 +180,16 @@ pub struct WorstCase<'a> {
     pub set: DirectionSet,
     /// The statistics of that set; the pair is its `worst`, or `not_finite_at` when that is given.
     pub statistics: &'a Statistics,
-    /// The error: that of [`Report::max_error`].
+    /// The error, which [`Report::max_error`] returns.
     pub error: f64,
 }
 
 impl Report {
-    /// The figure that a limit is compared with: the largest error of `f cos_theta_i`, relative to max(brightest
-    /// channel of the reference, [`crate::FLOOR`]), of any channel, set and material - of both shaders on the device against their f64
-    /// references, or, when no shader was run, of the tables read with 8-bit weights; at places, too. Infinite when any of those
-    /// samples, or any read of the table scans, is not finite.
+    /// The largest error of `f cos_theta_i` over all channels, sets and materials, relative to max(brightest channel of the reference,
+    /// [`crate::FLOOR`]). A limit is compared with this figure.
+    ///
+    /// It covers both shaders on the device against their f64 references, or, without a device, the tables read with 8-bit weights; and errors at
+    /// places. It is infinite if one of these samples, or a read of the table scans, is not finite.
     pub fn max_error(&self) -> f64 {
         let reads = self.tables.iter().flat_map(|t| &t.tiles).any(|t| t.not_finite > 0);
         let at_places = self.worst_place().map_or(0.0, |(_, at)| at.max_error());
@@ -201,11 +202,16 @@ impl Report {
         at_places.max_by(|a, b| a.1.max_error().total_cmp(&b.1.max_error()))
     }
 
-    /// Place of the largest error of the shaders (without a device, of the tables); nothing without materials.
+    /// The comparisons of a material that [`Report::max_error`] covers.
+    pub(crate) fn judged<'a>(&'a self, material: &'a MaterialReport) -> impl Iterator<Item = &'a Comparison> + Clone {
+        material.comparisons.iter().filter(move |comparison| comparison.compared.is_judged(self.device.is_some()))
+    }
+
+    /// Place of the largest error of the shaders, or, without a device, of the tables; `None` without materials.
     pub fn worst(&self) -> Option<WorstCase<'_>> {
         let mut worst: Option<WorstCase<'_>> = None;
         for material in &self.materials {
-            for comparison in material.comparisons.iter().filter(|c| c.compared.is_judged(self.device.is_some())) {
+            for comparison in self.judged(material) {
                 for (set, statistics) in &comparison.sets {
                     let error = statistics.max_error();
                     if worst.is_none_or(|w| error > w.error) {
@@ -218,24 +224,23 @@ impl Report {
         worst
     }
 
-    /// The largest error of f32 arithmetic, measured like [`Report::max_error`]: of the table-reading shader against
-    /// f64 on the same tables, and of the table-free one against its reference. Nothing when no shader was run.
+    /// The largest error of f32 arithmetic, measured like [`Report::max_error`]: that of the table-reading shader against f64 on the same tables, or
+    /// that of the table-free shader against its reference. `None` without a device.
     pub fn max_arithmetic_error(&self) -> Option<f64> {
-        let arithmetic = |m: &MaterialReport| {
-            let of = |compared| m.comparison(compared).map_or(0.0, Comparison::max_error);
-            of(Compared::Arithmetic).max(of(Compared::FullDevice))
-        };
-        self.device.as_ref().map(|_| self.materials.iter().map(arithmetic).fold(0.0, f64::max))
+        self.device.as_ref()?;
+        let compared = [Compared::Arithmetic, Compared::FullDevice];
+        let comparisons = self.materials.iter().flat_map(|m| compared.map(|compared| m.comparison(compared)));
+        Some(comparisons.flatten().map(Comparison::max_error).fold(0.0, f64::max))
     }
 
-    /// Whether [`Report::max_error`] is within the budget and every limit is held; nothing without any.
+    /// Whether [`Report::max_error`] is within the budget and every limit is held; `None` without a budget and limits.
     pub fn is_within_budget(&self) -> Option<bool> {
         let budget = self.budget.map(|budget| self.max_error() <= budget);
         let limits = self.limits.iter().map(|limit| limit.is_held);
         budget.into_iter().chain(limits).reduce(|a, b| a && b)
     }
 
-    /// The largest error of tables against their functions, as measured here: the table and the tile besides.
+    /// The largest error of tables against their functions, as measured here, with the kind of table and the name of the tile.
     pub fn worst_table(&self) -> Option<(f64, TableKind, &str)> {
         let tiles = self.tables.iter().flat_map(|t| t.tiles.iter().map(move |tile| (t.kind, tile)));
         let measured =
@@ -243,25 +248,26 @@ impl Report {
         measured.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The largest colour difference of what [`Report::max_error`] covers, under a light: the material besides.
+    /// The largest colour difference under a light of the comparisons that [`Report::max_error`] covers, with the name of the material.
     pub fn worst_seen(&self, light: SeenLight) -> Option<(f64, &str)> {
-        let judged = |c: &&Comparison| c.compared.is_judged(self.device.is_some());
-        let seen = |m: &MaterialReport| {
-            let all = m.comparisons.iter().filter(judged).flat_map(|c| &c.seen).filter(|s| s.light == light);
-            all.map(|s| s.max).fold(0.0, f64::max)
-        };
-        self.materials.iter().map(|m| (seen(m), m.name.as_str())).max_by(|a, b| a.0.total_cmp(&b.0))
+        let all = self.materials.iter().map(|m| {
+            let seen = self.judged(m).flat_map(|c| &c.seen).filter(|s| s.light == light);
+            (seen.map(|s| s.max).fold(0.0, f64::max), m.name.as_str())
+        });
+        all.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The largest error of the models that ship against the reference: lobe error, the material and all of that comparison.
+    /// The comparison with the largest lobe error of a model that ships against the reference, with the name of the material.
     pub fn worst_model(&self) -> Option<(&str, &AgainstReference)> {
-        let shipped = |m: &MaterialReport| m.against_reference.iter().position(|a| a.model == m.model);
-        let all = self.materials.iter().filter_map(|m| Some((m.name.as_str(), &m.against_reference[shipped(m)?])));
+        let all = self.materials.iter().filter_map(|m| {
+            let shipped = m.against_reference.iter().find(|a| a.model == m.model)?;
+            Some((m.name.as_str(), shipped))
+        });
         all.max_by(|a, b| a.1.lobe_err.total_cmp(&b.1.lobe_err))
     }
 
-    /// JSON, objects indented and arrays in a line, with a final newline. Besides the fields it has `max_error`, `max_arithmetic_error` (null when
-    /// not finite) and `within_budget`.
+    /// JSON, with objects indented, arrays in a line, and a final newline. It has three members beside the fields: `max_error` and
+    /// `max_arithmetic_error` (null if not finite), and `within_budget`.
     ///
     /// # Errors
     /// [`ReportError::Json`], should the writer fail.

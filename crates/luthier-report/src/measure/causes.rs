@@ -38,7 +38,7 @@ pub enum Factor {
     Veil,
     /// The rows of lobes.
     Lobes,
-    /// f32 arithmetic: what is left when f64 reads the same tables.
+    /// f32 arithmetic: the difference between the device and f64 on the same tables.
     Arithmetic,
 }
 
@@ -70,7 +70,7 @@ impl Factor {
     }
 }
 
-/// Part of an error that one factor adds, all others being exact.
+/// Part of an error that one factor causes, measured with all other factors exact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Signed change of the worst channel, relative to max(brightest channel of the reference, [`FLOOR`]).
@@ -79,7 +79,7 @@ pub struct Part {
     pub cause: Cause,
 }
 
-/// A factor, and where in its table it was read.
+/// A factor, with the place in its table that was read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
@@ -167,7 +167,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// The factor alone.
+    /// The factor, without the place.
     pub fn factor(&self) -> Factor {
         match self {
             Self::Fresnel { .. } => Factor::Fresnel,
@@ -181,7 +181,7 @@ impl Cause {
         }
     }
 
-    /// A cause in words, with the error of the table there.
+    /// The cause in words, with the error of the table at the place.
     pub(crate) fn words(&self) -> String {
         match self {
             Self::Fresnel { tile, cos_theta_d, expected, sampled, .. } => {
@@ -233,9 +233,9 @@ pub(crate) struct Miss {
 }
 
 impl Miss {
-    /// All pairs with a finite sample that misses.
+    /// All pairs with a finite sample that misses the target.
     pub(crate) fn among(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Vec<Self> {
-        let each = |((&pair, found), expected): ((&Pair, &Rgb), &Rgb)| {
+        let misses = pairs.iter().zip(found).zip(expected).filter_map(|((&pair, found), expected)| {
             let bright = brightest(expected);
             let mut worst: Option<(usize, f64)> = None;
             for channel in 0..3 {
@@ -247,11 +247,11 @@ impl Miss {
             let (channel, error) = worst?;
             let (found, expected, scale) = (found[channel], expected[channel], bright.max(FLOOR));
             (error > TARGET_MAX_REL_ERR).then_some(Self { pair, channel, found, expected, scale })
-        };
-        pairs.iter().zip(found).zip(expected).filter_map(each).collect()
+        });
+        misses.collect()
     }
 
-    /// A pair, whether it misses or not.
+    /// A pair and a channel of it, whether it misses or not.
     pub(crate) fn at(pair: Pair, channel: usize, found: &Rgb, expected: &Rgb) -> Self {
         Self {
             pair,
@@ -272,17 +272,17 @@ impl Miss {
     }
 }
 
-/// Terms that are needed to take an error apart.
+/// Terms of a model, exact and from tables, by which an error is split into parts.
 pub(crate) struct Factors<'a> {
     pub(crate) twin: &'a Twin,
     pub(crate) exact: &'a Exact,
-    /// The tables as the shader reads them; nothing for a shader that reads none.
+    /// The tables as the shader reads them; `None` for a shader without tables.
     pub(crate) tables: Option<&'a TableTerms<'a>>,
-    /// Whether a device made the values, and f32 arithmetic can be at fault.
+    /// Whether the values come from a device, so that f32 arithmetic can be a cause.
     pub(crate) on_device: bool,
 }
 
-/// Words on the value that a read gives and the value that it should give.
+/// A sampled value, the expected value and their relative difference, in words.
 fn off(expected: f64, sampled: f64) -> String {
     let percent = 100.0 * (sampled - expected) / expected.abs();
     let sign = if percent < 0.0 { "−" } else { "+" };
@@ -295,8 +295,8 @@ fn off(expected: f64, sampled: f64) -> String {
 }
 
 impl Factors<'_> {
-    /// The parts of an error, largest first: each factor of each layer read from the tables while all others are exact, and f32 arithmetic
-    /// against f64 on the same tables. Products of errors, of second order, belong to no part.
+    /// The parts of an error, largest first. For each factor of each layer, the model is evaluated with this factor from the tables and all others
+    /// exact. f32 arithmetic is the device against f64 on the same tables. Second-order terms, products of two errors, belong to no part.
     pub(crate) fn parts(&self, miss: &Miss) -> Vec<Part> {
         let [wi, wo] = [miss.pair.0, miss.pair.1].map(wide);
         let mut parts = Vec::new();
@@ -328,7 +328,7 @@ impl Factors<'_> {
     }
 }
 
-/// Exact terms but for one factor of one layer, which is read from the tables; keeps a record of all that was asked for.
+/// Exact terms, except for one factor of one layer, which comes from the tables. It records every read.
 struct Mixed<'a> {
     exact: &'a Exact,
     tables: &'a TableTerms<'a>,
@@ -336,7 +336,7 @@ struct Mixed<'a> {
     reads: RefCell<Vec<Read>>,
 }
 
-/// A term that the model asked for.
+/// A term that the model read.
 struct Read {
     layer: usize,
     term: Term,
@@ -386,7 +386,7 @@ impl Terms for Mixed<'_> {
         self.record(layer, term, expected, sampled)
     }
 
-    /// The exact value is computed by the model.
+    /// `None` lets the model compute the exact value.
     fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
         let sampled = self.tables.interference(layer, channel, cosines)?;
         self.record(layer, Term::Phase { cosines }, None, Some(sampled))

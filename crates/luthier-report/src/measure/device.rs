@@ -14,7 +14,8 @@ pub trait Device {
     /// Name of the adapter, as the report shows it.
     fn name(&self) -> String;
 
-    /// All that decides its values but the numbers and texels of a material: the adapter, its driver, the text of the shaders. Results are kept under it.
+    /// Identity of the values beside the material's own numbers and texels: adapter, driver, text of the shaders. It is a part of the key under which
+    /// a [`Memory`](crate::Memory) keeps results.
     fn identity(&self) -> String;
 
     /// `f cos_theta_i`, linear RGB, of a material for pairs `(wi, wo)` of unit directions: one value per pair, in
@@ -59,7 +60,7 @@ fn checked(
     Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
 }
 
-/// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
+/// Vote on the interpolation weights of a device: the weights with the smaller sum of squared relative errors over all materials win.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct WeightsVote {
     eight_bit: f64,
@@ -68,18 +69,16 @@ pub(crate) struct WeightsVote {
 
 impl WeightsVote {
     pub(crate) fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
-        let sum = |expected: &[Rgb]| {
+        for (sum, expected) in [(&mut self.eight_bit, eight_bit), (&mut self.exact, exact)] {
             let errors = device.iter().zip(expected).flat_map(|(d, e)| {
                 let bright = brightest(e);
                 [0, 1, 2].map(|c: usize| relative_error(d[c], e[c], bright, FLOOR))
             });
-            errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>()
-        };
-        self.eight_bit += sum(eight_bit);
-        self.exact += sum(exact);
+            *sum += errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>();
+        }
     }
 
-    /// Adds the sums of another.
+    /// Adds the sums of another vote.
     pub(crate) fn merge(&mut self, other: Self) {
         self.eight_bit += other.eight_bit;
         self.exact += other.exact;

@@ -1,4 +1,4 @@
-//! Sets of direction pairs, each a function of its number only.
+//! Sets of direction pairs. A pair depends on its number and on the material's lobes only.
 
 use std::f64::consts::TAU;
 
@@ -10,6 +10,15 @@ use serde::{Deserialize, Serialize};
 pub type Pair = ([f32; 3], [f32; 3]);
 
 /// Set of directions at which a shader is compared with its reference.
+///
+/// ```
+/// use luthier_report::DirectionSet;
+///
+/// // A pair depends on its number only: a longer set begins with the shorter one.
+/// let [few, many] = [8, 64].map(|count| DirectionSet::Grazing.pairs(count, &[]));
+/// assert_eq!(few, many[..8]);
+/// assert!(many.iter().all(|(wi, wo)| wi[2].min(wo[2]) <= 0.1));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DirectionSet {
@@ -87,8 +96,10 @@ impl DirectionSet {
             Self::Random => (direction(1.0 - a, b), direction(1.0 - c, d)),
             Self::Grazing => {
                 let [i_grazes, o_grazes] = GRAZES[variant];
-                let cos = |grazes, u| if grazes { log_uniform(GRAZING_COS_MIN, u) } else { 1.0 - u };
-                (direction(cos(i_grazes, a), b), direction(cos(o_grazes, c), d))
+                let [wi, wo] = [(i_grazes, a, b), (o_grazes, c, d)].map(|(grazes, u, turn)| {
+                    direction(if grazes { log_uniform(GRAZING_COS_MIN, u) } else { 1.0 - u }, turn)
+                });
+                (wi, wo)
             }
             Self::Highlight | Self::Glancing => {
                 let cos = if self == Self::Highlight { 1.0 - a } else { log_uniform(GLANCING_COS_MIN, a) };
@@ -101,8 +112,8 @@ impl DirectionSet {
     }
 }
 
-/// Slope spread of every lobe as seen from outside. The half vector of a lobe below interfaces of index `eta` is the
-/// outer one with its tangential part divided by `eta`. A material without a lobe gets one moderate spread.
+/// Slope spread of every lobe, seen from outside. Refraction at index `eta` divides the tangential part of a half vector by `eta`, so that a lobe
+/// below looks `eta` times as wide. A material without a lobe gets one moderate spread.
 pub(crate) fn spreads(layers: &[Layer]) -> Vec<f64> {
     let mut out = Vec::new();
     let (mut eta_above, mut alpha_above) = (1.0, 0.0_f64);
@@ -136,8 +147,8 @@ pub(crate) fn halton(n: u32) -> [f64; 4] {
     })
 }
 
-/// The mirror direction of `wi` about a half vector of a slope and an azimuth in turns. Below the horizon it is folded up rather than
-/// dropped: the count stays, and what it gives is one more grazing pair.
+/// The mirror direction of `wi` about a half vector of a slope and an azimuth in turns. A direction below the horizon is folded up instead of
+/// dropped, so that the number of pairs stays; it becomes one more grazing pair.
 pub(crate) fn mirrored(wi: DVec3, slope: f64, turn: f64) -> DVec3 {
     let wh = DVec3::new(slope * libm::cos(TAU * turn), slope * libm::sin(TAU * turn), 1.0).normalize();
     let wo = 2.0 * wi.dot(wh) * wh - wi;

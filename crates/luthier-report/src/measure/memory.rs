@@ -1,10 +1,10 @@
-//! Results of earlier judgements, by the content of what was judged: texels, records and stacks, whatever their names and numbers in a bake.
+//! Results of earlier judgements, keyed by content: texels, records and stacks. Names and numbers in a bake do not count.
 
 use std::fmt::{Debug, Write as _};
 
 use luthier_layers::models::lobes::{Lobes, Varied};
 use luthier_lut::TableKind;
-use luthier_manifest::{LayerRecord, MaterialEntry, Tiles};
+use luthier_manifest::{MaterialEntry, Tiles};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use crate::measure::readers::{tiles, users};
 use crate::measure::references::References;
 use crate::measure::subject::Subject;
 
-/// Where the results of earlier judgements are. It may forget at any time.
+/// Store of results of earlier judgements. It may forget at any time.
 pub trait Memory: Sync {
     /// The result of a kind for these inputs.
     fn recall(&self, kind: &'static str, inputs: &Value) -> Option<String>;
@@ -24,7 +24,7 @@ pub trait Memory: Sync {
     fn keep(&self, kind: &'static str, inputs: &Value, result: String);
 }
 
-/// All that decides what a device shows of each material: its shaders, the record, the stack, and the texels of the tiles that it reads.
+/// Key of the device's values of each material: shaders, record, stack, and texels of the tiles that the material reads.
 pub fn contents(subject: &Subject<'_>, device: &dyn Device) -> Vec<Value> {
     let hashed = Remembered { memory: None, tiles: hashes(subject) };
     let materials = 0..subject.manifest.materials.len();
@@ -33,22 +33,22 @@ pub fn contents(subject: &Subject<'_>, device: &dyn Device) -> Vec<Value> {
 
 /// Hashes of all tiles.
 fn hashes(subject: &Subject<'_>) -> Vec<(TableKind, Vec<String>)> {
-    let of = |kind| {
-        let table = subject.table(kind).ok().flatten()?;
+    let tables = subject.manifest.tables.iter().filter_map(|table| {
+        let table = subject.table(table.kind).ok().flatten()?;
         let (layout, texels) = (&table.entry.layout, table.texels);
         let axes =
             json!([layout.x, layout.y, layout.apron, layout.base, table.entry.format, texels.channels]).to_string();
-        let hash = |tile: u32| {
+        let tiles = (0..layout.tiles).map(|tile| {
             let ([x, y], [width, height]) = (layout.origin(tile), layout.tile_size());
             let mut hash = Sha256::new_with_prefix(&axes);
             for (row, column) in (y..y + height).flat_map(|row| (x..x + width).map(move |column| (row, column))) {
                 texels.texel(column, row).iter().for_each(|value| hash.update(value.to_bits().to_le_bytes()));
             }
             hex(&hash.finalize())
-        };
-        Some((kind, (0..layout.tiles).map(hash).collect()))
-    };
-    subject.manifest.tables.iter().filter_map(|table| of(table.kind)).collect()
+        });
+        Some((table.entry.kind, tiles.collect()))
+    });
+    tables.collect()
 }
 
 /// The memory of a judgement, with the hashes of all tiles.
@@ -58,7 +58,7 @@ pub(crate) struct Remembered<'a> {
 }
 
 impl<'a> Remembered<'a> {
-    /// Tiles are hashed where there is a memory. The tables of the subject have been checked.
+    /// Hashes the tiles, if there is a memory. The tables of the subject must have been checked.
     pub(crate) fn new(memory: Option<&'a dyn Memory>, subject: &Subject<'_>) -> Self {
         Self { memory, tiles: memory.map(|_| hashes(subject)).unwrap_or_default() }
     }
@@ -68,14 +68,14 @@ impl<'a> Remembered<'a> {
         serde_json::from_str(&self.memory?.recall(kind, inputs)?).ok()
     }
 
-    /// Keeps a value: what JSON has no word for, as numbers that are not finite, is judged again.
+    /// Keeps a value. A value without JSON, such as an infinite number, is not kept and judged again.
     pub(crate) fn keep<T: Serialize>(&self, kind: &'static str, inputs: &Value, value: &T) {
         if let (Some(memory), Ok(text)) = (self.memory, serde_json::to_string(value)) {
             memory.keep(kind, inputs, text);
         }
     }
 
-    /// Gives exact terms their lobes, if the model has any: those that were fitted to this stack before, or such as are fitted now.
+    /// Gives exact terms their lobes, if the model has any. Lobes that were fitted to the stack before are recalled, others are fitted now.
     pub(crate) fn fit(&self, references: &References, entry: &MaterialEntry) {
         if self.memory.is_none() || !entry.shows_lobes() {
             return;
@@ -91,7 +91,7 @@ impl<'a> Remembered<'a> {
         });
     }
 
-    /// All that decides the comparisons of a material. Its maps are in its record, by their hashes.
+    /// Key of the comparisons of a material. The record contains its maps, by their hashes.
     pub(crate) fn material(
         &self,
         subject: &Subject<'_>,
@@ -114,7 +114,7 @@ impl<'a> Remembered<'a> {
         settings: Option<(u32, &dyn Debug)>,
     ) -> Value {
         let entry = &subject.manifest.materials[number];
-        // Where tiles lie decides the last digits of a device, and of nothing else.
+        // The place of tiles changes the last digits of a device's values, and nothing else.
         let on_device = device.map(|device| {
             let layouts: Vec<_> = subject.manifest.tables.iter().map(|table| &table.layout).collect();
             json!([device.identity(), layouts, entry.layers])
@@ -127,34 +127,33 @@ impl<'a> Remembered<'a> {
         })
     }
 
-    /// All that decides the scan of a tile: its texels, and the layers that read it.
+    /// Key of the scan of a tile: its texels, and the layers that read it.
     pub(crate) fn tile(&self, subject: &Subject<'_>, kind: TableKind, tile: u32, pairs_per_set: u32) -> Value {
         if self.memory.is_none() {
             return Value::Null;
         }
-        let user = |(number, layer): (usize, usize)| {
+        let users = users(subject, kind, tile).into_iter();
+        let users = users.map(|(number, layer)| {
             json!([nameless(&subject.manifest.materials[number]), subject.stacks[number], layer])
-        };
-        let users: Vec<Value> = users(subject, kind, tile).into_iter().map(user).collect();
-        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users, "pairs": pairs_per_set })
+        });
+        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users.collect::<Vec<_>>(), "pairs": pairs_per_set })
     }
 
     /// A material by its content: its record, its stack, and the texels of the tiles that it reads.
     fn content(&self, subject: &Subject<'_>, number: usize) -> Value {
         let entry = &subject.manifest.materials[number];
-        let hashes = |record: &LayerRecord| {
-            let of = |kind: TableKind| {
+        let hashes = entry.layers.iter().map(|record| {
+            TableKind::ALL.map(|kind| {
                 let first = record.tiles[kind]?;
                 let count = tiles(entry, kind);
                 Some((first..first + count).map(|tile| self.hash(kind, tile)).collect::<Vec<_>>())
-            };
-            TableKind::ALL.map(of)
-        };
+            })
+        });
         json!({
             "name": entry.name,
             "entry": nameless(entry),
             "stack": subject.stacks[number],
-            "tiles": entry.layers.iter().map(hashes).collect::<Vec<_>>(),
+            "tiles": hashes.collect::<Vec<_>>(),
         })
     }
 

@@ -10,15 +10,15 @@ use crate::measure::subject::Subject;
 /// A layer that reads a tile: numbers of the material and of the layer.
 pub(crate) type User = (usize, usize);
 
-/// The tiles from its own on that the nominal surface of a layer reads: lobes of an anisotropic stack are over the azimuth, those under a film that
-/// varies have the nominal thickness in the middle.
+/// Tiles that the nominal surface of a layer reads, counted from the layer's own tile. Lobes of an anisotropic stack have a tile for each azimuth.
+/// Lobes under a film that varies have one for each thickness, with the nominal thickness in the middle.
 pub(crate) fn run(material: &MaterialEntry, kind: TableKind) -> Range<u32> {
     let lobes = material.constants.lobes.filter(|_| kind == TableKind::Lobes);
     let nominal = lobes.and_then(|lobes| lobes.varying).map_or(0, |varying| varying.nominal() as u32);
     nominal..nominal + lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles)
 }
 
-/// Number of tiles from its own on that a layer of a material reads, wherever it is seen from and whatever its maps say.
+/// Number of tiles that a layer of a material reads, counted from its own tile, over all views and all values of maps.
 pub(crate) fn tiles(material: &MaterialEntry, kind: TableKind) -> u32 {
     let varying = material.constants.lobes.filter(|_| kind == TableKind::Lobes).and_then(|lobes| lobes.varying);
     run(material, kind).end.max(varying.map_or(1, |varying| varying.tiles))
@@ -29,10 +29,11 @@ pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<Us
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
         let run = run(material, kind);
-        let reads = |l: &usize| {
-            material.layers[*l].tiles[kind].is_some_and(|first| tile >= first && run.contains(&(tile - first)))
-        };
-        out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
+        for (l, layer) in material.layers.iter().enumerate() {
+            if layer.tiles[kind].is_some_and(|first| tile >= first && run.contains(&(tile - first))) {
+                out.push((m, l));
+            }
+        }
     }
     out
 }

@@ -22,7 +22,7 @@ pub(crate) struct References {
     pub(crate) twin: Twin,
     pub(crate) spectral: Exact,
     pub(crate) three: Exact,
-    /// Exact terms of the form without tables, where these are not `three`.
+    /// Exact terms of the form without tables, if they differ from `three`.
     pub(crate) level: Option<Exact>,
     color: ColorMode,
 }
@@ -44,7 +44,7 @@ impl References {
         }
     }
 
-    /// All that decides the fit of lobes.
+    /// The inputs of the fit of lobes.
     pub(crate) fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
         self.baked().fitted()
     }
@@ -54,7 +54,7 @@ impl References {
         self.level.as_ref().unwrap_or(&self.three)
     }
 
-    /// The exact terms that the tables stand for.
+    /// The exact terms that the tables approximate.
     pub(crate) fn baked(&self) -> &Exact {
         match self.color {
             ColorMode::Spectral => &self.spectral,
@@ -73,7 +73,7 @@ pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     })
 }
 
-/// The part of a material that its rows of lobes are over.
+/// The varying factor of a material that its rows of lobes span.
 fn varying(material: &MaterialEntry) -> Option<Varying> {
     let record = material.constants.lobes?.varying?;
     match record.factor {

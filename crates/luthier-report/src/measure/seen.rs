@@ -1,4 +1,4 @@
-//! Appearance of errors: colour differences as a person with a display sees them.
+//! Appearance of errors: colour differences on a display.
 
 use luthier_lut::Image;
 use luthier_optics::Rgb;
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::Pair;
 
-/// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, each channel clipped to what a Rec.709 display
-/// shows, seen by an eye that is adapted to D65.
+/// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, clipped per channel to the range of a Rec.709 display, and
+/// seen by an eye that is adapted to D65.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SeenLight {
-    /// D65, as bright as makes a white diffuser that is lit along its normal the white of the display.
+    /// D65, so bright that a white diffuser lit along its normal is the white of the display.
     Daylight,
-    /// Light 16 times as bright as `Daylight` (four stops): shows the parts that are dark there, with highlights clipped.
+    /// Light 16 times as bright as `Daylight` (four stops): it shows errors in dark colours, and clips highlights.
     BrightDaylight,
     /// CIE illuminant A of the luminance of `Daylight`.
     Incandescent,
@@ -33,8 +33,8 @@ impl SeenLight {
         }
     }
 
-    /// Its colour, linear Rec.709. Incandescent: the tristimulus values (1.09850, 1, 0.35585) of illuminant A (CIE 15), by the matrix of
-    /// IEC 61966-2-1.
+    /// Colour of the light, linear Rec.709. `Incandescent` has the tristimulus values (1.09850, 1, 0.35585) of illuminant A (CIE 15), converted by the
+    /// matrix of IEC 61966-2-1.
     fn rgb(self) -> Rgb {
         match self {
             Self::Daylight => [1.0; 3],
@@ -46,8 +46,7 @@ impl SeenLight {
     /// L*a*b* of a value of `f cos_theta_i`.
     fn lab(self, value: Rgb) -> [f64; 3] {
         let light = self.rgb();
-        let shown = |c: usize| (std::f64::consts::PI * value[c] * light[c]).clamp(0.0, 1.0);
-        lab([shown(0), shown(1), shown(2)])
+        lab([0, 1, 2].map(|c: usize| (std::f64::consts::PI * value[c] * light[c]).clamp(0.0, 1.0)))
     }
 }
 
@@ -62,20 +61,20 @@ pub struct Seen {
     pub p99: f64,
     /// Mean.
     pub mean: f64,
-    /// Share of the pairs whose difference is above 1: just seen of two patches side by side.
+    /// Share of the pairs whose difference is above 1, which is just visible between two patches side by side.
     pub above_one: f64,
-    /// The pair of the largest.
+    /// The pair with the largest difference.
     pub worst: Option<Pair>,
 }
 
-/// Differences of one light, as they come in.
+/// Differences under one light, filled set by set.
 #[derive(Debug, Clone, Default)]
 struct Gathered {
     differences: Vec<f64>,
     worst: Option<(f64, Pair)>,
 }
 
-/// Differences under all lights, as they come in.
+/// Differences under all lights, filled set by set.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SeenBy([Gathered; SeenLight::ALL.len()]);
 
@@ -96,36 +95,37 @@ impl SeenBy {
     }
 
     pub(crate) fn finish(self) -> Vec<Seen> {
-        let seen = |(light, mut gathered): (SeenLight, Gathered)| {
+        let seen = SeenLight::ALL.into_iter().zip(self.0).map(|(light, mut gathered)| {
             let differences = &mut gathered.differences;
             let count = differences.len();
-            let of_all = |sum: f64| if count == 0 { 0.0 } else { sum / count as f64 };
-            let (mean, above) = (differences.iter().sum(), differences.iter().filter(|d| **d > 1.0).count() as f64);
+            let sums = [differences.iter().sum(), differences.iter().filter(|d| **d > 1.0).count() as f64];
+            let [mean, above_one] = sums.map(|sum: f64| if count == 0 { 0.0 } else { sum / count as f64 });
             differences.sort_by(f64::total_cmp);
             Seen {
                 light,
                 max: differences.last().copied().unwrap_or(0.0),
                 p99: differences.get((count * 99).div_ceil(100).saturating_sub(1)).copied().unwrap_or(0.0),
-                mean: of_all(mean),
-                above_one: of_all(above),
+                mean,
+                above_one,
                 worst: gathered.worst.map(|(_, pair)| pair),
             }
-        };
-        SeenLight::ALL.into_iter().zip(self.0).map(seen).collect()
+        });
+        seen.collect()
     }
 }
 
 /// Mean and largest CIEDE2000 difference of the pixels of two RGB pictures of one size, `shown` being the tone curve of a value.
 pub fn picture_color_difference(a: &Image, b: &Image, shown: impl Fn(f32) -> f32) -> [f64; 2] {
-    let color = |p: &[f32]| lab([0, 1, 2].map(|c: usize| f64::from(shown(p[c])).clamp(0.0, 1.0)));
-    let pixels = || a.data.chunks_exact(3).zip(b.data.chunks_exact(3));
+    let pixels = a.data.chunks_exact(3).zip(b.data.chunks_exact(3));
+    let count = pixels.len().max(1) as f64;
     let (mut sum, mut max) = (0.0, 0.0_f64);
-    for (a, b) in pixels() {
-        let difference = ciede2000(color(a), color(b));
+    for (a, b) in pixels {
+        let [a, b] = [a, b].map(|p| lab([0, 1, 2].map(|c: usize| f64::from(shown(p[c])).clamp(0.0, 1.0))));
+        let difference = ciede2000(a, b);
         sum += difference;
         max = max.max(difference);
     }
-    [sum / pixels().count().max(1) as f64, max]
+    [sum / count, max]
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Errors of many values at once: what is relative to what, and the order statistics. Spreads of measured times.
+//! Errors of many values at once: divisors of relative errors, order statistics. Spreads of measured times.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -7,25 +7,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::Pair;
 
-/// The floor of relative errors: a tenth of what a white diffuser gives in light along its normal (`f cos_theta_i` =
-/// 1/pi).
+/// The floor of relative errors: a tenth of the value of a white diffuser in light along its normal (`f cos_theta_i` = 1/pi).
 ///
-/// Above it an error is relative, to the brightest channel of the colour; below it, a relative error of 1e-3 is an absolute one of 1e-4 of diffuse white, a
-/// third of the darkest step of an 8-bit sRGB picture (1/(255 x 12.92) = 3.0e-4) that is exposed for that white.
+/// Above the floor an error is relative to the brightest channel of the colour. Below it, a relative error of 1e-3 is an absolute one of 1e-4 of
+/// diffuse white: a third of the darkest step of an 8-bit sRGB picture (1/(255 x 12.92) = 3.0e-4) that is exposed for that white.
 pub const FLOOR: f64 = 0.1 * FRAC_1_PI;
 
-/// A hundred times lower: a thousandth of diffuse white. Shows what [`FLOOR`] hides and very long exposures or very
-/// bright lights would show.
+/// A second floor, a hundred times lower: a thousandth of diffuse white. It shows errors that [`FLOOR`] hides, and that very long exposures or very
+/// bright lights would reveal.
 pub const DIM_FLOOR: f64 = 1e-3 * FRAC_1_PI;
 
-/// The third floor is this fraction of the largest value of the set: the error of the highlight alone.
+/// The third floor, as a fraction of the largest value of the set. It shows the error of the highlight alone.
 pub const PEAK_FRACTION: f64 = 0.1;
 
 /// The target: the largest error of a shader against f64, relative to max(brightest channel of the reference, [`FLOOR`]).
-/// Whatever exceeds it is an exception, and the report lists it with its cause.
+/// The report lists every larger error as an exception, with its cause.
 pub const TARGET_MAX_REL_ERR: f64 = 1e-3;
 
-/// Standard errors by which an estimated table error has to exceed the baker's besides.
+/// Number of standard errors by which an estimated table error must exceed the baker's before it counts.
 pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
 
 /// Order statistics of errors.
@@ -56,9 +55,19 @@ pub struct WorstPair {
     pub error: f64,
 }
 
-/// Errors of `f cos_theta_i` over a set of pairs, every channel a sample of its own.
+/// Errors of `f cos_theta_i` over a set of pairs. Every channel is a sample.
 ///
 /// Values that are not finite are counted, and are in none of the other figures.
+///
+/// ```
+/// use luthier_report::{FLOOR, statistics};
+///
+/// let up = ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
+/// // One sample of six is 0.1 off, beside a channel of 2; another is 0.001 off in the dark.
+/// let found = statistics(&[up, up], &[[2.0, 1.1, 1.0], [0.001, 0.0, 0.0]], &[[2.0, 1.0, 1.0], [0.0; 3]]);
+/// assert_eq!((found.above_target, found.not_finite), (2, 0));
+/// assert!((found.relative.max - 0.05).abs() < 1e-12 && 0.001 / FLOOR < 0.05);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Pairs judged; three samples each.
@@ -84,25 +93,25 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// The largest relative error; infinite when any sample is not finite.
+    /// The largest relative error; infinite if a sample is not finite.
     pub fn max_error(&self) -> f64 {
         if self.not_finite > 0 { f64::INFINITY } else { self.relative.max }
     }
 }
 
-/// |found - expected| / max(brightest, floor); not finite when a value is not.
+/// |found - expected| / max(brightest, floor); not finite if a value is not.
 pub(crate) fn relative_error(found: f64, expected: f64, brightest: f64, floor: f64) -> f64 {
     let error = (found - expected).abs() / brightest.max(floor);
     if expected.is_finite() { error } else { f64::NAN }
 }
 
-/// The divisor of a channel's error: the brightest channel of the colour. A channel that interference or absorption extinguishes is seen
-/// beside the others, not alone.
+/// Divisor of a channel's error: the brightest channel of the colour. Interference or absorption may extinguish a channel, but an eye sees it beside
+/// the others, not alone.
 pub(crate) fn brightest(expected: &Rgb) -> f64 {
     expected.iter().fold(0.0, |sum: f64, c| sum.max(c.abs()))
 }
 
-/// Statistics of `found` against `expected`, which are parallel to `pairs`; surplus values are ignored.
+/// Statistics of `found` against `expected`. Both are parallel to `pairs`; surplus values are ignored.
 pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics {
     let mut samples = Vec::with_capacity(3 * pairs.len());
     let mut not_finite = 0;
@@ -129,22 +138,22 @@ pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics
             }
         }
     }
-    let summary = |floor: f64| {
+    let [relative, relative_dim, relative_peak] = [FLOOR, DIM_FLOOR, PEAK_FRACTION * peak].map(|floor| {
         // A set whose reference is zero throughout has no peak to be relative to.
         let floor = if floor > 0.0 { floor } else { FLOOR };
         summarise(
             samples.iter().map(|&(found, expected, bright)| relative_error(found, expected, bright, floor)).collect(),
         )
-    };
+    });
     Statistics {
         pairs: pairs.len() as u64,
         not_finite,
         not_finite_at,
         peak,
         max_abs_err,
-        relative: summary(FLOOR),
-        relative_dim: summary(DIM_FLOOR),
-        relative_peak: summary(PEAK_FRACTION * peak),
+        relative,
+        relative_dim,
+        relative_peak,
         above_target,
         worst,
     }
@@ -163,7 +172,14 @@ pub(crate) fn summarise(mut errors: Vec<f64>) -> ErrorSummary {
     ErrorSummary { max, p99, rms }
 }
 
-/// Order statistics of repeated measurements, in the unit of the samples; NaN where there are none.
+/// Order statistics of repeated measurements, in the unit of the samples; NaN without samples.
+///
+/// ```
+/// // One run was interrupted: median and deviation ignore it, the percentile does not.
+/// let spread = luthier_report::Spread::of(&[9.0, 1.0, 2.0, 3.0, 4.0]);
+/// assert_eq!((spread.median, spread.mad), (3.0, 1.0));
+/// assert!(spread.p90 > 6.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread {
     /// Median.
@@ -185,7 +201,7 @@ impl Spread {
     }
 }
 
-/// A quantile, between the nearest two samples in proportion.
+/// A quantile, interpolated linearly between the nearest two samples.
 fn quantile(samples: &[f64], q: f64) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -8,7 +8,7 @@ use luthier_optics::stack::Stack;
 
 use crate::error::ReportError;
 
-/// Subject of a judgement: a bake as its users get it, and the surfaces that it was made from.
+/// Subject of a judgement: a bake as it ships, and the surfaces that it was made from.
 #[derive(Debug, Clone)]
 pub struct Subject<'a> {
     /// The manifest of the bake.
@@ -17,7 +17,7 @@ pub struct Subject<'a> {
     pub textures: Vec<(TableKind, Image)>,
     /// The surfaces that the materials describe, parallel to the materials of the manifest.
     pub stacks: Vec<Stack>,
-    /// The maps of the materials: places are judged where there are some.
+    /// The maps of the materials. Materials with maps are judged at places.
     pub maps: Vec<SurfaceMap>,
 }
 
@@ -28,7 +28,7 @@ pub struct SurfaceMap {
     pub material: u32,
     /// Quantity that the map varies.
     pub slot: MapSlot,
-    /// The layer that it is of; `None` for those of the whole surface.
+    /// The layer that the map varies; `None` for a map of the whole surface.
     pub layer: Option<u32>,
     /// Its texels.
     pub picture: Picture,
@@ -57,26 +57,7 @@ impl Subject<'_> {
     pub(crate) fn table(&self, kind: TableKind) -> Result<Option<Table<'_>>, ReportError> {
         let Some(entry) = self.manifest.table(kind) else { return Ok(None) };
         let (_, texels) = self.textures.iter().find(|(k, _)| *k == kind).ok_or(ReportError::MissingTexture(kind))?;
-        let layout = &entry.layout;
-        let refuse = |reason| Err(ReportError::Layout { kind, reason });
-        if layout.tiles == 0 || layout.columns == 0 {
-            return refuse("no tiles");
-        }
-        if entry.tiles.len() != layout.tiles as usize {
-            return refuse("its tiles are not those that the manifest describes");
-        }
-        for axis in [Some(&layout.x), layout.y.as_ref()].into_iter().flatten() {
-            if axis.size < 2 {
-                return refuse("an axis has fewer than two nodes");
-            }
-            let ordered = axis.min < axis.max;
-            if !ordered || !axis.min.is_finite() || !axis.max.is_finite() {
-                return refuse("an axis has no extent");
-            }
-        }
-        let Some([width, height]) = layout.checked_size() else {
-            return refuse("it is larger than any texture");
-        };
+        let [width, height] = checked_size(entry).map_err(|reason| ReportError::Layout { kind, reason })?;
         let values = u128::from(width) * u128::from(height) * u128::from(texels.channels);
         let fits = [texels.width, texels.height] == [width, height];
         if !fits || texels.channels == 0 || texels.channels > 4 || values != texels.data.len() as u128 {
@@ -97,18 +78,37 @@ impl Subject<'_> {
         }
         for (material, stack) in self.manifest.materials.iter().zip(&self.stacks) {
             let layers = Layers::isotropic_rgb(stack).layers;
-            let differs = |layer| ReportError::Layers { material: material.name.clone(), layer };
-            if layers.len() != material.layers.len() {
-                return Err(differs(layers.len().min(material.layers.len())));
-            }
-            for (i, (layer, record)) in layers.iter().zip(&material.layers).enumerate() {
-                if !same_kind(layer, record) {
-                    return Err(differs(i));
-                }
+            let differs = if layers.len() == material.layers.len() {
+                layers.iter().zip(&material.layers).position(|(layer, record)| !same_kind(layer, record))
+            } else {
+                Some(layers.len().min(material.layers.len()))
+            };
+            if let Some(layer) = differs {
+                return Err(ReportError::Layers { material: material.name.clone(), layer });
             }
         }
         Ok(())
     }
+}
+
+/// The texels across and down that a layout needs, or its fault.
+fn checked_size(TableEntry { layout, tiles, .. }: &TableEntry) -> Result<[u32; 2], &'static str> {
+    if layout.tiles == 0 || layout.columns == 0 {
+        return Err("no tiles");
+    }
+    if tiles.len() != layout.tiles as usize {
+        return Err("its tiles are not those that the manifest describes");
+    }
+    for axis in [Some(&layout.x), layout.y.as_ref()].into_iter().flatten() {
+        if axis.size < 2 {
+            return Err("an axis has fewer than two nodes");
+        }
+        let ordered = axis.min < axis.max;
+        if !ordered || !axis.min.is_finite() || !axis.max.is_finite() {
+            return Err("an axis has no extent");
+        }
+    }
+    layout.checked_size().ok_or("it is larger than any texture")
 }
 
 fn same_kind(layer: &Layer, record: &LayerRecord) -> bool {

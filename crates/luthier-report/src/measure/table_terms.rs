@@ -1,4 +1,4 @@
-//! The model's terms as a shader reads them: from texels.
+//! The terms of a model, read from texels as a shader does.
 
 use std::borrow::Cow;
 
@@ -20,8 +20,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::ReportError;
 use crate::measure::subject::{Subject, Table};
 
-/// How precisely a filtering sampler weighs texels. Formats that core WebGPU does not filter are read with four fetches
-/// and weighed in the shader, exactly, under either.
+/// Precision of the weights of a filtering sampler. Formats that core WebGPU does not filter have exact weights in any case: the shader fetches four
+/// texels and weighs them itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
@@ -52,7 +52,7 @@ impl Table<'_> {
         Row::of_parts(&self.parts(tile, cos_theta, weights), self.has_base())
     }
 
-    /// A row of lobes between two tiles: numbers as texels have them are linear between these.
+    /// A row of lobes between two tiles. The stored numbers are interpolated, not the lobes that they encode, because shaders do so.
     fn row_between(&self, tile: u32, share: f64, cos_theta: f64, weights: Weights) -> Row {
         let share = match weights.bits(self.entry.format) {
             WeightBits::Exact => share,
@@ -65,8 +65,8 @@ impl Table<'_> {
             return self.row(tile, cos_theta, weights);
         }
         let [first, second] = [tile, tile + 1].map(|tile| self.parts(tile, cos_theta, weights));
-        let mixed = |(a, b): (&[f64; 4], &[f64; 4])| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));
-        Row::of_parts(&first.iter().zip(&second).map(mixed).collect::<Vec<_>>(), self.has_base())
+        let parts = first.iter().zip(&second).map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i])));
+        Row::of_parts(&parts.collect::<Vec<_>>(), self.has_base())
     }
 
     fn parts(&self, tile: u32, cos_theta: f64, weights: Weights) -> Vec<[f64; 4]> {
@@ -80,7 +80,7 @@ impl Table<'_> {
     }
 }
 
-/// Whether the x axis of a table is an angle.
+/// Quantity of the x axis of a table: an angle or not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AngleAxis {
     Theta,
@@ -96,12 +96,12 @@ impl AngleAxis {
     pub(crate) fn of(table: &Table<'_>) -> Result<Self, ReportError> {
         let kind = table.entry.kind;
         let (layout, facts) = (&table.entry.layout, kind.facts());
-        let refuse = |reason| Err(ReportError::Layout { kind, reason });
         if facts.y.is_some() && layout.y.is_none() {
-            return refuse("it has no second axis");
+            return Err(ReportError::Layout { kind, reason: "it has no second axis" });
         }
         if !facts.x.contains(&layout.x.quantity.as_str()) {
-            return refuse("its x axis is not of a quantity that such tables have");
+            let reason = "its x axis is not of a quantity that such tables have";
+            return Err(ReportError::Layout { kind, reason });
         }
         Ok(if layout.x.quantity.starts_with("theta") { Self::Theta } else { Self::CosTheta })
     }
@@ -134,7 +134,7 @@ impl AngleAxis {
 /// Terms of one material, read from the shipped tables with f64 arithmetic.
 #[derive(Debug)]
 pub struct TableTerms<'a> {
-    /// By kind, with the quantity of the x axis.
+    /// Tables by kind, each with the quantity of its x axis.
     tables: [Option<(Table<'a>, AngleAxis)>; TableKind::ALL.len()],
     veil: Veil<3>,
     lobes: Option<LobesRecord>,
@@ -145,14 +145,14 @@ pub struct TableTerms<'a> {
     here: Here,
 }
 
-/// Changes of the terms by the textures of a place.
+/// Changes that the textures of a place make to terms.
 #[derive(Debug, Clone, Copy)]
 struct Here {
     part: Part,
     alpha_factor: f64,
     slab_factor: f64,
     film_factor: f64,
-    /// A layer, and the factor on what its interface does not reflect.
+    /// A layer, and the factor on the light that its interface does not reflect.
     passing: Option<(usize, Rgb)>,
 }
 
@@ -160,14 +160,14 @@ impl Here {
     const NOMINAL: Self =
         Self { part: Part::All, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0, passing: None };
 
-    /// Fractional number of the tile of lobes, and the factor on slopes that its rows are divided by.
+    /// Fractional number of the tile of lobes, and the factor by which the slopes of its rows are divided.
     fn tile(&self, varying: &VaryingRecord) -> (f64, f64) {
         let last = f64::from(varying.tiles) - 1.0;
-        let from_root = |factor: f64| 1.0 - factor.clamp(0.0, 1.0).sqrt();
+        let [alpha, slab] = [self.alpha_factor, self.slab_factor].map(|factor| 1.0 - factor.clamp(0.0, 1.0).sqrt());
         let place = match varying.factor {
             // A step before the root of 0.
-            VaryingFactor::AlphaFactor => (from_root(self.alpha_factor) * (last + 1.0)).min(last),
-            VaryingFactor::SlabFactor => from_root(self.slab_factor) * last,
+            VaryingFactor::AlphaFactor => (alpha * (last + 1.0)).min(last),
+            VaryingFactor::SlabFactor => slab * last,
             VaryingFactor::FilmFactor => {
                 let [most, least] = varying.factors.unwrap_or([1.0, 0.0]);
                 ((most - self.film_factor) / (most - least)).clamp(0.0, 1.0) * last
@@ -236,17 +236,17 @@ impl<'a> TableTerms<'a> {
     ) -> Result<Self, ReportError> {
         let mut terms = Self::new(subject, material, weights)?;
         let entry = &subject.manifest.materials[material];
-        let f0 = |(layer, record): (usize, &LayerRecord)| {
+        let passing = entry.layers.iter().enumerate().find_map(|(layer, record)| {
             let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
             Some((layer, [0, 1, 2].map(|c: usize| (1.0 - own[c]) / (1.0 - nominal[c]).max(1e-6))))
-        };
+        });
         let sample = &place.sample;
         terms.here = Here {
             part,
             alpha_factor: sample.alpha_factor,
             slab_factor: sample.slab_factor,
             film_factor: sample.film_factor,
-            passing: entry.layers.iter().enumerate().find_map(f0),
+            passing,
         };
         if let (Part::Bare, Some(patina)) = (part, &entry.constants.patina) {
             terms.records = std::iter::once(&patina.bare).chain(entry.layers.iter().skip(2)).cloned().collect();
@@ -258,20 +258,20 @@ impl<'a> TableTerms<'a> {
         Some(self.tables[kind as usize]?.0)
     }
 
-    /// Reflectance of an interface at this place, for one in its tables.
+    /// Reflectance of an interface at this place, from its reflectance in the tables.
     fn passed(&self, layer: usize, reflected: Rgb) -> Rgb {
         let passing = self.here.passing.filter(|(at, _)| *at == layer).map_or([1.0; 3], |(_, passing)| passing);
         [0, 1, 2].map(|c: usize| 1.0 - passing[c] * (1.0 - reflected[c]))
     }
 
-    /// Thickness of the film of a layer here, over the greatest.
+    /// Thickness of the film of a layer at this place, over the greatest thickness.
     fn film_share(&self, layer: usize) -> f64 {
         let record = &self.records[layer];
         let factor = if layer == 0 { self.here.film_factor } else { 1.0 };
         factor * record.film_thickness_nm / record.film_thickness_max_nm
     }
 
-    /// The tile that a layer reads, if it is there.
+    /// The tile that a layer reads; `None` if the table does not have it.
     fn tile(&self, kind: TableKind, layer: usize) -> Option<u32> {
         let tiles = self.table(kind)?.entry.layout.tiles;
         self.records.get(layer)?.tiles[kind].filter(|tile| *tile < tiles)
@@ -283,20 +283,20 @@ impl<'a> TableTerms<'a> {
         Some((table, angle, self.tile(kind, layer)?))
     }
 
-    /// Name of the row that a layer reads; empty for a layer that reads none.
+    /// Name of the reflectance tile that a layer reads; empty for a layer without one.
     pub(crate) fn fresnel_name(&self, layer: usize) -> &str {
         let kind = if self.tile(TableKind::Film, layer).is_some() { TableKind::Film } else { TableKind::Fresnel };
         self.name(kind, layer)
     }
 
-    /// Name of the tile of a kind that a layer reads; empty when there is none.
+    /// Name of the tile of a kind that a layer reads; empty for a layer without one.
     pub(crate) fn name(&self, kind: TableKind, layer: usize) -> &str {
         let tile = self.table(kind).zip(self.tile(kind, layer));
         tile.and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
     }
 }
 
-/// The veil of the layers above a diffuse base that shaders of the statistical models are told.
+/// The veil of the layers above a diffuse base, as the record gives it to shaders of the statistical models.
 pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
     let constants = &entry.constants;
     Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] }
@@ -322,7 +322,7 @@ impl Terms for TableTerms<'_> {
         self.passed(layer, [r, g, b])
     }
 
-    /// Read where the layer has a tile; else the closed form.
+    /// A read, if the layer has a tile; else the closed form.
     fn distribution(&self, layer: usize, form: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
         match self.read_at(TableKind::Distribution, layer) {
             Some((table, angle, tile)) => {
@@ -351,7 +351,7 @@ impl Energy<3> for TableTerms<'_> {
         }
     }
 
-    /// The table is over the cosine outside, of the direction that is refracted to `cos_theta_i`.
+    /// The axis of the table is the cosine outside: that of the direction which refracts to `cos_theta_i`.
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
         match self.read_at(TableKind::Escape, layer) {
             Some((table, _, tile)) => {
@@ -378,19 +378,19 @@ impl ShaderTerms for TableTerms<'_> {
         };
         let axis = ViewAxis::new(2, critical);
         let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
-        let painted = |PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() };
-        let (wide, base) = (Wide::new(lobes.falloff, axis), lobes.painted.map(painted));
-        let frame = Frame { index: lobes.index, wide, axes, base };
-        let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
+        let base = lobes.painted;
+        let base = base.map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
+        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes, base };
+        let cos_theta = axis.cosine(wo.z);
         let row = match (axes, lobes.varying) {
-            (Some(axes), _) => axes.row(wo, |number| row(tile + number as u32)),
+            (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(&varying);
                 let first = (place as u32).min(varying.tiles.saturating_sub(2));
                 let share = place - f64::from(first);
-                table.row_between(tile + first, share, axis.cosine(wo.z), self.weights).spread(spread)
+                table.row_between(tile + first, share, cos_theta, self.weights).spread(spread)
             }
-            (None, None) => row(tile),
+            (None, None) => table.row(tile, cos_theta, self.weights),
         };
         Some(Below::new(frame, row, wo))
     }

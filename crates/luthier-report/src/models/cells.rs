@@ -1,9 +1,9 @@
 //! The hemisphere of light directions in cells around the mirror direction.
 //!
-//! A light direction is known by the half vector between it and the eye: the polar angle theta_h against the normal, which is 0
-//! for the mirror direction, and the azimuth phi_h against the plane of the eye. Rings of theta_h grow by the square root of
-//! two, so lobes of every width fall into several; each ring has eight sectors of phi_h but for the innermost, which
-//! is a disc. In these coordinates a lobe looks much the same at all angles.
+//! The half vector between light and eye gives the coordinates of a light direction: theta_h, its polar angle against the normal, which is 0
+//! for the mirror direction, and phi_h, its azimuth against the plane of the eye. Rings of theta_h grow by the square root of two, so that lobes of
+//! every width fall into several rings. The innermost ring is a disc; each other ring has eight sectors of phi_h. In these coordinates a lobe looks
+//! much alike at all angles.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -19,7 +19,7 @@ pub(super) const SECTORS: usize = 8;
 /// Number of cells.
 pub(super) const CELLS: usize = 1 + (RINGS_DEG.len() - 1) * SECTORS;
 
-/// Edges inside the innermost ring: for integration only, so that the narrowest lobes are resolved (5e-5 rad is 0.003 degrees).
+/// Edges inside the innermost ring, for integration only. They resolve the narrowest lobes (5e-5 rad is 0.003 degrees).
 const INNER_DEG: [f64; 6] = [0.0, 5e-4, 2e-3, 8e-3, 0.03, 0.125];
 
 /// The cells for an eye above the surface.
@@ -28,7 +28,7 @@ pub(super) struct Cells {
     pub(super) wo: DVec3,
     cos_phi: f64,
     sin_phi: f64,
-    /// Up to the first of these theta_h light is above the horizon at all phi_h, from the second on at none.
+    /// Light is above the horizon at every phi_h up to the first of these theta_h, and at no phi_h beyond the second.
     horizon: [f64; 2],
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Node {
 }
 
 impl Patch {
-    /// Whether it is on the left of the plane of the eye; the right has the mirror image of each such patch.
+    /// Whether the patch is on the left of the plane of the eye. The right side has its mirror image.
     pub(super) fn is_left(&self) -> bool {
         self.phi[0] >= 0.0
     }
@@ -73,7 +73,7 @@ impl Cells {
         index(ring, sector)
     }
 
-    /// The hemisphere in pieces for integration: each in one cell, those of the innermost ring graded towards the mirror direction.
+    /// The hemisphere in pieces for integration. Each piece lies in one cell; pieces of the innermost ring shrink towards the mirror direction.
     pub(super) fn patches(&self) -> Vec<Patch> {
         let mut edges: Vec<f64> = INNER_DEG.iter().chain(&RINGS_DEG).map(|deg| deg.to_radians()).collect();
         edges.extend(self.horizon);
@@ -131,7 +131,7 @@ pub(super) fn mirrored(cell: usize) -> usize {
     index(1 + place / SECTORS, -((place % SECTORS) as f64))
 }
 
-/// Number of a cell; sectors count from any whole turn.
+/// Number of a cell. Sectors may be negative or exceed a turn.
 fn index(ring: usize, sector: f64) -> usize {
     if ring == 0 { 0 } else { 1 + (ring - 1) * SECTORS + (sector as i32).rem_euclid(SECTORS as i32) as usize }
 }

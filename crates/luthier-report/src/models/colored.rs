@@ -1,4 +1,4 @@
-//! The reference of one view in the colour of a material, and functions beside it.
+//! The reference of one view in the colour of a material, and the errors of functions against it.
 
 use std::f64::consts::TAU;
 
@@ -18,47 +18,47 @@ use super::energies::Energies;
 use super::reference::{ReferenceSettings, is_isotropic};
 use super::{PHI_DEG, direction};
 
-/// Cosine below which light is *grazing*: from 87.1 degrees.
+/// Cosine below which light is *grazing*: beyond 87.1 degrees.
 pub(crate) const GRAZING_COS: f64 = 0.05;
 
 /// Least cosine of an eye whose grazing light is compared: 78.5 degrees.
 const STEEP_COS: f64 = 4.0 * GRAZING_COS;
 
-/// Paths of a family: the spread of families is the noise.
+/// Paths of a family. The spread of families measures the noise.
 const FAMILY: u64 = 2048;
 
 /// Families before the first look at the noise.
 const FIRST_FAMILIES: u64 = 8;
 
-/// Light of a stack that comes to the eye from one direction, in the colour of a material.
+/// Light of a stack towards an eye at one angle, in the colour of a material.
 #[derive(Debug)]
 pub(crate) struct ColorView {
     cells: Cells,
     is_symmetric: bool,
-    /// Energies of families by cell, and last that of grazing light, without the light of one facet of the first interface.
+    /// Simulated energies of each family by cell, then that of grazing light, without the light that met one facet of the first interface alone.
     families: Vec<Vec<Rgb>>,
-    /// Simulated light of the second interface and below, alike.
+    /// Energies of the light that met one facet of the first interface alone, in the same order: a closed form without noise.
     single: Vec<Rgb>,
 }
 
 /// Errors of a function at a view, each with the noise of the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ViewErrors {
-    /// Lobe error, the largest channel, and what noise alone makes of it on average.
+    /// Lobe error of the worst channel, and the lobe error that noise alone causes on average.
     pub(crate) lobe: [f64; 2],
-    /// Absolute error of the directional albedo, the largest channel, and the standard error there.
+    /// Absolute error of the directional albedo in the worst channel, and the standard error there.
     pub(crate) albedo: [f64; 2],
     /// Albedo of the function and of the reference in the channel of that error.
     pub(crate) albedos: [f64; 2],
-    /// Error of the mean of `f cos_theta_i` over grazing light, over max(the mean, a floor), the largest channel, and the standard error there; 0 for an eye
-    /// flatter than [`STEEP_COS`].
+    /// Error of the mean of `f cos_theta_i` over grazing light in the worst channel, relative to max(the mean, a floor), and the standard error there. 0 for
+    /// an eye flatter than [`STEEP_COS`].
     pub(crate) grazing: [f64; 2],
     /// Paths that were traced.
     pub(crate) paths: u64,
 }
 
 impl ColorView {
-    /// Traces a stack with an interface, from an angle against the normal, until the noise is as small as it has to be.
+    /// Traces a stack with an interface, from an angle against the normal, until the noise is within the settings or the paths are spent.
     pub(crate) fn new(stack: &Stack, color: &Color, nm: [f64; 3], theta_deg: f64, settings: ReferenceSettings) -> Self {
         let cells = Cells::new(direction(theta_deg, PHI_DEG));
         let is_symmetric = is_isotropic(stack);
@@ -89,9 +89,9 @@ impl ColorView {
                 });
                 view.families.push(sums);
             }
-            let channels = || (0..3).filter(|c| view.albedo(*c) > 0.0);
-            let lobe = channels().map(|c| view.lobe_floor(c) / settings.noise);
-            let albedo = channels().map(|c| view.deviation(c, |_| 1.0) / settings.albedo_std_err);
+            let channels = (0..3).filter(|c| view.albedo(*c) > 0.0);
+            let lobe = channels.clone().map(|c| view.lobe_floor(c) / settings.noise);
+            let albedo = channels.map(|c| view.deviation(c, |_| 1.0) / settings.albedo_std_err);
             let lack = lobe.chain(albedo).fold(0.0, f64::max);
             if lack <= 1.0 || wanted >= most {
                 return view;
@@ -100,7 +100,7 @@ impl ColorView {
         }
     }
 
-    /// Errors of `f cos_theta_i` of directions to the light; means of grazing light are over at least a floor.
+    /// Errors of a function `f cos_theta_i` of the direction to the light. `floor` is the least divisor of the error of grazing light.
     pub(crate) fn errors(&self, values: impl Fn(DVec3) -> Rgb, floor: f64) -> ViewErrors {
         let found = Energies::of_values(&values, &self.cells, self.is_symmetric);
         let grazing = grazing(&values);
@@ -124,7 +124,7 @@ impl ColorView {
                 errors.albedo = [(stated - expected).abs(), self.deviation(c, |_| 1.0)];
                 errors.albedos = [stated, expected];
             }
-            // A flat eye has its highlight in that light: what is far from it is lost beside it.
+            // A flat eye has its highlight in grazing light, and the rest is lost beside it.
             if self.cells.wo.z < STEEP_COS {
                 continue;
             }
@@ -152,7 +152,7 @@ impl ColorView {
         energy_that_noise_moves(deviations) / self.albedo(c)
     }
 
-    /// Deviation of a sum of energies with factors.
+    /// Standard error of a sum of energies with factors.
     fn deviation(&self, c: usize, factor: impl Fn(usize) -> f64) -> f64 {
         self.variance(|family| (0..CELLS).map(|cell| factor(cell) * family[cell][c]).sum()).sqrt()
     }
@@ -166,7 +166,8 @@ impl ColorView {
     }
 }
 
-/// Energy by cell, and last that of grazing light, of what meets one facet of the first interface alone: the closed form, in the colour of the material.
+/// Energies by cell, then that of grazing light, of the light that meets one facet of the first interface alone. It has a closed form in the colour of
+/// the material.
 fn single(stack: &Stack, color: &Color, nm: [f64; 3], cells: &Cells) -> Vec<Rgb> {
     let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
     if !is_interface {

@@ -1,4 +1,4 @@
-//! Two errors of one view.
+//! The two errors of one view: of the albedo and of the lobe.
 
 use std::f64::consts::PI;
 
@@ -8,53 +8,48 @@ use super::report::{Quantity, ViewError};
 
 /// The errors of energies against the reference, with their standard errors.
 ///
-/// The lobe error's is to first order, for fixed signs of the differences. Where the difference in a cell is noise, its
-/// absolute value is not: it adds to the lobe error. [`ViewError::lobe_floor`] is what that comes to when all differences are noise.
+/// The standard error of the lobe error is of first order, for fixed signs of the differences. In a cell whose difference is noise, its absolute
+/// value still adds to the lobe error. [`ViewError::lobe_floor`] is the lobe error if all differences are noise.
 pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f64, theta_deg: f64) -> ViewError {
-    // Variance of a sum of the reference's energies plus, at the factors of their own, of those found.
-    let spread = |of_reference: &dyn Fn(usize) -> f64, of_found: &dyn Fn(usize) -> f64| {
-        let own = found.noise.as_ref().map_or(0.0, |paths| paths.variance(of_found));
-        libm::sqrt(reference.variance(of_reference) + own)
-    };
     let albedo_ref = reference.albedo();
     let albedo = found.energies.iter().sum::<f64>();
-    // Nothing to compare with: everything found is infinitely too much.
-    let per_light = |energy: f64| if energy == 0.0 { 0.0 } else { energy / albedo_ref };
-
     let moved: f64 = found.energies.iter().zip(&reference.energies).map(|(e, r)| (e - r).abs()).sum();
-    let lobe = per_light(0.5 * moved);
-    let half_sign = |cell: usize| match found.energies[cell] - reference.energies[cell] {
-        d if d > 0.0 => 0.5,
-        d if d < 0.0 => -0.5,
-        _ => 0.0,
-    };
-    let lobe_noise: f64 = (0..reference.energies.len())
-        .map(|cell: usize| {
-            let own = found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell));
-            libm::sqrt(reference.cell_variance(cell) + own)
-        })
-        .sum();
+    let lobe = share_of(albedo_ref, 0.5 * moved);
+    let differences = found.energies.iter().zip(&reference.energies).map(|(e, r)| e - r);
+    let half_signs: Vec<f64> =
+        differences.map(|d| if d > 0.0 || d < 0.0 { 0.5_f64.copysign(d) } else { 0.0 }).collect();
+    let of_reference = reference.variance(|cell| half_signs[cell] + lobe);
+    let lobe_std_err = libm::sqrt(of_reference + found.variance(|cell| half_signs[cell]));
+    let variances = (0..reference.energies.len()).map(|cell: usize| {
+        reference.cell_variance(cell) + found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell))
+    });
+    let lobe_noise: f64 = variances.map(libm::sqrt).sum();
     ViewError {
         wavelength_nm,
         theta_deg,
         albedo: Quantity {
             error: (albedo - albedo_ref).abs(),
-            std_err: spread(&|_| 1.0, &|_| 1.0),
+            std_err: libm::sqrt(reference.variance(|_| 1.0) + found.variance(|_| 1.0)),
             quadrature_change: found.change[0],
         },
         lobe: Quantity {
             error: lobe,
-            std_err: per_light(spread(&|cell| half_sign(cell) + lobe, &half_sign)),
-            quadrature_change: per_light(found.change[1]),
+            std_err: share_of(albedo_ref, lobe_std_err),
+            quadrature_change: share_of(albedo_ref, found.change[1]),
         },
-        lobe_floor: per_light(energy_that_noise_moves(lobe_noise)),
+        lobe_floor: share_of(albedo_ref, energy_that_noise_moves(lobe_noise)),
         albedo_model: albedo,
         albedo_reference: albedo_ref,
     }
 }
 
-/// Energy that noise moves on average, from the sum of the standard deviations of all cells: half the mean absolute values of normal
-/// variables, which are sqrt(2 / pi) of their deviations.
+/// An energy as a share of some light. Without light, any energy is an infinite share.
+fn share_of(light: f64, energy: f64) -> f64 {
+    if energy == 0.0 { 0.0 } else { energy / light }
+}
+
+/// Energy that noise moves on average, from the sum of the standard deviations of all cells. It is half the sum of mean absolute values, and the mean
+/// absolute value of a normal variable is sqrt(2 / pi) times its deviation.
 pub(super) fn energy_that_noise_moves(deviations: f64) -> f64 {
     0.5 * libm::sqrt(2.0 / PI) * deviations
 }

@@ -8,33 +8,38 @@ use luthier_optics::quadrature::gauss_legendre;
 use super::cells::{CELLS, Cells, Patch, mirrored};
 use super::paths::Histogram;
 
-/// Points of the rule along every interval: first and last, doubled in between.
+/// First and last number of points along every interval. Each level doubles it.
 const POINTS: [usize; 2] = [2, 32];
 
-/// A change on doubling with which the quadrature is content: half the sum over cells. The finer of the two rules counts, whose
-/// error is a small part of the change.
+/// Change on doubling (half the sum over cells) at which the quadrature stops. The finer of the two rules counts; its error is a small part of the
+/// change.
 const CONTENT: f64 = 5e-4;
 
-/// Energies per cell, and how far they may be off.
+/// Energies per cell, with their uncertainty.
 #[derive(Debug, Clone)]
 pub(super) struct Energies {
     pub(super) energies: Vec<f64>,
     /// Changes of a quadrature on the last doubling of its points: of the albedo, and half the change of all cells.
     pub(super) change: [f64; 2],
-    /// Histogram of paths, where paths were traced.
+    /// Histogram of the paths, if the energies come from paths.
     pub(super) noise: Option<Histogram>,
 }
 
 impl Energies {
-    /// The energies of a model that is a function at one wavelength, see [`Self::of_values`].
+    /// The energies of a model at one wavelength, see [`Self::of_values`].
     pub(super) fn of(model: &dyn Model, stack: &Monochrome, cells: &Cells) -> Self {
         let [energies] = Self::of_values(|wi| [model.eval(stack, wi, cells.wo)], cells, false);
         energies
     }
 
-    /// The energies of functions `f cos_theta_i` of the light direction, several at once: Gauss-Legendre quadrature over every patch. Points are
-    /// doubled, where a function changes most, until half the changes of all patches are 5e-4 or less in all. Of functions that are symmetric
-    /// about the plane of the eye one half is integrated.
+    /// Variance of a sum of the energies with factors; 0 without paths.
+    pub(super) fn variance(&self, factor: impl Fn(usize) -> f64) -> f64 {
+        self.noise.as_ref().map_or(0.0, |paths| paths.variance(factor))
+    }
+
+    /// The energies of several functions `f cos_theta_i` of the light direction at once, by Gauss-Legendre quadrature over every patch. Patches that
+    /// change most get twice the points, until half the changes of all patches sum up to at most 5e-4. Functions that are symmetric about the plane of
+    /// the eye are integrated over one half.
     pub(super) fn of_values<const N: usize>(
         values: impl Fn(DVec3) -> [f64; N],
         cells: &Cells,
@@ -53,29 +58,30 @@ impl Energies {
             });
             sum
         };
-        let difference = |a: [f64; N], b: [f64; N]| std::array::from_fn(|i| a[i] - b[i]);
         let patches = cells.patches();
-        // Patches that change by no more than this are content on their own.
+        // If every patch changes by no more than its share, the sum is within `CONTENT`: such patches need no more points.
         let share = 2.0 * CONTENT / patches.len() as f64;
         let mut refined: Vec<Refined<N>> = patches
             .into_iter()
             .filter(|patch| !is_symmetric || patch.is_left())
             .map(|patch| {
-                let energy = integrate(&patch, 1);
-                Refined { patch, level: 1, energy, change: difference(energy, integrate(&patch, 0)) }
+                let (energy, coarser) = (integrate(&patch, 1), integrate(&patch, 0));
+                Refined { patch, level: 1, energy, change: std::array::from_fn(|i| energy[i] - coarser[i]) }
             })
             .collect();
         let copies = if is_symmetric { 2.0 } else { 1.0 };
         loop {
             let moved: [f64; N] =
                 std::array::from_fn(|i| copies * refined.iter().map(|r| 0.5 * r.change[i].abs()).sum::<f64>());
-            let open = |r: &&mut Refined<N>| r.change.iter().any(|c| c.abs() > share) && r.level + 1 < rules.len();
             let mut changed = false;
             if moved.iter().any(|moved| *moved > CONTENT) {
-                for r in refined.iter_mut().filter(open) {
-                    let finer = integrate(&r.patch, r.level + 1);
-                    *r = Refined { level: r.level + 1, energy: finer, change: difference(finer, r.energy), ..*r };
-                    changed = true;
+                for r in refined.iter_mut().filter(|r| r.level + 1 < rules.len()) {
+                    if r.change.iter().any(|c| c.abs() > share) {
+                        let finer = integrate(&r.patch, r.level + 1);
+                        let change = std::array::from_fn(|i| finer[i] - r.energy[i]);
+                        *r = Refined { level: r.level + 1, energy: finer, change, ..*r };
+                        changed = true;
+                    }
                 }
             }
             if !changed {
@@ -101,7 +107,7 @@ struct Refined<const N: usize> {
     /// Number of the rule.
     level: usize,
     energy: [f64; N],
-    /// Against the rule before.
+    /// Change of the energy from the rule before.
     change: [f64; N],
 }
 

@@ -6,14 +6,13 @@
 //!
 //! - *albedo error*: `|a - a_ref|`, a being the sum over the cells;
 //! - *lobe error*: `1/2 sum |e_k - r_k| / a_ref` over the cells' energies e and r: the share of the reference's light that has to
-//!   move, appear or vanish. 0 for the same lobe; for two lobes of equal energy that do not overlap, 1.
+//!   move, appear or vanish. It is 0 for equal lobes, and 1 for two lobes of equal energy that do not overlap.
 //!
-//! Cells are drawn around the mirror direction, over half vectors, and the smallest is a disc about it. That
-//! is what makes mirrors comparable: a model that shows one as a lobe of its smallest roughness puts its energy into the same
-//! cell as the reference, which sends it into one direction.
+//! Cells are drawn around the mirror direction, over half vectors, and the smallest is a disc about it. The disc makes mirrors comparable: the
+//! reference sends their light into one direction, a model into a lobe of its smallest roughness, and both lie in the disc.
 //!
-//! Two rows of the comparison are no models: the reference with one facet per interface event, for what the mode
-//! alone does, and the reference with other random numbers, for what noise alone does.
+//! Two rows of the comparison are no models. The reference with one facet per interface event shows the effect of the mode alone; the reference with
+//! other random numbers shows the effect of noise alone.
 //!
 //! Out of scope: single glints and maps (a model is judged as it is registered), colour, speed.
 
@@ -51,10 +50,10 @@ pub(crate) const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 /// Azimuth of the eye, degrees: along no axis of an anisotropic surface.
 pub const PHI_DEG: f64 = 30.0;
 
-/// The row that shows the noise.
+/// Name of the row that shows the noise.
 pub(crate) const CONTROL: &str = "layered-mc, other seed";
 
-/// Rows that are paths themselves have this many times fewer than the reference.
+/// Ratio of the paths of the reference to those of rows that are paths themselves.
 pub(crate) const FEWER: u32 = 4;
 
 /// A material to judge models on.
@@ -88,7 +87,7 @@ pub fn judge_models(
     judge_rows(rows, subjects, settings, progress)
 }
 
-/// `rows` makes the rows for one material: what models remember of a stack is of no use to other materials.
+/// `rows` makes new rows for each material, because models cache results of a stack that are useless for others.
 fn judge_rows(
     rows: fn() -> Vec<Row>,
     subjects: &[ModelSubject],
@@ -134,8 +133,8 @@ fn is_judged(info: &ModelInfo) -> bool {
     }
 }
 
-/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered, and surfaces
-/// of one layer that shaders have. Not those that spread two stacks, of which a material has one.
+/// All rows, in the order of listings: models of layers, models of places (with the parameters that they are registered with), and surfaces of one
+/// layer that shaders have. Models over two stacks are left out, because a material has one.
 fn rows() -> Vec<Row> {
     let judged = models().into_iter().filter(|model| is_judged(&model.info())).map(Row::Model);
     judged.chain([Row::Paths(InterfaceMode::OneFacet), Row::Paths(InterfaceMode::SmithWalk)]).collect()

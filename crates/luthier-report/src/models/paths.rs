@@ -1,4 +1,4 @@
-//! The reference: where its paths go.
+//! Histogram of the reference's paths over cells.
 
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::LayeredMc;
@@ -15,7 +15,7 @@ pub(super) struct Histogram {
     pub(super) squares: Vec<f64>,
     /// Number of paths.
     pub(super) count: f64,
-    /// Energies of each family of paths, where there are some; then variances are those between them.
+    /// Energies of each family of paths. If there are families, variances are those between them.
     pub(super) families: Vec<Vec<f64>>,
 }
 
@@ -33,10 +33,11 @@ impl Histogram {
         Self { energies, squares, count, families: Vec::new() }
     }
 
-    /// The histogram of families that have as many paths each, `count` in all.
+    /// The histogram of families with equal numbers of paths, `count` in all.
     pub(super) fn of_families(families: Vec<Vec<f64>>, count: f64) -> Self {
-        let mean = |cell: usize| families.iter().map(|energies| energies[cell]).sum::<f64>() / families.len() as f64;
-        Self { energies: (0..CELLS).map(mean).collect(), squares: vec![0.0; CELLS], count, families }
+        let sums = (0..CELLS).map(|cell| families.iter().map(|energies| energies[cell]).sum::<f64>());
+        let energies = sums.map(|sum| sum / families.len() as f64).collect();
+        Self { energies, squares: vec![0.0; CELLS], count, families }
     }
 
     /// Variance of the mean of the families' values.

@@ -1,8 +1,8 @@
 //! The reference of a material from angles of the caller's choice: traced once, for all that is compared with it.
 //!
-//! Three things make it cheap. Wavelengths that go the same ways share their paths ([`JointPaths`]). Light that meets one facet of the first
-//! interface alone has no noise: it comes from its closed form, by quadrature over the cells. Where all surfaces are isotropic, the light is
-//! its own mirror image in the plane of the eye, so that a cell has the mean of both sides. Every view has as many paths as its noise asks for.
+//! Four things make it cheap. Wavelengths with equal directions of refraction share their paths ([`JointPaths`]). Light that meets one facet of the
+//! first interface alone has a closed form, which is integrated over the cells without noise. If all surfaces are isotropic, the light is its own
+//! mirror image in the plane of the eye, so that a cell takes the mean of both sides. Every view has as many paths as its noise requires.
 
 use glam::DVec3;
 use luthier_layers::model::Model;
@@ -10,7 +10,7 @@ use luthier_layers::models::lobes::Lobes;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::JointPaths;
 use luthier_optics::Rgb;
-use luthier_optics::stack::{Base, Stack};
+use luthier_optics::stack::{Base, Layer, Stack};
 use rayon::prelude::*;
 
 use super::cells::{CELLS, Cells, mirrored};
@@ -22,9 +22,9 @@ use super::{ModelSubject, PHI_DEG, ViewError, direction};
 /// Settings of a reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReferenceSettings {
-    /// Lobe error that its random numbers may make, see [`ViewError::lobe_floor`].
+    /// Largest lobe error from noise, see [`ViewError::lobe_floor`].
     pub noise: f64,
-    /// Standard error that its albedos may have.
+    /// Largest standard error of albedos.
     pub albedo_std_err: f64,
     /// The most paths of a view, for the wavelengths that share them. A view that needs more keeps its noise.
     pub most: u64,
@@ -51,7 +51,7 @@ struct TracedView {
     paths: u64,
 }
 
-/// A model or lobes that are compared with a reference.
+/// A model, lobes or a function to compare with a reference.
 #[derive(Clone, Copy)]
 pub enum Shown<'a> {
     /// A model, given the stack at each wavelength.
@@ -68,32 +68,31 @@ const FAMILIES: u64 = 16;
 /// Paths of a family before the first look at the noise.
 const FIRST_PATHS: u64 = 1024;
 
-/// Factors on the number of paths from one look at the noise to the next, at least and at most.
+/// Least and largest factor on the number of paths between two looks at the noise.
 const GROWTH: [f64; 2] = [1.2, 4.0];
 
 impl Reference {
-    /// Traces a material from angles against the normal. The result depends on the arguments only, not on the number of threads.
+    /// Traces a material from angles against the normal. The result does not depend on the number of threads.
     pub fn new(subject: &ModelSubject, thetas_deg: &[f64], settings: ReferenceSettings) -> Self {
         let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(&subject.stack, subject.wavelengths_nm[c], c));
         let is_symmetric = is_isotropic(&subject.stack);
         let sets = JointPaths::new(&stacks);
-        let view = |theta_deg: &f64| {
-            let cells = Cells::new(direction(*theta_deg, PHI_DEG));
+        let views = thetas_deg.par_iter().map(|&theta_deg| {
+            let cells = Cells::new(direction(theta_deg, PHI_DEG));
             let (histograms, paths) = trace(&sets, &cells, is_symmetric, settings);
-            TracedView { theta_deg: *theta_deg, cells, histograms, paths }
-        };
-        let views = thetas_deg.par_iter().map(view).collect();
+            TracedView { theta_deg, cells, histograms, paths }
+        });
+        let views = views.collect();
         Self { wavelengths_nm: subject.wavelengths_nm, stacks, is_symmetric, views }
     }
 
-    /// Errors of what is shown at all views: angle by angle, and at each wavelength by wavelength.
+    /// Errors at all views: angle by angle, and within an angle wavelength by wavelength.
     pub fn errors(&self, shown: Shown<'_>) -> Vec<ViewError> {
-        let errors = |view: &TracedView| {
+        let errors = self.views.par_iter().map(|view| {
             let found = self.energies(shown, &view.cells);
             [0, 1, 2].map(|c: usize| compare(&found[c], &view.histograms[c], self.wavelengths_nm[c], view.theta_deg))
-        };
-        let errors: Vec<[ViewError; 3]> = self.views.par_iter().map(errors).collect();
-        errors.into_iter().flatten().collect()
+        });
+        errors.collect::<Vec<[ViewError; 3]>>().into_iter().flatten().collect()
     }
 
     /// Paths that were traced, of all views.
@@ -102,22 +101,21 @@ impl Reference {
     }
 
     fn energies(&self, shown: Shown<'_>, cells: &Cells) -> [Energies; 3] {
-        let model = |model: &dyn Model| {
-            let values = |wi| [0, 1, 2].map(|c: usize| model.eval(&self.stacks[c], wi, cells.wo));
-            Energies::of_values(values, cells, self.is_symmetric)
-        };
         match shown {
-            Shown::Model(given) => model(given),
+            Shown::Model(model) => {
+                let values = |wi| [0, 1, 2].map(|c: usize| model.eval(&self.stacks[c], wi, cells.wo));
+                Energies::of_values(values, cells, self.is_symmetric)
+            }
             Shown::Values(values) => Energies::of_values(|wi| values(wi, cells.wo), cells, self.is_symmetric),
             Shown::Lobes(lobes) => Energies::of_values(lobes.seen(&self.stacks, cells.wo), cells, self.is_symmetric),
         }
     }
 }
 
-/// Whether no surface looks other along one axis than along the other.
+/// Whether all surfaces are isotropic.
 pub(super) fn is_isotropic(stack: &Stack) -> bool {
-    let is_round = |surface: &luthier_optics::stack::Surface| surface.alpha_x == surface.alpha_y;
-    stack.layers.iter().all(|layer| matches!(layer.base, Base::Diffuse(_)) || is_round(&layer.surface))
+    let mut layers = stack.layers.iter();
+    layers.all(|Layer { base, surface, .. }| matches!(base, Base::Diffuse(_)) || surface.alpha_x == surface.alpha_y)
 }
 
 /// Light by cell and wavelength, from one direction, and the number of paths.
@@ -138,18 +136,19 @@ fn trace(sets: &[JointPaths], cells: &Cells, is_symmetric: bool, settings: Refer
                 });
             }
             traced = wanted;
-            let of = |c: usize| {
-                let energy = |sums: &[Rgb], cell: usize| {
-                    let sum =
-                        if is_symmetric { 0.5 * (sums[cell][c] + sums[mirrored(cell)][c]) } else { sums[cell][c] };
-                    single[cell][c] + sum / traced as f64
-                };
-                let family = |sums: &Vec<Rgb>| (0..CELLS).map(|cell| energy(sums, cell)).collect();
-                Histogram::of_families(sums.iter().map(family).collect(), (traced * FAMILIES) as f64)
-            };
             let channels = paths.channels();
-            let found = [0, 1, 2].map(|c: usize| channels[c].then(|| of(c)));
-            // How many times as many paths would do.
+            let found = [0, 1, 2].map(|c: usize| {
+                let families = sums.iter().map(|sums| {
+                    let energies = (0..CELLS).map(|cell| {
+                        let (own, opposite) = (sums[cell][c], sums[mirrored(cell)][c]);
+                        let sum = if is_symmetric { 0.5 * (own + opposite) } else { own };
+                        single[cell][c] + sum / traced as f64
+                    });
+                    energies.collect()
+                });
+                channels[c].then(|| Histogram::of_families(families.collect(), (traced * FAMILIES) as f64))
+            });
+            // Noise over the limit. Paths have to grow by its square.
             let lack = found.iter().flatten().map(|histogram| {
                 let lobe = histogram.lobe_floor() / settings.noise;
                 let albedo = histogram.variance(|_| 1.0).sqrt() / settings.albedo_std_err;
@@ -172,14 +171,16 @@ fn trace(sets: &[JointPaths], cells: &Cells, is_symmetric: bool, settings: Refer
 
 /// Energy by cell of the light that meets one facet of the first interface alone.
 fn first_facets(sets: &[JointPaths], cells: &Cells, is_symmetric: bool) -> Vec<Rgb> {
-    let sum = |of: &dyn Fn(&JointPaths) -> Rgb| {
-        sets.iter().map(of).fold([0.0; 3], |sum, rgb| [0, 1, 2].map(|c: usize| sum[c] + rgb[c]))
-    };
-    let rough = Energies::of_values(|wi| sum(&|paths| paths.first_facet(wi, cells.wo)), cells, is_symmetric);
-    let mirrored = sum(&|paths| paths.mirrored(cells.wo));
-    let energy =
-        |cell: usize| [0, 1, 2].map(|c: usize| rough[c].energies[cell] + if cell == 0 { mirrored[c] } else { 0.0 });
-    (0..CELLS).map(energy).collect()
+    let rough =
+        Energies::of_values(|wi| sum(sets.iter().map(|set| set.first_facet(wi, cells.wo))), cells, is_symmetric);
+    let mirrored = sum(sets.iter().map(|paths| paths.mirrored(cells.wo)));
+    let energies = (0..CELLS)
+        .map(|cell| [0, 1, 2].map(|c: usize| rough[c].energies[cell] + if cell == 0 { mirrored[c] } else { 0.0 }));
+    energies.collect()
+}
+
+fn sum(colors: impl Iterator<Item = Rgb>) -> Rgb {
+    colors.fold([0.0; 3], |sum, rgb| [0, 1, 2].map(|c: usize| sum[c] + rgb[c]))
 }
 
 #[cfg(test)]
@@ -187,7 +188,7 @@ mod tests {
     use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
     use luthier_layers::registry::model;
     use luthier_optics::ior::{Ior, IorSample};
-    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Surface};
+    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Slab, Surface};
 
     use super::*;
 

@@ -29,16 +29,16 @@ pub struct MaterialModels {
     pub name: String,
     /// Its wavelengths.
     pub wavelengths_nm: [f64; 3],
-    /// The rows: all models, then what is compared besides; the same for every material.
+    /// The rows: all models, then the reference in other modes. Every material has equal rows.
     pub models: Vec<ModelErrors>,
 }
 
 /// Errors of one model against the reference, on one material.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelErrors {
-    /// The model, or what else is compared.
+    /// Name of the model, or of the other row.
     pub name: &'static str,
-    /// Whether it is a model: the others are the reference in other modes or with other random numbers.
+    /// Whether the row is a model. The others are the reference in another mode or with other random numbers.
     pub is_model: bool,
     /// Largest albedo error.
     pub albedo: Worst,
@@ -48,7 +48,7 @@ pub struct ModelErrors {
     pub views: Vec<ViewError>,
 }
 
-/// An error and how far it may be off.
+/// An error with its uncertainty.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Quantity {
     /// The error, not negative.
@@ -66,7 +66,7 @@ impl Quantity {
     }
 }
 
-/// The largest of the errors of some views, and where.
+/// The largest error over some views, with the view.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Worst {
     /// The error.
@@ -78,6 +78,13 @@ pub struct Worst {
     pub wavelength_nm: f64,
     /// Angle at which the error is seen.
     pub theta_deg: f64,
+}
+
+impl Worst {
+    /// The largest error; zeros without views, which does not happen: the list of angles is not empty.
+    fn among(all: impl Iterator<Item = Self>) -> Self {
+        all.max_by(|a, b| a.quantity.error.total_cmp(&b.quantity.error)).unwrap_or_default()
+    }
 }
 
 /// Errors of one view: at a wavelength, from a direction.
@@ -129,7 +136,7 @@ impl ModelsReport {
         json::to_string(self)
     }
 
-    /// The report as a page in Markdown; `command` is what made it.
+    /// The report as a page in Markdown; `command` is the command line that made it.
     pub fn to_markdown(&self, command: &str) -> String {
         page::page(self, command)
     }
@@ -137,15 +144,11 @@ impl ModelsReport {
 
 impl ModelErrors {
     pub(super) fn new(row: &Row, views: Vec<ViewError>) -> Self {
-        let worst = |of: fn(&ViewError) -> Worst| {
-            // There are always views: the list of angles is not empty.
-            views.iter().map(of).max_by(|a, b| a.quantity.error.total_cmp(&b.quantity.error)).unwrap_or_default()
-        };
         Self {
             name: row.name(),
             is_model: matches!(row, Row::Model(_)),
-            albedo: worst(|view| view.worst(view.albedo, 0.0)),
-            lobe: worst(|view| view.worst(view.lobe, view.lobe_floor)),
+            albedo: Worst::among(views.iter().map(|view| view.worst(view.albedo, 0.0))),
+            lobe: Worst::among(views.iter().map(|view| view.worst(view.lobe, view.lobe_floor))),
             views,
         }
     }

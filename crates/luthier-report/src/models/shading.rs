@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ModelErrors, ModelSettings, ModelSubject, Row, THETAS_DEG, ViewError, judge_material};
 
-/// Stands for the lobe error of a model that reflects light where the reference reflects none, which no JSON holds.
+/// Cap on lobe errors. A model that reflects light off a black reference has an infinite one, which JSON cannot hold.
 const MOST: f64 = 1e6;
 
 /// A model against the reference of whole stacks: the largest errors over the views of [`crate::judge_models`].
@@ -35,15 +35,17 @@ pub struct AgainstReference {
 
 impl AgainstReference {
     fn of(model: ShadingModel, errors: &ModelErrors) -> Self {
-        let at = |theta_deg: f64| errors.views.iter().filter(move |view| view.theta_deg == theta_deg);
-        let color = |theta_deg: f64, of: fn(&ViewError) -> f64| {
-            let mut values = at(theta_deg).map(of);
-            lab([0; 3].map(|_| values.next().unwrap_or(0.0)))
-        };
-        let delta_e = |theta_deg| {
-            ciede2000(color(theta_deg, |view| view.albedo_model), color(theta_deg, |view| view.albedo_reference))
-        };
-        let lobe = |theta_deg| at(theta_deg).map(|view| view.lobe.error.min(MOST)).fold(0.0, f64::max);
+        let albedos: [fn(&ViewError) -> f64; 2] = [|view| view.albedo_model, |view| view.albedo_reference];
+        let (mut delta_e, mut by_angle) = (0.0_f64, Vec::new());
+        for theta_deg in THETAS_DEG {
+            let views = errors.views.iter().filter(|view| view.theta_deg == theta_deg);
+            let [found, expected] = albedos.map(|albedo| {
+                let mut values = views.clone().map(albedo);
+                lab([0; 3].map(|_| values.next().unwrap_or(0.0)))
+            });
+            delta_e = delta_e.max(ciede2000(found, expected));
+            by_angle.push((theta_deg, views.map(|view| view.lobe.error.min(MOST)).fold(0.0, f64::max)));
+        }
         Self {
             model,
             albedo_err: errors.albedo.quantity.error,
@@ -52,20 +54,20 @@ impl AgainstReference {
             lobe_noise: errors.lobe.floor.min(MOST),
             worst_theta_deg: errors.lobe.theta_deg,
             worst_wavelength_nm: errors.lobe.wavelength_nm,
-            delta_e: THETAS_DEG.into_iter().map(delta_e).fold(0.0, f64::max),
-            by_angle: THETAS_DEG.into_iter().map(|theta_deg| (theta_deg, lobe(theta_deg))).collect(),
+            delta_e,
+            by_angle,
         }
     }
 }
 
-/// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. With the settings of
-/// [`crate::judge_models`], its figures.
+/// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. Equal settings give the figures of
+/// [`crate::judge_models`].
 pub fn judge_shading_models(subject: &ModelSubject, settings: ModelSettings) -> Vec<AgainstReference> {
-    let named = |shading: ShadingModel| {
-        let model = models().into_iter().find(|model| model.info().name == shading.name());
-        model.map(|model| (shading, Row::Model(model)))
-    };
-    let (shading, rows): (Vec<ShadingModel>, Vec<Row>) = ShadingModel::ALL.into_iter().filter_map(named).unzip();
+    let rows = ShadingModel::ALL.into_iter().filter_map(|shading| {
+        let model = models().into_iter().find(|model| model.info().name == shading.name())?;
+        Some((shading, Row::Model(model)))
+    });
+    let (shading, rows): (Vec<ShadingModel>, Vec<Row>) = rows.unzip();
     let judged = judge_material(&rows, subject, settings);
     let errors = rows.iter().zip(judged).map(|(row, views)| ModelErrors::new(row, views));
     shading.into_iter().zip(errors).map(|(model, errors)| AgainstReference::of(model, &errors)).collect()

@@ -21,7 +21,7 @@ impl View {
         Self { wavelength_nm, stack, cells: Cells::new(direction(theta_deg, PHI_DEG)) }
     }
 
-    /// Paths of the simulation. Families are far apart, so that seeds that follow each other share none.
+    /// Histogram of simulated paths. Seeds of families are 2^32 apart, so that neighbouring seeds share no paths.
     pub(super) fn trace(&self, mode: InterfaceMode, family: u64, samples: u32, seed: u64) -> Histogram {
         let estimator = LayeredMc { mode, samples: samples.into(), seed: seed.wrapping_add(family << 32) };
         Histogram::trace(estimator, &self.stack, &self.cells)

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::judge::report::{Compared, Report};
 use crate::measure::seen::SeenLight;
-use crate::places::{PlaceErrors, SimulatedAt};
+use crate::places::SimulatedAt;
 use crate::text::format::{bytes, error, none, number};
 
 /// Findings listed by name.
@@ -21,7 +21,6 @@ pub(crate) fn markdown(report: &Report) -> String {
     out.push_str(verdict);
     let on = report.device.as_ref().map_or_else(|| "tables only".to_owned(), |device| format!("on {device}"));
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
-    let count = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
     let _ = writeln!(
         out,
         "{}, {} ({}), {}, {on}.\n",
@@ -57,15 +56,22 @@ pub(crate) fn markdown(report: &Report) -> String {
     out
 }
 
+fn count(n: usize, word: &str) -> String {
+    format!("{n} {word}{}", if n == 1 { "" } else { "s" })
+}
+
+fn verdict(is_held: bool) -> &'static str {
+    if is_held { "held" } else { "**broken**" }
+}
+
 fn limits(out: &mut String, report: &Report) {
     if report.budget.is_none() && report.limits.is_empty() {
         return;
     }
     out.push_str("| limit | stated by | at most | found | |\n|---|---|--:|--:|---|\n");
-    let word = |is_held: bool| if is_held { "held" } else { "**broken**" };
     if let Some(budget) = report.budget {
         let max = report.max_error();
-        let held = word(max <= budget);
+        let held = verdict(max <= budget);
         let _ = writeln!(
             out,
             "| shaders: largest relative error | command line | {} | {} | {held} |",
@@ -76,7 +82,7 @@ fn limits(out: &mut String, report: &Report) {
     for limit in &report.limits {
         let found = limit.found.map_or_else(none, error);
         let (quantity, by) = (line(&limit.quantity), line(&limit.stated_by));
-        let _ = writeln!(out, "| {quantity} | {by} | {} | {found} | {} |", error(limit.limit), word(limit.is_held));
+        let _ = writeln!(out, "| {quantity} | {by} | {} | {found} | {} |", error(limit.limit), verdict(limit.is_held));
     }
     out.push('\n');
 }
@@ -139,32 +145,30 @@ fn materials(out: &mut String, report: &Report) {
 
 /// Materials that vary, at random places.
 fn places(out: &mut String, report: &Report) {
-    let at = || report.materials.iter().filter_map(|m| Some((m, m.at_places.as_ref()?)));
-    if at().next().is_none() {
+    let mut at = report.materials.iter().filter_map(|m| Some((m, m.at_places.as_ref()?))).peekable();
+    if at.peek().is_none() {
         return;
     }
     out.push_str(
         "| at random places | varies | shader against f64 on its tables | tables against exact terms | lobes: lobe error | albedo | grazing light |\n\
          |---|---|--:|--:|--:|--:|--:|\n",
     );
-    for (material, at) in at() {
-        let largest = |errors: &Option<PlaceErrors>| errors.as_ref().map_or_else(none, |e| error(e.max_error()));
-        let worst = |of: fn(&SimulatedAt) -> [f64; 2]| {
+    let of_simulated: [fn(&SimulatedAt) -> [f64; 2]; 3] = [|view| view.lobe, |view| view.albedo, |view| view.grazing];
+    for (material, at) in at {
+        let [shader, tables] =
+            [&at.shader, &at.tables].map(|errors| errors.as_ref().map_or_else(none, |e| error(e.max_error())));
+        let simulated = of_simulated.map(|of| {
             at.simulated.as_ref().map_or_else(none, |s| {
                 let [found, noise] = s.worst(of);
                 format!("{found:.3} ± {noise:.3}")
             })
-        };
+        });
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {shader} | {tables} | {} |",
             line(&material.name),
             at.varies.join(", "),
-            largest(&at.shader),
-            largest(&at.tables),
-            worst(|view| view.lobe),
-            worst(|view| view.albedo),
-            worst(|view| view.grazing)
+            simulated.join(" | ")
         );
     }
     out.push('\n');

@@ -4,6 +4,8 @@ mod page;
 mod sets;
 mod tolerances;
 
+use std::collections::BTreeMap;
+
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
 use luthier_manifest::{ColorMode, Form, ShadingModel};
@@ -56,7 +58,7 @@ pub struct Parity {
     pub rows: Vec<ParityRow>,
 }
 
-/// One shader of one material, over all sets.
+/// Errors of one shader of one material, over all sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ParityRow {
     /// The model.
@@ -73,21 +75,21 @@ pub struct ParityRow {
     pub not_finite: u64,
     /// The device against the reference.
     pub total: ErrorSummary,
-    /// f64 on the tables, read with the device's weights, against the reference; nothing for a form without tables.
+    /// f64 on the tables, read with the device's weights, against the reference; `None` for a form without tables.
     pub table: Option<ErrorSummary>,
     /// The device against f64 on the same tables; without tables, against the reference.
     pub arithmetic: ErrorSummary,
-    /// The weights that explain the device's values best; nothing for a form without tables.
+    /// The weights that explain the device's values best; `None` for a form without tables.
     pub weights: Option<Weights>,
     /// Largest table and arithmetic error of every set.
     pub sets: Vec<(ParitySet, [f64; 2])>,
-    /// The pair with the largest table error, and the set it is in.
+    /// The pair with the largest table error, with its set.
     pub worst_table: Option<(ParitySet, WorstPair)>,
     /// The pair with the largest arithmetic error.
     pub worst_arithmetic: Option<(ParitySet, WorstPair)>,
     /// Parts of the error of the shader at the pair with the largest table error, largest first.
     pub parts: Vec<Part>,
-    /// The form `baked` at random places, against f64 on the same tables; nothing for a material that is the same everywhere.
+    /// The form `baked` at random places, against f64 on the same tables; `None` for a material that is the same everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub places: Option<PlaceErrors>,
 }
@@ -126,12 +128,12 @@ impl ParityRow {
         known.filter(|known| max <= known.limit).map_or(Verdict::Broken, Verdict::Explained)
     }
 
-    /// Whether the shader is what its tables are at random places: 99 of 100 samples within [`AT_PLACES`].
+    /// Whether the shader agrees with f64 on its tables at random places: 99 of 100 samples within [`AT_PLACES`].
     pub fn holds_at_places(&self) -> bool {
         self.places.as_ref().is_none_or(|at| at.not_finite == 0 && at.relative_dim.p99 <= AT_PLACES)
     }
 
-    /// Whether nothing is unexplained: all samples finite, all tolerances met or the reason listed.
+    /// Whether all samples are finite, and all tolerances are met or the reason is listed.
     pub fn holds(&self) -> bool {
         self.not_finite == 0
             && self.holds_at_places()
@@ -187,7 +189,7 @@ pub fn parity(
     Ok(rows)
 }
 
-/// Values at the pairs of a set, of one material.
+/// Values of one material at the pairs of a set.
 struct Block {
     set: ParitySet,
     material: usize,
@@ -220,8 +222,8 @@ fn compare(
     let mut numbers: Vec<u32> = std::iter::once(case.material).chain(case.polished.iter().copied()).collect();
     numbers.sort_unstable();
     numbers.dedup();
-    // Energies of rough interfaces take seconds, and are prepared when they are first asked for: here, all at once.
-    let prepared: Vec<(u32, References)> = numbers
+    // Energies of rough interfaces take seconds and are computed at their first use. Asking for them here computes all in parallel.
+    let prepared: BTreeMap<u32, References> = numbers
         .into_par_iter()
         .map(|number| {
             let references = references(subject, number as usize);
@@ -235,7 +237,6 @@ fn compare(
             Ok((number, references))
         })
         .collect::<Result<_, ReportError>>()?;
-    let of = |number| prepared.iter().find(|(n, _)| *n == number).map(|(_, references)| references);
     let has_full = subject.manifest.has(Form::Full);
     let mut blocks = Vec::new();
     let mut vote = WeightsVote::default();
@@ -245,7 +246,7 @@ fn compare(
         let count = pairs_per_set.div_ceil(materials.len().max(1) as u32);
         for &number in materials {
             let material = number as usize;
-            let Some(references) = of(number) else { continue };
+            let Some(references) = prepared.get(&number) else { continue };
             let References { layers, twin, .. } = references;
             let pairs = set.pairs(count, layers);
             let tables =
@@ -288,11 +289,11 @@ fn compare(
     };
     let mut baked =
         row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
-    baked.parts = parts(subject, &blocks, weights, &baked, of)?;
+    baked.parts = parts(subject, &blocks, weights, &baked, &prepared)?;
     let at = at_places(subject, case.material as usize, Some((device, weights)), pairs_per_set, PLACES_SEED)?;
     baked.places = at.and_then(|at| at.shader);
-    let full = || row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None);
-    let full = has_full.then(full);
+    let full =
+        has_full.then(|| row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None));
     Ok(std::iter::once(baked).chain(full).collect())
 }
 
@@ -301,19 +302,19 @@ fn references(subject: &Subject<'_>, material: usize) -> References {
 }
 
 /// The parts of the largest table error.
-fn parts<'a>(
+fn parts(
     subject: &Subject<'_>,
     blocks: &[Block],
     weights: Weights,
     row: &ParityRow,
-    of: impl Fn(u32) -> Option<&'a References>,
+    references: &BTreeMap<u32, References>,
 ) -> Result<Vec<Part>, ReportError> {
     let Some((set, worst)) = &row.worst_table else { return Ok(Vec::new()) };
     let at = blocks.iter().filter(|block| block.set == *set).find_map(|block| {
         block.pairs.iter().position(|pair| *pair == (worst.wi, worst.wo)).map(|index| (block, index))
     });
     let Some((block, index)) = at else { return Ok(Vec::new()) };
-    let Some(references) = of(block.material as u32) else { return Ok(Vec::new()) };
+    let Some(references) = references.get(&(block.material as u32)) else { return Ok(Vec::new()) };
     let tables = TableTerms::new(subject, block.material, weights)?;
     let twin: &Twin = &references.twin;
     let factors = Factors { twin, exact: references.baked(), tables: Some(&tables), on_device: false };

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_model::Tolerance;
 
-use super::tolerances::{KNOWN, tolerance};
+use super::tolerances::{KNOWN, Known, tolerance};
 use super::{AT_PLACES, Parity, ParityRow, ParitySet, Share, Verdict};
 use crate::measure::statistics::ErrorSummary;
 use crate::places::PLACE_FLOOR;
@@ -77,20 +77,17 @@ fn summary(out: &mut String, parity: &Parity) {
     );
     for model in models(parity) {
         for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
-            let rows = || parity.rows.iter().filter(|row| row.model == model && row.form == form);
-            let largest = |get: &dyn Fn(&ParityRow) -> Option<ErrorSummary>| {
-                rows().filter_map(get).reduce(|a, b| ErrorSummary {
+            let rows = parity.rows.iter().filter(|row| row.model == model && row.form == form);
+            let shares: [fn(&ParityRow) -> Option<ErrorSummary>; 3] =
+                [|row| Some(row.total), |row| row.table, |row| Some(row.arithmetic)];
+            let cells = shares.map(|share| {
+                errors(rows.clone().filter_map(share).reduce(|a, b| ErrorSummary {
                     max: a.max.max(b.max),
                     p99: a.p99.max(b.p99),
                     rms: a.rms.max(b.rms),
-                })
-            };
-            let cells = [
-                errors(largest(&|row| Some(row.total))),
-                errors(largest(&|row| row.table)),
-                errors(largest(&|row| Some(row.arithmetic))),
-            ];
-            let not_finite: u64 = rows().map(|row| row.not_finite).sum();
+                }))
+            });
+            let not_finite: u64 = rows.map(|row| row.not_finite).sum();
             let _ = writeln!(out, "| {} | {form} | {} | {not_finite} |", model.name(), cells.join(" | "));
         }
     }
@@ -165,10 +162,13 @@ fn exceptions(out: &mut String, parity: &Parity) {
         out.push_str("There are none: every tolerance is met.\n");
         return;
     }
-    let used = |name| beyond.iter().any(|(.., verdict)| matches!(verdict, Verdict::Explained(k) if k.name == name));
-    if KNOWN.iter().any(|known| used(known.name)) {
+    let used: Vec<&Known> = KNOWN
+        .iter()
+        .filter(|known| beyond.iter().any(|(.., v)| matches!(v, Verdict::Explained(k) if k.name == known.name)))
+        .collect();
+    if !used.is_empty() {
         out.push_str("An error beyond its tolerance is accepted where the page has measured which factor of the model causes it, and a reason is known for that factor:\n\n| known | limit | reason |\n|---|--:|---|\n");
-        for known in KNOWN.iter().filter(|known| used(known.name)) {
+        for known in used {
             let _ = writeln!(out, "| `{}` | {} | {} |", known.name, limit_text(known.limit), known.reason);
         }
         out.push('\n');

@@ -27,8 +27,8 @@ pub enum ParitySet {
 /// Cosine of 89.9 degrees.
 const COS_89_9: f64 = 1.745_328_365_898_309e-3;
 
-/// Largest slope parameter of the polished variants of a material that the smooth set is evaluated on: all of its slope parameters are
-/// scaled alike, so that the largest is this, and none goes below 0.001.
+/// Largest slope parameters of the polished variants of a material, for the smooth set. One factor scales all slope parameters of a variant, and none
+/// goes below 0.001.
 pub const POLISHED_ALPHAS: [f64; 4] = [0.001, 0.003, 0.01, 0.03];
 
 impl ParitySet {
@@ -93,7 +93,7 @@ impl ParitySet {
     }
 }
 
-/// Slope spreads of every lobe: of models in which no layer is smoother than the one above it, and of those without that rule.
+/// Slope spreads of every lobe, for both kinds of models: those in which no layer is smoother than the one above it, and those without that rule.
 fn all_spreads(layers: &[Layer]) -> Vec<f64> {
     let mut all = spreads(layers);
     let mut eta_above = 1.0;

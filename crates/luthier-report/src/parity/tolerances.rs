@@ -30,7 +30,16 @@ impl Share {
     }
 }
 
-/// The tolerance of a shader, whose device filters tables with some weights; `None` for a form without tables.
+/// The tolerance of a share of the error of a shader. `weights` are those with which the device filters tables; `None` for a form without tables.
+///
+/// ```
+/// use luthier_report::{Form, Share, Weights, tolerance};
+///
+/// // A hardware filter has weights of 8 bits, which widens the arithmetic error of shaders with tables.
+/// let model = luthier_manifest::ShadingModel::Elek;
+/// let limit = |weights| tolerance(model, Form::Baked, Share::Arithmetic, Some(weights)).limit;
+/// assert!(limit(Weights::EightBit) > limit(Weights::Exact));
+/// ```
 pub fn tolerance(model: ShadingModel, form: Form, share: Share, weights: Option<Weights>) -> Tolerance {
     let of = &model.facts().tolerances;
     match (share, form) {
@@ -42,16 +51,16 @@ pub fn tolerance(model: ShadingModel, form: Form, share: Share, weights: Option<
     }
 }
 
-/// A larger error whose reason is known: the factor that was measured to be at fault where it is largest, up to a limit.
+/// A known reason for an error beyond its tolerance. It applies up to a limit, and only if its factor was measured to cause the largest error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Known {
     /// Its name.
     pub name: &'static str,
-    /// The models, by what they have in common.
+    /// The models, by family.
     pub families: &'static [Family],
     /// The share.
     pub share: Share,
-    /// Factor that has to be at fault.
+    /// Factor that must be the cause.
     pub factor: Factor,
     /// Largest error that it explains.
     pub limit: f64,
@@ -125,7 +134,7 @@ pub const KNOWN: [Known; 6] = [
     },
 ];
 
-/// The known reason for a share of the error of a model that a factor is at fault for.
+/// The known reason for an error of a model in a share, caused by a factor.
 pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option<&'static Known> {
     KNOWN.iter().find(|k| k.families.contains(&model.facts().family) && k.share == share && k.factor == factor)
 }
@@ -134,7 +143,7 @@ pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option
 mod tests {
     use super::*;
 
-    /// A filter in hardware widens tolerances of what it is read for: the arithmetic of forms with tables.
+    /// A filter in hardware widens the tolerance of arithmetic in forms with tables, and no other.
     #[test]
     fn hardware_filters_widen_arithmetic_alone() {
         for model in ShadingModel::ALL {

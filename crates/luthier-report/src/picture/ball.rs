@@ -8,7 +8,7 @@ use luthier_optics::Rgb;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
-/// Distance of the eye from the centre, and half the side of what the picture shows there: a long lens from +z.
+/// Distance of the eye from the centre, and half the side of the picture at the centre: a long lens from +z.
 const EYE: f64 = 7.0;
 const HALF_EXTENT: f64 = 1.22;
 
@@ -21,7 +21,7 @@ pub struct DistantLight {
     pub irradiance: Rgb,
 }
 
-/// A picture and how noisy it is.
+/// A picture with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallPicture {
     /// Radiance, linear RGB; black around the ball.
@@ -30,8 +30,8 @@ pub struct BallPicture {
     pub noise: f64,
 }
 
-/// The unit ball of a material under some lights, `size` pixels square, seen from (0, 0, 7): one ray through the middle of each
-/// pixel, the model at three wavelengths (nm) taken as R, G and B. Tangents follow the parallels, as in `luthier preview`.
+/// Renders the unit ball of a material under some lights, `size` pixels square, seen from (0, 0, 7). Each pixel has one ray through its middle; three
+/// wavelengths (nm) are taken as R, G and B. Tangents follow the parallels, as in `luthier preview`.
 pub fn render_ball(
     model: &dyn Model,
     stack: &Stack,
@@ -48,8 +48,7 @@ pub fn render_ball(
         .map(|(y, row)| {
             let mut variance = 0.0;
             for (x, texel) in row.chunks_exact_mut(3).enumerate() {
-                let at = |i: usize| 2.0 * (i as f64 + 0.5) / f64::from(size) - 1.0;
-                let Some(place) = Place::hit([at(x), -at(y)]) else { continue };
+                let Some(place) = Place::hit([x as u32, y as u32], size) else { continue };
                 for (channel, (stack, value)) in stacks.iter().zip(texel).enumerate() {
                     let seen = place.seen(model, stack, lights, channel);
                     *value = seen.mean as f32;
@@ -63,8 +62,8 @@ pub fn render_ball(
     BallPicture { image, noise }
 }
 
-/// The ball of [`render_ball`] from values of `f cos_theta_i`, which `values` has for all pairs of unit directions to a light and to the eye, in the
-/// local frame: as many as it is given, in their order. Pairs with both directions above the horizon are asked for, no others.
+/// Renders the ball of [`render_ball`] from the values of a function. `values` gets all pairs of unit directions to a light and to the eye, in the local
+/// frame, both above the horizon, and returns `f cos_theta_i` for each, in their order.
 ///
 /// # Errors
 /// That of `values`.
@@ -73,10 +72,9 @@ pub fn render_ball_of<E>(
     size: u32,
     values: impl FnOnce(&[(DVec3, DVec3)]) -> Result<Vec<[Estimate; 3]>, E>,
 ) -> Result<BallPicture, E> {
-    let at = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0;
     let (mut pairs, mut of) = (Vec::new(), Vec::new());
     for pixel in 0..size * size {
-        let Some(place) = Place::hit([at(pixel % size), -at(pixel / size)]) else { continue };
+        let Some(place) = Place::hit([pixel % size, pixel / size], size) else { continue };
         let wo = place.local(place.to_eye);
         for light in lights {
             let wi = place.local(DVec3::from_array(light.direction).normalize());
@@ -108,10 +106,11 @@ struct Place {
 }
 
 impl Place {
-    /// Point of the ball that the ray through a point of the picture meets; -1 to 1 in both coordinates.
-    fn hit([x, y]: [f64; 2]) -> Option<Self> {
+    /// Point of the ball that the ray through the middle of a pixel meets.
+    fn hit(pixel: [u32; 2], size: u32) -> Option<Self> {
+        let [right, down] = pixel.map(|i| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0);
         let eye = DVec3::new(0.0, 0.0, EYE);
-        let ray = (DVec3::new(x * HALF_EXTENT, y * HALF_EXTENT, 0.0) - eye).normalize();
+        let ray = (DVec3::new(right * HALF_EXTENT, -down * HALF_EXTENT, 0.0) - eye).normalize();
         let along = -eye.dot(ray);
         let depth_sq = 1.0 - (eye + along * ray).length_squared();
         if depth_sq <= 0.0 {

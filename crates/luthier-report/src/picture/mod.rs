@@ -1,4 +1,4 @@
-//! Pictures beside each other: how far two are apart, in numbers and as a person would notice; sheets of many.
+//! Comparison of two pictures, in numbers and by visibility; contact sheets of many.
 
 pub(crate) mod ball;
 pub(crate) mod flip;
@@ -29,35 +29,35 @@ pub struct PictureComparison {
     pub flip: Image,
 }
 
-/// Compares two linear RGB pictures; FLIP sees them as a display shows them, `shown` being the tone curve of a value.
+/// Compares two linear RGB pictures. FLIP compares them as a display shows them, after the tone curve `shown`.
 ///
 /// # Errors
 /// [`ReportError::Pictures`] unless both are RGB of the same size.
 pub fn compare_pictures(a: &Image, b: &Image, shown: impl Fn(f32) -> f32) -> Result<PictureComparison, ReportError> {
-    let shape = |image: &Image| (image.width, image.height, image.channels);
-    if shape(a) != shape(b) || a.channels != 3 || a.data.is_empty() {
-        return Err(ReportError::Pictures { a: shape(a), b: shape(b) });
+    let [shape, other] = [a, b].map(|image| (image.width, image.height, image.channels));
+    if shape != other || a.channels != 3 || a.data.is_empty() {
+        return Err(ReportError::Pictures { a: shape, b: other });
     }
-    let differences = || a.data.iter().zip(&b.data).map(|(a, b)| f64::from(*a) - f64::from(*b));
-    let square_sum: f64 = differences().map(|d| d * d).sum();
-    let display = |image: &Image| Image { data: image.data.iter().map(|v| shown(*v)).collect(), ..image.clone() };
-    let flip = flip(&display(a), &display(b), PIXELS_PER_DEGREE);
-    let flip_values = || flip.data.iter().map(|v| f64::from(*v));
+    let differences = a.data.iter().zip(&b.data).map(|(a, b)| f64::from(*a) - f64::from(*b));
+    let square_sum: f64 = differences.clone().map(|d| d * d).sum();
+    let [first, second] =
+        [a, b].map(|image| Image { data: image.data.iter().map(|v| shown(*v)).collect(), ..image.clone() });
+    let flip = flip(&first, &second, PIXELS_PER_DEGREE);
+    let flip_values = flip.data.iter().map(|v| f64::from(*v));
     Ok(PictureComparison {
         rms_err: (square_sum / a.data.len() as f64).sqrt(),
-        max_abs_err: differences().map(f64::abs).fold(0.0, f64::max),
-        flip_mean: flip_values().sum::<f64>() / flip.data.len() as f64,
-        flip_max: flip_values().fold(0.0, f64::max),
+        max_abs_err: differences.map(f64::abs).fold(0.0, f64::max),
+        flip_mean: flip_values.clone().sum::<f64>() / flip.data.len() as f64,
+        flip_max: flip_values.fold(0.0, f64::max),
         flip,
     })
 }
 
-/// Absolute difference of what a display shows, brightened by the largest power of two that keeps it within 1; and that power. `shown` is
-/// the tone curve of a value.
+/// Absolute difference of two pictures on a display, after the tone curve `shown`. It is brightened by the largest power of two that keeps it within 1;
+/// the power is returned too.
 pub fn brightened_difference(a: &Image, b: &Image, shown: impl Fn(f32) -> f32) -> (Image, u32) {
-    let shown = |v: f32| shown(v).min(1.0);
     let mut image = a.clone();
-    image.data.iter_mut().zip(&b.data).for_each(|(a, b)| *a = (shown(*a) - shown(*b)).abs());
+    image.data.iter_mut().zip(&b.data).for_each(|(a, b)| *a = (shown(*a).min(1.0) - shown(*b).min(1.0)).abs());
     let largest = image.data.iter().copied().fold(0.0, f32::max);
     let mut gain = 1;
     while gain < 1 << 16 && largest > 0.0 && largest * (2 * gain) as f32 <= 1.0 {

@@ -11,7 +11,7 @@ const GAP: u32 = 8;
 const LABEL: u32 = 16;
 /// Height of the letters over that of a line.
 const LETTERS: f32 = 0.75;
-/// Height of the least letters, in pixels, to which those of a long name shrink.
+/// Least height of letters in pixels. The letters of a long name shrink to it.
 const LEAST_LETTERS: f32 = 9.0;
 /// Place of the foot of the letters in a line, over its height.
 const FOOT: f32 = 0.72;
@@ -19,7 +19,8 @@ const FOOT: f32 = 0.72;
 const PAPER: f32 = 0.02;
 const INK: f32 = 0.6;
 
-/// A picture of square pictures of one size, in rows, each with its name below. The letters of a long name are smaller; one that still is too long is cut off.
+/// A contact sheet: square pictures of one size in rows, each with its name below. Long names have smaller letters; a name that still is too long is cut
+/// off.
 pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
     let size = pictures.first().map_or(0, |(_, image)| image.width);
     let rows = (pictures.len() as u32).div_ceil(columns);
@@ -40,7 +41,7 @@ pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
     sheet
 }
 
-/// Size of letters for the side of a picture, in steps.
+/// Height of a line in units of [`LABEL`], for the side of a picture.
 fn scale(size: u32) -> u32 {
     match size {
         0..192 => 1,
@@ -56,12 +57,12 @@ fn font() -> Option<&'static Font> {
     FONT.get_or_init(|| Font::from_bytes(bytes, FontSettings::default()).ok()).as_ref()
 }
 
-/// Writes a line in the middle of a width, in smaller letters where it is long; what does not fit is cut off.
+/// Writes a line centred in a width. Long lines have smaller letters; the end of a line that still does not fit is cut off.
 fn write(sheet: &mut Image, text: &str, [left, top]: [u32; 2], [width, height]: [u32; 2]) {
     let Some(font) = font() else { return };
     let most = LETTERS * height as f32;
     let whole: f32 = text.chars().map(|character| font.metrics(character, most).advance_width).sum();
-    // Rounding of advances leaves a pixel.
+    // One pixel is left over for rounding of advances.
     let px = (most * (width as f32 - 1.0) / whole.max(1.0)).clamp(LEAST_LETTERS.min(most), most);
     let mut glyphs = Vec::new();
     let mut end = 0.0_f32;

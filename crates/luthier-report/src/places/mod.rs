@@ -1,8 +1,8 @@
-//! The judge at places: shaders and rows of a material whose maps vary it, where all that they vary is drawn at random.
+//! The judge at places: shaders and tables of materials that vary over the surface, at random values of all varying quantities.
 //!
-//! Three things are compared, each with the next: the shader on the device; the f64 evaluation of the tables that ship, at the same place ([`Rows`]); what the
-//! tables stand for. Of a model with closed terms these are the exact terms at the place. Of `lobes` it is the simulation of the stack that the material file means
-//! there ([`simulated`]).
+//! A chain of three is compared, each with the next: the shader on the device; the f64 evaluation of the tables that ship, at the same place ([`Rows`]);
+//! and the truth. For a model with closed terms the truth is exact terms at the place. For `lobes` it is the simulation of the stack that the material
+//! file means there ([`simulated`]).
 
 mod ranges;
 mod rows;
@@ -25,10 +25,10 @@ use crate::measure::statistics::{ErrorSummary, FLOOR, brightest, relative_error,
 use crate::measure::subject::Subject;
 use crate::measure::table_terms::Weights;
 
-/// Family of the random places, unless another is asked for.
+/// Default seed of the random places.
 pub const PLACES_SEED: u64 = 37;
 
-/// Floor of the errors that places are held to: |difference| over max(brightest channel, this).
+/// Floor of the errors at places: |difference| over max(brightest channel, this).
 pub const PLACE_FLOOR: f64 = 0.01;
 
 /// Errors of values at random places and pairs of directions.
@@ -44,7 +44,7 @@ pub struct PlaceErrors {
     pub worst: Option<WorstPlace>,
 }
 
-/// A place and a pair of directions, and the channel that is worst there.
+/// The worst sample: a place, a pair of directions and a channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WorstPlace {
     /// Number of the place, see [`Places::place`].
@@ -106,12 +106,12 @@ pub struct AtPlaces {
     pub varies: Vec<String>,
     /// Places, each with a pair of directions.
     pub places: u64,
-    /// The shader on the device against f64 on the tables that ship; nothing without a device.
+    /// The shader on the device against f64 on the tables that ship; `None` without a device.
     pub shader: Option<PlaceErrors>,
-    /// f64 on the tables that ship against exact terms at the place, where both directions are within 89.5 degrees: closer to the horizon the
-    /// resonances of a film are narrower than the steps of the spectrum that the terms sum. Nothing for models whose terms have no closed form.
+    /// f64 on the tables that ship against exact terms at the place, for directions within 89.5 degrees. Closer to the horizon the resonances of a film
+    /// are narrower than the spectral steps of the terms. `None` for models whose terms have no closed form.
     pub tables: Option<PlaceErrors>,
-    /// Rows of `lobes` against the simulation of the stack at the place; nothing for other models.
+    /// Rows of `lobes` against the simulation of the stack at the place; `None` for other models.
     pub simulated: Option<SimulatedErrors>,
 }
 
@@ -130,8 +130,8 @@ pub(crate) struct Spot {
     pair: Pair,
 }
 
-/// Compares the shader of a material, on a device that reads tables with some weights, with f64 on the tables that ship, and these with exact terms, at so many
-/// random places, each with a pair of directions of its own; `None` for a material that is the same everywhere.
+/// Compares the shader of a material with f64 on the tables that ship, and these with exact terms, at `count` random places, each with its own pair of
+/// directions. `device` comes with the weights with which it reads tables. `None` for a material that is the same everywhere.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -145,7 +145,7 @@ pub fn at_places(
     let Some(places) = Places::of(subject, material) else { return Ok(None) };
     let entry = &subject.manifest.materials[material];
     let layers = luthier_layers::layers::Layers::isotropic_rgb(&subject.stacks[material]).layers;
-    // All over the hemisphere, and in highlights.
+    // Half of the pairs lie anywhere in the hemisphere, half in highlights.
     let sets = [DirectionSet::Random, DirectionSet::Highlight];
     let pairs = sets.map(|set| set.pairs(count.div_ceil(2), &layers));
     let spots: Vec<Spot> = (0..u64::from(count))
@@ -155,11 +155,11 @@ pub fn at_places(
         })
         .collect();
     let weights = device.map_or(Weights::EightBit, |(_, weights)| weights);
-    let rows = |spot: &Spot| {
+    let read = spots.par_iter().map(|spot| {
         let rows = Rows::new(subject, material, &spot.place, weights)?;
         Ok(rows.eval(wide(spot.pair.0), wide(spot.pair.1)))
-    };
-    let read: Vec<Rgb> = spots.par_iter().map(rows).collect::<Result<_, ReportError>>()?;
+    });
+    let read: Vec<Rgb> = read.collect::<Result<_, ReportError>>()?;
     let shader = match device {
         Some((device, _)) => {
             let at: Vec<(PlaceValues, Pair)> = spots.iter().map(|spot| (spot.place.clone(), spot.pair)).collect();
@@ -168,36 +168,34 @@ pub fn at_places(
         }
         None => None,
     };
-    // Energies and lobes of each place would take seconds.
+    // Exact energies and lobes would take seconds for each place.
     let is_closed = !(entry.model.is_statistical() || entry.model.is_fitted());
     let tables = is_closed.then(|| {
-        let exact = |spot: &Spot| {
+        let all = spots.iter().cloned().zip(read);
+        let resolved = all.filter(|(Spot { pair: (wi, wo), .. }, _)| wi[2].min(wo[2]) >= DOMAIN_COS_THETA as f32);
+        let (near, read): (Vec<Spot>, Vec<Rgb>) = resolved.unzip();
+        let exact = near.par_iter().map(|spot| {
             let exact = rows::exact(subject, material, &spot.place);
             exact.map_or([f64::NAN; 3], |exact| exact.eval(wide(spot.pair.0), wide(spot.pair.1)))
-        };
-        let is_resolved = |spot: &Spot| spot.pair.0[2].min(spot.pair.1[2]) >= DOMAIN_COS_THETA as f32;
-        let (near, read): (Vec<Spot>, Vec<Rgb>) =
-            spots.iter().cloned().zip(read).filter(|(spot, _)| is_resolved(spot)).unzip();
-        PlaceErrors::new(&near, &read, &near.par_iter().map(exact).collect::<Vec<_>>())
+        });
+        PlaceErrors::new(&near, &read, &exact.collect::<Vec<_>>())
     });
     Ok(Some(AtPlaces { varies: places.quantities(), places: spots.len() as u64, shader, tables, simulated: None }))
 }
 
-/// A place in words: what is not as where there are no textures.
+/// A place in words: the values that differ from a place without textures.
 pub(crate) fn words(place: &PlaceValues) -> String {
     let none = PlaceValues::NONE;
-    let vector = |name: &str, v: [f32; 3]| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]);
     let mut out = Vec::new();
-    let mut number = |name: &str, value: f32, plain: f32| {
+    for (name, value, plain) in [
+        ("alpha_factor", place.alpha_factor, none.alpha_factor),
+        ("slab_factor", place.slab_factor, none.slab_factor),
+        ("film_factor", place.film_factor, none.film_factor),
+        ("patina", place.patina.unwrap_or(-1.0), -1.0),
+    ] {
         if value != plain {
             out.push(format!("{name} {value:.4}"));
         }
-    };
-    number("alpha_factor", place.alpha_factor, none.alpha_factor);
-    number("slab_factor", place.slab_factor, none.slab_factor);
-    number("film_factor", place.film_factor, none.film_factor);
-    if let Some(amount) = place.patina {
-        number("patina", amount, -1.0);
     }
     for (name, value) in
         [("normal", place.normal), ("inner_normal", place.inner_normal), ("flake_normal", place.flake_normal)]
@@ -222,4 +220,8 @@ pub(crate) fn words(place: &PlaceValues) -> String {
         }
     }
     if out.is_empty() { "no textures".to_owned() } else { out.join(", ") }
+}
+
+fn vector(name: &str, [x, y, z]: [f32; 3]) -> String {
+    format!("{name} ({x:.3}, {y:.3}, {z:.3})")
 }

@@ -1,4 +1,4 @@
-//! Random places of a material: values that the texels of its maps can give, each within its range, all at once.
+//! Random places of a material. Every varying quantity is drawn at once, within the range that the texels of its map have.
 
 use std::f64::consts::TAU;
 
@@ -20,16 +20,16 @@ pub struct Places {
     film: Option<[[f64; 2]; 3]>,
 }
 
-/// Random numbers of a place: a function of a seed, of its number, and of how many were drawn before.
+/// Random numbers of a place. They depend on the seed and on the number of the place only.
 fn numbers(seed: u64, place: u64) -> SplitMix64 {
     SplitMix64::new(mix(mix(seed) ^ place.wrapping_mul(GOLDEN)))
 }
 
-/// Greatest tangent of a normal that a texel means: flatter normals are turned up.
+/// Largest tangent of a normal against the surface's own. Steeper normals of texels are turned up to it.
 const STEEPEST: f64 = 3.0;
 
 impl Places {
-    /// Varying quantities of a material, by its number; `None` for one that is the same everywhere. Maps that its model does not show are left out.
+    /// Varying quantities of a material, by its number; `None` for a material that is the same everywhere. Maps that the model ignores are left out.
     pub fn of(subject: &Subject<'_>, material: usize) -> Option<Self> {
         let entry = subject.manifest.materials.get(material).filter(|entry| entry.varies())?;
         let shown: Vec<(u32, MapSlot)> = entry.shown_layer_maps(Form::Baked).collect();
@@ -56,11 +56,11 @@ impl Places {
     /// Quantities that vary, in words.
     pub fn quantities(&self) -> Vec<String> {
         let constants = &self.entry.constants;
-        let map = |(slot, layer, _): &(MapSlot, Option<u32>, _)| match layer {
+        let maps = self.ranges.iter().map(|(slot, layer, _)| match layer {
             Some(layer) if *layer > 0 => format!("{} of layer {}", slot.name(), layer + 1),
             _ => slot.name().to_owned(),
-        };
-        let mut names: Vec<String> = self.ranges.iter().map(map).collect();
+        });
+        let mut names: Vec<String> = maps.collect();
         let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
         names.extend(self.film.map(|_| "film".to_owned()));
         names.extend(constants.flakes.filter(|_| !has_flake_map).map(|_| "flakes".to_owned()));
@@ -124,7 +124,7 @@ impl Places {
         }
         let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
         if let Some(flakes) = constants.flakes.filter(|_| !has_flake_map) {
-            // As far as nineteen of twenty flakes lean.
+            // Twice the spread covers nineteen of twenty flakes.
             let (angle, phi) = (2.0 * flakes.spread * numbers.unit(), TAU * numbers.unit());
             let (sin, cos) = libm::sincos(angle.min(1.5));
             let (sin_phi, cos_phi) = libm::sincos(phi);
@@ -141,7 +141,7 @@ impl Places {
         place
     }
 
-    /// Base colour of a metallic-roughness surface without a map of it, which is no metal then: that which its albedo shows.
+    /// Base colour of a metallic-roughness surface without a map of it. Such a surface is no metal; the colour follows from its albedo.
     fn base_color(&self) -> [f32; 3] {
         let passed = 0.96 * 20.0 / 21.0;
         let albedo = self.entry.layers.last().map_or([0.0; 3], |layer| layer.albedo);
@@ -151,7 +151,7 @@ impl Places {
 
 const UP: [f32; 3] = [0.0, 0.0, 1.0];
 
-/// Least and greatest value of a channel; of a channel that an image lacks, those of the first.
+/// Least and greatest value of a channel of an image; those of the first channel, if the image lacks it.
 fn channel(image: &Image, channel: usize) -> [f64; 2] {
     let channel = if channel < image.channels as usize { channel } else { 0 };
     let values = image.texels().map(|texel| f64::from(texel[channel]));
@@ -164,7 +164,7 @@ fn texels(picture: &Picture, channel: usize) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
-/// The unit normal of two numbers of a texel of a normal map, turned up where these leave none.
+/// The unit normal of two numbers of a texel of a normal map, turned up to [`STEEPEST`] if it is steeper or impossible.
 fn normal(texel: [f64; 2]) -> [f32; 3] {
     let across = DVec2::from(texel.map(|value| 2.0 * value - 1.0));
     let longest = STEEPEST / (1.0 + STEEPEST * STEEPEST).sqrt();

@@ -1,12 +1,12 @@
-//! The f64 evaluation of rows as they ship, at a place.
+//! The f64 evaluation of shipped tables at a place.
 
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::textured::TextureSample;
 use luthier_layers::models::shade::Under;
-use luthier_layers::twins::shaded::{Growth, Part, Place, Shaded};
+use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_layers::twins::terms::Exact;
-use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};
+use luthier_manifest::{MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::schlick::metallic_roughness;
 
@@ -40,12 +40,11 @@ impl<'a> Rows<'a> {
     /// As [`Self::new`].
     pub fn at(subject: &'a Subject<'_>, material: usize, place: &Place, weights: Weights) -> Result<Self, ReportError> {
         let entry = &subject.manifest.materials[material];
-        // Whatever is wrong with the tables is wrong without a place, too.
+        // Terms at a place are an `Option`: errors of the tables are reported here, without a place.
         TableTerms::new(subject, material, weights)?;
-        let terms = |part: Part| TableTerms::at(subject, material, weights, place, part).ok();
         let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
-        let shaded =
-            Shaded::of_terms(|part, _, _| terms(part), entry.model, stack, nm, color(entry), place, parts(entry));
+        let terms = |part, _: &_, _: &_| TableTerms::at(subject, material, weights, place, part).ok();
+        let shaded = Shaded::of_terms(terms, entry.model, stack, nm, color(entry), place, parts(entry));
         shaded.map(Self).ok_or_else(|| ReportError::Model { material: entry.name.clone(), model: entry.model })
     }
 
@@ -62,10 +61,9 @@ pub(super) fn exact(subject: &Subject<'_>, material: usize, values: &PlaceValues
     Shaded::with(entry.model, stack, nm, color(entry), &place(values, entry), parts(entry))
 }
 
-/// The place of the f64 twin: exactly the numbers that the device gets.
+/// The place of the f64 twin, with exactly the numbers of the device.
 pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
-    let rgb = |color: [f32; 3]| color.map(f64::from);
-    let layer = |own: &LayerValues| LayerSample {
+    let layers = values.layers.iter().map(|own| LayerSample {
         normal: wide(own.normal),
         alpha_factors: own.alpha_factors.map(f64::from),
         tangent: match own.tangent.map(f64::from) {
@@ -74,7 +72,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
         },
         slab_factor: own.slab_factor.into(),
         f0: None,
-    };
+    });
     let mut place = Place {
         sample: TextureSample {
             normal: wide(values.normal),
@@ -93,12 +91,12 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             let (diffuse_albedo, base_alpha, tarnish) = (patina.diffuse_albedo, patina.base_alpha, patina.tarnish);
             Some(Growth { amount: amount.into(), diffuse_albedo, base_alpha, tarnish })
         }),
-        base_color: values.base_color.map(rgb),
+        base_color: values.base_color.map(|color| color.map(f64::from)),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
-        layers: values.layers.iter().map(layer).collect(),
+        layers: layers.collect(),
     };
     if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
-        let (f0, albedo) = metallic_roughness(rgb(color), metallic.into());
+        let (f0, albedo) = metallic_roughness(color.map(f64::from), metallic.into());
         place.base_color = Some(albedo);
         place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);
         place.layers[interface].f0 = Some(f0);

@@ -23,7 +23,7 @@ use crate::models::{PHI_DEG, ReferenceSettings, direction};
 pub struct SimulatedSettings {
     /// Random places of a material.
     pub places: u64,
-    /// Angles of the eye at every place, degrees; where there are none, each place has one of its own.
+    /// Angles of the eye at every place, degrees; if empty, each place has one angle of its own.
     pub thetas_deg: Vec<f64>,
     /// Noise of the simulation.
     pub reference: ReferenceSettings,
@@ -32,20 +32,20 @@ pub struct SimulatedSettings {
 }
 
 impl Default for SimulatedSettings {
-    /// Eight places, each from an angle of its own, to a noise that shows a light that is off by a twentieth: a few tenths of a second.
+    /// Eight places, each from its own angle, with so little noise that an error of a twentieth of the light shows: a few tenths of a second.
     fn default() -> Self {
         let reference = ReferenceSettings { noise: 0.04, albedo_std_err: 3e-3, most: 1 << 16, seed: 1 << 50 };
         Self { places: 8, thetas_deg: Vec::new(), reference, seed: super::PLACES_SEED }
     }
 }
 
-/// Largest lobe error that rows at a place may have, beside noise.
+/// Limit on the lobe error of rows at a place, beside noise.
 const LOBE_AT_PLACES: f64 = 0.08;
 
-/// Largest absolute error of the directional albedo, alike.
+/// Limit on the absolute error of the directional albedo, beside noise.
 const ALBEDO_AT_PLACES: f64 = 0.02;
 
-/// Largest error of the mean of grazing light over max(itself, 0.01), alike.
+/// Limit on the error of the mean of grazing light over max(itself, 0.01), beside noise.
 const GRAZING_AT_PLACES: f64 = 0.08;
 
 /// Errors of rows of lobes at a place, from an angle of the eye.
@@ -57,33 +57,32 @@ pub struct SimulatedAt {
     pub place: String,
     /// Angle of the eye against the normal.
     pub theta_deg: f64,
-    /// Lobe error, the largest channel, and what noise alone makes of it on average.
+    /// Lobe error of the worst channel, and the lobe error that noise alone causes on average.
     pub lobe: [f64; 2],
-    /// Absolute error of the directional albedo, the largest channel, and the standard error of the simulation there.
+    /// Absolute error of the directional albedo in the worst channel, and the standard error of the simulation there.
     pub albedo: [f64; 2],
     /// Directional albedo of the rows and of the simulation in that channel.
     pub albedos: [f64; 2],
-    /// Error of the mean of `f cos_theta_i` over light flatter than 87.1 degrees, over max(the mean, [`PLACE_FLOOR`]), and the standard error of it. 0 for an eye flatter
-    /// than 78.5 degrees, which has its highlight there.
+    /// Error of the mean of `f cos_theta_i` over light flatter than 87.1 degrees, relative to max(the mean, [`PLACE_FLOOR`]), and its standard error. 0 for
+    /// an eye flatter than 78.5 degrees, which has its highlight in that light.
     pub grazing: [f64; 2],
 }
 
 impl SimulatedAt {
-    /// Quantities that are farther off than they may be, noise aside, each with what was found and the limit.
+    /// Quantities that exceed their limit by more than noise, each with its error and the limit.
     pub fn misses(&self) -> Vec<(&'static str, f64, f64)> {
-        let beyond = |[error, noise]: [f64; 2], limit: f64, margin: f64| error > limit + margin * noise;
         [
             ("lobe error", self.lobe, LOBE_AT_PLACES, 1.5),
             ("error of the albedo", self.albedo, ALBEDO_AT_PLACES, UNCERTAINTY_MARGIN),
             ("error of grazing light", self.grazing, GRAZING_AT_PLACES, UNCERTAINTY_MARGIN),
         ]
         .into_iter()
-        .filter(|(_, pair, limit, margin)| beyond(*pair, *limit, *margin))
+        .filter(|(_, [error, noise], limit, margin)| *error > limit + margin * noise)
         .map(|(name, [error, _], limit, _)| (name, error, limit))
         .collect()
     }
 
-    /// The largest of these over its limit; 0 where there is none.
+    /// The largest ratio of such an error to its limit; 0 without any.
     pub fn excess(&self) -> f64 {
         self.misses().iter().map(|(_, found, limit)| found / limit).fold(0.0, f64::max)
     }
@@ -112,22 +111,23 @@ pub struct SimulatedErrors {
 }
 
 impl SimulatedErrors {
-    /// The largest of a quantity, and the noise there.
+    /// The largest value of a quantity, with its noise.
     pub fn worst(&self, of: impl Fn(&SimulatedAt) -> [f64; 2]) -> [f64; 2] {
         self.views.iter().map(of).fold([0.0; 2], |most, found| if found[0] > most[0] { found } else { most })
     }
 
-    /// The places where something is farther off than it may be.
+    /// The views with a quantity beyond its limit.
     pub fn misses(&self) -> impl Iterator<Item = &SimulatedAt> {
         self.views.iter().filter(|view| !view.misses().is_empty())
     }
 }
 
-/// Compares rows of lobes, as they ship, with the simulation at random places; `None` for materials of other models, for those that are the same everywhere, and
-/// for a diffuse base alone.
+/// Compares shipped rows of lobes with the simulation at random places. `None` for materials of other models, for materials that are the same everywhere,
+/// and for a diffuse base alone.
 ///
-/// Places have what the maps vary, but for normals, which turn the frame of the eye alone, and flakes, whose shift of the lobes is an approximation that has a
-/// measure of its own (`luthier_layers::models::lobes::Below::tilted`). A patina is there whole or not at all: light is linear between.
+/// Places have the quantities that maps vary, with three exceptions. Normals are left out, because they only turn the frame of the eye. Flakes are left
+/// out, because their shift of the lobes is an approximation that is measured elsewhere (`luthier_layers::models::lobes::Below::tilted`). Patina is whole or
+/// absent, because light is linear between.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -147,26 +147,26 @@ pub fn simulated(
     let color = color(entry);
     let views: Vec<(u64, f64)> = (0..settings.places)
         .flat_map(|number| {
-            // Of angles by themselves a golden rotation of the cosine, from the normal to 86 degrees.
+            // Own angles rotate the cosine by the golden ratio, from the normal to 86 degrees, so that few places spread evenly.
             let share = (number as f64 * 0.618_033_988_75).fract();
             let own = libm::acos(1.0 - 0.93 * share).to_degrees();
             let all = if settings.thetas_deg.is_empty() { vec![own] } else { settings.thetas_deg.clone() };
             all.into_iter().map(move |theta_deg| (number, theta_deg))
         })
         .collect();
-    let judged = |&(number, theta_deg): &(u64, f64)| {
+    let found = views.par_iter().map(|&(number, theta_deg)| {
         let values = upright(places.place(settings.seed, number), entry);
         let Some(here) = meant(stack, &rows::place(&values, entry), entry) else { return Ok(None) };
         let view = ColorView::new(&here, &color, entry.wavelengths_nm, theta_deg, settings.reference);
         let rows = Rows::new(subject, material, &values, Weights::Exact)?;
         Ok(Some(seen(number, &values, theta_deg, &view, |wi, wo| rows.eval(wi, wo))))
-    };
-    let found: Vec<Option<(SimulatedAt, u64)>> = views.par_iter().map(judged).collect::<Result<_, ReportError>>()?;
+    });
+    let found: Vec<Option<(SimulatedAt, u64)>> = found.collect::<Result<_, ReportError>>()?;
     let (views, paths): (Vec<SimulatedAt>, Vec<u64>) = found.into_iter().flatten().unzip();
     Ok((!views.is_empty()).then(|| SimulatedErrors { views, paths: paths.iter().sum() }))
 }
 
-/// The errors at a view of [`simulated`] of lobes that a function fits to the stack of that very place; `None` where there are no lobes.
+/// The errors at a view of [`simulated`], but of lobes that `fit` makes for the stack of the place; `None` if the place has no lobes.
 pub fn simulated_by(
     subject: &Subject<'_>,
     material: usize,
@@ -183,7 +183,7 @@ pub fn simulated_by(
     Some(seen(at.number, &values, at.theta_deg, &view, |wi, wo| lobes.eval(wi, wo)).0)
 }
 
-/// Errors of values at a view, and the paths of it.
+/// Errors of values at a view, with the number of its paths.
 fn seen(
     number: u64,
     place: &PlaceValues,
@@ -196,21 +196,21 @@ fn seen(
     (SimulatedAt { number, place: words(place), theta_deg, lobe, albedo, albedos, grazing }, paths)
 }
 
-/// The place without normals, where patina is whole or not at all.
+/// The place without normals, and with patina whole or absent.
 fn upright(values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
     let PlaceValues { normal, flake_normal, .. } = PlaceValues::NONE;
-    let whole = |amount: f32| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 };
-    PlaceValues { normal, flake_normal, patina: values.patina.map(whole), ..values }
+    let patina = values.patina.map(|amount| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 });
+    PlaceValues { normal, flake_normal, patina, ..values }
 }
 
-/// Whether patina that has grown whole is its layers and nothing else.
+/// Whether fully grown patina is nothing but its layers.
 fn scatters_nothing(entry: &MaterialEntry) -> bool {
     entry.constants.patina.as_ref().is_none_or(|patina| {
         patina.diffuse_albedo == [0.0; 3] && patina.base_alpha.is_none() && patina.tarnish == [1.0; 3]
     })
 }
 
-/// The stack that the file means at a place; `None` for a diffuse base, whose light is a closed form.
+/// The stack that the material file means at a place; `None` for a diffuse base alone, whose light has a closed form.
 fn meant(stack: &Stack, place: &Place, entry: &MaterialEntry) -> Option<Stack> {
     let whole = place.stack(stack);
     let is_bare = entry.constants.patina.is_some() && place.patina.is_some_and(|growth| growth.amount < 0.5);

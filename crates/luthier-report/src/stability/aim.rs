@@ -12,16 +12,16 @@ pub(super) const COS_MIN: f64 = 1e-7;
 /// Pairs of directions of a case.
 const PAIRS: u32 = 96;
 
-/// Sets of directions.
+/// Set of directions of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aim {
-    /// Uniform, and near the mirror direction of every lobe.
+    /// Uniform directions, and directions near the mirror direction of every lobe.
     Ordinary,
-    /// Cosines from 1e-7 to 0.1, both, or one, at any azimuths.
+    /// One or both cosines from 1e-7 to 0.1, at any azimuths.
     Grazing,
     /// Mirror directions with cosines from 1e-7 to 1.
     Mirror,
-    /// `wo = -wi`, one of them or both below the horizon; and opposite in azimuth next to it.
+    /// `wo = -wi`, with one or both directions below the horizon; and grazing directions of opposite azimuths.
     Opposite,
     /// `wo = wi`.
     Retro,
@@ -78,7 +78,7 @@ impl Aim {
             Self::Mirror => {
                 let cos = libm::exp(a * libm::log(COS_MIN));
                 let wi = direction(cos, b);
-                // Half on the dot, half beside it by a slope of up to 1e-3.
+                // Half of the pairs are exact mirror directions, half are off by a slope of up to 1e-3.
                 (near(wi), near(mirrored(wi, if n.is_multiple_of(2) { 0.0 } else { 1e-3 * c }, d)))
             }
             Self::Opposite => {

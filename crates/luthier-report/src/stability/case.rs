@@ -7,7 +7,14 @@ use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
-/// A stack and directions that test methods.
+/// A stack and directions at which methods are stressed.
+///
+/// ```
+/// use luthier_report::stability::cases;
+///
+/// let furnace = cases().into_iter().find(|case| case.id == "furnace-1").expect("a white furnace");
+/// assert!(furnace.swept.is_none() && furnace.stack.layers.len() == 1);
+/// ```
 #[derive(Debug, Clone)]
 pub struct StressCase {
     /// Name, unique.
@@ -18,14 +25,14 @@ pub struct StressCase {
     pub swept: Option<(Quantity, f64)>,
     /// Directions of the light and of the eye.
     pub aim: Aim,
-    /// Whether its colour is spectral; else three wavelengths.
+    /// Whether the colour is spectral. If not, it has three wavelengths.
     pub is_spectral: bool,
     /// Stack of the case.
     pub stack: Stack,
 }
 
 fn constant(n: f64, k: f64) -> Ior {
-    // Indices of this file are valid; vacuum would be seen in every verdict.
+    // All indices of this file are valid. Vacuum, should one not be, would change every verdict.
     Ior::constant(n, k).unwrap_or_else(|_| Ior::vacuum())
 }
 
@@ -42,7 +49,7 @@ fn metal(alpha: f64, n: f64, k: f64) -> Layer {
     layer(alpha, Base::Conductor { ior: constant(n, k) })
 }
 
-/// Reflects everything at all angles: an index without a real part, as far as a material file can say it.
+/// A mirror that reflects everything at all angles. Its index has next to no real part: a material file cannot state zero.
 fn mirror(alpha: f64) -> Layer {
     metal(alpha, 1e-12, 10.0)
 }
@@ -60,7 +67,7 @@ fn in_air(layers: Vec<Layer>) -> Stack {
     Stack { exterior: Ior::vacuum(), layers }
 }
 
-/// Copper, silver, or about: what ordinary cases end with.
+/// A metal like copper or silver, the base of ordinary cases.
 fn bright(alpha: f64) -> Layer {
     metal(alpha, 0.2, 3.0)
 }
@@ -138,7 +145,7 @@ fn sweeps(cases: &mut Cases) {
     });
 }
 
-/// Values at which a formula divides by nothing, or a promise is most easily broken.
+/// Values at which a formula divides by zero, or at which a promise breaks most easily.
 fn singular(cases: &mut Cases) {
     cases.add("matched", "coat of index 1 over metal", in_air(vec![coat(0.1, 1.0, 0.0), bright(0.2)]));
     cases.add("index-tiny", "bare metal, n = 1e-300, k = 0.5", in_air(vec![metal(0.1, 1e-300, 0.5)]));
@@ -147,9 +154,10 @@ fn singular(cases: &mut Cases) {
     cases.add("furnace-1", "white furnace: mirror of alpha 1", in_air(vec![mirror(1.0)]));
     let coated = in_air(vec![coat(0.1, 1.5, 0.0), mirror(0.1)]);
     cases.add("furnace-2", "white furnace: coat of alpha 0.1, index 1.5, over a mirror of alpha 0.1", coated.clone());
-    let white = |n| in_air(vec![coat(0.1, n, 0.0), diffuse([1.0; 3], 0.0)]);
-    cases.add("furnace-3", "white furnace: coat of alpha 0.1, index 1.5, over white", white(1.5));
-    cases.add("furnace-4", "white furnace: coat of alpha 0.1, index 4, over white", white(4.0));
+    for (id, n) in [("furnace-3", 1.5), ("furnace-4", 4.0)] {
+        let title = format!("white furnace: coat of alpha 0.1, index {n}, over white");
+        cases.add(id, &title, in_air(vec![coat(0.1, n, 0.0), diffuse([1.0; 3], 0.0)]));
+    }
     let smooth = in_air(vec![coat(0.0, 1.5, 0.0), mirror(0.0)]);
     cases.add("q-zero", "smooth coat over a smooth mirror, seen at grazing angles: 1 - R21 Rb goes to 0", smooth).aim =
         Aim::Grazing;
@@ -194,7 +202,7 @@ fn singular(cases: &mut Cases) {
     );
 }
 
-/// Colours that leave the gamut, and waves that three wavelengths miss.
+/// Colours outside the gamut, and fringes that three wavelengths miss.
 fn colours(cases: &mut Cases) {
     if let Some(gold) = dataset("au") {
         let base = Base::Conductor { ior: gold.ior.clone() };

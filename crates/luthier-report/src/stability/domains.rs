@@ -14,10 +14,9 @@ pub struct DomainRange {
     pub model: String,
     /// Name of the quantity.
     pub quantity: String,
-    /// Smallest and largest value that was tried and, with all between it and the ordinary value, did not fail at any level; `None` if
-    /// the ordinary one failed.
+    /// Ends of the tried values around the ordinary one without a failure at any level; `None` if the ordinary value failed.
     pub usable: Option<[f64; 2]>,
-    /// Smallest and largest value as in `usable`, for values that hold at all levels.
+    /// Ends of the tried values around the ordinary one that hold at all levels.
     pub holds: Option<[f64; 2]>,
     /// Smallest and largest value that was tried.
     pub tried: [f64; 2],
@@ -50,7 +49,7 @@ pub fn derived(cases: &[StressCase], cells: &[Cell]) -> Vec<DomainRange> {
     out
 }
 
-/// Ends of the values about the ordinary one whose verdicts are no worse than `worst`.
+/// Ends of the values around the ordinary one with verdicts no worse than `worst`.
 fn range(swept: &[(f64, Verdict)], ordinary: f64, worst: Verdict) -> Option<[f64; 2]> {
     let start = swept.iter().position(|(value, _)| *value >= ordinary).unwrap_or(swept.len() - 1);
     if swept[start].1 > worst {

@@ -7,14 +7,14 @@ use serde::Deserialize;
 
 use super::{Cell, Fault, Level, Verdict};
 
-/// A reason, and the cells that it is for.
+/// A reason, with the cells that it explains.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Explanation {
     /// Its name.
     pub name: String,
     /// Levels.
     pub levels: Vec<Level>,
-    /// Names of methods; one that ends or begins with `*` stands for all that begin or end so, and a model for all its tables.
+    /// Names of methods. A `*` at the end or at the beginning stands for any text; the name of a model also stands for the model with other tables.
     pub methods: Vec<String>,
     /// Identifiers of cases, likewise.
     pub cases: Vec<String>,
@@ -34,7 +34,7 @@ struct File {
     explanations: Vec<Explanation>,
 }
 
-/// All reasons. Tests show that the file, a part of the program, is read.
+/// All reasons. The file is part of the program, and tests show that it can be read.
 static ALL: LazyLock<Vec<Explanation>> = LazyLock::new(|| {
     let File { groups, mut explanations } = serde_json::from_str(include_str!("explanations.json")).unwrap_or_default();
     for Explanation { cases, .. } in &mut explanations {
@@ -60,7 +60,7 @@ fn matches(patterns: &[String], name: &str) -> bool {
     })
 }
 
-/// Reasons for a model are reasons for it with other tables, too.
+/// Whether a method matches. Reasons for a model also apply to the model with other tables.
 fn matches_method(patterns: &[String], method: &str) -> bool {
     let model = method.split_once(", ").map_or(method, |(model, _)| model);
     matches(patterns, method) || matches(patterns, model)

@@ -1,4 +1,4 @@
-//! Ways to write or to store one function: those that ship, and those that were rejected, each with its error.
+//! Ways to write or to store one function: formulations that ship and formulations that were rejected, each with its error.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,7 +18,7 @@ use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Known pitfalls of layered models and of their tables, and the cases that stand for one; a pitfall without cases has formulations.
+/// Known pitfalls of layered models and of their tables, with the cases that show them. A pitfall without cases has formulations.
 pub const PITFALLS: [(&str, &[&str]); 24] = [
     ("D in f16", &[]),
     ("D table, alpha axis linear, 512", &[]),
@@ -46,35 +46,35 @@ pub const PITFALLS: [(&str, &[&str]); 24] = [
     ("hardware bilinear filtering", &[]),
 ];
 
-/// Row of formulations that belong to none of the [`PITFALLS`].
+/// Row of formulations beside the [`PITFALLS`].
 const EXTREMES: &str = "denormal and huge arguments";
 
 /// One way to write or to store a function.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormulaResult {
-    /// Entry of the [`PITFALLS`], or another subject of the formulation.
+    /// Pitfall (one of [`PITFALLS`]), or another subject.
     pub row: String,
     /// The formulation, and its precision.
     pub formulation: String,
     /// Whether it ships.
     pub ships: bool,
-    /// Quantity that the error is of, and the truth that it is against.
+    /// Quantity of the error, and the truth that it is compared with.
     pub measure: String,
-    /// The error; `None` where values are not finite.
+    /// The error; `None` if values are not finite.
     pub error: Option<f64>,
     /// Largest error with which it holds.
     pub tolerance: f64,
-    /// Reason why a formulation that does not hold is not used, or the one that is used.
+    /// Reason why the formulation is not used, or the formulation that is used instead.
     pub reason: String,
 }
 
 impl FormulaResult {
-    /// Whether it is within its tolerance.
+    /// Whether the error is within the tolerance.
     pub fn holds(&self) -> bool {
         self.error.is_some_and(|error| error <= self.tolerance)
     }
 
-    /// Whether it holds, or does not ship and says why.
+    /// Whether the formulation holds, or does not ship and has a reason.
     pub fn is_as_expected(&self) -> bool {
         self.holds() || (!self.ships && !self.reason.is_empty())
     }
@@ -129,7 +129,7 @@ pub fn formulas() -> Vec<FormulaResult> {
     out.0
 }
 
-/// Rounded to a half float, by way of single precision as tables are: `half` converts doubles in one step or in two, by the machine.
+/// Rounds to a half float by way of single precision, as tables do. `half` converts doubles in one step or in two, depending on the machine.
 fn halved(value: f64) -> f64 {
     half::f16::from_f32(value as f32).to_f64()
 }
@@ -142,10 +142,9 @@ fn beckmann(alpha: f64, theta: f64) -> f64 {
 /// Largest difference between a function and straight lines between its values at `texels` points of 0..=1.
 fn interpolation(texels: u32, f: impl Fn(f64) -> f64) -> f64 {
     let intervals = f64::from(texels - 1);
-    let node = |i: u32| f(f64::from(i) / intervals);
     let mut worst = 0.0_f64;
     for i in 0..texels - 1 {
-        let (a, b) = (node(i), node(i + 1));
+        let [a, b] = [i, i + 1].map(|i| f(f64::from(i) / intervals));
         for k in 1..16 {
             let t = f64::from(k) / 16.0;
             worst = worst.max((a + t * (b - a) - f((f64::from(i) + t) / intervals)).abs());
@@ -161,14 +160,14 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 
 fn storage_of_d(out: &mut Collector) {
     let m = 1e-3;
-    let peak = |scale: f64| halved(scale) / scale - 1.0;
+    let peak = 1.0 / (PI * m * m);
     let truth = "peak of Beckmann at m = 0.001, relative to f64";
     let row = PITFALLS[0].0;
     out.rejected(
         row,
         "1/(pi m^2) in a half float",
         truth,
-        peak(1.0 / (PI * m * m)).abs(),
+        (halved(peak) / peak - 1.0).abs(),
         "The value overflows a half float below m = 0.0022.",
     );
     out.rejected(row, "m of row i is i/511", truth, f64::NAN, "Row 0 is 0/0, and row 1 overflows.");
@@ -205,7 +204,7 @@ fn storage_of_d(out: &mut Collector) {
             error,
             "1/m^2 is far from linear between two rows.",
         );
-        // The rows that ship are a ratio of 1000^(1/511) apart; half the slope of a lobe is its error.
+        // The rows that ship are a ratio of 1000^(1/511) apart. Halfway between two rows the error is largest.
         let ratio = libm::pow(1000.0, 0.5 / 511.0);
         let error = largest((0..400).map(|i| {
             let theta = 4.0 * m * f64::from(i) / 400.0;
@@ -219,8 +218,8 @@ fn storage_of_d(out: &mut Collector) {
             1e-3,
         );
     }
-    let rows = || (0..16).map(|i| (0.02 * 511.0 - 7.5 + f64::from(i)) / 511.0);
-    let mean = rows().map(|m| 1.0 / (m * m)).sum::<f64>() / 16.0 * 4e-4;
+    let rows = (0..16).map(|i| (0.02 * 511.0 - 7.5 + f64::from(i)) / 511.0);
+    let mean = rows.clone().map(|m| 1.0 / (m * m)).sum::<f64>() / 16.0 * 4e-4;
     let truth = "mean of the peaks of 16 rows around m = 0.02, relative to the peak there";
     out.rejected(
         PITFALLS[4].0,
@@ -229,7 +228,7 @@ fn storage_of_d(out: &mut Collector) {
         mean - 1.0,
         "A mip map averages D over m, and the mean of 1/m^2 from a to b is 1/(ab).",
     );
-    let ours = rows().map(|m| beckmann(m, 0.0)).sum::<f64>() / 16.0;
+    let ours = rows.map(|m| beckmann(m, 0.0)).sum::<f64>() / 16.0;
     out.ours(PITFALLS[4].0, "one level of pi m^2 D", truth, (ours - 1.0).abs(), 1e-12);
 }
 
@@ -279,13 +278,7 @@ fn rows_of_fresnel(out: &mut Collector) {
     for (name, n, k) in metals {
         let below = Complex64::new(n, k);
         let truth = format!("{name}, absolute, all angles, against Fresnel's formulas");
-        let worst = |f: &dyn Fn(f64) -> f64| {
-            largest((0..=2000).map(|i| {
-                let cos = libm::cos(f64::from(i) / 2000.0 * FRAC_PI_2);
-                (f(cos) - interface(Complex64::ONE, below, cos).unpolarised()).abs()
-            }))
-        };
-        let error = worst(&|cos| complex_f0(1.0, below, cos));
+        let error = worst_angle(below, |cos| complex_f0(1.0, below, cos));
         out.rejected(
             PITFALLS[8].0,
             "Schlick with complex F0",
@@ -294,7 +287,7 @@ fn rows_of_fresnel(out: &mut Collector) {
             "The error is not the 5% that the literature claims.",
         );
         let lazanyi = Lazanyi::fit(1.0, below);
-        let error = worst(&|cos| lazanyi.eval(cos));
+        let error = worst_angle(below, |cos| lazanyi.eval(cos));
         out.rejected(
             PITFALLS[8].0,
             "with Lazanyi's correction",
@@ -305,6 +298,14 @@ fn rows_of_fresnel(out: &mut Collector) {
         let row = interpolation(128, |cos| interface(Complex64::ONE, below, cos).unpolarised());
         out.ours(PITFALLS[8].0, "row of 128 texels", &truth, row, 6e-3);
     }
+}
+
+/// Largest difference over all angles between a form of the reflectance of an interface and Fresnel's formulas.
+fn worst_angle(below: Complex64, form: impl Fn(f64) -> f64) -> f64 {
+    largest((0..=2000).map(|i| {
+        let cos = libm::cos(f64::from(i) / 2000.0 * FRAC_PI_2);
+        (form(cos) - interface(Complex64::ONE, below, cos).unpolarised()).abs()
+    }))
 }
 
 fn single_precision(out: &mut Collector) {
@@ -319,10 +320,10 @@ fn single_precision(out: &mut Collector) {
             let (c, s) = (cos as f32, (sin * sin) as f32);
             let from_cos = c * c * (a * a - 1.0) + 1.0;
             let from_sine = c * c * a * a + s;
-            let value = |d: f32| f64::from(a * a / (std::f32::consts::PI * d * d));
-            let error = (value(from_cos) / exact - 1.0).abs();
-            bad = if error > bad || error.is_nan() { error } else { bad };
-            good = good.max((value(from_sine) / exact - 1.0).abs());
+            let [cancelled, error] =
+                [from_cos, from_sine].map(|d| (f64::from(a * a / (std::f32::consts::PI * d * d)) / exact - 1.0).abs());
+            bad = if cancelled > bad || cancelled.is_nan() { cancelled } else { bad };
+            good = good.max(error);
         }
         out.rejected(
             PITFALLS[9].0,
@@ -346,10 +347,10 @@ fn single_precision(out: &mut Collector) {
     let ours = 1.0 - interface(Complex64::ONE, Complex64::new(n, k), 1.0).unpolarised();
     out.ours(PITFALLS[10].0, "interface(), f64", truth, (ours / exact - 1.0).abs(), 1e-11);
     let truth = "alpha^2 for alpha from 0.001 to 0.0078, relative";
-    let alphas = || (0..200).map(|i| 1e-3 + 6.8e-3 * f64::from(i) / 200.0);
-    let half = largest(alphas().map(|a| (halved(a * a) / (a * a) - 1.0).abs()));
+    let alphas = (0..200).map(|i| 1e-3 + 6.8e-3 * f64::from(i) / 200.0);
+    let half = largest(alphas.clone().map(|a| (halved(a * a) / (a * a) - 1.0).abs()));
     out.rejected(PITFALLS[11].0, "half float", truth, half, "alpha^2 is below the smallest normal half float.");
-    let single = largest(alphas().map(|a| (f64::from((a as f32) * (a as f32)) / (a * a) - 1.0).abs()));
+    let single = largest(alphas.map(|a| (f64::from((a as f32) * (a as f32)) / (a * a) - 1.0).abs()));
     out.ours(PITFALLS[11].0, "f32", truth, single, 3e-7);
 }
 
@@ -390,13 +391,14 @@ fn energies(out: &mut Collector) {
         );
     }
 
-    let naive = |f: f64| f + (1.0 - f) * (1.0 - f) / (1.0 - f);
+    let f = 1.0_f64;
+    let naive = f + (1.0 - f) * (1.0 - f) / (1.0 - f);
     let truth = "reflectance of a coat and a base that reflect everything, against 1";
     out.rejected(
         "q -> 0",
         "F + (1-F)^2/(1-F)",
         truth,
-        naive(1.0) - 1.0,
+        naive - 1.0,
         "The formula is 0/0. Models and shaders stop where an interface transmits nothing.",
     );
     let gold = F0_TABLE.iter().find(|entry| entry.name == "Gold").and_then(|entry| entry.computed());
@@ -412,26 +414,25 @@ fn energies(out: &mut Collector) {
     out.ours("gold F0 red", "half float", truth, (halved(red) / 1.0376 - 1.0).abs(), 1e-3);
 }
 
-/// Median slope of the half vectors of light that a mirror of alpha `base` below a coat of index 1.5 sends back at normal incidence, the
-/// coat's own reflection taken off: for a bare GGX surface it is alpha.
+/// Median slope of half vectors of the light that a mirror of alpha `base` sends back through a coat of index 1.5 at normal incidence, without the
+/// coat's own reflection. For a bare GGX surface the median is alpha.
 fn median_alpha(coat: f64, base: f64) -> f64 {
-    let surface = |alpha| Surface::isotropic(Distribution::Ggx, alpha);
     let glass = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.0 };
     let mut lights: Vec<(f64, f64)> = Vec::new();
-    // A base of the coat's own index is black.
+    // A base of the coat's own index is black: subtracting its light leaves that of the mirror.
     for (sign, ior) in [(1.0, Complex64::new(0.0, 1.0)), (-1.0, Complex64::new(1.5, 0.0))] {
-        let layer = |alpha, above, below| MonochromeLayer {
-            surface: surface(alpha),
+        let layers = [(coat, 1.0, glass), (base, 1.5, MonochromeBelow::Conductor { ior })];
+        let layers = layers.map(|(alpha, above, below)| MonochromeLayer {
+            surface: Surface::isotropic(Distribution::Ggx, alpha),
             above,
             films: Vec::new(),
             below,
             f0: None,
-        };
-        let layers = vec![layer(coat, 1.0, glass), layer(base, 1.5, MonochromeBelow::Conductor { ior })];
-        let stack = Monochrome { exterior: 1.0, layers };
+        });
+        let stack = Monochrome { exterior: 1.0, layers: layers.into() };
         let paths = LayeredMc { mode: InterfaceMode::SmithWalk, samples: 20_000, seed: 3 };
-        let slope = |w: glam::DVec3| libm::hypot(w.x, w.y) / (1.0 + w.z);
-        lights.extend(paths.paths(&stack, glam::DVec3::Z).flatten().map(|(w, weight)| (slope(w), sign * weight)));
+        let paths = paths.paths(&stack, glam::DVec3::Z).flatten();
+        lights.extend(paths.map(|(w, weight)| (libm::hypot(w.x, w.y) / (1.0 + w.z), sign * weight)));
     }
     lights.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = lights.iter().map(|(_, weight)| weight).sum();
@@ -485,12 +486,12 @@ fn filtering(out: &mut Collector) {
 /// Values from the smallest denormal to the largest number.
 const EXTREME: [f64; 12] = [0.0, 5e-324, 1e-310, 1e-150, 1e-30, 1e-7, 1e-3, 1.0, 10.0, 1e30, 1e150, f64::MAX];
 
-/// Excess of a share over 0..=1; NaN for a value that is none.
+/// Distance of a share from 0..=1; NaN for a value that is not finite.
 fn beyond_unit(value: f64) -> f64 {
     if value.is_finite() { (value - 1.0).max(-value).max(0.0) } else { f64::NAN }
 }
 
-/// 0 for a number that is not negative; infinite ones count as such where a limit is.
+/// Distance of a number below 0; NaN stays. Infinity is allowed, because some of these functions have an infinite limit.
 fn beyond_zero(value: f64) -> f64 {
     if value.is_nan() { f64::NAN } else { (-value).max(0.0) }
 }
@@ -500,7 +501,7 @@ fn extremes(out: &mut Collector) {
     let alphas = || EXTREME.into_iter().filter(|value| *value > 0.0 && *value <= 1.0);
     let range = "arguments from the least to the largest double, cosines down to 0: distance from the interval 0 to 1";
     let indices = || EXTREME.into_iter().flat_map(|n| EXTREME.map(|k| Complex64::new(n, k)));
-    // The modulus of what is squared twice must be a number: of real materials it is below 1e3.
+    // The formulas square moduli twice, which overflows beyond 1e75. Indices of real materials are below 1e3.
     let bare = largest(
         indices()
             .filter(|ior| ior.l1_norm() > 1e-75 && ior.l1_norm() < 1e75)

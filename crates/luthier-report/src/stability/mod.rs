@@ -1,20 +1,20 @@
-//! Stability: every method where methods fail.
+//! Stability: every method on stacks and directions at which methods fail.
 //!
 //! A *case* is a stack and directions at which some formula divides by little, overflows or stops being true ([`cases`]).
 //! A *method* is a reflectance model or the shader of one; it is run on every case at four levels:
 //!
-//! - *f64*: all registered models. Laws first: finite, not negative, 0 at and below the horizon, reciprocal and conserving where that is
-//!   claimed. Then the directional albedo against the truth: the closed form where all interfaces are smooth, the paths of `layered-mc`
-//!   elsewhere (its standard error is given to the model four times).
+//! - *f64*: all registered models. The laws come first: values are finite, not negative, and 0 at and below the horizon; models are reciprocal and
+//!   conserve energy if they claim so. Then the directional albedo is compared with the truth: the closed form if all interfaces are smooth, else the
+//!   paths of `layered-mc` (four of its standard errors are taken off the error).
 //! - *table*: f64 arithmetic on the texels that ship, against exact terms.
 //! - *f32*: the form `full` of the shader on the adapter: all of it is arithmetic in single precision.
 //! - *device*: the form `baked` on the adapter: arithmetic and texture fetches.
 //!
-//! f32 and device are against the same model in f64 with exact terms. On a software adapter both are IEEE single precision on the CPU;
-//! on a GPU the same WGSL has fused and reordered operations, and coarser reciprocals and sines, within what WGSL allows.
+//! f32 and device are compared with the model in f64 with exact terms. On a software adapter both compute in IEEE single precision on the CPU.
+//! A GPU fuses and reorders operations of the same WGSL, and has coarser reciprocals and sines, within the limits of WGSL.
 //!
-//! Beside the cases stand *formulations* ([`formulas`]): ways to write or to store one function, those that ship and those that were
-//! rejected, with the error of each against a truth that is named.
+//! *Formulations* ([`formulas`]) complement the cases: ways to write or to store one function, shipped or rejected, each with its error against a named
+//! truth.
 //!
 //! Everything that does not hold has an [`explain::Explanation`], with a limit: an error beyond it is unexplained.
 //!
@@ -46,13 +46,13 @@ pub use svg::heat_map_svg;
 /// Error of a shader (relative, see [`crate::FLOOR`]) up to which it holds: the goal of 1%.
 pub const HOLDS: f64 = 0.01;
 
-/// Error of an albedo (absolute) up to which a model holds: what is just seen of two surfaces beside each other.
+/// Error of an albedo (absolute) up to which a model holds: just visible between two surfaces side by side.
 pub const HOLDS_ALBEDO: f64 = 0.02;
 
 /// Error of a shader beyond which it no longer shows its model, and of an albedo beyond which the surface adds more light than falls on it.
 pub const FAILS: f64 = 1.0;
 
-/// Relative difference between a BRDF and that of the exchanged directions that rounding makes; beyond it reciprocity is lost.
+/// Largest relative difference on exchanging directions that counts as rounding. Beyond it a BRDF is not reciprocal.
 pub const RECIPROCITY: f64 = 1e-6;
 
 /// Level at which a method runs.
@@ -83,7 +83,7 @@ impl Level {
         }
     }
 
-    /// Whether what runs there is shipped.
+    /// Whether the code of this level ships.
     pub fn ships(self) -> bool {
         self != Self::F64
     }
@@ -154,9 +154,9 @@ pub struct Cell {
     pub verdict: Verdict,
     /// Fault of the method, unless it holds.
     pub fault: Option<Fault>,
-    /// Size of the fault: what it counts, or the largest error; 0 for values that are not finite, and for a case that compares none.
+    /// Size of the fault, or the largest error; 0 for values that are not finite, and for a case without comparisons.
     pub error: f64,
-    /// Name of the explanation, unless it holds; `None` then is a cell without an explanation.
+    /// Name of the explanation; `None` for a cell that holds, and for an unexplained one.
     pub explanation: Option<String>,
 }
 
@@ -176,7 +176,7 @@ impl Cell {
         cell
     }
 
-    /// Whether it holds, or the reason why not is known.
+    /// Whether the cell holds or has an explanation.
     pub fn is_explained(&self) -> bool {
         self.verdict == Verdict::Holds || self.explanation.is_some()
     }
@@ -200,11 +200,11 @@ pub struct CaseInfo {
 pub struct Stability {
     /// Program and version.
     pub generator: String,
-    /// The adapter; nothing without one.
+    /// The adapter; `None` without one.
     pub device: Option<String>,
     /// The cases.
     pub cases: Vec<CaseInfo>,
-    /// Every method on every case that it is for.
+    /// Every method on every case that it applies to.
     pub cells: Vec<Cell>,
     /// Ways to write or to store one function.
     pub formulas: Vec<FormulaResult>,
@@ -217,22 +217,22 @@ impl Stability {
     pub fn new(generator: &str, device: Option<String>, cells: Vec<Cell>) -> Self {
         let all = cases();
         let domains = derived(&all, &cells);
-        let info = |case: &StressCase| CaseInfo {
+        let cases = all.iter().map(|case| CaseInfo {
             id: case.id.clone(),
             title: case.title.clone(),
             swept: case.swept.map(|(quantity, value)| (quantity.name().to_owned(), value)),
             truth: models::truth_name(case).to_owned(),
-        };
-        let cases = all.iter().map(info).collect();
+        });
+        let cases = cases.collect();
         Self { generator: generator.to_owned(), device, cases, cells, formulas: formulas(), domains }
     }
 
-    /// Cells whose reason is unknown.
+    /// Cells that neither hold nor have an explanation.
     pub fn unexplained(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().filter(|cell| !cell.is_explained())
     }
 
-    /// Cells of what ships that are NaN or infinite somewhere.
+    /// Cells of shaders and tables that are NaN or infinite somewhere.
     pub fn not_finite(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().filter(|cell| cell.level.ships() && cell.fault == Some(Fault::NotFinite))
     }
@@ -242,7 +242,7 @@ impl Stability {
         self.formulas.iter().filter(|formula| !formula.is_as_expected())
     }
 
-    /// Whether what ships is finite everywhere and every cell is explained.
+    /// Whether shaders and tables are finite everywhere, and every cell and formulation is explained.
     pub fn holds(&self) -> bool {
         self.unexplained().next().is_none()
             && self.not_finite().next().is_none()

@@ -19,24 +19,24 @@ use super::{Cell, Fault, Level, RECIPROCITY};
 use crate::measure::directions::{Pair, wide};
 use crate::measure::statistics::FLOOR;
 
-/// Wavelength and channel at which models are compared: gold is yellow there, films are neither dark nor bright by rule.
+/// Wavelength and channel at which models are compared.
 const WAVELENGTH_NM: f64 = 525.0;
 const CHANNEL: usize = 1;
 
 /// Paths of the truth at each angle: a standard error of at most 0.004.
 const PATHS: u64 = 1 << 14;
 
-/// Standard errors of the truth that a model is not charged for.
+/// Standard errors of the truth that are taken off the error of a model.
 const SIGMAS: f64 = 4.0;
 
-/// Samples and pairs of a model that is itself an estimate: for laws only, not for precision.
+/// Samples of a model that is itself an estimate, and the stride over its pairs. Laws need no precision.
 const ESTIMATOR_SAMPLES: u64 = 32;
 const ESTIMATOR_STRIDE: usize = 8;
 
-/// Slack of the albedo that a model which claims energy may show: the error of the quadrature.
+/// Excess of an albedo over 1 that counts as the error of the quadrature.
 const QUADRATURE: f64 = 2e-3;
 
-/// All models on all cases that they are for. `progress` is called after every case.
+/// All models on all cases that they apply to. `progress` is called after every case.
 pub fn model_cells(cases: &[StressCase], progress: &(dyn Fn() + Sync)) -> Vec<Cell> {
     let models = models();
     let rows: Vec<Vec<Cell>> = cases
@@ -55,7 +55,7 @@ pub fn model_cells(cases: &[StressCase], progress: &(dyn Fn() + Sync)) -> Vec<Ce
         })
         .collect();
     let cells: Vec<Cell> = rows.into_iter().flatten().collect();
-    // In the order of the registry, then of the cases.
+    // Sorted by the registry, then by the cases.
     models
         .iter()
         .flat_map(|m| cells.iter().filter(|c| c.method == m.info().name).cloned().collect::<Vec<_>>())
@@ -78,7 +78,7 @@ pub(super) fn truth_name(case: &StressCase) -> &'static str {
     }
 }
 
-/// Whether the closed form is exact: all interfaces smooth, diffuse bases Lambert's.
+/// Whether the closed form is exact: all interfaces are smooth, and diffuse bases are Lambert's.
 fn is_smooth(stack: &Monochrome) -> bool {
     stack.layers.iter().all(|layer| match layer.below {
         MonochromeBelow::Diffuse { sigma, .. } => sigma == 0.0,
@@ -86,7 +86,7 @@ fn is_smooth(stack: &Monochrome) -> bool {
     })
 }
 
-/// The k beyond which a metal reflects everything to the last digit, and the fourth powers in the reference's formulas overflow.
+/// Largest k in the truth. Beyond it, fourth powers in the reference's formulas overflow; already at it, a metal reflects everything to the last digit.
 const IDEAL_K: f64 = 1e30;
 
 fn truth(stack: &Monochrome, wo: DVec3) -> Estimate {
@@ -104,7 +104,7 @@ fn truth(stack: &Monochrome, wo: DVec3) -> Estimate {
     }
 }
 
-/// Whether a model says anything of a stack; a model of one interface is not blamed for what lies below it.
+/// Whether a model applies to a case. A model of one interface is not judged on stacks with layers below it.
 fn is_for(info: &ModelInfo, case: &StressCase) -> bool {
     let layers = &case.stack.layers;
     let ends_diffuse = layers.last().is_some_and(|layer| matches!(layer.base, Base::Diffuse(_)));
@@ -119,7 +119,7 @@ fn is_for(info: &ModelInfo, case: &StressCase) -> bool {
     }
 }
 
-/// Whether albedos are compared: not those of densities, nor of models that look different from place to place.
+/// Whether albedos are compared. Densities have none, and models of places have a different one at each place.
 fn has_albedo(info: &ModelInfo) -> bool {
     !matches!(info.kind, Kind::Density | Kind::Place)
 }
@@ -148,21 +148,21 @@ fn cell(model: &dyn Model, case: &StressCase, stack: &Monochrome, pairs: &[Pair]
                 return Cell::new(Level::F64, info.name, &case.id, Some(Fault::Gains), found.value - 1.0);
             }
             let error = (found.value - truth.mean).abs() - noise;
-            // A truth that is no number proves nothing.
+            // NaN in the truth counts as an infinite error: it must not pass for agreement.
             worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
         }
     }
     Cell::new(Level::F64, info.name, &case.id, None, worst.max(0.0))
 }
 
-/// A directional albedo, and how far it may be off.
+/// A directional albedo with its uncertainty.
 struct Albedo {
     value: f64,
     error: f64,
 }
 
-/// Directional albedo by the model's own estimate (its error four times the standard error), or by quadrature, whose error is what fewer points
-/// change. One rule for all: sharp enough for 1% on the smoothest lobe, and a hundredth of the work of
+/// Directional albedo by the model's own estimate, with four standard errors as its error; or by quadrature, with the change from fewer points as its
+/// error. All models have one quadrature rule: it is within 1% on the smoothest lobe, for a hundredth of the work of
 /// `luthier_layers::directional_albedo`.
 fn albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> Albedo {
     if let Some(estimator) = model.estimator() {
@@ -176,28 +176,20 @@ fn albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> Albedo {
 /// Points on each side of the mirror direction.
 const POINTS: [usize; 2] = [20, 28];
 
-/// The integral of `f cos_theta_i`; the eye is at azimuth 0. Points crowd at the mirror direction. Isotropic stacks are integrated over one
-/// half.
+/// The integral of `f cos_theta_i`, for an eye at azimuth 0. Points crowd at the mirror direction. Isotropic stacks are integrated over one half.
 fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
     let rule = gauss_legendre(points);
-    let crowded = |start: f64, length: f64| {
-        rule.iter()
-            .map(move |&(t, weight)| {
-                let t4 = t * t * t * t;
-                (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
-            })
-            .collect::<Vec<_>>()
-    };
     let theta_o = libm::atan2(wo.x, wo.z);
     let is_isotropic = stack.layers.iter().all(|layer| layer.surface.alpha_x == layer.surface.alpha_y);
-    let mut phis = crowded(PI, -PI);
+    let mut phis = crowded(&rule, PI, -PI);
     if is_isotropic {
         phis.iter_mut().for_each(|(_, weight)| *weight *= 2.0);
     } else {
-        phis.extend(crowded(PI, PI));
+        phis.extend(crowded(&rule, PI, PI));
     }
     let mut sum = 0.0;
-    for (theta, d_theta) in crowded(theta_o, -theta_o).into_iter().chain(crowded(theta_o, FRAC_PI_2 - theta_o)) {
+    let thetas = [-theta_o, FRAC_PI_2 - theta_o].into_iter().flat_map(|length| crowded(&rule, theta_o, length));
+    for (theta, d_theta) in thetas {
         let (sin_theta, cos_theta) = libm::sincos(theta);
         for &(phi, d_phi) in &phis {
             let (sin_phi, cos_phi) = libm::sincos(phi);
@@ -208,7 +200,16 @@ fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> 
     sum
 }
 
-/// The first law that is broken, and by how much.
+/// Points and weights of a rule over an interval, which by the fifth power crowd at its start.
+fn crowded(rule: &[(f64, f64)], start: f64, length: f64) -> Vec<(f64, f64)> {
+    let points = rule.iter().map(|&(t, weight)| {
+        let t4 = t * t * t * t;
+        (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
+    });
+    points.collect()
+}
+
+/// The first broken law, with the size of the breach.
 fn laws(
     model: &dyn Model,
     info: &ModelInfo,
@@ -228,7 +229,7 @@ fn laws(
         }
         if info.claims.reciprocal && info.kind != Kind::Density && model.estimator().is_none() && wi.z.min(wo.z) > 0.0 {
             let (f, back) = (value * wo.z, model.eval(stack, wo, wi) * wi.z);
-            // Beside what is seen: a value that is nothing next to a white diffuser may be rounding in both.
+            // The divisor has a floor: values far below a white diffuser may be rounding in both directions.
             let size = f.abs().max(back.abs()).max(FLOOR * wi.z * wo.z);
             asymmetry = asymmetry.max((f - back).abs() / size);
         }

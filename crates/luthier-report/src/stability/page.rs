@@ -73,17 +73,15 @@ fn summary(out: &mut String, stability: &Stability) {
     out.push_str("\n## Summary\n\n| level | cells | hold | degrade | fail | not finite | unexplained |\n|---|--:|--:|--:|--:|--:|--:|\n");
     for level in Level::ALL {
         let cells: Vec<&Cell> = stability.cells.iter().filter(|c| c.level == level).collect();
-        let count = |verdict| cells.iter().filter(|c| c.verdict == verdict).count();
+        let [hold, degrade, fail] = [Verdict::Holds, Verdict::Degrades, Verdict::Fails]
+            .map(|verdict| cells.iter().filter(|c| c.verdict == verdict).count());
         let not_finite = cells.iter().filter(|c| c.fault == Some(super::Fault::NotFinite)).count();
         let unexplained = cells.iter().filter(|c| !c.is_explained()).count();
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {not_finite} | {unexplained} |",
+            "| {} | {} | {hold} | {degrade} | {fail} | {not_finite} | {unexplained} |",
             level.name(),
-            cells.len(),
-            count(Verdict::Holds),
-            count(Verdict::Degrades),
-            count(Verdict::Fails)
+            cells.len()
         );
     }
 }

@@ -18,7 +18,7 @@ use crate::measure::table_terms::{TableTerms, Weights};
 /// Size below which a negative channel is rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Values of a case in f64: exact terms for the form with tables and for the one without, and the tables.
+/// Values of a case in f64: on exact terms for the form with tables and for the form without, and on the tables.
 struct Expected {
     pairs: Vec<Pair>,
     baked: Vec<Rgb>,
@@ -26,9 +26,9 @@ struct Expected {
     read: Vec<Rgb>,
 }
 
-/// The shaders of a model on all cases. The materials of the subject are the cases, in order. Without a device, tables alone.
+/// The shaders of a model on all cases. The materials of the subject are the cases, in order. Without a device, only tables are judged.
 ///
-/// `tables` says what is special about the tables; methods have it behind the name of the model, and the form without tables is left out.
+/// `tables` describes special tables: it follows the name of the model in the names of methods, and the form without tables is left out.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -88,7 +88,7 @@ fn cell(level: Level, method: &str, case: &StressCase, pairs: &[Pair], found: &[
                 below = below.max(-value);
             }
             let error = relative_error(*value, *expected, bright, FLOOR);
-            // A truth that is no number proves nothing.
+            // NaN in the truth counts as an infinite error: it must not pass for agreement.
             worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
         }
     }

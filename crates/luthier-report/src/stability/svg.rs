@@ -13,9 +13,10 @@ const HEADS: f64 = 130.0;
 /// Width that the slanted head of the last column takes on the right.
 const SLANT: f64 = 70.0;
 
-/// The heat map as one SVG: a block of rows for each level, a row for each method, a column for each case. Text and frames are of the
-/// current colour; the fills are the custom properties `--stability-holds`, `-degrades` and `-fails` of the page, with colours that serve on
-/// light and dark; a dot and a cross mark what degrades and what fails, so that colour is not the only difference. Every cell has a tooltip.
+/// The heat map as one SVG: a block of rows for each level, a row for each method, a column for each case. Every cell has a tooltip.
+///
+/// Text and frames have the current colour. Fills are the custom properties `--stability-holds`, `-degrades` and `-fails` of the page, with defaults for
+/// light and dark. A dot marks a method that degrades, a cross one that fails, so that colour is not the only difference.
 pub fn heat_map_svg(stability: &Stability) -> String {
     let levels: Vec<(Level, Vec<&str>)> =
         Level::ALL.into_iter().map(|level| (level, stability.methods(level))).filter(|(_, m)| !m.is_empty()).collect();

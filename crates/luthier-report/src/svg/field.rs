@@ -30,11 +30,11 @@ pub(crate) struct Spot {
     pub(crate) tip: String,
     /// Colour and mark of the spot.
     pub(crate) series: Series,
-    /// Whether the name stands beside the mark, where there is room.
+    /// Whether the name stands beside the mark, if there is room.
     pub(crate) is_named: bool,
 }
 
-/// A mark for each spot, a link to its material; names where there is room; the limit on the error.
+/// A chart with a mark for each spot, linked to its material. Names stand beside marks if there is room; a line shows the limit on the error.
 pub(crate) fn field(label: &str, x_title: &str, spots: &[Spot], limit: (f64, &str)) -> String {
     let x = Scale::fine(spots.iter().map(|s| s.price));
     let y = Scale::decades(spots.iter().map(|s| s.error).chain([limit.0]), SMALLEST);

@@ -123,7 +123,7 @@ impl Frame {
         self.text(right, y - 4.0, "end", "ruled", label);
     }
 
-    /// A line through points of values; a gap where there is nothing. The page's script reads `name` out, where there is one.
+    /// A line through points of values, with a gap at each `None`. The page's script reads `name` out, unless it is empty.
     pub(crate) fn line(&mut self, class: &str, name: &str, points: impl Iterator<Item = Option<(f64, f64)>>) {
         let mut path = String::new();
         let mut pen_down = false;
@@ -177,7 +177,7 @@ impl Frame {
         );
     }
 
-    /// Opens a group of what belongs to a material, for the page's filter; [`Frame::end`] closes it.
+    /// Opens a group of the elements of a material, for the page's filter. [`Frame::end`] closes it.
     pub(crate) fn begin(&mut self, material: &str) {
         let _ = write!(self.body, "<g data-material=\"{}\">", escape(material));
     }
@@ -187,7 +187,7 @@ impl Frame {
         self.body.push_str("</g>");
     }
 
-    /// Opens a link to what the page says of a material; [`Frame::end_link`] closes it.
+    /// Opens a link to the section of a material. [`Frame::end_link`] closes it.
     pub(crate) fn begin_link(&mut self, anchor: &str, material: &str) {
         let _ = write!(self.body, "<a href=\"#{}\" data-material=\"{}\">", escape(anchor), escape(material));
     }
@@ -202,7 +202,7 @@ impl Frame {
         let _ = write!(self.body, "<circle class=\"chosen\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\"/>");
     }
 
-    /// The SVG element; `label` says to a screen reader what the chart shows. It carries its scales for the page's script.
+    /// The SVG element, with `label` for screen readers and the scales for the page's script.
     pub(crate) fn finish(self, label: &str) -> String {
         let (x, y) = (self.x.describe(), self.y.describe());
         let ends = [self.px_fraction(0.0), self.px_fraction(1.0), self.py_fraction(0.0), self.py_fraction(1.0)];

@@ -6,7 +6,7 @@ use super::scale::Scale;
 /// Errors below this share the end of an axis.
 const SMALLEST: f64 = 1e-9;
 
-/// Room for a label, across and down; what is nearer to another has its tip alone.
+/// Room for a label, across and down. A label nearer to another one is left out; the tooltip has it.
 const LABEL: [f64; 2] = [100.0, 13.0];
 
 /// A thing that could be chosen.
@@ -29,13 +29,14 @@ pub(crate) struct Choice {
 /// The axis of prices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Price {
-    /// Bytes, logarithmic: nothing at all sits at the left end.
+    /// Bytes, logarithmic. Zero bytes sit at the left end.
     Bytes,
     /// Operations or cycles, from 0.
     Cost,
 }
 
-/// All choices, the line of those that no other beats in both, the chosen one in a ring, and the limit on the error.
+/// A chart of all choices. A line connects those that no other beats in both price and error; a ring marks the chosen one; another line shows the limit
+/// on the error.
 pub(crate) fn pareto(
     label: &str,
     kind: Price,
@@ -44,10 +45,10 @@ pub(crate) fn pareto(
     limit: Option<(f64, &str)>,
 ) -> String {
     let finite: Vec<&Choice> = choices.iter().filter(|c| c.error.is_finite() && c.price.is_finite()).collect();
-    let prices = || finite.iter().map(|c| c.price);
+    let prices = finite.iter().map(|c| c.price);
     let x = match kind {
-        Price::Bytes => Scale::decades(prices(), 1.0),
-        Price::Cost => Scale::round(prices()),
+        Price::Bytes => Scale::decades(prices, 1.0),
+        Price::Cost => Scale::round(prices),
     };
     let y = Scale::decades(finite.iter().map(|c| c.error).chain(limit.map(|l| l.0)), SMALLEST);
     let margin = Margin { left: 44.0, right: 16.0, top: 24.0, bottom: 38.0 };
@@ -58,7 +59,7 @@ pub(crate) fn pareto(
         frame.rule_y(limit, name);
     }
     let stairs = front(&finite);
-    // Between two of them the cheaper is what its price buys.
+    // Stairs: between two prices, the cheaper choice is the best.
     let corners = stairs.iter().zip(stairs.iter().skip(1).map(Some).chain([None]));
     let steps = corners.flat_map(|(c, next)| [Some((c.price, c.error)), next.map(|n| (n.price, c.error))]);
     frame.line("front", "best for its price", steps.flatten().map(Some));

@@ -3,7 +3,16 @@
 use super::frame::{Frame, Margin};
 use super::scale::Scale;
 
-/// Curves over one quantity: an SVG file that stands alone.
+/// Curves over one quantity, as an SVG file that stands alone.
+///
+/// ```
+/// use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
+///
+/// let curve = Curve { name: "u^2".to_owned(), color: PlotColor::Red, points: vec![[0.0, 0.0], [0.5, 0.25], [1.0, 1.0]] };
+/// let [x, y] = ["u", "square"].map(|label| PlotAxis::new(label, [0.0, 1.0], 0.5));
+/// let svg = Plot { title: "a square".to_owned(), x, y, curves: vec![curve] }.to_svg();
+/// assert!(svg.starts_with("<svg xmlns=") && svg.contains(">u^2<"));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
     /// Description of the picture, for screen readers.
@@ -21,7 +30,7 @@ pub struct Plot {
 pub struct PlotAxis {
     /// Quantity and unit.
     pub label: String,
-    /// Ends. Of no consequence on a logarithmic axis, which takes the decades of the values.
+    /// Ends. A logarithmic axis ignores them and takes the decades of the values.
     pub range: [f64; 2],
     /// Step from one labelled tick to the next; 0 makes the axis logarithmic.
     pub step: f64,
@@ -81,16 +90,16 @@ const LEGEND: f64 = 17.0;
 impl Plot {
     /// The file.
     pub fn to_svg(&self) -> String {
-        let values = |i: usize| self.curves.iter().flat_map(move |curve| curve.points.iter().map(move |p| p[i]));
-        let scale = |axis: &PlotAxis, i: usize| {
+        let [x, y] = [(&self.x, 0), (&self.y, 1)].map(|(axis, i): (_, usize)| {
             let [min, max] = axis.range;
+            let values = self.curves.iter().flat_map(|curve| curve.points.iter().map(move |p| p[i]));
             // `Scale` counts its ticks from the lower end.
-            if axis.step > 0.0 { Scale::linear(min, max, axis.step) } else { Scale::decades(values(i), SMALLEST) }
-        };
+            if axis.step > 0.0 { Scale::linear(min, max, axis.step) } else { Scale::decades(values, SMALLEST) }
+        });
         let legend = LEGEND * self.curves.len() as f64;
         let margin = Margin { left: 50.0, right: 16.0, top: 26.0 + legend, bottom: 40.0 };
         let [width, height] = [SIZE[0], SIZE[1] + legend];
-        let mut frame = Frame::new([width, height], margin, scale(&self.x, 0), scale(&self.y, 1));
+        let mut frame = Frame::new([width, height], margin, x, y);
         frame.x_axis(&self.x.label);
         frame.y_axis(&self.y.label);
         for (i, curve) in self.curves.iter().enumerate() {

@@ -8,7 +8,7 @@ pub(crate) struct Scale {
     min: f64,
     max: f64,
     log: bool,
-    /// Distance of labelled ticks on a linear scale; on a logarithmic one, decades, or 0 for ticks at 1, 2 and 5 of each.
+    /// Distance of labelled ticks on a linear scale. On a logarithmic scale 0 means ticks at 1, 2 and 5 of each decade; other values mean whole decades.
     step: f64,
 }
 
@@ -28,7 +28,7 @@ impl Scale {
         Self::linear(0.0, step * libm::ceil(largest / step - 1e-9), step)
     }
 
-    /// The scale for the page's script: kind and ends, those of a logarithmic scale as powers of ten.
+    /// The scale for the page's script: kind and ends. Ends of a logarithmic scale are exponents of ten.
     pub(crate) fn describe(&self) -> String {
         format!("{} {} {}", if self.log { "log" } else { "lin" }, self.min, self.max)
     }

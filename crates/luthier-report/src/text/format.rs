@@ -1,4 +1,4 @@
-//! Numbers and names as a reader wants them.
+//! Numbers and names for readers.
 
 use luthier_lut::{Axis, Mapping};
 use luthier_manifest::{LayerKind, LayerRecord};
@@ -24,7 +24,7 @@ pub(crate) fn uncertain(value: f64, standard_error: Option<f64>) -> String {
     }
 }
 
-/// A value to be compared with its like: five significant digits.
+/// A value in five significant digits, for comparison with others.
 pub(crate) fn value(value: f64) -> String {
     if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { number(rounded(value, 5)) } else { format!("{value:.4e}") }
 }
@@ -47,12 +47,12 @@ fn significant(value: f64, digits: i32) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A value rounded to a number of significant decimal digits: short in JSON, for what is drawn only.
+/// A value rounded to a number of significant decimal digits. It is short in JSON; charts need no more.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
-/// A dash, where there is no value.
+/// A dash, for a missing value.
 pub(crate) fn none() -> String {
     "–".to_owned()
 }
@@ -107,7 +107,7 @@ pub(crate) fn escape(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            // Not allowed in XML, and invisible anyway.
+            // XML does not allow control characters, and they are invisible.
             c if c.is_control() && c != '\n' && c != '\t' => out.push('\u{fffd}'),
             c => out.push(c),
         }
@@ -117,14 +117,14 @@ pub(crate) fn escape(text: &str) -> String {
 
 /// A pair of directions in words.
 pub(crate) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
-    let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
-    let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
+    let [phi_i, phi_o] = [wi, wo].map(|w| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees());
+    let turn = libm::fabs(libm::remainder(phi_o - phi_i, 360.0));
     format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta_deg(wi)), number_deg(theta_deg(wo)), turn)
 }
 
 /// Angle of a direction to the normal.
 pub(crate) fn theta_deg(w: [f32; 3]) -> f64 {
-    // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
+    // Tangential part and height together keep all digits: the arc cosine loses them near the normal, and an f32 sine near the horizon.
     let [x, y, z] = w.map(f64::from);
     libm::atan2(libm::hypot(x, y), z).to_degrees()
 }

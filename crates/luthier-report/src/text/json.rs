@@ -1,5 +1,4 @@
-//! JSON as `report.json` has it: objects indented, arrays in a line, for a tenth of the lines and half the bytes of the
-//! usual layout.
+//! JSON in the layout of `report.json`: objects indented, arrays in a line. It has a tenth of the lines and half the bytes of the usual layout.
 
 use std::io::{self, Write};
 
@@ -17,14 +16,14 @@ pub(crate) fn to_string(value: &impl Serialize) -> Result<String, ReportError> {
     let mut bytes = Vec::with_capacity(1 << 20);
     value.serialize(&mut Serializer::with_formatter(&mut bytes, Layout::default()))?;
     bytes.push(b'\n');
-    // The writer is handed nothing but UTF-8.
+    // The serialiser writes only UTF-8, so nothing is lost.
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 #[derive(Default)]
 struct Layout {
     depth: usize,
-    /// Whether the object at hand has had a member.
+    /// Whether the current object has a member already.
     has_members: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Words, numbers and JSON as a reader wants them.
+//! Words, numbers and JSON for readers.
 
 pub(crate) mod format;
 pub(crate) mod json;

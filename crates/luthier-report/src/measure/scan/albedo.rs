@@ -17,7 +17,7 @@ use crate::measure::table_terms::{AngleAxis, Weights};
 const POINTS_MAX: u32 = 48;
 /// Fewest points of the scan.
 const POINTS_MIN: u32 = 4;
-/// Pairs of directions in a set for which there is one point here: a quick judgement is quick in all its parts.
+/// Pairs of directions in a set for each point of the scan, so that a quick judgement is quick in all its parts.
 const PAIRS_PER_POINT: u32 = 64;
 /// Independent estimates at every point; their spread is the uncertainty.
 pub(crate) const REPEATS: u32 = 4;
@@ -32,22 +32,22 @@ pub(crate) const STEPS: u32 = 8;
 const EFFORT: Effort = Effort { first: 32, later: 64 };
 /// Walks of one estimate of the light that crosses and returns, shared among wavelengths.
 const CROSSED_WALKS: u32 = 4096;
-/// Walks for each wavelength at least.
+/// Fewest walks for each wavelength.
 const CROSSED_WALKS_MIN: u32 = 128;
-/// Largest change of a product of reflectances by wavelengths that are left out, for the light that crosses and returns.
+/// Largest change of a product of reflectances that leaving out wavelengths may cause, for light that crosses and returns.
 const CROSSED_TOLERANCE: f64 = 1e-3;
-/// Where spectra are compared to decide that: cosines.
+/// Cosines at which spectra are compared to decide which wavelengths are left out.
 const CROSSED_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
 /// First seed of this scan.
 const SEED: u32 = 0x6a75_6467;
 
-/// Points of the scan, the same for every tile: they share their walks.
+/// Number of points of the scan. All tiles have equal points, so that they share walks.
 pub(crate) fn points(pairs_per_set: u32) -> u32 {
     (pairs_per_set / PAIRS_PER_POINT).clamp(POINTS_MIN, POINTS_MAX)
 }
 
-/// Every tile that is wanted at points of its own domain against the directional albedo of the interfaces that read it, wavelength by
-/// wavelength: the first bounce by quadrature, later bounces and crossed light by walks with seeds of the judge's own.
+/// Compares every wanted tile, at points of its own domain, with the directional albedo of the interfaces that read it. The albedo is estimated
+/// wavelength by wavelength: the first bounce by quadrature, later bounces and crossed light by walks with the judge's own seeds.
 pub(super) fn scan(
     table: &Table<'_>,
     subject: &Subject<'_>,
@@ -137,10 +137,10 @@ fn readers(table: &Table<'_>, subject: &Subject<'_>, is_wanted: &dyn Fn(u32) -> 
             let entry = &subject.manifest.materials[m];
             let color = color(entry);
             let distribution = layer.surface.distribution;
-            let known = |r: &Reader| {
+            let is_known = readers.iter().any(|r| {
                 r.tile == tile && r.interface == interface && r.color == color && r.distribution == distribution
-            };
-            if readers.iter().any(known) {
+            });
+            if is_known {
                 continue;
             }
             let transparent = matches!(layer.base, Base::Dielectric { .. });
@@ -153,8 +153,8 @@ fn readers(table: &Table<'_>, subject: &Subject<'_>, is_wanted: &dyn Fn(u32) -> 
     readers
 }
 
-/// The wavelengths that the crossed light needs. Colours of films cross in full: what one wavelength reflects, another
-/// lets through.
+/// The wavelengths that crossed light needs: they keep reflectances and their squares. Colours of films cross in full, because a film lets those
+/// wavelengths through that it does not reflect.
 fn crossing(interface: &Interface, color: &Color) -> Vec<Crossing> {
     let nodes = color.nodes();
     let mut spectra = Vec::new();
@@ -164,12 +164,12 @@ fn crossing(interface: &Interface, color: &Color) -> Vec<Crossing> {
         spectra.extend([once, twice]);
     }
     let sampled = interface.at_nodes(&color.sparse_nodes(&spectra, CROSSED_TOLERANCE));
-    let each = |(weight, at): (Rgb, luthier_optics::interface::Monochrome)| Crossing {
+    let crossings = sampled.nodes.into_iter().map(|(weight, at)| Crossing {
         weight,
         eta: at.below.re / at.above.re,
         curve: ReflectanceCurves::new(1, |_, cos_theta| at.reflectance(cos_theta)),
-    };
-    sampled.nodes.into_iter().map(each).collect()
+    });
+    crossings.collect()
 }
 
 /// A table's value at a point, estimated: RGB, and the luminance of the part that never crossed.
@@ -202,7 +202,7 @@ fn crossed(reader: &Reader, point: Point, seed: u32) -> Rgb {
     let walks = (CROSSED_WALKS / reader.crossing.len().max(1) as u32).max(CROSSED_WALKS_MIN);
     let each = reader.crossing.iter().zip(0..).map(|(crossing, wavelength): (_, u32)| {
         let facets = TransparentFacets { eta: crossing.eta, from_above: |cos| crossing.curve.at(0, cos) };
-        // A family of walks for every wavelength: their noise averages out.
+        // Every wavelength has walks of its own, so that their noise averages out. The factor is 2^32 over the golden ratio.
         let seed = seed.wrapping_add((wavelength + 1).wrapping_mul(0x9e37_79b9));
         let value = crossed_albedo(reader.distribution, point.alpha, facets, point.cos_theta, walks, seed);
         (&crossing.weight, value)

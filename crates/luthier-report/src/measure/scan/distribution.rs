@@ -10,10 +10,10 @@ use crate::measure::subject::{Subject, Table};
 use crate::measure::table_terms::{AngleAxis, Weights};
 use crate::text::format::rounded;
 
-/// Bands of alpha that a distribution's error is shown for.
+/// Number of bands of alpha in the chart of a distribution's error.
 const ALPHA_BANDS: u32 = 64;
 
-/// A distribution tile over its whole domain, one point a cell, and at its nodes.
+/// Scans a distribution tile over its whole domain: one point in each cell, and all nodes.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -32,7 +32,7 @@ pub(super) fn scan(
         let alpha = y.decode((f64::from(j) + 0.05 + 0.9 * fraction(0.5 + f64::from(j) * R2[1])) / f64::from(rows));
         let (mut peak, mut max_err) = (0.0_f64, 0.0_f64);
         for i in 0..columns {
-            // Another offset in every row.
+            // The offset differs from row to row, so that points do not line up.
             let jitter = fraction(0.5 + f64::from(i) * R2[0] + f64::from(j) * R2[1]);
             let value = x.decode((f64::from(i) + 0.05 + 0.9 * jitter) / f64::from(columns));
             let (cos_theta_h, sin_theta_h_sq) = angle.cos_and_sin_sq(value);

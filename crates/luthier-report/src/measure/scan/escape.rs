@@ -1,7 +1,6 @@
 //! Scan of escape tiles against the share of a lobe that is not totally reflected.
 
 use luthier_layers::models::statistics::total_reflection::escaping_share;
-use luthier_lut::Axis;
 use rayon::prelude::*;
 
 use super::{DOMAIN_ALPHA, DOMAIN_COS_THETA, Measured, Scan, User, coordinates};
@@ -12,20 +11,19 @@ use crate::measure::table_terms::Weights;
 /// Points along each axis in every cell of a tile.
 const POINTS_PER_CELL: u32 = 2;
 
-/// An escape tile against the share of a lobe inside the medium below the layers that read it that is not totally reflected there (Belcour
-/// 2018, sec. 5), over the cosine outside, in the domain of the albedos.
+/// Compares an escape tile with the share of a lobe that is not totally reflected (Belcour 2018, sec. 5), in the domain of the albedos. The lobe
+/// lies in the medium below the layers that read the tile; the axis is the cosine outside.
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let layout = &table.entry.layout;
     let (x, y) = (&layout.x, layout.y.as_ref()?);
     // In the domain; nodes below it are left out.
-    let along = |axis: &Axis, least: f64| {
+    let [cosines, alphas] = [(x, DOMAIN_COS_THETA), (y, DOMAIN_ALPHA)].map(|(axis, least)| {
         let from = axis.encode(least);
         let all = coordinates(axis, POINTS_PER_CELL);
         let (between, nodes) = all.split_at((axis.intervals() * POINTS_PER_CELL) as usize);
         let between = between.iter().map(|u| from + (1.0 - from) * u);
         between.chain(nodes.iter().copied().filter(|u| *u >= from)).map(|u| axis.decode(u)).collect::<Vec<f64>>()
-    };
-    let (cosines, alphas) = (along(x, DOMAIN_COS_THETA), along(y, DOMAIN_ALPHA));
+    });
     let mut scan = Scan::default();
     for &(material, layer) in users {
         let eta = 1.0 / subject.manifest.materials[material].layers[layer].eta;

@@ -13,8 +13,8 @@ use crate::measure::table_terms::Weights;
 /// Points along each axis: cosines and thicknesses.
 const POINTS: u32 = 96;
 
-/// A film tile against the reflectance of every interface that reads it, with the top film as thick as the tile says, from the thinnest
-/// that it gets.
+/// Compares a film tile with the reflectance of every interface that reads it. The thickness of the top film runs from the thinnest of the material
+/// to the end of the axis.
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let (x, y) = (&table.entry.layout.x, table.entry.layout.y.as_ref()?);
     let mut scan = Scan::default();

@@ -18,7 +18,7 @@ const GRAZING_POINTS: u32 = 256;
 /// Degrees between the points of a drawn curve.
 const CURVE_STEP_DEG: f64 = 1.5;
 
-/// A Fresnel row against every interface that reads it: a row that two different interfaces share is wrong for one.
+/// Compares a Fresnel row with every interface that reads it. A row that two different interfaces share is wrong for one of them.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -31,11 +31,10 @@ pub(super) fn scan(
     let regular = coordinates(axis, POINTS_PER_CELL).into_iter().map(|u| angle.cos_and_sin_sq(axis.decode(u)).0);
     let grazing = (0..GRAZING_POINTS).map(|n| 1e-6 * libm::pow(1e5, coordinate(n, GRAZING_POINTS)));
     let cosines: Vec<f64> = regular.chain(grazing).map(|c| c.clamp(0.0, 1.0)).collect();
-    let record = |(material, layer): User| &subject.manifest.materials[material].layers[layer];
     let mut scan = Scan::default();
     for &(material, layer) in users {
-        let record = record((material, layer));
-        // Rows over the cosine below the interface are met at their nodes too.
+        let record = &subject.manifest.materials[material].layers[layer];
+        // Rows over the cosine below the interface are also read at their nodes.
         let inside = cosines.iter().map(|&c| incident_cosine(record.critical_cot_sq, c));
         let inside = inside.filter(|_| record.critical_cot_sq > 0.0);
         for cos_theta in cosines.iter().copied().chain(inside) {
@@ -47,7 +46,7 @@ pub(super) fn scan(
             }
         }
     }
-    let first = users.first().map(|&user| record(user));
+    let first = users.first().map(|&(material, layer)| &subject.manifest.materials[material].layers[layer]);
     let steps = (90.0 / CURVE_STEP_DEG) as u32;
     let rgb = (0..=steps).map(|n| {
         let cos_theta = libm::cos((CURVE_STEP_DEG * f64::from(n)).to_radians());

@@ -11,8 +11,8 @@ use crate::measure::table_terms::Weights;
 /// Points in every interval between nodes.
 const POINTS_PER_CELL: u32 = 4;
 
-/// Energies of a row of lobes, over the cosine of the view, against those of the simulation and fit that the stack's terms make anew: the
-/// albedo, the wide remainder, the light of a diffuse base in it, each lobe. Whether the fit is near the simulation is judged with the models.
+/// Compares the energies of rows of lobes (albedo, wide remainder, light of a diffuse base in it, each lobe) with those of a new simulation and fit
+/// of the stack, over the cosine of the view. The judgement of models, not this scan, compares the fit with the simulation.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -32,7 +32,7 @@ pub(super) fn scan(
         let c = x.decode(u);
         let (expected, sampled) =
             (lobes.row_of(number, c).energies(), table.row(tile, c, Weights::EightBit).energies());
-        // An atlas has as many lobes as its richest row: those beyond a stack's own have no light.
+        // An atlas has as many lobes as its richest row. Lobes beyond a stack's own have no light.
         for part in 0..expected.len().max(sampled.len()) {
             let [expected, sampled] = [&expected, &sampled].map(|row| row.get(part).copied().unwrap_or_default());
             for channel in 0..3 {

@@ -12,7 +12,6 @@ mod thickness;
 
 use luthier_layers::twins::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
-use luthier_manifest::MaterialEntry;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
@@ -25,14 +24,14 @@ use crate::measure::subject::Subject;
 
 pub(crate) use albedo::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, STEPS, points};
 
-/// The kind of scans in memories.
+/// Key of scans of tiles in a memory.
 const TILE: &str = "judge-tile";
 
 /// 1/phi and 1/phi^2 of the plastic number: steps of the two-dimensional additive recurrence (Roberts 2018).
 const R2: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_2];
 
-/// Reports every table of the subject; `references[m]` has the exact terms that the tables of material `m` stand for. Tiles that were scanned before, for the same
-/// readers, are not scanned again. `step` is called [`STEPS`] times in all.
+/// Reports every table of the subject. `references[m]` has the exact terms for the tables of material `m`. Tiles that were scanned before for equal
+/// readers are not scanned again. `step` is called [`STEPS`] times in all.
 pub(crate) fn scan(
     subject: &Subject<'_>,
     references: &[References],
@@ -43,17 +42,17 @@ pub(crate) fn scan(
 ) -> Result<Vec<TableReport>, ReportError> {
     let exact: Vec<&Exact> = references.iter().map(References::baked).collect();
     let exact = exact.as_slice();
-    let inputs = |kind, tile| remembered.tile(subject, kind, tile, pairs_per_set);
     let mut known: Vec<Vec<Option<Found>>> = Vec::with_capacity(TableKind::ALL.len());
     for kind in TableKind::ALL {
         let tiles = subject.table(kind)?.map_or(0, |table| table.entry.layout.tiles);
-        known.push((0..tiles).map(|tile| remembered.recall(TILE, &inputs(kind, tile))).collect());
+        let inputs = (0..tiles).map(|tile| remembered.tile(subject, kind, tile, pairs_per_set));
+        known.push(inputs.map(|inputs| remembered.recall(TILE, &inputs)).collect());
     }
     let mut reports = Vec::new();
     let mut albedo = None;
     if let Some(table) = subject.table(TableKind::Fgd)? {
-        let is_wanted = |tile: u32| known[TableKind::Fgd as usize][tile as usize].is_none();
-        albedo = Some(albedo::scan(&table, subject, &is_wanted, points(pairs_per_set), step)?);
+        let known = &known[TableKind::Fgd as usize];
+        albedo = Some(albedo::scan(&table, subject, &|t| known[t as usize].is_none(), points(pairs_per_set), step)?);
     } else {
         (0..STEPS).for_each(|_| step());
     }
@@ -83,7 +82,7 @@ pub(crate) fn scan(
             };
             let Found { judge, not_finite, curves, uncertainty } = known.unwrap_or_else(|| {
                 let found = Found::from(measured.unwrap_or_default());
-                remembered.keep(TILE, &inputs(kind, number), &found);
+                remembered.keep(TILE, &remembered.tile(subject, kind, number, pairs_per_set), &found);
                 found
             });
             tiles.push(TileReport {
@@ -111,19 +110,19 @@ pub(crate) fn scan(
     Ok(reports)
 }
 
-/// Names of those that read a tile somewhere: the layers, and what lies bare where no patina has grown.
+/// Names of the readers of a tile: layers, and the bare layers under a patina.
 fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     let materials = &subject.manifest.materials;
     let layers = materials.iter().flat_map(|m| m.layers.iter().enumerate().map(move |(l, layer)| (m, l, layer)));
-    let reads = |m: &MaterialEntry, first: u32| (first..first + tiles(m, kind)).contains(&tile);
-    let layers = layers.filter(|(m, _, layer)| layer.tiles[kind].is_some_and(|first| reads(m, first)));
+    let layers = layers
+        .filter(|(m, _, layer)| layer.tiles[kind].is_some_and(|first| (first..first + tiles(m, kind)).contains(&tile)));
     let bare = materials
         .iter()
         .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| patina.bare.tiles[kind] == Some(tile)));
     layers.map(|(m, l, _)| format!("{}/{l}", m.name)).chain(bare.map(|m| format!("{}/bare", m.name))).collect()
 }
 
-/// Findings of the scan of a tile.
+/// Raw results of the scan of a tile.
 #[derive(Default)]
 struct Measured {
     scan: Scan,
@@ -157,7 +156,7 @@ struct Scan {
 }
 
 impl Scan {
-    /// Takes a sample in; whether it is the worst so far.
+    /// Adds a sample and returns whether it is the worst so far.
     fn add(&mut self, at: &[f64], channel: usize, expected: f64, sampled: f64) -> bool {
         let error = (expected - sampled).abs();
         if !error.is_finite() {
@@ -181,7 +180,7 @@ impl Scan {
     }
 }
 
-/// Coordinates of a scan along an axis: so many stratified points in every cell, never on a node; then the nodes, which balancing moves.
+/// Coordinates of a scan along an axis: stratified points in every cell, never on a node; then the nodes, because balancing moves their values.
 fn coordinates(axis: &Axis, points_per_cell: u32) -> Vec<f64> {
     let count = axis.intervals() * points_per_cell;
     let nodes = (0..axis.size).map(|i| axis.node_coordinate(f64::from(i)));

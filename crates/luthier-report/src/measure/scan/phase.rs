@@ -10,7 +10,7 @@ use crate::measure::table_terms::Weights;
 /// Points in every cell of a row.
 const POINTS_PER_CELL: u32 = 8;
 
-/// A phase row against `2 cos(2 pi (2 d_max n / lambda) s)` (Granier and Heidrich 2003, eq. 19) of every film that reads it,
+/// Compares a phase row with `2 cos(2 pi (2 d_max n / lambda) s)` (Granier and Heidrich 2003, eq. 19) of every film that reads it,
 /// at the three wavelengths of its material.
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let axis = &table.entry.layout.x;

@@ -35,23 +35,28 @@ pub struct TileReport {
     pub users: Vec<String>,
     /// Its error as the baker measured it.
     pub baker: ErrorStats,
-    /// Its error as measured here from the shipped texels, with 8-bit weights where a sampler filters the format;
-    /// absent for thickness maps, whose truth only the baker has, and for tiles that no layer reads.
+    /// Its error as measured here from the shipped texels, with 8-bit weights if a sampler filters the format. `None` for thickness maps, whose truth
+    /// only the baker has, and for tiles that no layer reads.
     pub judge: Option<ErrorStats>,
-    /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
+    /// Standard error of the reference at the worst point of `judge`, if the reference is an estimate.
     pub uncertainty: Option<f64>,
-    /// The error that the baker aimed at as sampled, where no other was asked for.
+    /// The error of sampled reads that the baker aimed at, if nothing else was asked for.
     #[serde(default)]
     pub aim: Option<f64>,
     /// Reads that were not finite; they are not part of `judge`.
     pub not_finite: u64,
-    /// Curves that are drawn of the tile.
+    /// Curves of the tile, for charts.
     pub curves: Curves,
 }
 
 impl TileReport {
-    /// Error of the tile as sampled and the aim of the bake, if the error exceeds the aim: the error that was measured here or that the
-    /// baker states, whichever is more.
+    /// Whether a layer of a material reads the tile.
+    pub(crate) fn is_read_by(&self, material: &str) -> bool {
+        self.users.iter().any(|user| user.split('/').next() == Some(material))
+    }
+
+    /// The sampled error of the tile and the aim of the bake, if the error exceeds the aim. The error is the larger of the one that was measured here
+    /// and the one that the baker states.
     pub fn miss(&self) -> Option<(f64, f64)> {
         let stated = (self.baker.worst.expected - self.baker.worst.sampled).abs();
         let doubt = UNCERTAINTY_MARGIN * self.uncertainty.unwrap_or(0.0);

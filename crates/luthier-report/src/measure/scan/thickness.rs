@@ -4,12 +4,11 @@ use super::User;
 use crate::measure::subject::{Subject, Table};
 use crate::text::format::number;
 
-/// Half a unit in the last place of a half float, with room for one more rounding: what a shipped value may be off by,
-/// relative to itself.
+/// Largest relative error of a shipped value: half a unit in the last place of a half float, with room for one more rounding.
 const HALF_FLOAT: f64 = 1e-3;
 
-/// Contents of a thickness texture that cannot be: a thickness outside the range of its film, or a normalisation factor that is not
-/// `sqrt(1 + dx^2 + dy^2)` of its slopes, where it has these. The map itself is the material file's and unknown here.
+/// Impossible contents of a thickness texture: a thickness outside the range of its film, or a normalisation factor that is not
+/// `sqrt(1 + dx^2 + dy^2)` of its slopes, if it has slopes. The map itself is unknown here: only the material file names it.
 pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Vec<String> {
     let mut doubts = Vec::new();
     let [x0, y0] = table.entry.layout.origin(tile);
@@ -23,11 +22,10 @@ pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Sub
     let (mut low, mut high, mut tilted) = (f64::INFINITY, f64::NEG_INFINITY, 0_u64);
     for (x, y) in (y0..y0 + height).flat_map(|y| (x0..x0 + width).map(move |x| (x, y))) {
         let texel = table.texels.texel(x, y);
-        let at = |c: usize| f64::from(texel[c]);
-        let d = at(0);
+        let d = f64::from(texel[0]);
         (low, high) = (low.min(d), high.max(d));
-        // Written so that a value that is not a number is a doubt.
-        let agrees = d.is_finite() && (!has_slopes || is_norm([at(1), at(2)], at(3)));
+        // Written so that NaN is a doubt.
+        let agrees = d.is_finite() && (!has_slopes || is_norm([1, 2, 3].map(|c: usize| f64::from(texel[c]))));
         tilted += u64::from(!agrees);
     }
     if tilted > 0 {
@@ -53,8 +51,8 @@ pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Sub
     doubts
 }
 
-/// Whether a factor is `sqrt(1 + dx^2 + dy^2)`, as half floats have it.
-fn is_norm([dx, dy]: [f64; 2], factor: f64) -> bool {
+/// Whether a factor is `sqrt(1 + dx^2 + dy^2)`, within the rounding of half floats.
+fn is_norm([dx, dy, factor]: [f64; 3]) -> bool {
     let expected = libm::sqrt(1.0 + dx * dx + dy * dy);
     (factor - expected).abs() <= HALF_FLOAT * expected
 }

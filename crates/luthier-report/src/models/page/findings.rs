@@ -1,9 +1,9 @@
-//! Findings from the numbers, in words and by model. Every sentence is made from them.
+//! Findings in words and by model. Every sentence is made from the numbers.
 
 use super::tables::{Kind, number, table};
-use crate::models::{CONTROL, MaterialModels, ModelErrors, ModelsReport};
+use crate::models::{CONTROL, ModelErrors, ModelsReport};
 
-/// An albedo this much above 1 is no matter of noise or quadrature.
+/// Excess of an albedo over 1 that noise and quadrature do not explain.
 const GAIN: f64 = 0.005;
 
 /// Largest error that counts as close, of either kind.
@@ -23,9 +23,9 @@ struct Overall<'a> {
 
 impl<'a> Overall<'a> {
     fn new(report: &'a ModelsReport, row: usize) -> Option<Self> {
-        let of = |material: &'a MaterialModels| (material.name.as_str(), &material.models[row]);
-        let first = of(report.materials.first()?).1;
-        let all: Vec<(&str, &ModelErrors)> = report.materials.iter().map(of).collect();
+        let all = report.materials.iter().map(|material| (material.name.as_str(), &material.models[row]));
+        let all: Vec<(&str, &ModelErrors)> = all.collect();
+        let first = all.first()?.1;
         let errors = [Kind::Albedo, Kind::Lobe].map(|kind| {
             let mut sorted: Vec<(f64, &str)> = all.iter().map(|(name, e)| (kind.of(e).quantity.error, *name)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -64,10 +64,10 @@ fn sentences(report: &ModelsReport, all: &[Overall<'_>]) -> String {
     let mut out = Vec::new();
     let count = report.materials.len();
     for (kind, what) in [(0, "albedo"), (1, "lobe")] {
-        let models = || all.iter().filter(|o| o.is_model);
-        let best = models().min_by(|a, b| a.errors[kind].0.total_cmp(&b.errors[kind].0));
-        let close = models()
-            .max_by(|a, b| a.close[kind].cmp(&b.close[kind]).then(b.errors[kind].0.total_cmp(&a.errors[kind].0)));
+        let models = all.iter().filter(|o| o.is_model);
+        let best = models.clone().min_by(|a, b| a.errors[kind].0.total_cmp(&b.errors[kind].0));
+        let close =
+            models.max_by(|a, b| a.close[kind].cmp(&b.close[kind]).then(b.errors[kind].0.total_cmp(&a.errors[kind].0)));
         let (Some(best), Some(close)) = (best, close) else { continue };
         out.push(format!(
             "- `{}` has the smallest median {what} error, {}. `{}` is within {CLOSE} most often: on {} of {count} materials.",

@@ -20,8 +20,11 @@ pub(super) fn page(report: &ModelsReport, command: &str) -> String {
     out
 }
 
+fn list(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+}
+
 fn preamble(report: &ModelsReport, command: &str) -> String {
-    let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let mut wavelengths = BTreeSet::new();
     for material in &report.materials {
         wavelengths.insert(list(&material.wavelengths_nm));

@@ -4,7 +4,7 @@ use luthier_model::ShadingModel;
 
 use crate::models::{MaterialModels, ModelErrors, ModelsReport, Worst};
 
-/// The heading of what is no model: it comes last.
+/// The heading of rows that are no models. It comes last.
 const REFERENCE: &str = "The reference itself";
 
 /// The heading of models without one.
@@ -26,10 +26,11 @@ impl Kind {
     }
 }
 
-/// The model with the smallest error; the first of those that are equal as printed.
+/// The model with the smallest error; the first of several that print as equal.
 pub(super) fn best_model(material: &MaterialModels, kind: Kind) -> Option<&ModelErrors> {
-    let printed = |m: &&ModelErrors| (kind.of(m).quantity.error * 1e3).round();
-    material.models.iter().filter(|m| m.is_model).min_by(|a, b| printed(a).total_cmp(&printed(b)))
+    let models = material.models.iter().filter(|m| m.is_model);
+    let printed = models.map(|m| ((kind.of(m).quantity.error * 1e3).round(), m));
+    printed.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, m)| m)
 }
 
 /// The tables of an error.
@@ -92,11 +93,8 @@ pub(super) fn best(report: &ModelsReport) -> String {
     format!("\n## The best model of each material\n\n{}", table(&head, rows))
 }
 
-/// Numbers to the right; columns whose head ends in a space, and the first, are text.
+/// A table in Markdown. Numbers are aligned to the right; the first column, and columns whose head ends in a space, are text.
 pub(super) fn table(head: &[String], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let line = |cells: &[String]| {
-        format!("| {} |\n", cells.iter().map(|cell| cell.trim_end()).collect::<Vec<_>>().join(" | "))
-    };
     let rule: Vec<String> =
         (0..head.len()).map(|i| if i == 0 || head[i].ends_with(' ') { "---" } else { "---:" }.to_owned()).collect();
     let mut out = line(head) + &line(&rule);
@@ -104,7 +102,11 @@ pub(super) fn table(head: &[String], rows: impl IntoIterator<Item = Vec<String>>
     out
 }
 
-/// Three decimals: the reference knows no more. Errors that are no number are shown.
+fn line(cells: &[String]) -> String {
+    format!("| {} |\n", cells.iter().map(|cell| cell.trim_end()).collect::<Vec<_>>().join(" | "))
+}
+
+/// A number in three decimals, as many as the reference is good for; infinite errors in words.
 pub(super) fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.3}") } else { "infinite".to_owned() }
 }

@@ -22,15 +22,12 @@ pub(crate) fn series(compared: Compared) -> Series {
     Series { class, mark, name: compared.name() }
 }
 
-/// A row per material, a mark per comparison at its largest error; with the budget, or the target if there is none.
+/// A row for each material, with a mark for the largest error of each comparison. A line shows the budget, or the target if there is none.
 pub(crate) fn max_by_material(report: &Report, compared: &[Compared]) -> String {
     const ROW: f64 = 24.0;
-    let values = || {
-        let comparisons = report.materials.iter().flat_map(|m| compared.iter().filter_map(|c| m.comparison(*c)));
-        comparisons.map(|c| c.max_error())
-    };
+    let comparisons = report.materials.iter().flat_map(|m| compared.iter().filter_map(|c| m.comparison(*c)));
     let (limit, named) = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "limit"));
-    let x = Scale::decades(values().chain([limit]), SMALLEST);
+    let x = Scale::decades(comparisons.map(|c| c.max_error()).chain([limit]), SMALLEST);
     let margin = Margin { left: 210.0, right: 74.0, top: 20.0, bottom: 38.0 };
     let height = margin.top + margin.bottom + ROW * report.materials.len() as f64;
     let mut frame = Frame::new([1000.0, height], margin, x, Scale::linear(0.0, 1.0, 1.0));
@@ -71,9 +68,9 @@ pub(crate) fn exceedance(report: &Report, compared: &[Compared]) -> String {
         }
         curves.push((compared, sum.shares()));
     }
-    let points = || curves.iter().flat_map(|(_, shares)| shares);
-    let x = Scale::decades(points().map(|p| p.0).chain(report.budget), SMALLEST);
-    let y = Scale::decades(points().map(|p| p.1), 1e-7);
+    let points = curves.iter().flat_map(|(_, shares)| shares);
+    let x = Scale::decades(points.clone().map(|p| p.0).chain(report.budget), SMALLEST);
+    let y = Scale::decades(points.map(|p| p.1), 1e-7);
     let margin = Margin { left: 44.0, right: 14.0, top: 24.0, bottom: 38.0 };
     let mut frame = Frame::new([490.0, 290.0], margin, x, y);
     frame.x_axis("relative error, as above");

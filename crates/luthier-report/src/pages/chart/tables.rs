@@ -1,4 +1,4 @@
-//! Charts of what the tables hold and how well.
+//! Charts of the contents, errors and sizes of tables.
 
 use crate::measure::scan::report::{AlphaPoint, ReflectanceCurve, TableReport};
 use crate::svg::frame::{Frame, Margin};
@@ -26,9 +26,9 @@ const DISTRIBUTION_CLASSES: [&str; 4] = ["s-baked", "s-tables", "s-full", "s-ari
 
 /// Largest error over the angle as a fraction of the peak, against alpha; one curve per tile.
 pub(crate) fn error_by_alpha(curves: &[(&str, &[AlphaPoint])]) -> String {
-    let points = || curves.iter().flat_map(|(_, points)| points.iter());
-    let x = Scale::decades(points().map(|p| p.alpha), 1e-4);
-    let y = Scale::decades(points().map(|p| p.max_err_of_peak), 1e-9);
+    let points = curves.iter().flat_map(|(_, points)| points.iter());
+    let x = Scale::decades(points.clone().map(|p| p.alpha), 1e-4);
+    let y = Scale::decades(points.map(|p| p.max_err_of_peak), 1e-9);
     let margin = Margin { left: 44.0, right: 80.0, top: 24.0, bottom: 38.0 };
     let mut frame = Frame::new([560.0, 250.0], margin, x, y);
     frame.x_axis("alpha");

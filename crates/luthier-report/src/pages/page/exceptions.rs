@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{anchor, cell, of_material};
 use crate::judge::exceptions::Exception;
-use crate::judge::report::{Compared, Report};
+use crate::judge::report::Report;
 use crate::measure::causes::{Cause, Factor, Part};
 use crate::text::format::{angles, error, escape, none, number, rounded, value};
 
@@ -20,12 +20,11 @@ pub(super) fn write(out: &mut String, report: &Report) {
 }
 
 fn list(out: &mut String, report: &Report) {
-    let judged = |compared: &Compared| compared.is_judged(report.device.is_some());
-    let comparisons = || report.materials.iter().flat_map(|m| &m.comparisons).filter(|c| judged(&c.compared));
+    let comparisons = report.materials.iter().flat_map(|m| report.judged(m));
     let target = number(report.target_max_rel_err);
     let floor = number(report.floor);
     let of = if report.device.is_some() { "materials × shaders" } else { "materials" };
-    let all = comparisons().count();
+    let all = comparisons.clone().count();
     if report.exceptions.is_empty() {
         let _ = writeln!(
             out,
@@ -34,7 +33,7 @@ fn list(out: &mut String, report: &Report) {
         );
         return;
     }
-    let samples: u64 = comparisons().flat_map(|c| &c.sets).map(|(_, s)| 3 * s.pairs - s.not_finite).sum();
+    let samples: u64 = comparisons.flat_map(|c| &c.sets).map(|(_, s)| 3 * s.pairs - s.not_finite).sum();
     let above: u64 = report.exceptions.iter().map(|e| e.samples_above).sum();
     let _ = write!(
         out,

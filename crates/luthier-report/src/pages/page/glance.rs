@@ -9,8 +9,7 @@ use super::summary::shown;
 use super::trade::{FAMILY, of_shaders};
 use super::{anchor, of_material};
 use crate::judge::evidence::Exhibits;
-use crate::judge::report::{Compared, Comparison, MaterialReport, Report};
-use crate::measure::scan::report::TableReport;
+use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::pages::chart;
 use crate::svg::{Spot, field, legend};
 use crate::text::format::{bytes, error, escape, none, number};
@@ -31,12 +30,12 @@ pub(super) fn line(report: &Report, material: &MaterialReport) -> String {
     format!("{found} · {paid}")
 }
 
-/// The comparison that stands for the error of a material: the baked shader, or, when none was run, its tables.
+/// The comparison whose error stands for a material: the baked shader, or, without a device, its tables.
 fn judged(report: &Report) -> Compared {
     shown(report)[0]
 }
 
-/// Cycles of the shader that ships, in a form: of this shader if costs were given, else of one for layers of the same kinds.
+/// Cycles of the shader that ships, in a form: its own if costs were given, else those of a shader for layers of equal kinds.
 fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64> {
     let Some(costs) = &report.costs else {
         let cost = material.shape_cost?;
@@ -49,12 +48,11 @@ fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64>
 
 /// Bytes of the tiles that a material reads.
 fn table_bytes(report: &Report, material: &MaterialReport) -> f64 {
-    let reads = |user: &String| user.split('/').next() == Some(material.name.as_str());
-    let of = |table: &TableReport| {
-        let read = table.tiles.iter().filter(|tile| tile.users.iter().any(reads)).count();
+    let bytes = report.tables.iter().map(|table| {
+        let read = table.tiles.iter().filter(|tile| tile.is_read_by(&material.name)).count();
         table.texel_bytes as f64 * read as f64 / table.tiles.len().max(1) as f64
-    };
-    report.tables.iter().map(of).sum()
+    });
+    bytes.sum()
 }
 
 /// Least, median and largest.
@@ -64,9 +62,9 @@ fn spread(mut values: Vec<f64>) -> Option<[f64; 3]> {
 }
 
 fn facts(out: &mut String, report: &Report) {
-    let all = || report.materials.iter();
-    let errors = all().filter_map(|m| m.comparison(judged(report))).map(|c| c.max_error()).collect();
-    let of = |form| spread(all().filter_map(|m| cycles(report, m, form)).collect());
+    let errors = report.materials.iter().filter_map(|m| m.comparison(judged(report))).map(|c| c.max_error()).collect();
+    let [baked, full] =
+        ["baked", "full"].map(|form| spread(report.materials.iter().filter_map(|m| cycles(report, m, form)).collect()));
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
     let accurate = spread(errors).map_or((none(), "no material".to_owned()), |[least, median, largest]| {
         let most = format!(
@@ -76,11 +74,11 @@ fn facts(out: &mut String, report: &Report) {
         );
         (error(median), most)
     });
-    let fast = of("baked").map_or_else(
+    let fast = baked.map_or_else(
         || ("not measured".to_owned(), "run luthier cost --json, then luthier report --cost FILE".to_owned()),
         |[least, median, most]| {
-            let full = of("full")
-                .map_or_else(String::new, |[_, full, _]| format!("; median of the full form {}", number(full)));
+            let full =
+                full.map_or_else(String::new, |[_, full, _]| format!("; median of the full form {}", number(full)));
             let family = FAMILY.to_uppercase();
             let range =
                 format!("median; {} to {} per wave of 64 threads on {family}{full}", number(least), number(most));
@@ -103,10 +101,9 @@ fn facts(out: &mut String, report: &Report) {
     out.push_str("</dl>\n");
 }
 
-/// Number of values that were compared, and of those that are not finite.
+/// Number of compared values, and number of values that are not finite.
 pub(super) fn samples(report: &Report) -> (u64, u64) {
-    let judged = |c: &&Comparison| c.compared.is_judged(report.device.is_some());
-    let sets = report.materials.iter().flat_map(|m| m.comparisons.iter().filter(judged)).flat_map(|c| &c.sets);
+    let sets = report.materials.iter().flat_map(|m| report.judged(m)).flat_map(|c| &c.sets);
     sets.fold((0, 0), |(all, bad), (_, s)| (all + 3 * s.pairs, bad + s.not_finite))
 }
 
@@ -164,16 +161,12 @@ fn chart(out: &mut String, report: &Report) {
     );
 }
 
-/// A small picture of each material, which leads to what the page says of it.
+/// A small picture of each material, linked to its section.
 fn thumbnails(out: &mut String, report: &Report, exhibits: &Exhibits) {
-    let baked = |index: usize| {
-        let all = exhibits.pictures.get(index)?;
-        all.iter().find(|e| e.caption == "baked").or(all.first())
-    };
-    let seen =
-        report.materials.iter().enumerate().filter_map(|(index, material)| Some((index, material, baked(index)?)));
     let mut links = String::new();
-    for (index, material, picture) in seen {
+    for (index, (material, pictures)) in report.materials.iter().zip(&exhibits.pictures).enumerate() {
+        let baked = pictures.iter().find(|e| e.caption == "baked");
+        let Some(picture) = baked.or(pictures.first()) else { continue };
         let _ = write!(
             links,
             "<a href=\"#{}\"{} data-tip=\"{name}: {}\"><img alt=\"{name}\" src=\"data:image/png;base64,{}\"/></a>",

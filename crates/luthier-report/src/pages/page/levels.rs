@@ -1,4 +1,4 @@
-//! The three levels of error side by side, and never in one figure; then the limits.
+//! The three levels of error, side by side but never added up; then the limits.
 
 use std::fmt::Write;
 
@@ -34,11 +34,11 @@ pub(super) fn write(out: &mut String, report: &Report) {
         let seen = report.worst_seen(light).map(|(difference, material)| (difference, material.to_owned()));
         row("2 · shader, seen", &what, &format!("CIEDE2000, {}", light.name()), seen, "no material");
     }
-    let pictures = || report.materials.iter().filter_map(|m| Some((m.name.clone(), m.picture.as_ref()?)));
-    let flip = pictures().map(|(name, p)| (p.flip_mean, name)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let pictures = report.materials.iter().filter_map(|m| Some((m.name.clone(), m.picture.as_ref()?)));
+    let flip = pictures.clone().map(|(name, p)| (p.flip_mean, name)).max_by(|a, b| a.0.total_cmp(&b.0));
     let what = "pictures of the baked shader against those of the full one";
     row("2 · shader, seen", what, "mean FLIP", flip, "no pictures were made");
-    let delta_e = pictures().map(|(name, p)| (p.delta_e_max, name)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let delta_e = pictures.map(|(name, p)| (p.delta_e_max, name)).max_by(|a, b| a.0.total_cmp(&b.0));
     row("2 · shader, seen", what, "CIEDE2000 of a pixel", delta_e, "no pictures were made");
     let model = report.worst_model();
     let what = report.reference.map_or_else(
@@ -58,13 +58,11 @@ pub(super) fn write(out: &mut String, report: &Report) {
         )
     });
     row("3 · model", &what, "share of the light in other directions", lobe, missing);
-    let shipped = || {
-        let all = report.materials.iter().flat_map(|m| m.against_reference.iter().map(move |a| (m, a)));
-        all.filter(|(m, a)| m.model == a.model)
-    };
-    let albedo = shipped().map(|(m, a)| (a.albedo_err, format!("{}, ± {:.0e}", m.name, a.albedo_std_err)));
+    let shipped = report.materials.iter().flat_map(|m| m.against_reference.iter().map(move |a| (m, a)));
+    let shipped = shipped.filter(|(m, a)| m.model == a.model);
+    let albedo = shipped.clone().map(|(m, a)| (a.albedo_err, format!("{}, ± {:.0e}", m.name, a.albedo_std_err)));
     row("3 · model", &what, "albedo, absolute", albedo.max_by(|a, b| a.0.total_cmp(&b.0)), missing);
-    let seen = shipped().map(|(m, a)| (a.delta_e, m.name.clone())).max_by(|a, b| a.0.total_cmp(&b.0));
+    let seen = shipped.map(|(m, a)| (a.delta_e, m.name.clone())).max_by(|a, b| a.0.total_cmp(&b.0));
     row("3 · model, seen", &what, "CIEDE2000 of albedos, D65", seen, missing);
     out.push_str(
         "</tbody></table></div><p class=\"note\">CIEDE2000 compares colours as a display shows them: lit, and with each channel clipped to 0..1. Under “daylight” a white \

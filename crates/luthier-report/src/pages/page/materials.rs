@@ -107,7 +107,7 @@ fn seen(out: &mut String, material: &MaterialReport) {
     out.push_str("</tbody></table></div></details>");
 }
 
-/// Other floors, and the worst pairs, of what is judged.
+/// Errors over other floors, and the worst pairs, of the judged comparisons.
 fn worst(out: &mut String, material: &MaterialReport, with_device: bool) {
     let shown =
         if with_device { &[Compared::BakedDevice, Compared::FullDevice][..] } else { &[Compared::TablesEightBit] };

@@ -39,14 +39,14 @@ pub(crate) fn html(report: &Report, exhibits: &Exhibits) -> String {
     stability::write(&mut out, report, exhibits);
     method::write(&mut out, report);
     provenance::write(&mut out, report);
-    // Marked so that HTML takes it for a script and XML for text.
+    // The marks make HTML read a script, and XML plain text.
     out.push_str("</main><script>//<![CDATA[\n");
     out.push_str(include_str!("page.js"));
     out.push_str("//]]></script></body></html>\n");
     out
 }
 
-/// Opens a section that folds: its title, and what it says in a line. [`end_fold`] closes it.
+/// Opens a section that folds, with its title and a line that sums it up. [`end_fold`] closes it.
 fn fold(out: &mut String, id: &str, title: &str, says: &str) {
     let _ = write!(
         out,
@@ -65,7 +65,7 @@ fn cell(text: &str) -> String {
     format!("<td class=\"n\">{}</td>", escape(text))
 }
 
-/// The attribute by which the page's filter takes an element for a material's.
+/// The attribute by which the page's filter knows the elements of a material.
 fn of_material(name: &str) -> String {
     format!(" data-material=\"{}\"", escape(name))
 }

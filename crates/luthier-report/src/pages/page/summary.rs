@@ -66,7 +66,7 @@ fn verdict(out: &mut String, report: &Report) {
     );
 }
 
-/// Words on the other limits that are broken; nothing without any.
+/// Class and words of the verdict on the other limits; `None` without other limits.
 fn broken_limits(report: &Report) -> Option<(&'static str, String)> {
     let broken: Vec<String> = report.limits.iter().filter(|l| !l.is_held).map(|l| escape(&l.quantity)).collect();
     match (report.limits.len(), broken.len()) {

@@ -1,4 +1,4 @@
-//! The tables: what they are, and the error of every tile.
+//! The tables: size, format and axes, and the error of every tile.
 
 use std::fmt::Write;
 
@@ -92,7 +92,7 @@ fn section(out: &mut String, table: &TableReport, points: u32) {
     );
 }
 
-/// How the figures of a table came about, and what they say.
+/// Origin and meaning of the figures of a table, in words.
 fn how(table: &TableReport, points: u32) -> String {
     let here = "“Here” is this report's own scan of the shipped texels at other points, without local refinement; a \
                 baker's maximum, which is refined, should not be smaller.";

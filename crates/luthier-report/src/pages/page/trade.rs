@@ -11,7 +11,7 @@ use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::svg::{Choice, Mark, Price, Series, legend, pareto};
 use crate::text::format::{axis, bytes, error, escape, none, number};
 
-/// The instruction set that charts show; tables have all.
+/// The instruction set in charts. Tables list all.
 pub(super) const FAMILY: &str = "rdna2";
 
 const CANDIDATE: Series = Series { class: "s-tables", name: "candidate of the search", mark: Mark::Diamond };
@@ -67,7 +67,7 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
         );
         return;
     }
-    charts(out, search, shipped(report, search.kind, &|_| true), &format!("{name}, all materials"));
+    charts(out, search, shipped(report, search.kind, None), &format!("{name}, all materials"));
     let _ = write!(
         out,
         "<details class=\"long\"><summary>All {} candidates of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
@@ -99,7 +99,7 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
     for (price, x_title, by) in
         [(Price::Bytes, "bytes of texels", "bytes"), (Price::Cost, "estimated operations of one look-up", "cost")]
     {
-        let of_candidate = |(i, candidate): (usize, &Candidate)| Choice {
+        let choices = search.front.iter().enumerate().map(|(i, candidate)| Choice {
             price: if price == Price::Bytes { candidate.bytes as f64 } else { candidate.cost },
             error: candidate.error.max_abs,
             tip: format!(
@@ -112,8 +112,8 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
             label: "",
             series: CANDIDATE,
             is_chosen: i == search.chosen,
-        };
-        let mut choices: Vec<Choice> = search.front.iter().enumerate().map(of_candidate).collect();
+        });
+        let mut choices: Vec<Choice> = choices.collect();
         if let (Price::Bytes, Some((size, found))) = (price, ships) {
             let tip = format!(
                 "tables of this bake: {}, error as measured by the report {}",
@@ -132,10 +132,11 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
     out.push_str("</div>");
 }
 
-/// Bytes of the tiles of a kind that some layers read, and their largest error as measured here.
-fn shipped(report: &Report, kind: TableKind, reads: &dyn Fn(&str) -> bool) -> Option<(f64, f64)> {
+/// Bytes of the tiles of a kind that a material reads (any material, if `None`), and their largest error as measured here.
+fn shipped(report: &Report, kind: TableKind, material: Option<&str>) -> Option<(f64, f64)> {
     let table = report.tables.iter().find(|t| t.kind == kind)?;
-    let read: Vec<_> = table.tiles.iter().filter(|tile| tile.users.iter().any(|u| reads(u))).collect();
+    let read = table.tiles.iter().filter(|t| material.map_or(!t.users.is_empty(), |name| t.is_read_by(name)));
+    let read: Vec<_> = read.collect();
     let found = read.iter().filter_map(|tile| Some(tile.judge.as_ref()?.max_abs_err)).reduce(f64::max)?;
     Some((table.texel_bytes as f64 * read.len() as f64 / table.tiles.len() as f64, found))
 }
@@ -148,9 +149,9 @@ pub(super) fn of_material(out: &mut String, report: &Report, material: &Material
         out.push_str(&legend(&[CANDIDATE, SHIPS]));
     }
     for search in alone {
-        let reads = |user: &str| user.split('/').next() == Some(material.name.as_str());
         let name = search.kind.name();
-        charts(out, search, shipped(report, search.kind, &reads), &format!("{}, {name} alone", material.name));
+        let ships = shipped(report, search.kind, Some(&material.name));
+        charts(out, search, ships, &format!("{}, {name} alone", material.name));
         let _ = write!(
             out,
             "<p class=\"note\">The chart shows the search for the table {name} if this material is baked alone; the ring is its choice. All materials of this bake share \
@@ -167,7 +168,6 @@ pub(super) fn of_material(out: &mut String, report: &Report, material: &Material
 
 /// A choice as the manifest states it, name by name.
 fn choice_rows(out: &mut String, choice: &serde_json::Value) {
-    let text = |value: &serde_json::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
     match choice.as_object() {
         Some(members) => {
             for (name, value) in members {
@@ -185,6 +185,11 @@ fn choice_rows(out: &mut String, choice: &serde_json::Value) {
     }
 }
 
+/// A string without quotes; other JSON as it is.
+fn text(value: &serde_json::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
 /// The shader of a model and form, with its cycles per instruction set.
 pub(super) struct Shader<'a> {
     pub(super) row: &'a ShaderCost,
@@ -194,42 +199,41 @@ pub(super) struct Shader<'a> {
 /// Shaders of a material whose numbers come from the buffer, with D as this bake has it.
 pub(super) fn of_shaders<'a>(report: &Report, material: &MaterialReport, costs: &'a Costs) -> Vec<Shader<'a>> {
     let reads_d = report.tables.iter().any(|t| t.kind == TableKind::Distribution);
-    let rows = || costs.rows.iter().filter(|r| r.material == material.name && !r.constant);
-    // Shaders that read no table of D are listed as closed whatever the bake has.
-    let ours: Vec<&ShaderCost> = rows()
-        .filter(|r| {
-            let has_other =
-                rows().any(|o| (o.model, &o.form, &o.family) == (r.model, &r.form, &r.family) && o.closed != r.closed);
-            !has_other || r.closed != reads_d
-        })
-        .collect();
-    let of_family = ours.iter().filter(|r| r.family == FAMILY);
-    let cycles = |row: &ShaderCost| {
+    let rows = costs.rows.iter().filter(|r| r.material == material.name && !r.constant);
+    // A shader that reads no table of D is always listed as closed, even if the bake has such a table.
+    let ours = rows.clone().filter(|r| {
+        let key = (r.model, &r.form, &r.family);
+        let has_other = rows.clone().any(|o| (o.model, &o.form, &o.family) == key && o.closed != r.closed);
+        !has_other || r.closed != reads_d
+    });
+    let ours: Vec<&ShaderCost> = ours.collect();
+    let shaders = ours.iter().filter(|r| r.family == FAMILY).map(|row| {
         let same = ours.iter().filter(|o| (o.model, &o.form) == (row.model, &row.form));
-        same.map(|o| (o.family.as_str(), o.inverse_throughput)).collect()
-    };
-    of_family.map(|row| Shader { row, cycles: cycles(row) }).collect()
+        Shader { row, cycles: same.map(|o| (o.family.as_str(), o.inverse_throughput)).collect() }
+    });
+    shaders.collect()
 }
 
 /// The models of a material: cost against error.
 fn models(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>]) {
-    let against = |row: &ShaderCost| material.against_reference.iter().find(|a| a.model == row.model);
-    // Without the reference only the shaders of the model that ships have an error, against that model.
-    let own = |row: &ShaderCost| {
-        let compared = if row.form == "full" { Compared::FullDevice } else { Compared::BakedDevice };
-        Some(material.comparison(compared)?.max_error()).filter(|_| row.model == material.model)
-    };
     let has_reference = !material.against_reference.is_empty();
-    let choice = |shader: &Shader<'_>| {
-        let row = shader.row;
-        let found = if has_reference { against(row).map(|a| a.lobe_err) } else { own(row) }?;
+    let choices = shaders.iter().filter_map(|Shader { row, .. }| {
+        let found = if has_reference {
+            material.against_reference.iter().find(|a| a.model == row.model)?.lobe_err
+        } else if row.model == material.model {
+            let compared = if row.form == "full" { Compared::FullDevice } else { Compared::BakedDevice };
+            material.comparison(compared)?.max_error()
+        } else {
+            // Without the reference, errors are those of shaders against their model, and only the shaders of the model that ships were run.
+            return None;
+        };
         let is_chosen = row.model == material.model && row.form == "baked";
         let (series, label) = if row.form == "full" { (FULL, "") } else { (BAKED, row.model.name()) };
         let tip =
             format!("{}, {}: {} cycles, error {}", row.model.name(), row.form, row.inverse_throughput, error(found));
         Some(Choice { price: row.inverse_throughput as f64, error: found, tip, label, series, is_chosen })
-    };
-    let choices: Vec<Choice> = shaders.iter().filter_map(choice).collect();
+    });
+    let choices: Vec<Choice> = choices.collect();
     let (title, note) = if has_reference {
         (
             "share of the light in other directions",

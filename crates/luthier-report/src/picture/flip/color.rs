@@ -2,7 +2,7 @@
 
 use luthier_optics::color::multiply;
 
-/// Matrix to XYZ, rows; exact fractions of the Rec.709 primaries.
+/// Rows of the matrix to XYZ, as exact fractions that follow from the Rec.709 primaries.
 const TO_XYZ: [[f64; 3]; 3] = [
     [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
@@ -22,13 +22,13 @@ fn relative_xyz(rgb: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|c| xyz[c] / white[c])
 }
 
-/// YCxCz, the linear opponent space in which pictures are filtered (sec. 4.1).
+/// YCxCz of linear RGB: the linear opponent space in which pictures are filtered (sec. 4.1).
 pub(super) fn opponent(rgb: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = relative_xyz(rgb);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// Back to linear RGB, clipped to what a display shows.
+/// Linear RGB of YCxCz, clipped to the range of a display.
 pub(super) fn clipped_rgb([luma, cx, cz]: [f64; 3]) -> [f64; 3] {
     let y = (luma + 16.0) / 116.0;
     let white = multiply(&TO_XYZ, [1.0; 3]);
@@ -50,15 +50,15 @@ pub(super) fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
     [lightness, 0.01 * lightness * a, 0.01 * lightness * b]
 }
 
-/// Lightness L*, chroma C*ab and hue hab in degrees, 0 to 360, of a linear Rec.709 colour (CIE 1976, D65 white). Hue says nothing
-/// where there is no chroma.
+/// Lightness L*, chroma C*ab and hue hab in degrees, 0 to 360, of a linear Rec.709 colour (CIE 1976, D65 white). Without chroma the hue is
+/// meaningless.
 pub fn lightness_chroma_hue(rgb: [f64; 3]) -> [f64; 3] {
     let [lightness, a, b] = lab(rgb);
     let hue = libm::atan2(b, a).to_degrees();
     [lightness, libm::hypot(a, b), if hue < 0.0 { hue + 360.0 } else { hue }]
 }
 
-/// City blocks in lightness, Euclid in chroma (Abasi et al. 2020).
+/// HyAB distance: absolute in lightness plus Euclidean in chroma (Abasi et al. 2020).
 pub(super) fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [l, x, y] = [0, 1, 2].map(|c| a[c] - b[c]);
     l.abs() + (x * x + y * y).sqrt()

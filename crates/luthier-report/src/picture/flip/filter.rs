@@ -1,4 +1,4 @@
-//! Separable filters; pictures go on beyond their edges as their edge pixels.
+//! Separable filters. Beyond its edges a picture repeats its edge pixels.
 
 /// Weights from -radius to radius.
 pub(super) struct Kernel(Vec<f64>);
@@ -18,10 +18,9 @@ impl Kernel {
         Self(self.0.into_iter().map(|w| w / sum).collect())
     }
 
-    /// Positive weights that sum to 1, and negative ones that sum to -1.
+    /// Scales positive weights to a sum of 1, and negative ones to -1.
     pub(super) fn balanced(self) -> Self {
-        let part = |sign: f64| self.0.iter().map(|w| (sign * w).max(0.0)).sum::<f64>();
-        let (positive, negative) = (part(1.0), part(-1.0));
+        let [positive, negative] = [1.0, -1.0].map(|sign| self.0.iter().map(|w| (sign * w).max(0.0)).sum::<f64>());
         Self(self.0.iter().map(|w| if *w > 0.0 { w / positive } else { w / negative }).collect())
     }
 }

@@ -1,4 +1,4 @@
-//! LDR-FLIP: the difference that a person sees who flips between two pictures.
+//! LDR-FLIP: the visible difference when a viewer flips between two pictures.
 //!
 //! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild. FLIP: A Difference Evaluator for
 //! Alternating Images. Proc. ACM Comput. Graph. Interact. Tech. 3, 2 (2020). Section numbers are of that paper;
@@ -36,16 +36,16 @@ pub(crate) fn flip(reference: &Image, test: &Image, pixels_per_degree: f64) -> I
             let edges = (a.edges[i] - b.edges[i]).abs();
             let points = (a.points[i] - b.points[i]).abs();
             let feature = libm::pow(edges.max(points) / std::f64::consts::SQRT_2, FEATURE_EXPONENT);
-            // A pixel of the same colour differs by its features only as far as its colour does.
+            // The feature difference lowers the exponent: a pixel of equal colour stays at 0, whatever its features.
             libm::pow(color, 1.0 - feature) as f32
         })
         .collect();
     Image { width: reference.width, height: reference.height, channels: 1, data }
 }
 
-/// Features of one picture that are compared.
+/// One picture, prepared for the comparison.
 struct Seen {
-    /// Filtered by the contrast sensitivity, in Hunt-adjusted L*a*b*.
+    /// Pixels filtered by the contrast sensitivity, in Hunt-adjusted L*a*b*.
     lab: Vec<[f64; 3]>,
     edges: Vec<f64>,
     points: Vec<f64>,
@@ -56,9 +56,10 @@ impl Seen {
         let size = [image.width as usize, image.height as usize];
         let pixels: Vec<[f64; 3]> =
             image.texels().map(|t| opponent([0, 1, 2].map(|c| f64::from(t[c]).clamp(0.0, 1.0)))).collect();
-        let plane = |c: usize| pixels.iter().map(|p| p[c]).collect::<Vec<f64>>();
-
-        let filtered = SENSITIVITY.map(|(channel, terms)| sensed(&plane(channel), size, terms, pixels_per_degree));
+        let filtered = SENSITIVITY.map(|(channel, terms)| {
+            let plane: Vec<f64> = pixels.iter().map(|p| p[channel]).collect();
+            sensed(&plane, size, terms, pixels_per_degree)
+        });
         let lab = (0..pixels.len()).map(|i| hunt_lab(clipped_rgb([0, 1, 2].map(|c| filtered[c][i])))).collect();
 
         let lightness: Vec<f64> = pixels.iter().map(|p| (p[0] + 16.0) / 116.0).collect();
@@ -68,12 +69,12 @@ impl Seen {
         let flat = Kernel::new(radius, gauss).normalised();
         let slope = Kernel::new(radius, |x| -x * gauss(x)).balanced();
         let bump = Kernel::new(radius, |x| (x * x / (deviation * deviation) - 1.0) * gauss(x)).balanced();
-        let strength = |kernel: &Kernel| {
-            let across = convolved(&lightness, size, kernel, &flat);
-            let down = convolved(&lightness, size, &flat, kernel);
+        let [edges, points] = [slope, bump].map(|kernel| {
+            let across = convolved(&lightness, size, &kernel, &flat);
+            let down = convolved(&lightness, size, &flat, &kernel);
             across.iter().zip(down).map(|(x, y)| (x * x + y * y).sqrt()).collect()
-        };
-        Self { lab, edges: strength(&slope), points: strength(&bump) }
+        });
+        Self { lab, edges, points }
     }
 }
 
