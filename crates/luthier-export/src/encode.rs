@@ -63,12 +63,12 @@ impl Package {
         words.resize(manifest.material_texture.words(), [0.0; 4]);
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = files.add("materials.bin".to_owned(), bytes);
-        let mut shader = |shader: &Shader| {
-            let Shader { form, target, bytes, interface } = shader;
+        manifest.shaders.clear();
+        for Shader { form, target, bytes, interface } in &self.shaders {
             let file = files.add(format!("shaders/{form}.{}", target.extension()), bytes.clone());
-            ShaderEntry { target: *target, form: *form, file, interface: Some(interface.clone()) }
-        };
-        manifest.shaders = self.shaders.iter().map(&mut shader).collect();
+            let interface = Some(interface.clone());
+            manifest.shaders.push(ShaderEntry { target: *target, form: *form, file, interface });
+        }
         Ok(Encoded { manifest, files: files.0 })
     }
 
@@ -170,8 +170,8 @@ impl Encoded {
         let manifest = self.manifest.to_json()?;
         let files = self.files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
         let all: BTreeMap<&str, &[u8]> = files.chain([(MANIFEST, manifest.as_bytes())]).collect();
-        let is_other = |(path, bytes): &(&&str, &&[u8])| publish::current(folder, path).as_deref() != Some(**bytes);
-        let mut stale: Vec<String> = all.iter().filter(is_other).map(|(path, _)| (*path).to_owned()).collect();
+        let others = all.iter().filter(|(path, bytes)| publish::current(folder, path).as_deref() != Some(**bytes));
+        let mut stale: Vec<String> = others.map(|(path, _)| (*path).to_owned()).collect();
         stale.extend(publish::named(folder).into_iter().filter(|path| !all.contains_key(path.as_str())));
         stale.sort();
         Ok(stale)
@@ -193,14 +193,13 @@ impl Files {
 /// Metadata of the unquantised values of a table.
 fn metadata(table: &TableEntry) -> Metadata {
     let AtlasLayout { x, y, apron, columns, tiles, base } = &table.layout;
-    let joined = |f: &dyn Fn(&Tile) -> String| table.tiles.iter().map(f).collect::<Vec<_>>().join("\n");
-    let hashes = joined(&|t| t.input_hash.clone());
+    let hashes = lines(table, |tile| &tile.input_hash);
     let mut pairs = vec![
         ("generator", GENERATOR.to_owned()),
         ("table", table.kind.name().to_owned()),
-        ("model", joined(&|t| t.model.clone())),
+        ("model", lines(table, |tile| &tile.model)),
         ("axis.x", axis(x)),
-        ("tile.names", joined(&|t| t.name.clone())),
+        ("tile.names", lines(table, |tile| &tile.name)),
         ("tile.count", tiles.to_string()),
         ("tile.columns", columns.to_string()),
         ("tile.apron", apron.to_string()),
@@ -214,6 +213,11 @@ fn metadata(table: &TableEntry) -> Metadata {
         pairs.push(("row.base", "schlick".to_owned()));
     }
     pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+/// A text of each tile of a table, a line each.
+fn lines(table: &TableEntry, of: fn(&Tile) -> &String) -> String {
+    table.tiles.iter().map(|tile| of(tile).as_str()).collect::<Vec<_>>().join("\n")
 }
 
 fn axis(axis: &Axis) -> String {

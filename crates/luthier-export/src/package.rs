@@ -83,8 +83,8 @@ impl Package {
         if let Some(MaterialEntry { name, .. }) = manifest.materials.iter().find(|m| m.layers.is_empty()) {
             return Err(PackageError::NoLayers { name: name.clone() });
         }
-        let is_foreign = |number: &u32| *number as usize >= manifest.materials.len();
-        if let Some(surface) = manifest.surfaces.iter().find(|s| s.materials().iter().any(is_foreign)) {
+        let count = manifest.materials.len();
+        if let Some(surface) = manifest.surfaces.iter().find(|s| s.materials().iter().any(|&m| m as usize >= count)) {
             return Err(PackageError::NoSurfaceMaterial { surface: surface.name.clone() });
         }
         let mut ordered = Vec::with_capacity(manifest.tables.len());
@@ -124,10 +124,10 @@ impl Package {
     /// # Errors
     /// [`PackageError::NoShader`].
     pub fn shader(&self, form: Form) -> Result<&Shader, PackageError> {
-        let texts = || self.shaders.iter().filter(|s| s.target == Target::Wgsl);
-        texts().find(|s| s.form == form).ok_or_else(|| PackageError::NoShader {
+        let texts: Vec<&Shader> = self.shaders.iter().filter(|s| s.target == Target::Wgsl).collect();
+        texts.iter().copied().find(|s| s.form == form).ok_or_else(|| PackageError::NoShader {
             form,
-            known: texts().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
+            known: texts.iter().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
         })
     }
 

@@ -67,9 +67,9 @@ fn folders(folder: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
 
 /// All that a folder holds, by name.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let listed = |source| Error::file("list", folder, source);
-    let entries = std::fs::read_dir(folder).map_err(listed)?;
-    let mut paths = entries.map(|entry| Ok(entry.map_err(listed)?.path())).collect::<Result<Vec<_>, Error>>()?;
+    let listed: std::io::Result<Vec<PathBuf>> =
+        std::fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
+    let mut paths = listed.map_err(|source| Error::file("list", folder, source))?;
     paths.sort();
     Ok(paths)
 }

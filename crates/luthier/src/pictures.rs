@@ -61,8 +61,12 @@ fn shipped(stored: &Picture, asked: &PictureRef, texels: TexelUse) -> Result<Pic
     if asked.scale == 1.0 {
         return Ok(picture);
     }
-    let scale = asked.scale as f32;
-    let scaled = |texel: [f32; 4]| match texels {
+    Ok(replaced(&picture, |texel| scaled(texel, texels, asked.scale as f32)))
+}
+
+/// A texel times a factor; of a normal, its lean.
+fn scaled(texel: [f32; 4], texels: TexelUse, scale: f32) -> [f32; 3] {
+    match texels {
         TexelUse::Normal => {
             let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel[c] - 1.0);
             let (x, y) = (scale * x, scale * y);
@@ -70,8 +74,7 @@ fn shipped(stored: &Picture, asked: &PictureRef, texels: TexelUse) -> Result<Pic
             [x, y, z].map(|v| 0.5 + 0.5 * v / length)
         }
         _ => [0, 1, 2].map(|c| scale * texel[c]),
-    };
-    Ok(replaced(&picture, scaled))
+    }
 }
 
 /// One channel of a picture, as grey. Grey has the same red, green and blue.
@@ -97,8 +100,8 @@ fn every<T: Copy>(values: &[T], channels: u32, place: usize) -> Vec<T> {
 /// A picture with other texels, in the bits and by the curve of the given one: RGB, or grey where that is grey without alpha.
 fn replaced(picture: &Picture, texel: impl Fn([f32; 4]) -> [f32; 3]) -> Picture {
     let channels = if picture.channels == 1 { 1 } else { 3 };
-    let coded = |value: f32| if picture.is_srgb { srgb::code(value) } else { f64::from(value).clamp(0.0, 1.0) };
-    let codes = picture.texels().flat_map(|t| texel(t).into_iter().take(channels)).map(coded);
+    let values = picture.texels().flat_map(|t| texel(t).into_iter().take(channels));
+    let codes = values.map(|v| if picture.is_srgb { srgb::code(v) } else { f64::from(v).clamp(0.0, 1.0) });
     let samples = match picture.samples {
         PictureSamples::Bits8(_) => PictureSamples::Bits8(codes.map(|code| (255.0 * code).round() as u8).collect()),
         _ => PictureSamples::Bits16(codes.map(|code| (65535.0 * code).round() as u16).collect()),

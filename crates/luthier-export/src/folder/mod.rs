@@ -47,9 +47,8 @@ impl Folder {
             return Err(PackageError::NoBake { folder: named });
         };
         let bytes = regular(&root, &path, MANIFEST)?;
-        let unusable = |source| PackageError::Manifest { path: path.clone(), source };
         let text = std::str::from_utf8(&bytes).map_err(|_| PackageError::Text { path: path.clone() })?;
-        let manifest = Manifest::from_json(text).map_err(unusable)?;
+        let manifest = Manifest::from_json(text).map_err(|source| PackageError::Manifest { path, source })?;
         Ok(Self { root, named, manifest, sha256: hex(&bytes) })
     }
 
@@ -95,9 +94,9 @@ impl Folder {
     /// # Errors
     /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::Manifest`] where they are not those of the entry.
     pub fn texture(&self, table: &TableEntry) -> Result<Texture, PackageError> {
-        let path = || self.named.join(&table.texture.path);
         let bytes = self.read(&table.texture)?;
-        let texture = ktx2::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let path = self.named.join(&table.texture.path);
+        let texture = ktx2::decode(&bytes).map_err(|source| PackageError::Texture { path, source })?;
         let Texture { format, width, height, bytes } = &texture;
         let checked = table.check([*width, *height], *format, bytes.len());
         checked.map_err(|source| PackageError::Manifest { path: self.named.join(MANIFEST), source })?;
@@ -117,16 +116,12 @@ impl Folder {
     /// # Errors
     /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::MapSize`].
     pub fn map(&self, map: &MapEntry) -> Result<(Vec<u8>, Picture), PackageError> {
-        let path = || self.named.join(&map.file.path);
+        let path = self.named.join(&map.file.path);
         let bytes = self.read(&map.file)?;
-        let decoded = picture::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let decoded = picture::decode(&bytes).map_err(|source| PackageError::Texture { path: path.clone(), source })?;
         let picture = Picture { is_srgb: map.srgb, ..decoded.picture };
         let (found, expected) = (picture.size(), [map.width, map.height]);
-        if found == expected {
-            Ok((bytes, picture))
-        } else {
-            Err(PackageError::MapSize { path: path(), found, expected })
-        }
+        if found == expected { Ok((bytes, picture)) } else { Err(PackageError::MapSize { path, found, expected }) }
     }
 
     /// All that a program needs that renders: tables, shaders in WGSL, maps.
@@ -135,8 +130,9 @@ impl Folder {
     /// Those of the other functions, and of [`Package::from_parts`].
     pub fn package(&self) -> Result<Package, PackageError> {
         let manifest = &self.manifest;
-        let table = |entry: &TableEntry| Ok(Table { kind: entry.kind, texture: self.texture(entry)?, truth: None });
-        let tables = manifest.tables.iter().map(table).collect::<Result<_, PackageError>>()?;
+        let tables = manifest.tables.iter();
+        let tables = tables.map(|entry| Ok(Table { kind: entry.kind, texture: self.texture(entry)?, truth: None }));
+        let tables = tables.collect::<Result<_, PackageError>>()?;
         let texts = manifest.shaders.iter().filter(|s| s.target == Target::Wgsl);
         let shaders = texts
             .map(|entry| {

@@ -64,8 +64,8 @@ pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageErro
 pub fn publish_beside(folder: &Path, manifest_sha256: &str, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     publish_where(folder, files, || {
         let manifest = input::image(&folder.join(MANIFEST)).unwrap_or_default();
-        let rebaked = || PackageError::Rebaked { folder: folder.to_owned() };
-        (crate::sha256(&manifest) == manifest_sha256).then_some(()).ok_or_else(rebaked)
+        let is_same = crate::sha256(&manifest) == manifest_sha256;
+        is_same.then_some(()).ok_or_else(|| PackageError::Rebaked { folder: folder.to_owned() })
     })
 }
 
@@ -120,8 +120,8 @@ fn lock(folder: &Path, made: &mut Vec<PathBuf>) -> Result<File, PackageError> {
 
 /// Stages the files that are not in place yet, and publishes them.
 fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
-    let is_new = |(path, bytes): &&(&str, &[u8])| !stage::holds(&folder.join(path), bytes);
-    let mut files: Vec<_> = files.iter().filter(is_new).copied().collect();
+    let mut files: Vec<_> =
+        files.iter().filter(|(path, bytes)| !stage::holds(&folder.join(path), bytes)).copied().collect();
     if files.is_empty() {
         return Ok(());
     }

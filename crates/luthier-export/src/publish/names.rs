@@ -21,14 +21,14 @@ pub(crate) fn hashed(path: &str, sha256: &str) -> String {
 /// Whether all names in a manifest contain the hashes of their files: then no file of one generation takes the place of another's.
 pub(super) fn are_hashed(manifest: &str) -> bool {
     let named = named_with_hashes(manifest);
-    let is_hashed = |(path, hash): &(String, String)| hash.get(..DIGITS).is_some_and(|digits| path.contains(digits));
-    !named.is_empty() && named.iter().all(is_hashed)
+    let mut digits = named.iter().map(|(path, hash)| (path, hash.get(..DIGITS)));
+    !named.is_empty() && digits.all(|(path, digits)| digits.is_some_and(|digits| path.contains(digits)))
 }
 
 /// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
 pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
-    let is_inside = |path: &PathBuf| path.components().all(|part| matches!(part, Component::Normal(_)));
-    named_with_hashes(manifest).into_iter().map(|(path, _)| PathBuf::from(path)).filter(is_inside).collect()
+    let paths = named_with_hashes(manifest).into_iter().map(|(path, _)| PathBuf::from(path));
+    paths.filter(|path| path.components().all(|part| matches!(part, Component::Normal(_)))).collect()
 }
 
 /// Paths and hashes in a manifest of luthier.
@@ -37,8 +37,7 @@ fn named_with_hashes(manifest: &str) -> Vec<(String, String)> {
     struct Head {
         generator: String,
     }
-    let is_ours = |head: Head| head.generator.starts_with("luthier ");
-    if !serde_json::from_str(manifest).is_ok_and(is_ours) {
+    if !serde_json::from_str(manifest).is_ok_and(|head: Head| head.generator.starts_with("luthier ")) {
         return Vec::new();
     }
     let mut names = Vec::new();

@@ -18,26 +18,32 @@ pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
     }
     let mut files = Vec::new();
     at("list", &ready, list(&ready, &mut files))?;
-    let relative = |file: &PathBuf| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default();
-    let (lists, others): (Vec<_>, Vec<_>) =
-        files.iter().map(relative).partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
-    let place = |path: &Path| {
-        let place = folder.join(path);
-        // Someone may have tidied up between an interrupted publication and this one.
-        place.parent().map_or(Ok(()), |parent| at("make the folder", parent, std::fs::create_dir_all(parent)))?;
-        at("write", &place, std::fs::rename(ready.join(path), &place))
-    };
+    let paths = files.iter().map(|file| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default());
+    let (lists, others): (Vec<_>, Vec<_>) = paths.partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
     let (before, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|path| path == Path::new(BEFORE));
-    others.iter().try_for_each(|path| place(path))?;
+    others.iter().try_for_each(|path| place(folder, path))?;
     for list in lists {
-        remove_stale(folder, &list, &std::fs::read_to_string(ready.join(&list)).unwrap_or_default())?;
+        remove_stale(folder, &list, &text(&ready.join(&list)))?;
         if list == Path::new(MANIFEST) {
             // What it named is gone: from here on it is the manifest that is about to be replaced.
-            before.iter().try_for_each(|path| place(path))?;
+            before.iter().try_for_each(|path| place(folder, path))?;
         }
-        place(&list)?;
+        place(folder, &list)?;
     }
     at("remove", &ready, std::fs::remove_dir_all(&ready))
+}
+
+/// Moves a file that is ready to its place.
+fn place(folder: &Path, path: &Path) -> Result<(), PackageError> {
+    let place = folder.join(path);
+    // Someone may have tidied up between an interrupted publication and this one.
+    place.parent().map_or(Ok(()), |parent| at("make the folder", parent, std::fs::create_dir_all(parent)))?;
+    at("write", &place, std::fs::rename(folder.join(READY).join(path), &place))
+}
+
+/// The text of a list. One that cannot be read is empty, because it names nothing.
+fn text(list: &Path) -> String {
+    std::fs::read_to_string(list).unwrap_or_default()
 }
 
 /// Removes files that were not published, and the folders at their places that were made for them.
@@ -82,9 +88,7 @@ fn remove_stale(folder: &Path, list: &Path, next: &str) -> Result<(), PackageErr
 /// The files that the list in place names and the next one does not; where names contain hashes, those of the list before the one in place that neither of them
 /// names. Some of them may be gone.
 pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
-    // Unreadable is as good as none: it names nothing.
-    let read = |list: &Path| std::fs::read_to_string(folder.join(list)).unwrap_or_default();
-    let old = read(list);
+    let old = text(&folder.join(list));
     let replaced = if old == next { Vec::new() } else { named_by(&old) };
     if replaced.is_empty() {
         return Vec::new();
@@ -92,7 +96,7 @@ pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
     let mut current: BTreeSet<PathBuf> = named_by(next).into_iter().chain([list.to_owned()]).collect();
     let mut stale = Vec::new();
     if list == Path::new(MANIFEST) {
-        stale.extend(named_by(&read(Path::new(BEFORE))));
+        stale.extend(named_by(&text(&folder.join(BEFORE))));
         if are_hashed(next) {
             current.extend(replaced);
         } else {

@@ -1,7 +1,7 @@
 //! Files on their way: written into a folder of their own, after everything that could stop them later has been asked for.
 
 use std::collections::BTreeSet;
-use std::fs::{File, Metadata};
+use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -34,8 +34,8 @@ fn in_the_way(folder: &Path, error: io::Error) -> io::Error {
 
 /// Whether a place holds a regular file of these bytes.
 pub(super) fn holds(place: &Path, bytes: &[u8]) -> bool {
-    let is_alike = |found: Metadata| found.is_file() && found.len() == bytes.len() as u64;
-    std::fs::symlink_metadata(place).is_ok_and(is_alike) && std::fs::read(place).is_ok_and(|found| found == bytes)
+    std::fs::symlink_metadata(place).is_ok_and(|found| found.is_file() && found.len() == bytes.len() as u64)
+        && std::fs::read(place).is_ok_and(|found| found == bytes)
 }
 
 /// Writes all files into a folder of their own, and makes sure that nothing will be in the way of any.
@@ -80,8 +80,8 @@ fn takes_files(parent: &Path, from: &Path) -> io::Result<()> {
 pub(super) fn is_at(handle: &File, folder: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
 
-    let place = |found: Metadata| (found.dev(), found.ino());
-    handle.metadata().map(place).is_ok_and(|open| folder.metadata().map(place).is_ok_and(|there| open == there))
+    let (Ok(open), Ok(there)) = (handle.metadata(), folder.metadata()) else { return false };
+    (open.dev(), open.ino()) == (there.dev(), there.ino())
 }
 
 /// Whether the folder of an open lock is at this path: it cannot be removed while the lock is open.

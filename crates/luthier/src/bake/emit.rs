@@ -18,16 +18,19 @@ pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) ->
     let interfaces = forms.par_iter().map(|&form| Ok((form, luthier_shader::interface(&set, form)?)));
     let interfaces = interfaces.collect::<Result<Vec<_>, ShaderError>>()?;
     let wanted: Vec<_> = interfaces.iter().flat_map(|declared| targets.iter().map(move |&to| (declared, to))).collect();
-    let shader = |((form, interface), target): (&(Form, Interface), Target)| {
-        let bytes = match target {
-            Target::SpirV => luthier_shader::emit_spirv(&set, *form),
-            _ => luthier_shader::emit(&set, *form, target).map(String::into_bytes),
-        };
-        Ok(Shader { form: *form, target, bytes: bytes?, interface: interface.clone() })
-    };
-    package.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
+    let shaders = wanted.into_par_iter().map(|((form, interface), target)| shader(&set, *form, interface, target));
+    package.shaders = shaders.collect::<Result<_, ShaderError>>()?;
     manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
     Ok(())
+}
+
+/// The text or the SPIR-V of a set of materials in a form, with the interface of the form.
+fn shader(set: &MaterialSet, form: Form, interface: &Interface, target: Target) -> Result<Shader, ShaderError> {
+    let bytes = match target {
+        Target::SpirV => luthier_shader::emit_spirv(set, form),
+        _ => luthier_shader::emit(set, form, target).map(String::into_bytes),
+    };
+    Ok(Shader { form, target, bytes: bytes?, interface: interface.clone() })
 }
 
 /// The package of some of the materials of a package, by their numbers: with all tables, without surfaces, and with shaders for these materials alone.
@@ -50,8 +53,7 @@ pub fn of_materials(all: &Package, numbers: Range<usize>) -> Result<Package, Err
         }
     }
     // Forms that only others lack.
-    let is_new = |form: &Form| !all.manifest.has(*form) && package.manifest.has(*form);
-    forms.extend(Form::ALL.into_iter().filter(is_new));
+    forms.extend(Form::ALL.into_iter().filter(|&form| !all.manifest.has(form) && package.manifest.has(form)));
     emit(&mut package, &targets, &forms)?;
     Ok(package)
 }

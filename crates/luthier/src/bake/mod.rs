@@ -175,13 +175,12 @@ impl<'a> Bake<'a> {
         atlases: Vec<Atlas>,
     ) -> Result<Package, Error> {
         let (entries, maps) = material_entries(materials, baked)?;
-        let entry = |atlas: &Atlas| TableEntry {
+        let tables = atlases.iter().map(|atlas| TableEntry {
             tiles: atlas.tiles.clone(),
             ..table_entry(atlas.kind, &atlas.layout, atlas.format)
-        };
-        let tables = atlases.iter().map(entry).collect();
+        });
         let (functions, surfaces) = (self.functions.clone(), self.surfaces.clone());
-        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables) };
+        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables.collect()) };
         let table =
             |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
         let tables = atlases.into_iter().map(table).collect();
@@ -246,12 +245,14 @@ fn refused(diagnostics: Vec<Diagnostic>) -> Error {
 /// The forms of the shaders of materials: those that are asked for, or all that the models of all materials have.
 fn forms(materials: &[Material], asked: &[Form]) -> Result<Vec<Form>, Error> {
     let lacking = |form: Form| materials.iter().find(|material| !material.model().has(form));
+    if asked.is_empty() {
+        return Ok(Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect());
+    }
     for &form in asked {
         if let Some(material) = lacking(form) {
             let (material, model) = (material.name.clone(), material.model());
             return Err(ShaderError::NoForm { material, model, form }.into());
         }
     }
-    let all = || Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect();
-    Ok(if asked.is_empty() { all() } else { asked.to_vec() })
+    Ok(asked.to_vec())
 }

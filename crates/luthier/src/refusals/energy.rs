@@ -56,6 +56,19 @@ impl Returned {
     fn error(&self) -> f64 {
         self.simulated.map_or(0.0, |simulated| (self.model - simulated).abs())
     }
+
+    /// The error, or what the model returns beyond all light, whichever is larger.
+    fn excess(&self) -> f64 {
+        self.error().max(self.model - ALL)
+    }
+
+    /// The simulation's albedo as the end of a sentence.
+    fn against(&self) -> String {
+        match self.simulated {
+            Some(simulated) => format!(" where a simulation of the layers returns {simulated:.2}"),
+            None => String::new(),
+        }
+    }
 }
 
 /// A warning where a model returns more light than falls in, or where its albedo is off: of one interface whose model the file or the command line
@@ -76,16 +89,12 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
     let most = all.iter().copied().max_by(|a, b| a.model.total_cmp(&b.model))?;
     let worst = all.iter().copied().max_by(|a, b| a.error().total_cmp(&b.error()))?;
     let name = model.name();
-    let against = |found: &Returned| match found.simulated {
-        Some(simulated) => format!(" where a simulation of the layers returns {simulated:.2}"),
-        None => String::new(),
-    };
     let message = if most.model > ALL {
         format!(
             "the model `{name}` returns {:.2} times the light that falls in, seen at {} degrees,{}",
             most.model,
             most.angle_deg,
-            against(&most)
+            most.against()
         )
     } else if worst.error() > TOLERATED || stands_in {
         format!(
@@ -93,7 +102,7 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
             worst.error(),
             worst.model,
             worst.angle_deg,
-            against(&worst)
+            worst.against()
         )
     } else {
         return None;
@@ -121,7 +130,6 @@ pub fn returned(material: &Material, model: ShadingModel) -> Vec<Returned> {
 
 /// As [`returned`], with the simulation or without.
 fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<Returned> {
-    let has_walks = |layer: &Layer| matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks();
     let is_simulated = is_compared && material.stack.layers.iter().all(has_walks);
     let nm = material.bake.wavelengths_nm();
     let color = Color::ThreeWavelengths(nm);
@@ -137,12 +145,17 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
             let wo = DVec3::new(sin, 0.0, cos);
             let own = integral(&|wi: DVec3| shaded.eval(wi, wo), DVec3::new(-sin, 0.0, cos), POINTS);
             let simulated = paths.as_ref().map(|paths| simulated(paths, wo));
-            let of = |c: usize| Returned { model: own[c], simulated: simulated.map(|all| all[c]), angle_deg };
-            let wrong = |found: &Returned| found.error().max(found.model - ALL);
-            all.extend([0, 1, 2].map(of).into_iter().max_by(|a, b| wrong(a).total_cmp(&wrong(b))));
+            let channels =
+                [0, 1, 2].map(|c| Returned { model: own[c], simulated: simulated.map(|all| all[c]), angle_deg });
+            all.extend(channels.into_iter().max_by(|a, b| a.excess().total_cmp(&b.excess())));
         }
     }
     all
+}
+
+/// True where the simulation can walk among the facets of a layer, or needs not.
+fn has_walks(layer: &Layer) -> bool {
+    matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks()
 }
 
 /// Mean albedo of paths.
@@ -156,13 +169,14 @@ fn simulated(paths: &ColorPaths, wo: DVec3) -> Rgb {
 fn places(material: &Material) -> Vec<Place> {
     let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
     let Some((number, Metallic { base_color, metallic })) = textured else { return vec![Place::NONE] };
-    let place = |metallic: f64| {
+    let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
+    let places = shares.into_iter().map(|metallic| {
         let (f0, albedo) = metallic_roughness(base_color, metallic);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
         Place { base_color: Some(albedo), layers, ..Place::NONE }
-    };
-    if metallic > 0.0 { vec![place(metallic), place(0.0)] } else { vec![place(0.0)] }
+    });
+    places.collect()
 }
 
 /// The stack at such a place.

@@ -71,10 +71,9 @@ fn instead(material: &Material, part: &LeftOut) -> Diagnostic {
 
 fn dropped_part(material: &Material, model: ShadingModel, part: &LeftOut) -> Diagnostic {
     let LeftOut { feature, key, forms } = part;
-    let shown_by = |other: &ShadingModel| forms.iter().all(|&form| other.honours(*feature, form));
-    let is_whole = |other: &ShadingModel| left_out(material, *other).is_empty();
-    let able: Vec<ShadingModel> = ShadingModel::ALL.into_iter().filter(shown_by).collect();
-    let whole: Vec<ShadingModel> = able.iter().copied().filter(is_whole).collect();
+    let able = ShadingModel::ALL.into_iter().filter(|other| forms.iter().all(|&form| other.honours(*feature, form)));
+    let able: Vec<ShadingModel> = able.collect();
+    let whole: Vec<ShadingModel> = able.iter().copied().filter(|other| left_out(material, *other).is_empty()).collect();
     let listed = if whole.is_empty() { able } else { whole };
     let names: Vec<String> = listed.iter().map(|other| format!("`{}`", other.name())).collect();
     let other_form = Form::ALL.into_iter().find(|form| !forms.contains(form));

@@ -11,7 +11,6 @@ use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_model::Reach;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
-use luthier_optics::stack::{Stack, Surface};
 
 use super::beams::{self, of_beams};
 
@@ -57,12 +56,6 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("lower_reflectance", material.bake.lower_reflectance.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
-    let refusal = |place: String| {
-        let key = place.rsplit_once('.').map_or(place.as_str(), |(_, key)| key);
-        let message = format!("a scene chooses the models of its materials, and `{key}` is a part of some models");
-        let hint = "leave it out, or bake the material by itself".to_owned();
-        material.diagnostic(Severity::Error, &place, message, Some(hint))
-    };
     let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
         let distribution = material.stack.layers[layer].surface.distribution;
         let message = format!(
@@ -74,13 +67,21 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         material.diagnostic(Severity::Error, &key, message, Some(hint))
     });
     let beams = beams::keys(material).map(str::to_owned);
-    parts.chain(beams).map(refusal).chain(of_slopes).collect()
+    parts.chain(beams).map(|place| chosen_part(material, &place)).chain(of_slopes).collect()
+}
+
+/// The error for a part that a material of a scene chooses.
+fn chosen_part(material: &Material, place: &str) -> Diagnostic {
+    let key = place.rsplit_once('.').map_or(place, |(_, key)| key);
+    let message = format!("a scene chooses the models of its materials, and `{key}` is a part of some models");
+    let hint = "leave it out, or bake the material by itself".to_owned();
+    material.diagnostic(Severity::Error, place, message, Some(hint))
 }
 
 /// The first of so many layers whose distribution has no walks in closed form.
 fn first_free(material: &Material, layers: usize) -> Option<usize> {
-    let is_free = |surface: &Surface| !surface.is_smooth() && !surface.distribution.has_walks();
-    material.stack.layers.iter().take(layers).position(|layer| is_free(&layer.surface))
+    let mut surfaces = material.stack.layers.iter().take(layers).map(|layer| &layer.surface);
+    surfaces.position(|surface| !surface.is_smooth() && !surface.distribution.has_walks())
 }
 
 /// Beginnings of the names of functions in f64 that need no more of a distribution than D, or the names.
@@ -113,8 +114,8 @@ fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
 
 /// An error where a model, its masking or a table has no use for the distribution of a layer.
 fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
-    let is_read = |layers: usize| if model.facts().reach == Reach::First { layers.min(1) } else { layers };
-    let layer = first_free(material, is_read(material.stack.layers.len()))?;
+    let read = if model.facts().reach == Reach::First { 1 } else { material.stack.layers.len() };
+    let layer = first_free(material, read)?;
     let distribution = material.stack.layers[layer].surface.distribution;
     let (name, key) = (distribution.name(), format!("layer.{layer}.{}", distribution_key(distribution)));
     if !model.honours(Feature::Distribution, Form::Baked) {
@@ -234,10 +235,11 @@ fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerRe
         return None;
     }
     let (color, in_air) = (material.color(), material.stack.with_lower_in_air());
-    let at_normal = |stack: &Stack, layer| Interface::of(stack, layer).map(|here| here.sampled(&color).rgb(1.0));
     let mut worst: Option<(usize, f64, f64)> = None;
     for layer in 1..material.stack.layers.len() {
-        let (Some(here), Some(air)) = (at_normal(&material.stack, layer), at_normal(&in_air, layer)) else { continue };
+        let interfaces = [&material.stack, &in_air].map(|stack| Interface::of(stack, layer));
+        let [Some(here), Some(air)] = interfaces else { continue };
+        let [here, air] = [here, air].map(|interface| interface.sampled(&color).rgb(1.0));
         for (here, air) in here.into_iter().zip(air) {
             if worst.is_none_or(|(_, a, b)| (air - here).abs() > (b - a).abs()) {
                 worst = Some((layer, here, air));

@@ -10,19 +10,16 @@ use crate::pictures::read_image;
 /// Diagnostics of materials together, each with the number of the material that it is said of.
 pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
     let mut found = Vec::new();
-    let mut tell = |number: usize, key: &str, message: String| {
-        found.extend(materials.get(number).map(|m| (number, m.diagnostic(Severity::Error, key, message, None))));
-    };
     for error in luthier_bake::check(materials, &luthier_bake::Options::default()).err().unwrap_or_default() {
         let (number, key) = error.place().unwrap_or((0, "name"));
-        tell(number, key, error.to_string());
+        found.push((number, key.to_owned(), error.to_string()));
     }
     let mut named: BTreeMap<String, &Material> = BTreeMap::new();
     for (number, material) in materials.iter().enumerate() {
         let identifier = match luthier_shader::identifier(&material.name) {
             Ok(identifier) => identifier,
             Err(error) => {
-                tell(number, "name", error.to_string());
+                found.push((number, "name".to_owned(), error.to_string()));
                 continue;
             }
         };
@@ -30,13 +27,17 @@ pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
             // Equal names have been told.
             Some(first) if first.name != material.name => {
                 let (name, other, place) = (&material.name, &first.name, first.place("name"));
-                tell(number, "name", format!("`{name}` and `{other}` of {place} are both `{identifier}` in a shader"));
+                let message = format!("`{name}` and `{other}` of {place} are both `{identifier}` in a shader");
+                found.push((number, "name".to_owned(), message));
             }
             Some(_) => {}
             None => drop(named.insert(identifier, material)),
         }
     }
-    found
+    let diagnostics = found.into_iter().filter_map(|(number, key, message)| {
+        Some((number, materials.get(number)?.diagnostic(Severity::Error, &key, message, None)))
+    });
+    diagnostics.collect()
 }
 
 /// An error of the first material where the material buffer or a texture cannot hold all of them, shaded as they are. A bake plans its tables, and

@@ -88,9 +88,8 @@ impl Source {
             // Who mends the file hears of its pictures in the same run.
             Some(material) => {
                 // A map that is wrong for another reason is said once.
-                let is_new = |found: &Diagnostic| found.is_error() && diagnostics.iter().all(|d| d.span != found.span);
                 let mut of_pictures = refusals::of_pictures(&material);
-                of_pictures.retain(is_new);
+                of_pictures.retain(|found| found.is_error() && diagnostics.iter().all(|d| d.span != found.span));
                 diagnostics.extend(of_pictures);
                 diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
                 Err(diagnostics)
@@ -113,8 +112,7 @@ impl Source {
 /// # Errors
 /// [`Error::Refused`] with everything that is wrong.
 pub fn parse(label: &str, text: &str) -> Result<Material, Error> {
-    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-    match luthier_material::parse(label, text, &no_files) {
+    match luthier_material::parse(label, text, &|_| Err(std::io::ErrorKind::NotFound.into())) {
         Ok(parsed) => Ok(parsed.material),
         Err(diagnostics) => {
             let sentence = diagnostics.iter().map(|d| d.render(text)).collect::<Vec<_>>().join("\n");

@@ -50,28 +50,29 @@ impl SurfaceSource {
     pub fn entry(&self) -> Option<SurfaceEntry> {
         let surface = self.parsed.as_ref().ok()?;
         let mut numbers = self.numbers.iter().map(|&number| number as u32);
-        let mut cells = |cells: &SurfaceCells| CellsRecord {
-            seed: cells.seed,
-            frequency: cells.frequency,
-            materials: numbers.by_ref().take(cells.materials.len()).collect(),
-        };
         Some(SurfaceEntry {
             name: surface.name.clone(),
             source: self.label.clone(),
             source_hash: sha256(self.text.as_bytes()),
-            cells: cells(&surface.cells),
+            cells: cells_record(&surface.cells, &mut numbers),
             switches: surface
                 .switches
                 .iter()
-                .map(|switch| SwitchRecord { by: switch.by, cells: cells(&switch.cells) })
+                .map(|switch| SwitchRecord { by: switch.by, cells: cells_record(&switch.cells, &mut numbers) })
                 .collect(),
             glitter: surface.glitter.as_ref().map(|glitter| ParticlesRecord {
-                cells: cells(&glitter.cells),
+                cells: cells_record(&glitter.cells, &mut numbers),
                 filled: glitter.filled,
                 tilt: glitter.tilt,
             }),
         })
     }
+}
+
+/// Cells with the next numbers of materials, as many as they name.
+fn cells_record(cells: &SurfaceCells, numbers: &mut impl Iterator<Item = u32>) -> CellsRecord {
+    let materials = numbers.take(cells.materials.len()).collect();
+    CellsRecord { seed: cells.seed, frequency: cells.frequency, materials }
 }
 
 /// The places of a switch.
@@ -96,9 +97,6 @@ pub(super) fn switch_of(by: &SwitchBy) -> Switch {
 /// assert!(matches!(luthier::surface_map(&surface), Map::Cells { stacks, .. } if stacks == [4, 2]));
 /// ```
 pub fn surface_map(surface: &SurfaceEntry) -> Map {
-    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
-    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&material| material as usize).collect();
-    let grains = |cells: &CellsRecord| Map::Cells { cells: voronoi(cells), stacks: stacks(cells) };
     // The first switch of the file is the outermost.
     let map = surface.switches.iter().rev().fold(grains(&surface.cells), |under, switch| Map::Switch {
         switch: switch_of(&switch.by),
@@ -107,12 +105,20 @@ pub fn surface_map(surface: &SurfaceEntry) -> Map {
     });
     match &surface.glitter {
         None => map,
-        Some(glitter) => Map::Glitter {
-            cells: voronoi(&glitter.cells),
-            stacks: stacks(&glitter.cells),
-            filled: glitter.filled,
-            tilt: glitter.tilt,
-            under: Box::new(map),
-        },
+        Some(glitter) => {
+            let (cells, stacks) = twin(&glitter.cells);
+            Map::Glitter { cells, stacks, filled: glitter.filled, tilt: glitter.tilt, under: Box::new(map) }
+        }
     }
+}
+
+/// The cells and the numbers of their stacks, which are those of materials.
+fn twin(record: &CellsRecord) -> (Voronoi, Vec<usize>) {
+    let stacks = record.materials.iter().map(|&material| material as usize).collect();
+    (Voronoi { seed: record.seed, frequency: record.frequency }, stacks)
+}
+
+fn grains(record: &CellsRecord) -> Map {
+    let (cells, stacks) = twin(record);
+    Map::Cells { cells, stacks }
 }

@@ -67,18 +67,20 @@ fn unseen(surface: &Surface) -> Vec<Diagnostic> {
     let switches: Vec<Switch> = surface.switches.iter().map(|switch| switch_of(&switch.by)).collect();
     let shares = switch_shares(&switches);
     let unseen = surface.switches.iter().zip(&shares).filter(|(_, share)| share.seen < UNSEEN);
-    let warning = |(switch, share): (&SurfaceSwitch, &SwitchShare)| {
-        let message = format!("these grains are on less than {} % of the surface", 100.0 * UNSEEN);
-        let hint = match share.noise {
-            _ if share.own >= UNSEEN => "switches before it in the file have its places: put it before them".to_owned(),
-            Some([least, most]) => {
-                format!(
-                    "this noise is from {least:.2} to {most:.2} nearly everywhere: choose a range inside, or a wider one"
-                )
-            }
-            None => "give it a larger `share`".to_owned(),
-        };
-        surface.of_switch(switch, message, hint)
+    unseen.map(|(switch, share)| unseen_grains(surface, switch, share)).collect()
+}
+
+/// The warning for grains that a switch hardly shows.
+fn unseen_grains(surface: &Surface, switch: &SurfaceSwitch, share: &SwitchShare) -> Diagnostic {
+    let message = format!("these grains are on less than {} % of the surface", 100.0 * UNSEEN);
+    let hint = match share.noise {
+        _ if share.own >= UNSEEN => "switches before it in the file have its places: put it before them".to_owned(),
+        Some([least, most]) => {
+            format!(
+                "this noise is from {least:.2} to {most:.2} nearly everywhere: choose a range inside, or a wider one"
+            )
+        }
+        None => "give it a larger `share`".to_owned(),
     };
-    unseen.map(warning).collect()
+    surface.of_switch(switch, message, hint)
 }
