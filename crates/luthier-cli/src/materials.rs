@@ -6,7 +6,7 @@ use luthier_manifest::{
     Form, FunctionGroup, Manifest, MaterialEntry, ModelPart, Reflectance, ShadingModel, SurfaceEntry,
 };
 use luthier_material::{Diagnostic, Material};
-use luthier_optics::stack::{Base, Layer};
+use luthier_optics::stack::Base;
 use luthier_terminal::{Broken, Failure, Outcome, complain, print_diagnostics, valid};
 
 use crate::cli::Shading;
@@ -76,8 +76,7 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
 
 /// Whether the form `baked` of a material shows the environment.
 pub(crate) fn shows_environment(material: &Material) -> bool {
-    let is_interface = |layer: &Layer| !matches!(layer.base, Base::Diffuse(_));
-    material.model().is_fitted() && material.stack.layers.iter().any(is_interface)
+    material.model().is_fitted() && material.stack.layers.iter().any(|layer| !matches!(layer.base, Base::Diffuse(_)))
 }
 
 /// Has a material shaded by one of several models that are compared: each with the parts that it has, of the file or the command line.
@@ -93,8 +92,10 @@ pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Op
 /// The models that are asked for, or all; without a fit, all but `lobes`.
 #[cfg(any(feature = "cost", feature = "gpu"))]
 pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> {
-    let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || !model.is_fitted()).collect();
-    if asked.is_empty() { all() } else { asked.to_vec() }
+    match asked {
+        [] => ShadingModel::ALL.into_iter().filter(|model| !no_fit || !model.is_fitted()).collect(),
+        _ => asked.to_vec(),
+    }
 }
 
 /// Whether a material can be shaded by a model. Where no model is asked for, one that has not its distribution of slopes is left out, and that is said.

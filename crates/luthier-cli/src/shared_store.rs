@@ -22,15 +22,15 @@ pub(crate) fn address(text: &str) -> Result<String, String> {
 
 /// The address that is asked for.
 fn asked(url: Option<&str>) -> Outcome<Option<String>> {
-    let refused = |reason| Failure::Usage(anyhow::anyhow!("variable {VARIABLE}: {reason}"));
-    match url {
+    let found = match url {
         Some(url) => Ok(Some(url.to_owned())),
         None => match env::var(VARIABLE) {
-            Ok(url) if !url.is_empty() => address(&url).map(Some).map_err(refused),
+            Ok(url) if !url.is_empty() => address(&url).map(Some),
             Ok(_) | Err(VarError::NotPresent) => Ok(None),
-            Err(error) => Err(refused(error.to_string())),
+            Err(error) => Err(error.to_string()),
         },
-    }
+    };
+    found.map_err(|reason| Failure::Usage(anyhow::anyhow!("variable {VARIABLE}: {reason}")))
 }
 
 /// The store of the process, because this build has no other.

@@ -42,24 +42,23 @@ pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
 /// Reasons why a material is not simulated, each with its file and line; none where it is.
 #[cfg(feature = "view")]
 pub(crate) fn refusals(material: &Material) -> Vec<String> {
-    let sentence = |Diagnostic { message, label, line, .. }| format!("{message} ({label}:{line})");
-    beyond(material).into_iter().map(sentence).collect()
+    let beyond = beyond(material).into_iter();
+    beyond.map(|Diagnostic { message, label, line, .. }| format!("{message} ({label}:{line})")).collect()
 }
 
 /// Refusals of the parts of a material that the simulation on the device does not take.
 pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
     let mut found: Vec<(String, Feature)> = Vec::new();
     for (number, layer) in material.stack.layers.iter().enumerate() {
-        let key = |name: &str| format!("layer.{number}.{name}");
         if !layer.films.is_empty() {
-            found.push((key("film.0.type"), Feature::Films));
+            found.push((format!("layer.{number}.film.0.type"), Feature::Films));
         }
         if material.layers[number].reradiation.is_some() {
-            found.push((key("reradiation"), Feature::Reradiation));
+            found.push((format!("layer.{number}.reradiation"), Feature::Reradiation));
         }
         let slopes = layer.surface.distribution;
         if !layer.surface.is_smooth() && !slopes.has_walks() {
-            found.push((key(distribution_key(slopes)), Feature::Distribution));
+            found.push((format!("layer.{number}.{}", distribution_key(slopes)), Feature::Distribution));
         }
         for map in material.layers[number].maps.named() {
             let of_surface = match map.slot {
@@ -68,7 +67,7 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
                 _ => Feature::ThicknessMap,
             };
             let feature = map.slot.layer_feature(number as u32).unwrap_or(of_surface);
-            found.push((key(&format!("maps.{}", map.key)), feature));
+            found.push((format!("layer.{number}.maps.{}", map.key), feature));
         }
     }
     let effects = &material.effects;
@@ -81,12 +80,12 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
             found.push((key.to_owned(), feature));
         }
     }
-    let refusal = |(key, feature): (String, Feature)| {
+    let refusals = found.into_iter().map(|(key, feature)| {
         let message = format!("the simulation on the device does not take {}", feature.name());
         let hint = "leave it out for the simulation, or render the material by a model: leave out `--simulated`";
         material.diagnostic(Severity::Error, &key, message, Some(hint.to_owned()))
-    };
-    found.into_iter().map(refusal).collect()
+    });
+    refusals.collect()
 }
 
 /// A simulated picture, and the root of the mean square of the standard errors of its pixels.

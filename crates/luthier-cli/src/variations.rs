@@ -19,15 +19,15 @@ impl FromStr for Range {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no KEY=FROM..TO, for instance roughness=0.1..1");
-        let (key, range) = text.split_once('=').ok_or_else(wrong)?;
-        let (from, to) = range.split_once("..").ok_or_else(wrong)?;
-        let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong);
-        let (from, to) = (number(from)?, number(to)?);
-        if key.is_empty() || key.split('.').any(str::is_empty) {
-            return Err(wrong());
+        let parts = text.split_once('=').and_then(|(key, range)| Some((key, range.split_once("..")?)));
+        match parts.map(|(key, (from, to))| (key, [from, to].map(str::parse::<f64>))) {
+            Some((key, [Ok(from), Ok(to)]))
+                if from.is_finite() && to.is_finite() && !key.split('.').any(str::is_empty) =>
+            {
+                Ok(Self { key: key.to_owned(), from, to })
+            }
+            _ => Err(format!("`{text}` is no KEY=FROM..TO, for instance roughness=0.1..1")),
         }
-        Ok(Self { key: key.to_owned(), from, to })
     }
 }
 
@@ -123,26 +123,29 @@ impl<'a> Place<'a> {
 
     /// A whole number stays one where one was.
     fn write(self, last: &str, number: f64) -> Option<()> {
-        let float = || Value::Float(Formatted::new(number));
-        let like = |old: &Value| match old {
-            Value::Integer(_) if number.fract() == 0.0 => Value::Integer(Formatted::new(number as i64)),
-            _ => float(),
-        };
         match self {
             Self::Table(table) => {
                 let value = match table.get(last) {
-                    None | Some(Item::None) => float(),
-                    Some(item) => like(item.as_value()?),
+                    None | Some(Item::None) => Value::Float(Formatted::new(number)),
+                    Some(item) => like(item.as_value()?, number),
                 };
                 table.insert(last, Item::Value(value));
             }
             Self::Tables(_) => return None,
             Self::Array(array) => {
                 let old = array.get_mut(last.parse().ok()?)?;
-                *old = like(old);
+                *old = like(old, number);
             }
         }
         Some(())
+    }
+}
+
+/// A number as a value: a whole number where a whole number was.
+fn like(old: &Value, number: f64) -> Value {
+    match old {
+        Value::Integer(_) if number.fract() == 0.0 => Value::Integer(Formatted::new(number as i64)),
+        _ => Value::Float(Formatted::new(number)),
     }
 }
 

@@ -47,9 +47,8 @@ impl ViewHost {
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
         let mut materials = lit(std::slice::from_ref(material));
-        let is_chosen = |material: &Material| self.fresnel.is_some() && material.model().takes(ModelPart::Reflectance);
-        for material in materials.iter_mut().filter(|material| is_chosen(material)) {
-            material.bake.reflectance = self.fresnel;
+        for material in materials.iter_mut().filter(|material| material.model().takes(ModelPart::Reflectance)) {
+            material.bake.reflectance = self.fresnel.or(material.bake.reflectance);
         }
         let store = Layers(&[&self.store, store()?]);
         let package = Bake::lit().in_forms(&[form]).package(&materials, &store)?;
@@ -178,8 +177,8 @@ fn numbered(path: &Path, number: u32) -> PathBuf {
 
 /// A name in the current folder that nothing has yet.
 fn free() -> PathBuf {
-    let name = |i: u32| PathBuf::from(format!("luthier-view-{i}.png"));
-    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+    let mut names = (1..).map(|i: u32| PathBuf::from(format!("luthier-view-{i}.png")));
+    names.find(|path| !path.exists()).unwrap_or_else(|| "luthier-view-0.png".into())
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -76,11 +76,10 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
             .collect();
         let mut watches = Vec::new();
         for (i, subject) in subjects.iter().enumerate() {
-            let watch = |is_empty| subject.scene.stopwatch(0, &pairs, options.evaluations, is_empty);
-            if i == 0 {
-                watches.push(watch(true)?);
+            let kernels: &[bool] = if i == 0 { &[true, false] } else { &[false] };
+            for &is_empty in kernels {
+                watches.push(subject.scene.stopwatch(0, &pairs, options.evaluations, is_empty)?);
             }
-            watches.push(watch(false)?);
         }
         let times = Stopwatch::in_turn(&watches, options.warm_up, options.repeats.get())?;
         if let Some(watch) = watches.first() {

@@ -42,9 +42,11 @@ impl Set {
 
     /// All materials, and their models: those of a scene are the scene's to choose.
     fn all(&self) -> impl Iterator<Item = (&Source, Option<ShadingModel>)> {
-        let model = |source: &Source| source.parsed.as_ref().ok().map(|p| self.shading.model(&p.material));
         let of_scenes = self.sources.scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
-        self.sources.materials.iter().map(move |source| (source, model(source))).chain(of_scenes)
+        let of_files = self.sources.materials.iter();
+        let of_files = of_files
+            .map(|source| (source, source.parsed.as_ref().ok().map(|parsed| self.shading.model(&parsed.material))));
+        of_files.chain(of_scenes)
     }
 
     fn entries(&self) -> Vec<Value> {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
+use std::time::SystemTime;
 
 use luthier_export::{MANIFEST, label};
 use luthier_terminal::{Failure, Outcome, files};
@@ -41,7 +42,6 @@ impl Depfile {
     /// and again.
     pub(super) fn write(&self) -> Outcome {
         std::fs::write(&self.path, &self.text).map_err(files(&self.path, "write"))?;
-        let date = |path: &Path| std::fs::metadata(path).and_then(|file| file.modified()).ok();
         let manifest = self.out.join(MANIFEST);
         let made = date(&manifest);
         if self.needed.iter().any(|path| date(path) > made) {
@@ -115,8 +115,7 @@ fn escaped(path: &Path) -> Outcome<String> {
         return refuse("Make and Ninja take a `:` or `)` at the end of a name for something else");
     }
     // Both halve, keep or drop backslashes in front of these, each in its own way.
-    let is_plain = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || "._-+,@/\\".contains(c));
-    if name.char_indices().any(|(at, c)| c == '\\' && !is_plain(name[at + 1..].chars().next())) {
+    if name.char_indices().any(|(at, c)| c == '\\' && !name[at + 1..].starts_with(is_plain)) {
         return refuse("Make and Ninja read a backslash in front of another sign, or at the end, differently");
     }
     if let Some(other) = confused(path) {
@@ -128,6 +127,16 @@ fn escaped(path: &Path) -> Outcome<String> {
     Ok(format!("{drive}{rest}"))
 }
 
+/// True for signs in front of which Make and Ninja keep a backslash.
+fn is_plain(c: char) -> bool {
+    c.is_alphanumeric() || "._-+,@/\\".contains(c)
+}
+
+/// The time of the last change of a file.
+fn date(path: &Path) -> Option<SystemTime> {
+    std::fs::metadata(path).and_then(|file| file.modified()).ok()
+}
+
 /// Another file or folder that fits a part of the path, read as a pattern of Make. Where nothing fits, Make takes the path as it is.
 fn confused(path: &Path) -> Option<String> {
     path.ancestors().find_map(|path| {
@@ -135,15 +144,15 @@ fn confused(path: &Path) -> Option<String> {
         let start = name.find(['[', '?'])?;
         let end = name.rfind([']', '?']).filter(|&end| end >= start)? + 1;
         // A pair of brackets stands for one sign.
-        let count = |text: &str| text.chars().count();
+        let length = name.chars().count();
         let signs = name.matches(['[', ']', '?']).count();
         let is_pair = signs == 2 && !name.contains('?');
-        let most = if is_pair { count(name) - count(&name[start..end]) + 1 } else { count(name) };
+        let most = if is_pair { length - name[start..end].chars().count() + 1 } else { length };
         let others = real(path.parent()?)?.read_dir().ok()?.filter_map(Result::ok);
         let mut others = others.map(|other| other.file_name().to_string_lossy().into_owned());
         others.find(|other| {
             let fits = other.starts_with(&name[..start]) && other.ends_with(&name[end..]);
-            other != name && fits && count(other) <= most
+            other != name && fits && other.chars().count() <= most
         })
     })
 }

@@ -106,9 +106,12 @@ fn say(options: &BakeOptions, packages: &[(String, BakeOptions)], done: &[Done])
         }
         return print(&format!("{first:#}"));
     }
-    let heading = |name: &str| if name.is_empty() { String::new() } else { format!("{name}:\n") };
     let said = packages.iter().zip(done).filter(|(_, done)| !done.text.is_empty());
-    let texts: Vec<String> = said.map(|((name, _), done)| heading(name) + done.text.trim_end()).collect();
+    let texts = said.map(|((name, _), done)| {
+        let heading = if name.is_empty() { String::new() } else { format!("{name}:\n") };
+        heading + done.text.trim_end()
+    });
+    let texts: Vec<String> = texts.collect();
     if texts.is_empty() { Ok(()) } else { print(&texts.join("\n\n")) }
 }
 

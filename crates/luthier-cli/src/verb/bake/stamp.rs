@@ -139,11 +139,11 @@ impl Kept {
 
 /// A hash of the paths and bytes of some files.
 fn hash(files: &[PathBuf]) -> String {
-    let one = |path: &PathBuf| match input::image(path) {
+    let hashes = files.par_iter().map(|path| match input::image(path) {
         Ok(bytes) => hashed(path, Key::of(&bytes)),
         Err(error) => hashed(path, error),
-    };
-    Key::of(files.par_iter().map(one).collect::<Vec<_>>().concat().as_bytes()).to_string()
+    });
+    Key::of(hashes.collect::<Vec<_>>().concat().as_bytes()).to_string()
 }
 
 /// A line of a hash: a path, and the hash of its bytes or why there is none.

@@ -49,8 +49,8 @@ pub(super) fn run(options: &BakeOptions) -> Outcome {
 fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
     let mut last = state(options, read);
     // The bake may have taken so long that files changed meanwhile, or came.
-    let is_known = |(path, state): (&PathBuf, &Option<_>)| before.read.get(path).is_none_or(|then| then == state);
-    let mut is_changed = last.found != before.found || !last.read.iter().all(is_known);
+    let is_known = last.read.iter().all(|(path, state)| before.read.get(path).is_none_or(|then| then == state));
+    let mut is_changed = last.found != before.found || !is_known;
     loop {
         sleep(PERIOD);
         let now = state(options, read);

@@ -152,8 +152,9 @@ impl<'a> Function<'a> {
 
     fn summed(&self, parts: &[(Monochrome, Rgb)], f: impl Fn(&Monochrome) -> Estimate) -> Vec<Estimate> {
         let found: Vec<Estimate> = parts.iter().map(|(stack, _)| f(stack)).collect();
-        let column = |c: usize| Estimate::sum(parts.iter().zip(&found).map(|((_, weight), one)| (weight[c], *one)));
-        (0..self.columns).map(column).collect()
+        let columns = (0..self.columns)
+            .map(|c| Estimate::sum(parts.iter().zip(&found).map(|((_, weight), one)| (weight[c], *one))));
+        columns.collect()
     }
 
     /// The values of a model that is a function; one alone is the first.

@@ -11,7 +11,6 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use luthier_bake::fitted;
-use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::lobes::{Fit, Fitted, Varied};
 use luthier_layers::model::{Estimate, Model, ModelInfo};
 use luthier_layers::monochrome::Monochrome;
@@ -69,15 +68,15 @@ impl Subject {
                 "patina": self.place.patina.map(|patina| patina.amount),
             });
             if !self.place.layers.is_empty() {
-                let layer = |own: &LayerSample| {
+                let layers = self.place.layers.iter().map(|own| {
                     json!({
                         "normal": own.normal.to_array(),
                         "alpha_factors": own.alpha_factors,
                         "tangent": own.tangent.to_array(),
                         "slab_factor": own.slab_factor,
                     })
-                };
-                head["place"]["layers"] = self.place.layers.iter().map(layer).collect();
+                });
+                head["place"]["layers"] = layers.collect();
             }
         }
         head
@@ -212,8 +211,8 @@ fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> 
 
 /// The channel whose absorption and albedo are those at a wavelength.
 fn nearest_channel(wavelength_nm: f64) -> usize {
-    let distance = |channel: &usize| (GRANIER_WAVELENGTHS_NM[*channel] - wavelength_nm).abs();
-    (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
+    let distances = GRANIER_WAVELENGTHS_NM.map(|nm| (nm - wavelength_nm).abs());
+    (0..3).min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(1)
 }
 
 /// The stack at a wavelength, for the nearest channel.

@@ -28,8 +28,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     if options.simulated.is_none() && options.sheet.look.adapter.is_some() {
         return Err(Failure::Usage(anyhow::anyhow!("a page is drawn by a browser: --adapter is for --simulated")));
     }
-    let is_bake = |path: &&PathBuf| path.join(MANIFEST).is_file();
-    let (bakes, rest): (Vec<&PathBuf>, Vec<&PathBuf>) = options.sources.paths.iter().partition(is_bake);
+    let (bakes, rest): (Vec<_>, Vec<_>) = options.sources.paths.iter().partition(|path| path.join(MANIFEST).is_file());
     if let Some(bake) = bakes.first() {
         refuse_for_bakes(options, bake)?;
     }
@@ -82,9 +81,8 @@ fn refuse_for_bakes(options: &GalleryOptions, bake: &Path) -> Outcome {
 
 /// Title of the page: the name of the only file or folder.
 fn title(options: &GalleryOptions) -> String {
-    let name = |path: &PathBuf| path.file_stem().map(|name| name.to_string_lossy().into_owned());
     match options.sources.paths.as_slice() {
-        [one] => name(one).filter(|name| name != "materials"),
+        [one] => one.file_stem().map(|name| name.to_string_lossy().into_owned()).filter(|name| name != "materials"),
         _ => None,
     }
     .unwrap_or_else(|| "Materials".to_owned())
@@ -125,15 +123,9 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
     }
     gallery.packages.push(own);
     for model in ShadingModel::ALL {
-        let is_wanted = |material: &Material| {
-            let other =
-                if material.model() == ShadingModel::Belcour { ShadingModel::Elek } else { ShadingModel::Belcour };
-            let asked = if options.compare.is_empty() { &[other] } else { options.compare.as_slice() };
-            material.model() != model && asked.contains(&model)
-        };
         let (mut numbers, mut shaded) = (Vec::new(), Vec::new());
-        for (number, material) in materials.iter().enumerate().filter(|(_, material)| is_wanted(material)) {
-            if !is_shaded_by(material, model, &options.compare) {
+        for (number, material) in materials.iter().enumerate() {
+            if !is_wanted(material, model, &options.compare) || !is_shaded_by(material, model, &options.compare) {
                 continue;
             }
             let mut material = material.clone();
@@ -171,12 +163,19 @@ fn package(materials: &[Material]) -> Outcome<Package> {
 /// A look of a material of the next package, with the cycles of its shaders.
 fn look(gallery: &Gallery, number: u32, material: &Material, costs: &CostTable) -> Look {
     let shape = luthier_scene::shape(&material.stack);
-    let cycles = |form: Form| {
+    let cycles = Form::ALL.into_iter().filter_map(|form| {
         let (cycles, is_of_similar) = costs.cost(material.model(), form, &shape)?;
         let about = if is_of_similar { "about " } else { "" };
         Some((form, format!("{about}{cycles:.0}")))
-    };
-    Look { cycles: Form::ALL.into_iter().filter_map(cycles).collect(), ..Look::new(gallery.packages.len(), number) }
+    });
+    Look { cycles: cycles.collect(), ..Look::new(gallery.packages.len(), number) }
+}
+
+/// True where a model other than the material's own was asked for. Where none was, it is `belcour`, and `elek` for a material of that.
+fn is_wanted(material: &Material, model: ShadingModel, asked: &[ShadingModel]) -> bool {
+    let other = if material.model() == ShadingModel::Belcour { ShadingModel::Elek } else { ShadingModel::Belcour };
+    let asked = if asked.is_empty() { &[other] } else { asked };
+    material.model() != model && asked.contains(&model)
 }
 
 /// Adds pictures by simulation to the exhibits of materials.

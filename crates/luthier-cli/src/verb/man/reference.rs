@@ -58,9 +58,9 @@ fn section(command: &Command, of_features: &[(&str, &str)], page: &mut String) {
     }
     let usage = command.clone().render_usage().to_string();
     page.push_str(&format!("\n\n    {}\n", usage.trim_start_matches("Usage: ").trim()));
-    let shown = |arg: &&Arg| !arg.is_hide_set() && (arg.get_id() != "help" || command.get_version().is_some());
-    let args: Vec<&Arg> = command.get_arguments().filter(shown).collect();
-    let (positional, options): (Vec<&Arg>, Vec<&Arg>) = args.iter().partition(|arg| arg.is_positional());
+    let has_help = command.get_version().is_some();
+    let shown = command.get_arguments().filter(|arg| !arg.is_hide_set() && (arg.get_id() != "help" || has_help));
+    let (positional, options): (Vec<&Arg>, Vec<&Arg>) = shown.partition(|arg| arg.is_positional());
     let mut headings: Vec<Option<&str>> = options.iter().map(|arg| arg.get_help_heading()).collect();
     headings.sort_by_key(Option::is_some);
     headings.dedup();
@@ -140,7 +140,6 @@ fn signature(arg: &Arg) -> String {
 
 /// All that is known of an argument, in sentences.
 fn facts(arg: &Arg, command: &Command) -> String {
-    let quoted = |names: Vec<String>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let help = arg.get_long_help().or(arg.get_help()).map(StyledStr::to_string).unwrap_or_default();
     let mut facts = vec![prose(&sentence(&help))];
     if arg.is_required_set() && !arg.is_positional() {
@@ -163,6 +162,10 @@ fn facts(arg: &Arg, command: &Command) -> String {
         facts.push("Values:".to_owned());
     }
     facts.join(" ")
+}
+
+fn quoted(names: Vec<String>) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 /// Arguments that exclude another, on whichever of the two the definition says so.

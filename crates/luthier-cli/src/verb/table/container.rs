@@ -101,12 +101,12 @@ fn rgba(texels: &Image) -> Image {
 
 /// The module of three.js: the words of half floats, row by row, and the function that the renderer imports.
 fn javascript(texels: &Image, words: &str) -> String {
-    let row = |row: &[f32]| {
+    let Image { width, height, channels, .. } = *texels;
+    let rows = texels.data.chunks_exact((width * channels) as usize).map(|row| {
         let words: Vec<String> = row.iter().map(|v| format!("0x{:04x}", half::f16::from_f32(*v).to_bits())).collect();
         format!("\t{}", words.join(", "))
-    };
-    let Image { width, height, channels, .. } = *texels;
-    let rows: Vec<String> = texels.data.chunks_exact((width * channels) as usize).map(row).collect();
+    });
+    let rows: Vec<String> = rows.collect();
     format!(
         "// {words}\nimport {{ DataTexture }} from '../../textures/DataTexture.js';\nimport {{ ClampToEdgeWrapping, HalfFloatType, LinearFilter, \
          RGFormat }} from '../../constants.js';\n\nexport const DFG_LUT_DATA = new Uint16Array( [\n{}\n] );\n\nlet texture = \
