@@ -96,11 +96,10 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
             let shaders = Shaders::new(gpu, &package)?;
             adapter = luthier_report::Device::name(&shaders);
             let subject = subject(&package, stacks)?;
-            let mut progress = || {
+            let found = shader_cells(&subject, Some(&shaders), cases, *name, &mut || {
                 done += 1;
                 bar.set(done, total as u64);
-            };
-            let found = shader_cells(&subject, Some(&shaders), cases, *name, &mut progress);
+            });
             cells.extend(found.map_err(Failure::input)?);
         }
     }

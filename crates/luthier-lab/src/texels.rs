@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use luthier_export::{input, label, sha256};
 use luthier_lut::Image;
 use luthier_terminal::{Failure, Outcome, files, print};
@@ -19,8 +20,8 @@ pub(crate) fn run(options: &TexelsOptions) -> Outcome {
     for path in found {
         let bytes = input::image(&path).map_err(files(&path, "read"))?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let undecoded = |error| anyhow::Error::new(error).context(format!("cannot decode {}", path.display()));
-        let numbers = numbers(ending, bytes).map_err(|error| Failure::Input(undecoded(error)))?;
+        let numbers = numbers(ending, bytes).with_context(|| format!("cannot decode {}", path.display()));
+        let numbers = numbers.map_err(Failure::Input)?;
         if let Some(numbers) = numbers {
             let name = path.strip_prefix(&options.folder).unwrap_or(&path);
             let _ = writeln!(lines, "{}  {}", sha256(&numbers), label(name));

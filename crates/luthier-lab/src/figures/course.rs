@@ -1,7 +1,7 @@
 //! Figures of the course of Weidlich and Wilkie.
 
 use luthier::{Bake, MemoryStore};
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_gpu::Shape;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
@@ -160,9 +160,10 @@ fn classes(studio: &Studio, made: &mut Made) -> Outcome {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
     let package = Bake::lit().package(&materials, &MemoryStore::default())?;
-    let look = |n: usize, settings: &mut RenderSettings| settings.exposure = exposure(CLASSES[n].0);
-    let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
-    let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
+    let [baked, full] = [Form::Baked, Form::Full].map(|form| {
+        studio.rendered(&package, form, Shape::Sphere, |n, settings| settings.exposure = exposure(CLASSES[n].0))
+    });
+    let (baked, full) = (baked?, full?);
     let dark = even_sky(0.0)?;
     let lit = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, KEY))?;
     let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| settings.lights.clear())?;

@@ -119,12 +119,12 @@ impl Studio {
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
         let scene = self.gpu()?.scene(package, form)?;
-        let render = |n: usize| {
+        let images = (0..package.manifest.materials.len()).map(|n| {
             let mut settings = settings.clone();
             adjust(n, &mut settings);
             Ok(scene.render(&[n as u32], &settings)?)
-        };
-        (0..package.manifest.materials.len()).map(render).collect()
+        });
+        images.collect()
     }
 
     /// Bakes a material and renders it, linear.

@@ -96,21 +96,23 @@ impl Counted {
             if seconds > counted.slowest_s {
                 (counted.slowest, counted.slowest_s) = (name.clone(), seconds);
             }
-            let add = |to: &mut BTreeMap<String, Vec<String>>, text: &str| {
-                to.entry(without_numbers(text)).or_default().push(name.clone());
-            };
             match read {
                 Read::Whole(notes) => {
                     counted.read += 1;
                     counted.noted += usize::from(!notes.is_empty());
-                    notes.iter().for_each(|note| add(&mut counted.notes, note));
+                    notes.iter().for_each(|note| add(&mut counted.notes, note, name));
                 }
-                Read::Refused(reason) => add(&mut counted.refused, reason),
-                Read::Panicked(text) => add(&mut counted.panicked, text),
+                Read::Refused(reason) => add(&mut counted.refused, reason, name),
+                Read::Panicked(text) => add(&mut counted.panicked, text, name),
             }
         }
         counted
     }
+}
+
+/// Adds a file to those of its sentence.
+fn add(to: &mut BTreeMap<String, Vec<String>>, text: &str, file: &str) {
+    to.entry(without_numbers(text)).or_default().push(file.to_owned());
 }
 
 /// A sentence with `N` in the place of each number, so that sentences of one reason are the same.

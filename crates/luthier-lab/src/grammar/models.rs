@@ -31,18 +31,17 @@ pub(crate) fn sentence(sample: &Sample) -> Outcome<String> {
     for model in ShadingModel::ALL {
         let name = format!("`{}`", model.name());
         let of_values: Vec<Shown> = materials.iter().map(|material| of_value(material, sample.at, model)).collect();
-        let has = |shown: Shown| of_values.contains(&shown);
-        if has(Shown::Refused) {
+        if of_values.contains(&Shown::Refused) {
             refused.push(name.clone() + &some(sample, &of_values, Shown::Refused));
         }
-        if has(Shown::Not) {
+        if of_values.contains(&Shown::Not) {
             dropped.push(name.clone() + &some(sample, &of_values, Shown::Not));
         }
-        if has(Shown::WithMasking) {
+        if of_values.contains(&Shown::WithMasking) {
             partly.push(format!("{name} (with `masking = \"{}\"`)", MASKING.name()));
-        } else if let Some(form) = Form::ALL.into_iter().find(|form| has(Shown::In(*form))) {
+        } else if let Some(form) = Form::ALL.into_iter().find(|form| of_values.contains(&Shown::In(*form))) {
             partly.push(format!("{name} (in the form `{form}`)"));
-        } else if !has(Shown::Refused) && !has(Shown::Not) {
+        } else if !of_values.contains(&Shown::Refused) && !of_values.contains(&Shown::Not) {
             shown.push(name);
         }
     }
@@ -90,8 +89,9 @@ fn of_value(material: &Material, at: &str, model: ShadingModel) -> Shown {
 
 /// Whether what a model leaves out is a key, or the layer that it belongs to.
 fn hides(left_out: &str, key: &str) -> bool {
-    let layer = |key: &str| key.strip_prefix("layer.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
-    left_out == key || left_out.ends_with(".type") && !left_out.contains("film") && layer(left_out) <= layer(key)
+    let [above, layer] = [left_out, key]
+        .map(|key| key.strip_prefix("layer.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok()));
+    left_out == key || left_out.ends_with(".type") && !left_out.contains("film") && above <= layer
 }
 
 /// The values of a choice of which something holds, in brackets, unless it holds of all.

@@ -27,8 +27,8 @@ pub(crate) const HASHES: &str = "samples.txt";
 
 /// The text of that file.
 pub(crate) fn hashes(samples: &[Sample]) -> String {
-    let line = |sample: &Sample| format!("{} {}\n", sample.picture(), &sha256(sample.hashed().as_bytes())[..16]);
-    samples.iter().map(line).collect()
+    let samples = samples.iter();
+    samples.map(|sample| format!("{} {}\n", sample.picture(), &sha256(sample.hashed().as_bytes())[..16])).collect()
 }
 
 /// Renders strips into a folder: those of the keys that are asked for, or all.
@@ -39,8 +39,9 @@ pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions
     }
     std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
     let (gpu, size) = (open(options.adapter.name.as_deref())?, options.size);
-    let is_asked = |sample: &&Sample| options.keys.is_empty() || options.keys.iter().any(|key| key == sample.key);
-    let asked: Vec<&Sample> = samples.iter().filter(is_asked).collect();
+    let is_all = options.keys.is_empty();
+    let asked: Vec<&Sample> =
+        samples.iter().filter(|s| is_all || options.keys.iter().any(|key| key == s.key)).collect();
     let bar = Bar::new("pictures");
     let work = std::env::temp_dir().join(format!("luthier-grammar-{}", std::process::id()));
     std::fs::create_dir_all(&work).map_err(files(&work, "make"))?;
@@ -59,7 +60,8 @@ pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions
     let before = std::fs::read_to_string(&path).unwrap_or_default();
     // A picture that was not asked for stays that of its older sample.
     let after = hashes(samples);
-    let lines = samples.iter().zip(after.lines()).filter_map(|(sample, line)| match is_asked(&sample) {
+    let lines = samples.iter().zip(after.lines());
+    let lines = lines.filter_map(|(sample, line)| match asked.iter().any(|asked| asked.key == sample.key) {
         true => Some(line),
         false => before.lines().find(|known| known.split(' ').next() == line.split(' ').next()),
     });

@@ -84,11 +84,11 @@ enum Choice {
 impl Choice {
     /// Numbers of the stacks whose error of a quantity is looked into, the largest first.
     fn of(self, stacks: &[&Judged], quantity: usize) -> Vec<usize> {
-        let error = |number: usize| stacks[number].error(quantity);
+        let errors: Vec<f64> = stacks.iter().map(|stack| stack.error(quantity)).collect();
         let mut numbers: Vec<usize> = (0..stacks.len()).collect();
-        numbers.sort_by(|a, b| error(*b).total_cmp(&error(*a)));
+        numbers.sort_by(|a, b| errors[*b].total_cmp(&errors[*a]));
         match self {
-            Self::Beyond => numbers.retain(|number| error(*number) > LIMITS[quantity]),
+            Self::Beyond => numbers.retain(|number| errors[*number] > LIMITS[quantity]),
             Self::Worst => numbers.truncate(WORST),
         }
         numbers
@@ -140,11 +140,11 @@ fn judge_all(
     let mut chosen: Vec<usize> = (0..QUANTITIES).flat_map(|quantity| choice.of(&stacks, quantity)).collect();
     chosen.sort_unstable();
     chosen.dedup();
-    let reasons = |number: &usize| {
-        let (stack, reference) = &judged[*number];
-        Reasons::of(&subjects[*number], stack, reference, options)
-    };
-    let reasons: Vec<Reasons> = chosen.par_iter().map(reasons).collect();
+    let reasons = chosen.par_iter().map(|&number| {
+        let (stack, reference) = &judged[number];
+        Reasons::of(&subjects[number], stack, reference, options)
+    });
+    let reasons: Vec<Reasons> = reasons.collect();
     chosen.into_iter().zip(reasons).for_each(|(number, reasons)| judged[number].0.reasons = Some(reasons));
     judged.into_iter().map(|(stack, _)| stack).collect()
 }

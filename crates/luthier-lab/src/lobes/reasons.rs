@@ -1,6 +1,6 @@
 //! Why a fit is as far from the simulation as it is: the fit anew, with one thing changed at a time.
 
-use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, most_lobes, shown};
+use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, most_lobes, shown};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::references::layered_mc::JointPaths;
 use luthier_optics::stack::{Base, Stack};
@@ -69,22 +69,34 @@ impl Reasons {
     pub(super) fn of(subject: &ModelSubject, judged: &Judged, reference: &Reference, options: &LobesOptions) -> Self {
         let settings = fit_settings(options);
         let nm = subject.wavelengths_nm;
-        let fit = |settings| simulated(&subject.stack, nm, settings).fit_fewest(most_lobes(&subject.stack), EXCESS);
+        let most = most_lobes(&subject.stack);
         let lobes = judged.lobes.rows[0].lobes.len();
-        let of_lobes = |lobes: &Lobes| reference.errors(Shown::Lobes(lobes));
-        let errors = |change: Change| match change {
-            Change::Paths => Some(of_lobes(&fit(FitSettings { paths: 4 * settings.paths, ..settings }))),
-            Change::Rows => Some(of_lobes(&fit(FitSettings { rows: 2 * settings.rows - 1, ..settings }))),
-            Change::AllLobes if lobes == LOBES => None,
-            Change::AllLobes => Some(of_lobes(&simulated(&subject.stack, nm, settings).fit(LOBES))),
-            Change::OneMore => Some(of_lobes(&simulated(&subject.stack, nm, settings).fit(LOBES + 1))),
-            Change::Channels => Some((0..3).flat_map(|c| alone(subject, c, reference, settings)).collect()),
-            Change::Judge => {
-                let other = Reference::new(subject, &THETAS_DEG, judge_settings(&options.precision, 2 * JUDGE_SEED));
-                Some(other.errors(Shown::Lobes(&judged.lobes)))
-            }
-        };
-        Self { changed: Change::ALL.map(|change| (change, errors(change).map(|views| largest(&views)))).to_vec() }
+        let changed = Change::ALL.map(|change| {
+            let fitted = match change {
+                Change::Paths => {
+                    let settings = FitSettings { paths: 4 * settings.paths, ..settings };
+                    simulated(&subject.stack, nm, settings).fit_fewest(most, EXCESS)
+                }
+                Change::Rows => {
+                    let settings = FitSettings { rows: 2 * settings.rows - 1, ..settings };
+                    simulated(&subject.stack, nm, settings).fit_fewest(most, EXCESS)
+                }
+                Change::AllLobes if lobes == LOBES => return (change, None),
+                Change::AllLobes => simulated(&subject.stack, nm, settings).fit(LOBES),
+                Change::OneMore => simulated(&subject.stack, nm, settings).fit(LOBES + 1),
+                Change::Channels => {
+                    let views = (0..3).flat_map(|c| alone(subject, c, reference, settings));
+                    return (change, Some(largest(&views.collect::<Vec<_>>())));
+                }
+                Change::Judge => {
+                    let settings = judge_settings(&options.precision, 2 * JUDGE_SEED);
+                    let other = Reference::new(subject, &THETAS_DEG, settings);
+                    return (change, Some(largest(&other.errors(Shown::Lobes(&judged.lobes)))));
+                }
+            };
+            (change, Some(largest(&reference.errors(Shown::Lobes(&fitted)))))
+        });
+        Self { changed: changed.to_vec() }
     }
 
     /// The errors of a quantity with each change.

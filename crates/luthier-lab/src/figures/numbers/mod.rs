@@ -17,9 +17,8 @@ const BLOWN: f32 = 0.95;
 
 /// Mean over the middle of a picture, a share of its side wide.
 pub(crate) fn middle(image: &Image, share: f64) -> [f64; 3] {
-    let texels = || texels(image, share);
-    let count = texels().count().max(1) as f64;
-    [0, 1, 2].map(|c: usize| texels().map(|texel| f64::from(texel[c])).sum::<f64>() / count)
+    let count = texels(image, share).count().max(1) as f64;
+    [0, 1, 2].map(|c: usize| texels(image, share).map(|texel| f64::from(texel[c])).sum::<f64>() / count)
 }
 
 /// Mean luminance of a picture.

@@ -36,10 +36,13 @@ impl Sample {
     /// The texts of the files, one for each value.
     pub(crate) fn texts(&self) -> Vec<String> {
         let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-        let value = |value: &'static str| value.split_once('|').map_or(value, |(_, text)| text);
         let kind = if self.is_surface() { "surface" } else { "schema" };
-        let text = |v: &&'static str| self.text.replace('@', value(v)).replace('%', root);
-        self.values.iter().map(|v| format!("{kind} = 1\nname = \"sample\"\n{}\n", text(v))).collect()
+        let texts = self.values.iter().map(|value| {
+            let value = value.split_once('|').map_or(*value, |(_, text)| text);
+            let text = self.text.replace('@', value).replace('%', root);
+            format!("{kind} = 1\nname = \"sample\"\n{text}\n")
+        });
+        texts.collect()
     }
 
     /// Whether the file is one of a surface.
