@@ -85,10 +85,9 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
         out,
         "<article id=\"{name}\" aria-labelledby=\"page-name-{number}\">\n<div class=\"title\"><h2 id=\"page-name-{number}\">{name}</h2>"
     );
-    let beside = |i: Option<usize>| i.and_then(|i| gallery.exhibits.get(i));
     out.push_str("<nav aria-label=\"Materials\">");
-    for (other, words) in [(beside(number.checked_sub(1)), "Previous"), (beside(Some(number + 1)), "Next")] {
-        if let Some(other) = other {
+    for (other, words) in [(number.checked_sub(1), "Previous"), (Some(number + 1), "Next")] {
+        if let Some(other) = other.and_then(|other| gallery.exhibits.get(other)) {
             let other = escape(&other.name);
             let _ = write!(out, "<a href=\"#{other}\" title=\"{other}\">{words}</a>");
         }

@@ -19,11 +19,11 @@ pub(crate) enum PageSlopes {
 
 impl PageSlopes {
     pub(crate) fn of(entry: &MaterialEntry) -> Self {
-        let interfaces = || entry.records().filter(|layer| layer.kind != LayerKind::Diffuse);
-        if interfaces().next().is_none() {
+        let mut interfaces = entry.records().filter(|layer| layer.kind != LayerKind::Diffuse).peekable();
+        if interfaces.peek().is_none() {
             return Self::Fixed("The material has no interface whose slopes could change.");
         }
-        if interfaces().all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= ALPHA_MIN) {
+        if interfaces.all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= ALPHA_MIN) {
             return Self::Fixed("All interfaces of the material are smooth, and a factor leaves them so.");
         }
         if !entry.model.is_fitted() {

@@ -24,12 +24,11 @@ impl Shaders {
     /// # Errors
     /// Whatever the adapter reports.
     pub fn new(gpu: &Gpu, package: &Package) -> Outcome<Self> {
-        let scene = |form| gpu.scene(package, form);
         let has_full = package.manifest.has(Form::Full);
-        let full = has_full.then(|| scene(Form::Full)).transpose()?;
+        let full = has_full.then(|| gpu.scene(package, Form::Full)).transpose()?;
         let texts: Vec<u8> = package.shaders.iter().flat_map(|shader| shader.bytes.iter().copied()).collect();
         let identity = format!("{} {}", adapter_label(gpu), sha256(&texts));
-        Ok(Self { name: adapter_label(gpu), identity, baked: scene(Form::Baked)?, full })
+        Ok(Self { name: adapter_label(gpu), identity, baked: gpu.scene(package, Form::Baked)?, full })
     }
 
     /// The pipelines of a form, if the bake has it.
@@ -64,13 +63,13 @@ impl Device for Shaders {
 
 /// The maps of a package, for the judge.
 pub fn surface_maps(package: &Package) -> Vec<SurfaceMap> {
-    let map = |map: &Map| SurfaceMap {
-        material: map.material,
-        slot: map.slot,
-        layer: map.layer,
-        picture: map.picture.clone(),
-    };
-    package.maps.iter().map(map).collect()
+    let maps = package.maps.iter().map(|Map { material, slot, layer, picture, .. }| SurfaceMap {
+        material: *material,
+        slot: *slot,
+        layer: *layer,
+        picture: picture.clone(),
+    });
+    maps.collect()
 }
 
 /// Name, interface and driver of an adapter, as pages have them.

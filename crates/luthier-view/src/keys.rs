@@ -63,15 +63,18 @@ pub(crate) fn actions(context: &Context) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    let of_event = |event: &Event| match event {
+    context.input(|input| input.events.iter().filter_map(of_event).collect())
+}
+
+fn of_event(event: &Event) -> Option<Action> {
+    match event {
         // Modifiers as they were when the key was pressed.
         Event::Key { key, pressed: true, modifiers, .. } => KEYS
             .iter()
             .find(|(with, of, ..)| of == key && modifiers.matches_exact(*with))
             .map(|(.., action, _)| *action),
         _ => None,
-    };
-    context.input(|input| input.events.iter().filter_map(of_event).collect())
+    }
 }
 
 #[cfg(test)]

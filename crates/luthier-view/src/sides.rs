@@ -69,8 +69,7 @@ impl App {
         if let Some(subjects) = self.subjects()
             && self.bake_order.as_ref().is_none_or(|last| last.subjects != subjects)
         {
-            let second = |of: &[Option<Subject>; 2]| of[1].as_ref().map(|s| (s.way, s.material.bake.model));
-            if self.bake_order.as_ref().is_none_or(|last| second(&last.subjects) != second(&subjects)) {
+            if self.bake_order.as_ref().is_none_or(|last| second_maker(&last.subjects) != second_maker(&subjects)) {
                 // A picture of another maker is not shown under the name of this one.
                 self.canvas.sides[1].clear();
                 self.against_problems = [None, None];
@@ -82,13 +81,13 @@ impl App {
             self.bake_order = Some(order);
         }
         let Some((baked, side, other)) = &self.ready else { return };
-        let pixels = |points: f32| (points * ui.ctx().pixels_per_point()).round().max(1.0) as u32;
+        let pixels = [rect.width(), rect.height()].map(|points| points * ui.ctx().pixels_per_point());
         let view = View {
             shape: self.shape,
             orbit: self.orbit,
             look: self.look,
             backdrop: self.backdrop(ui.ctx().theme()),
-            size: [pixels(rect.width()), pixels(rect.height())],
+            size: pixels.map(|side| side.round().max(1.0) as u32),
             samples: self.settings.samples,
             environment_samples: self.settings.environment_samples,
             moving,
@@ -110,4 +109,9 @@ impl App {
             (Theme::Light, _) => LIGHT_BACKDROP,
         }
     }
+}
+
+/// What makes the picture of the second side.
+fn second_maker(subjects: &[Option<Subject>; 2]) -> Option<(Way, Option<ShadingModel>)> {
+    subjects[1].as_ref().map(|subject| (subject.way, subject.material.bake.model))
 }

@@ -62,36 +62,45 @@ impl Baker {
     pub(crate) fn start(host: Arc<dyn Host>, context: egui::Context) -> Result<Self, ViewError> {
         let (orders, results) = (Arc::new(Latest::<BakeOrder>::default()), Arc::new(Latest::default()));
         let (todo, done) = (Arc::clone(&orders), Arc::clone(&results));
-        let work = move || {
-            // A side that did not change keeps its package, and with it pipelines and samples.
-            let mut last: [Option<(Subject, Ready)>; 2] = [None, None];
-            while let Some(BakeOrder { version, subjects }) = todo.wait() {
-                let mut bake = |side: usize, subject: Option<Subject>| {
-                    let subject = subject?;
-                    if let Some((of, ready)) = &last[side]
-                        && *of == subject
-                    {
-                        return Some(Ok(ready.clone()));
-                    }
-                    let package = match subject.way {
-                        Way::Shader(form) => host.bake(&subject.material, form),
-                        Way::Simulation => host.simulated(&subject.material),
-                    };
-                    Some(package.map(|package| {
-                        let ready = Ready { package: Arc::new(package), way: subject.way };
-                        last[side] = Some((subject, ready.clone()));
-                        ready
-                    }))
-                };
-                let [first, second] = subjects;
-                let sides = [bake(0, first), bake(1, second)];
-                done.put(Baked { version, sides });
-                context.request_repaint();
-            }
-        };
-        thread::Builder::new().name("luthier baker".to_owned()).spawn(work).map_err(ViewError::Thread)?;
+        let builder = thread::Builder::new().name("luthier baker".to_owned());
+        builder.spawn(move || work(&*host, &todo, &done, &context)).map_err(ViewError::Thread)?;
         Ok(Self { orders, results })
     }
+}
+
+/// Bakes what is ordered until the orders end.
+fn work(host: &dyn Host, orders: &Latest<BakeOrder>, results: &Latest<Baked>, context: &egui::Context) {
+    // A side that did not change keeps its package, and with it pipelines and samples.
+    let mut last: [Option<(Subject, Ready)>; 2] = [None, None];
+    while let Some(BakeOrder { version, subjects }) = orders.wait() {
+        let [first, second] = subjects;
+        let [first_last, second_last] = &mut last;
+        let sides = [bake(host, first_last, first), bake(host, second_last, second)];
+        results.put(Baked { version, sides });
+        context.request_repaint();
+    }
+}
+
+fn bake(
+    host: &dyn Host,
+    last: &mut Option<(Subject, Ready)>,
+    subject: Option<Subject>,
+) -> Option<Result<Ready, String>> {
+    let subject = subject?;
+    if let Some((of, ready)) = last
+        && *of == subject
+    {
+        return Some(Ok(ready.clone()));
+    }
+    let package = match subject.way {
+        Way::Shader(form) => host.bake(&subject.material, form),
+        Way::Simulation => host.simulated(&subject.material),
+    };
+    Some(package.map(|package| {
+        let ready = Ready { package: Arc::new(package), way: subject.way };
+        *last = Some((subject, ready.clone()));
+        ready
+    }))
 }
 
 impl Drop for Baker {

@@ -87,9 +87,8 @@ impl Painter {
             gathering: Gathering::default(),
             seconds: SECONDS_AT_FIRST,
         };
-        let work = move || worker.work();
-        let thread =
-            thread::Builder::new().name("luthier painter".to_owned()).spawn(work).map_err(ViewError::Thread)?;
+        let builder = thread::Builder::new().name("luthier painter".to_owned());
+        let thread = builder.spawn(move || worker.work()).map_err(ViewError::Thread)?;
         Ok(Self { orders, painted, thread: Some(thread) })
     }
 }

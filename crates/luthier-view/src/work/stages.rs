@@ -55,8 +55,9 @@ impl Goal {
         if self.moving {
             return vec![draft];
         }
-        let full = |samples, environment_samples| Stage { scale: 1.0, samples, environment_samples };
-        let mut stages = vec![full(1, first), full(self.samples, self.environment_samples)];
+        let full = [(1, first), (self.samples, self.environment_samples)];
+        let full = full.map(|(samples, environment_samples)| Stage { scale: 1.0, samples, environment_samples });
+        let mut stages = full.to_vec();
         stages.dedup();
         if side * side * seconds * f64::from(1 + first) > PATIENCE {
             stages.insert(0, draft);

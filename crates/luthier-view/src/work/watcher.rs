@@ -23,17 +23,20 @@ impl Watcher {
     pub(crate) fn start(host: Arc<dyn Host>, context: egui::Context) -> Result<Self, ViewError> {
         let files = Arc::new(Latest::default());
         let slot = Arc::clone(&files);
-        let work = move || {
-            while !slot.is_closed() {
-                if let Some(changed) = host.changed() {
-                    slot.put(changed);
-                    context.request_repaint();
-                }
-                thread::sleep(INTERVAL);
-            }
-        };
-        thread::Builder::new().name("luthier watcher".to_owned()).spawn(work).map_err(ViewError::Thread)?;
+        let builder = thread::Builder::new().name("luthier watcher".to_owned());
+        builder.spawn(move || watch(&*host, &slot, &context)).map_err(ViewError::Thread)?;
         Ok(Self { files })
+    }
+}
+
+/// Puts changed files into the slot until it is closed.
+fn watch(host: &dyn Host, slot: &Latest<Vec<MaterialFile>>, context: &egui::Context) {
+    while !slot.is_closed() {
+        if let Some(changed) = host.changed() {
+            slot.put(changed);
+            context.request_repaint();
+        }
+        thread::sleep(INTERVAL);
     }
 }
 
