@@ -1,4 +1,4 @@
-//! Options of `eval` that some models take, and what becomes of them.
+//! Options of `eval` that only some models take.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -113,12 +113,12 @@ impl ModelInputs {
         }
     }
 
-    /// The effects of a file that a model shows, and the names of those that it does not.
+    /// The effects of a file that a model shows, and the names of the other effects.
     pub(crate) fn shown(&self, material: &Material, model: &dyn Model) -> (Effects, Vec<&'static str>) {
         if self.no_effects {
             return Default::default();
         }
-        // As in the shaders: what lies below the first interface is theirs, and a particle's normal is anybody's.
+        // As in the shaders, only some models show effects below the first interface, and any model shows the normal of a particle.
         let effects = &material.effects;
         let shading = model.info().shading();
         let is_path = shading.is_some_and(ShadingModel::is_path);
@@ -138,7 +138,7 @@ impl ModelInputs {
         (shown, dropped)
     }
 
-    /// The maps of single layers of a file that a model shows, each with its layer, and the names of those that it does not.
+    /// The maps of single layers that a model shows, each with its layer, and the names of the other maps' features.
     pub(crate) fn layer_maps(&self, material: &Material, model: &dyn Model) -> (Vec<LayerMap>, Vec<&'static str>) {
         if self.no_effects {
             return Default::default();
@@ -235,7 +235,7 @@ impl ModelInputs {
         model.with_inputs(&inputs).unwrap_or(model)
     }
 
-    /// The model as textures show it.
+    /// The model with the values of textures at the place.
     pub(crate) fn textured(sample: TextureSample, model: Box<dyn Model>) -> Box<dyn Model> {
         if sample == TextureSample::NONE { model } else { Box::new(Textured { sample, model }) }
     }

@@ -30,7 +30,7 @@ pub(crate) fn find(material: &str, out: &Path) -> Outcome<(Package, u32)> {
     Ok((package(valid(sources, false)?)?, 0))
 }
 
-/// Materials, ready to be simulated: models play no part, so that nothing is fitted and no table is baked.
+/// A package of materials for the simulation. It needs no model, so nothing is fitted and no table is baked.
 pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
     for material in &mut materials {
         material.shade_by(ShadingModel::Phong);
@@ -39,7 +39,7 @@ pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
     Ok(Bake::lit().package(&materials, store()?)?)
 }
 
-/// Reasons why a material is not simulated, each with its file and line; none where it is.
+/// Reasons why a material cannot be simulated, each with its file and line; empty if it can.
 #[cfg(feature = "view")]
 pub(crate) fn refusals(material: &Material) -> Vec<String> {
     let beyond = beyond(material).into_iter();
@@ -97,7 +97,7 @@ pub(crate) struct Picture {
 /// Samples that are added at once.
 const STEP: u32 = 32;
 
-/// Simulates a picture with so many samples of each pixel. Shows it to `so_far` whenever they have doubled.
+/// Simulates a picture with `samples` samples of each pixel. `so_far` sees it whenever their number has doubled.
 pub(crate) fn picture(
     gpu: &Gpu,
     package: &Package,

@@ -14,11 +14,11 @@ pub(crate) struct Surroundings {
     pub(crate) sha256: String,
     /// Texels across and down.
     pub(crate) size: [u32; 2],
-    /// Values below 0, which were set to it.
+    /// Number of values below 0, which were set to 0.
     pub(crate) negative: usize,
 }
 
-/// Reads a Radiance HDR or OpenEXR file. A warning tells what of it was converted, left out or set to 0.
+/// Reads a Radiance HDR or OpenEXR file. Warnings name what was converted, left out or set to 0.
 pub(crate) fn read(path: &Path) -> Outcome<Surroundings> {
     let bytes = input::image(path).map_err(files(path, "read"))?;
     let decoded = radiance::decode(&bytes).map_err(|source| unusable(path, source.into()))?;

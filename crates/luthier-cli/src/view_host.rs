@@ -23,7 +23,7 @@ use crate::simulated;
 use crate::store::store;
 use crate::watched::{State, seen, state};
 
-/// Each file that matters; `None` where it cannot be read.
+/// Each watched file with its state; `None` if it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<State>>;
 
 /// The command, as the window sees it.
@@ -67,11 +67,11 @@ impl Host for ViewHost {
         }
         let files: Vec<MaterialFile> = match find(&self.paths) {
             Ok(paths) => paths.iter().map(|path| file(path)).collect(),
-            // A folder that is being replaced: what was there is missing for now.
+            // The folder is being replaced: its files are missing for a moment.
             Err(_) => last_files.iter().map(|file| self::file(Path::new(&file.label))).collect(),
         };
         let is_new = seen.as_ref().is_none_or(|(_, last)| *last != files);
-        // Names of files may have changed, and with them what to look at.
+        // Materials may name other files now, so the list of watched files is made anew.
         *seen = Some((self::stamps(&self.paths, &files), files.clone()));
         is_new.then_some(files)
     }
@@ -108,7 +108,7 @@ impl Host for ViewHost {
         };
         let bytes =
             png::encode_rgb(screenshot.width, screenshot.height, &screenshot.rgb8).map_err(|e| e.to_string())?;
-        // Whoever waits for the file finds all of it.
+        // The file is renamed when it is complete, so that a program that waits for it never reads a part.
         let part = path.with_extension("png.part");
         let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, &path));
         match written {
@@ -236,7 +236,7 @@ mod tests {
         luthier_view::Handle::Alpha(0).set(&mut material, 0.4);
         let jobs = host.store.len();
         let rougher = host.bake(&material, Form::Baked).unwrap();
-        // Nothing new was computed: what is not used again would have been swept.
+        // Nothing new was computed, and results that this bake did not use would have been swept.
         assert_eq!(host.store.len(), jobs);
         assert_eq!(rougher.tables, first.tables);
         assert_eq!(rougher.manifest.materials[0].layers[0].alpha, 0.4);

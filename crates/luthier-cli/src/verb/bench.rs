@@ -127,7 +127,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
         let mut package = Bake::lit().package(std::slice::from_ref(&shaded), store()?)?;
         let reads_d = model.reads_some(TableKind::Distribution);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
-        // Without a table of D to read, closed or not is the same.
+        // A shader without a table of D is the same in both styles.
         let distinct = if reads_d { 3 } else { 2 };
         for (form, closed) in styles.into_iter().take(distinct).filter(|(form, _)| model.has(*form)) {
             if form == Form::Baked && closed && reads_d {

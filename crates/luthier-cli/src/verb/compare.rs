@@ -108,7 +108,7 @@ impl Subject {
             return Err(Failure::Usage(anyhow::anyhow!("the model `lobes` is fitted: leave out --no-fit")));
         }
         let shading = Shading { model: choice.model, no_fit: options.no_fit, ..Shading::default() };
-        // Both sides have the material's model, if neither names another: one that both forms have.
+        // If neither side names a model, both have the material's: one with both forms.
         let sides = [&options.a, &options.b].into_iter().filter_map(Side::shader);
         let own = sides.filter(|choice| choice.model.is_none());
         let forms: Vec<Form> = own.map(|choice| choice.form).collect();

@@ -77,7 +77,7 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     print(&format!("{} files, {bytes} bytes, into {}", files.len(), options.out.display()))
 }
 
-/// The environment that the options name, and what the manifest says of it.
+/// The environment that the options name, and its entry in the manifest.
 fn source(options: &EnvironmentOptions) -> Outcome<(Environment, Value)> {
     if let Some(sky) = options.sky {
         let environment = sky.environment(ROWS).map_err(Failure::input)?;

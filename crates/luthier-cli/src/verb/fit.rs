@@ -1,4 +1,4 @@
-//! `fit`: numbers of Granier and Heidrich's model for a lobe that values give, as a material file.
+//! `fit`: fits Granier and Heidrich's model to values of a lobe, and writes a material file.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -90,7 +90,7 @@ fn material(fitted: &Fitted, stem: &str, label: &str, samples: usize) -> String 
     out
 }
 
-/// A number with six digits.
+/// A number rounded to six digits.
 fn short(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

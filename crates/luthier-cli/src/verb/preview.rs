@@ -31,20 +31,20 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
-        // A bake on disk has albedos only where a shader reads them, or where they were asked for; blurred maps know no layer's own.
+        // Blurred maps need tables of albedos, which a bake on disk may lack, and ignore maps of single layers.
         if look.environment_samples.is_none() && (!scene.has_albedo(material)? || scene.has_layer_maps(material)?) {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
     }
     if gpu.is_software() && settings.samples > 1 {
-        // A first picture by one sample of each pixel, to look at meanwhile.
+        // A software adapter takes long: a first picture with one sample of each pixel comes before.
         let draft = RenderSettings { samples: 1, ..settings.clone() };
         write(options, format, render(&scene, &parts, &draft, "first picture")?)?;
     }
     write(options, format, render(&scene, &parts, &settings, "rendering")?)
 }
 
-/// Renders with a bar of progress.
+/// Renders, and shows progress.
 fn render(scene: &Scene, parts: &[Shown], settings: &RenderSettings, what: &str) -> Outcome<Image> {
     let bar = Bar::new(what);
     let image = scene.render_watched(parts, settings, &|done, count| {
@@ -76,7 +76,7 @@ fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
     write(options, format, picture.image)
 }
 
-/// The material that is named, which the grid alone does without.
+/// The material that is named; `None` for the grid, which needs none.
 fn named(options: &PreviewOptions, shape: ShapeName) -> Outcome<Option<&String>> {
     let text = match (&options.material, shape) {
         (None, ShapeName::Grid) => return Ok(None),

@@ -44,7 +44,7 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     }
 }
 
-/// Refuses a file whose ending is that of another language. Endings of no language say nothing.
+/// Refuses a file whose ending belongs to another language. Endings of no language are accepted.
 fn refuse_ending(path: &Path, target: Target) -> Outcome {
     let name = path.to_string_lossy().to_lowercase();
     let fitting = Target::ALL.into_iter().filter(|target| name.ends_with(&format!(".{}", target.extension())));

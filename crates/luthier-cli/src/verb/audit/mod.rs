@@ -78,8 +78,7 @@ fn read(options: &AuditOptions, bytes: &[u8]) -> Outcome<table::Table> {
 }
 
 fn cropped(image: &Image, crop: &[u32]) -> Outcome<Image> {
-    let part = <&[u32; 4]>::try_from(crop).ok();
-    let part = part.filter(|[x, y, width, height]| {
+    let part = <&[u32; 4]>::try_from(crop).ok().filter(|[x, y, width, height]| {
         [(x, width, image.width), (y, height, image.height)]
             .into_iter()
             .all(|(start, length, size)| *length > 0 && start.checked_add(*length).is_some_and(|end| end <= size))

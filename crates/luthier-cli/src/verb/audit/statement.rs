@@ -1,4 +1,4 @@
-//! A foreign table as the command line states it.
+//! A statement about a foreign table, made from the command line.
 
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
@@ -23,7 +23,7 @@ fn preset_terms(preset: &Preset) -> Vec<Term> {
     terms.collect()
 }
 
-/// The statement that the options make about a file, and the same in words.
+/// The statement that the options make about a file, as data and in words.
 pub(super) fn statement(options: &AuditOptions, table: &Table) -> Outcome<(Statement, String)> {
     let preset = options.preset;
     let preset_model = preset.map(|preset| format!("ggx-{}", preset.masking.name()));

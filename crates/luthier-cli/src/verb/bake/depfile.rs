@@ -32,14 +32,13 @@ impl Depfile {
         let written: BTreeSet<PathBuf> =
             outs.chain([path.parent().unwrap_or(Path::new(""))]).filter_map(real).collect();
         let folders = packages.iter().flat_map(|(_, options)| &options.sources.paths).filter(|path| path.is_dir());
-        // What a build writes into a folder gives it a date after the manifest's, and the build would never rest.
+        // A build that writes into a folder gives it a date after the manifest's, and would run again for ever.
         let folders = folders.filter(|folder| real(folder).is_some_and(|folder| !written.contains(&folder)));
         let (needed, text) = rule(&first.out.join(MANIFEST), files, folders.cloned().collect())?;
         Ok(Some(Self { path: path.clone(), out: first.out.clone(), needed, text }))
     }
 
-    /// Writes the rule. A manifest that stayed as it was gets a new date where something that it depends on is younger: Make would build it again
-    /// and again.
+    /// Writes the rule. A manifest that did not change gets a new date if a dependency is younger, because Make would build it again and again.
     pub(super) fn write(&self) -> Outcome {
         std::fs::write(&self.path, &self.text).map_err(files(&self.path, "write"))?;
         let manifest = self.out.join(MANIFEST);
@@ -61,7 +60,7 @@ fn real(folder: &Path) -> Option<PathBuf> {
 fn rule(manifest: &Path, files: Vec<PathBuf>, folders: Vec<PathBuf>) -> Outcome<(Vec<PathBuf>, String)> {
     let target = target(manifest)?;
     let mut names = files.iter().map(|path| dependency(path)).collect::<Outcome<Vec<_>>>()?;
-    // A name of its own: a target that is called like the folder is another one.
+    // A folder is named with `/.` at its end: under its own name it could be the target of another rule.
     names.extend(
         folders
             .iter()
@@ -94,14 +93,14 @@ fn target(path: &Path) -> Outcome<String> {
 fn dependency(path: &Path) -> Outcome<String> {
     let name = escaped(path)?;
     if name.starts_with('~') {
-        // A home folder is none where a path is absolute.
+        // Make expands `~` in relative names only.
         return escaped(&absolute(path).map_err(files(path, "find"))?);
     }
     // After a blank, Make takes these for an assignment.
     Ok(if name.starts_with(['=', '+', '?', '!']) { format!("./{name}") } else { name })
 }
 
-/// A path as both read it.
+/// A path in the spelling that Make and Ninja both read.
 fn escaped(path: &Path) -> Outcome<String> {
     let name = label(path);
     let refuse = |why: &str| Err(unreadable(&name, why));
@@ -114,7 +113,7 @@ fn escaped(path: &Path) -> Outcome<String> {
     if name.ends_with([':', ')']) {
         return refuse("Make and Ninja take a `:` or `)` at the end of a name for something else");
     }
-    // Both halve, keep or drop backslashes in front of these, each in its own way.
+    // Make and Ninja treat backslashes in front of other signs differently: each halves, keeps or drops them.
     if name.char_indices().any(|(at, c)| c == '\\' && !name[at + 1..].starts_with(is_plain)) {
         return refuse("Make and Ninja read a backslash in front of another sign, or at the end, differently");
     }

@@ -1,4 +1,4 @@
-//! Questions of build pipelines about a bake: whether it is up to date, what it would do, what it depends on, a share of it.
+//! Answers for build pipelines: whether a bake is up to date, the jobs that it would run, its files, a share of it.
 
 use std::path::PathBuf;
 
@@ -15,12 +15,12 @@ use crate::progress::BakeProgress;
 use crate::watched::all_named;
 
 impl Pipeline {
-    /// Whether anything but events is asked for.
+    /// True where the options ask for anything but events.
     pub(super) fn is_any(&self) -> bool {
         self.check || self.dry_run || self.watch || self.relock || self.depfile.is_some() || self.shard.is_some()
     }
 
-    /// Whether a bake that was made before needs no second look.
+    /// True where a stamp may end the bake early.
     pub(super) fn takes_stamp(&self) -> bool {
         !self.relock && self.shard.is_none()
     }
@@ -56,7 +56,7 @@ pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<Strin
     Ok(Done { json, text, is_stale: !stale.is_empty(), ..Done::default() })
 }
 
-/// Which jobs a bake would run, as JSON and in words.
+/// The jobs that a bake would run, as JSON and in words.
 pub(super) fn missing(missing: &Missing) -> (Value, String) {
     let jobs: Vec<_> = missing.jobs.iter().map(|(kind, count)| (kind.name(), *count)).collect();
     let counts: Value = jobs.iter().map(|(kind, count)| ((*kind).to_owned(), json!(count))).collect();

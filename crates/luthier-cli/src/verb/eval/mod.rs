@@ -36,21 +36,21 @@ use place::{add_layers, place};
 use sweep::{Sweep, sweep};
 use values::values;
 
-/// Wavelength of what is tabulated against the angle, unless another is given.
+/// Wavelength of tables against the angle, unless another is given.
 const WAVELENGTH_NM: f64 = 550.0;
 
-/// Subject of an evaluation: a model, with all that it takes, of a material.
+/// Subject of an evaluation: a model with its inputs, and a material.
 struct Subject {
     model: Box<dyn Model>,
     material: Material,
     /// Gives the model `lobes` its lobes.
     fit: Arc<Fit<'static>>,
     place: Place,
-    /// Name of the surface whose material at the place it is.
+    /// Name of the surface, if the material is the one at a place of a surface.
     surface: Option<String>,
     /// Whether effects of the file are in the place.
     has_effects: bool,
-    /// Wavelengths of the light and of what is seen, where these are two.
+    /// Wavelengths of the light and of the light seen, if these differ.
     bins_nm: Option<[f64; 2]>,
 }
 
@@ -189,7 +189,8 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
 /// Name of a surface, and the normal at the place.
 type Picked = (String, DVec3);
 
-/// The material of the file, and that of `--other`; of a surface the material at the place, with the name of the surface and the normal there.
+/// The material of the file and the material of `--other`. For a surface file, it is the material at the place, with the name of the surface and its
+/// normal there.
 fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> {
     let inputs = &options.inputs;
     let file = TomlFile::read(&options.file)?;

@@ -1,4 +1,4 @@
-//! The place of a surface that is evaluated: what options say of it, and the effects of the material file there.
+//! The place of a surface where a model is evaluated, from the options and from the effects of the material file.
 
 use glam::{DVec2, DVec3};
 use luthier_bake::{MapSource, height_normals};
@@ -68,7 +68,7 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     Ok(place)
 }
 
-/// Has the place the textures of single layers, from the maps of the file that count, and of the albedo of its base.
+/// Gives the place the values of layer textures: those of `maps`, which include the albedo of the base.
 pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelInputs, maps: &[LayerMap]) -> Outcome {
     let uv = inputs.uv().unwrap_or(DVec2::ZERO);
     let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
@@ -144,7 +144,7 @@ fn filtered(map: &Image, uv: DVec2) -> f64 {
     filtered_channel(map, uv, 0)
 }
 
-/// A channel of a map, as [`filtered`] has the first.
+/// A channel of a map that repeats, filtered as samplers do; centres of texels are at (i + 1/2) / size.
 fn filtered_channel(map: &Image, uv: DVec2, channel: usize) -> f64 {
     let axes = [(uv.x, map.width), (uv.y, map.height)].map(|(x, size)| {
         let at = (x - x.floor()) * f64::from(size) - 0.5;

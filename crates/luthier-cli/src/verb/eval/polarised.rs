@@ -58,7 +58,7 @@ pub(crate) fn polarised(material: &Material, kind: &Kind, thetas_deg: &[f64], js
     print(&text)
 }
 
-/// Why the light that a stack sends back is no sum of amplitudes.
+/// Refuses a stack whose reflected light is not a sum of amplitudes, with the reason.
 fn coherent(stack: &Stack) -> Result<(), String> {
     let [only] = stack.layers.as_slice() else {
         return Err(format!("it has {} layers, and light is not coherent across a slab", stack.layers.len()));

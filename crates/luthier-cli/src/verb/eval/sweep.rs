@@ -45,7 +45,7 @@ pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
     if options.angles.is_empty() { THETAS_DEG.to_vec() } else { options.angles.clone() }
 }
 
-/// The model with the parts that the file chooses, where it chooses some.
+/// The model with the parts that the file chooses; `None` if it chooses none.
 fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
     let (parts, reflectance) = parts(subject);
     let info = subject.model.info();
@@ -167,7 +167,7 @@ fn entry(what: Sweep, theta_deg: f64, Albedo { values, changes }: &Albedo) -> Va
     row
 }
 
-/// Numbers as a list; one number as itself.
+/// Numbers as a JSON array; a single number as itself.
 fn listed(numbers: Vec<Value>) -> Value {
     match <[Value; 1]>::try_from(numbers) {
         Ok([only]) => only,
@@ -175,7 +175,7 @@ fn listed(numbers: Vec<Value>) -> Value {
     }
 }
 
-/// A row of one value.
+/// A row with a single value.
 fn single(row: DirectionalAlbedo) -> Albedo {
     Albedo {
         values: vec![if row.is_estimate { Estimate::known(row.value, row.error) } else { Estimate::exact(row.value) }],

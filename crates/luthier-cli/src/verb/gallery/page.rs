@@ -37,7 +37,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     for folder in bakes {
         let mut package = Package::read(folder)?;
         for (number, entry) in (0..).zip(&mut package.manifest.materials) {
-            // Pages name files as they are found from here.
+            // Pages name files by their paths from the current folder.
             entry.source = label(&origin(folder, &entry.source));
             let mut exhibit = Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]);
             exhibit.section = Some(CrossSection::recorded(entry));
@@ -55,7 +55,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     deliver(&page, Some(html))
 }
 
-/// Refuses options that decide how materials are baked, or what of: they have no effect on a bake.
+/// Refuses options that decide how materials are baked, or which: they have no effect on a bake that is read.
 fn refuse_for_bakes(options: &GalleryOptions, bake: &Path) -> Outcome {
     let shading = &options.shading;
     let asked = [
@@ -88,7 +88,7 @@ fn title(options: &GalleryOptions) -> String {
     .unwrap_or_else(|| "Materials".to_owned())
 }
 
-/// Says which parts of materials the page does not show.
+/// Warns about parts of materials that the page does not show.
 fn left_out(gallery: &Gallery) {
     for manifest in gallery.packages.iter().map(|package| &package.manifest) {
         for surface in &manifest.surfaces {
@@ -109,7 +109,7 @@ fn left_out(gallery: &Gallery) {
     }
 }
 
-/// Adds materials by their own models, and by those to compare.
+/// Adds materials with their own models, and with the models to compare.
 fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) -> Outcome {
     let costs = CostTable::shipped();
     let first = gallery.exhibits.len();
@@ -154,7 +154,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
     Ok(())
 }
 
-/// A bake for the page, which emits its own shaders: with the tables of blurred surroundings.
+/// A bake for the page, with the tables of blurred surroundings and without shaders, which the page emits itself.
 fn package(materials: &[Material]) -> Outcome<Package> {
     let bake = Bake { targets: Vec::new(), ..Bake::default() };
     Ok(bake.package(&lit(materials), store()?)?)
@@ -171,7 +171,7 @@ fn look(gallery: &Gallery, number: u32, material: &Material, costs: &CostTable) 
     Look { cycles: cycles.collect(), ..Look::new(gallery.packages.len(), number) }
 }
 
-/// True where a model other than the material's own was asked for. Where none was, it is `belcour`, and `elek` for a material of that.
+/// True where a model is to be compared with the material's own. If none is asked for, that is `belcour`, or `elek` for a material of `belcour`.
 fn is_wanted(material: &Material, model: ShadingModel, asked: &[ShadingModel]) -> bool {
     let other = if material.model() == ShadingModel::Belcour { ShadingModel::Elek } else { ShadingModel::Belcour };
     let asked = if asked.is_empty() { &[other] } else { asked };

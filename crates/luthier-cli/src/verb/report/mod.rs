@@ -48,7 +48,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let mut report = judge(&subject, judging, &settings).map_err(Failure::input)?;
     drop(bar);
     for material in &mut report.materials {
-        // Reports name files as they are found from here.
+        // Reports name files by their paths from the current folder.
         material.source = label(&origin(&options.out, &material.source));
     }
 
@@ -126,7 +126,7 @@ fn asked(options: &ReportOptions) -> Asked {
     }
 }
 
-/// The materials of a bake, read again from their files: the judge takes nothing on trust.
+/// The materials of a bake, read again from their files, so that the judge does not rely on the baker.
 fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
     manifest
         .materials
@@ -147,7 +147,7 @@ fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
             if !is_baked_as(&mut material, entry)? {
                 return Err(changed(&file));
             }
-            // A scene may have left out parts of a material: the tables are of what is left.
+            // The choice of a scene may leave out parts of a material; its tables then describe the rest.
             let choice = manifest.choice.as_ref().and_then(|choice| choice.materials.get(number));
             let left_out =
                 choice.and_then(|c| c.tried.get(c.chosen)).map(|c| c.left_out.as_slice()).unwrap_or_default();
@@ -166,7 +166,7 @@ fn changed(file: &Path) -> Failure {
 #[cfg(feature = "gpu")]
 type Runner = luthier_terminal::Shaders;
 
-/// The runner of a build that runs no shaders.
+/// Stands in for a device in a build without the feature `gpu`.
 #[cfg(not(feature = "gpu"))]
 type Runner = NoShaders;
 

@@ -14,13 +14,13 @@ use serde_json::json;
 use crate::cli::ReportOptions;
 use crate::store::store;
 
-/// The pictures of a material, kept. The revision changes whenever the renderer draws other ones.
+/// The pictures of a material in the store. Raise the revision when the renderer draws other ones.
 const PICTURES: Function = Function { kind: "picture", revision: 1 };
 
 /// The errors of the pictures, and the pictures with their captions.
 type Drawn = (Option<PictureErrors>, Vec<(String, Vec<u8>)>);
 
-/// Directions of the environment for each lobe and sample: the form without tables has no albedo to weigh blurred maps with.
+/// Directions of the environment for each lobe and sample. Blurred maps are no choice, because the form `full` has no tables of albedos.
 const ENVIRONMENT_SAMPLES: u32 = 16;
 
 /// Samples along each side of a pixel.

@@ -36,7 +36,7 @@ fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Materia
     Ok(if options.shading.no_fit { director.without_fits() } else { director })
 }
 
-/// Bakes a scene, or prints what budgets would choose for some.
+/// Bakes a scene, or prints the choices of several budgets for scenes.
 pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     let limits = options.limits.options();
     if !options.emission.form.is_empty() {
@@ -87,7 +87,7 @@ pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     }
 }
 
-/// A scene without models is an input that is not usable; what its materials say is theirs.
+/// The failure of a choice: a scene without models is an unusable input, and other errors keep their kind.
 fn failure(error: SceneFailure) -> Failure {
     match error {
         SceneFailure::Export(error) => error.into(),
@@ -119,7 +119,7 @@ fn summary(made: &Made) -> Value {
     json!({ "texel_bytes": made.bytes(), "cycles": made.cycles(), "choice": made.choice })
 }
 
-/// A scene and its materials; or all diagnostics and a failure.
+/// A scene and its materials. If they cannot be used, all diagnostics are printed and the result is a failure.
 fn read(file: TomlFile, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
     let SceneSource { label, text, parsed, materials, .. } = SceneSource::of(file);
     print_diagnostics(parsed.as_ref().err().into_iter().flatten(), &text);

@@ -70,8 +70,7 @@ fn section(scene: &Scene, budgets: &[f64], steps: &[Made]) -> String {
 /// Lines on the budgets that a material does not hold, and the direction of the largest error.
 fn misses(budgets: &[f64], steps: &[Made], number: usize) -> String {
     let choices = budgets.iter().zip(steps).map(|(budget, made)| (budget, &made.choice.materials[number]));
-    let missed = choices.filter(|(_, choice)| !choice.holds());
-    let lines = missed.map(|(budget, choice)| {
+    let lines = choices.filter(|(_, choice)| !choice.holds()).map(|(budget, choice)| {
         let own = choice.candidate();
         let place = own.error.at.map_or_else(String::new, |at| format!(": {at}"));
         format!(
@@ -84,7 +83,7 @@ fn misses(budgets: &[f64], steps: &[Made], number: usize) -> String {
     lines.collect()
 }
 
-/// The models in use and how many materials have each.
+/// The models in use, each with its number of materials.
 fn models(made: &Made) -> String {
     let mut counts: Vec<(String, usize)> = Vec::new();
     for choice in &made.choice.materials {

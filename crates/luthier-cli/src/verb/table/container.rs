@@ -8,7 +8,7 @@ use luthier_terminal::{Failure, Outcome};
 use luthier_texture::ktx2::{Levels, encode_levels};
 use luthier_texture::{Metadata, Texture, exr, png};
 
-/// Container and texels of a file by its ending, where no engine decides: KTX2 and raw texels are half floats, EXR is floats.
+/// Container and texel type of a file by its ending, if no engine decides: half floats for KTX2 and raw texels, floats for EXR.
 pub(super) fn by_ending(path: &Path) -> Outcome<(Container, Stored)> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("ktx2") => Ok((Container::Ktx2, Stored::Half)),
@@ -21,7 +21,7 @@ pub(super) fn by_ending(path: &Path) -> Outcome<(Container, Stored)> {
     }
 }
 
-/// Refuses a file whose ending is not that of the container that the engine of a preset reads.
+/// Refuses a file whose ending does not fit the container that the engine of a preset reads.
 pub(super) fn ending_of(preset: &Preset, path: &Path) -> Outcome {
     let Preset { name, container, .. } = preset;
     let (ending, what) = match container {
@@ -93,7 +93,7 @@ fn raw(texels: &Image, stored: Stored) -> Outcome<Vec<u8>> {
     })
 }
 
-/// The image with four channels; those that it has not are 0.
+/// The image with four channels; missing ones are 0.
 fn rgba(texels: &Image) -> Image {
     let data = texels.texels().flat_map(|texel| (0..4).map(move |c| texel.get(c).copied().unwrap_or(0.0))).collect();
     Image { channels: 4, data, ..texels.clone() }
