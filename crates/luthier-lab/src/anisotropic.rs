@@ -1,4 +1,4 @@
-//! `anisotropic`: how near lobes of anisotropic stacks come to the simulation between the azimuths of their rows.
+//! `anisotropic`: errors of lobes of anisotropic stacks, against the simulation, between the azimuths of their rows.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -17,10 +17,10 @@ use crate::lobes::{JUDGE_SEED, anisotropic, judge_settings, of, table};
 /// Angles of the judge against the normal, degrees.
 const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 
-/// Angles from the tangent of the stack, degrees: no azimuth of rows.
+/// Angles from the tangent of the stack, degrees. None is an azimuth of rows.
 const PHIS_DEG: [f64; 3] = [20.0, 50.0, 70.0];
 
-/// A model of a paper beside the lobes.
+/// A model of a paper for comparison.
 const BESIDE: &str = "yamaguchi";
 
 /// A stack, fitted and judged.
@@ -58,8 +58,7 @@ pub(crate) fn run(options: &AnisotropicOptions) -> Outcome {
         .iter()
         .map(|material| of(material, false))
         .filter(|subject| subject.stack.layers.iter().any(|layer| layer.surface.alpha_x != layer.surface.alpha_y));
-    let random = (0..u64::from(options.random)).map(anisotropic);
-    let subjects: Vec<ModelSubject> = of_files.chain(random).collect();
+    let subjects: Vec<ModelSubject> = of_files.chain((0..u64::from(options.random)).map(anisotropic)).collect();
     let bar = Bar::new("fitting and judging");
     let mut judged = Vec::new();
     for subject in &subjects {

@@ -1,4 +1,4 @@
-//! `environment`: what pictures show of surroundings with detail, against sums over every texel of these.
+//! `environment`: pictures under detailed surroundings, against sums over every texel of these.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -14,10 +14,10 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 
 use crate::cli::{EnvironmentOptions, call};
 
-/// Models whose pictures stand beside those of lobes.
+/// Models that are measured in addition to `lobes`.
 const PAPERS: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::Belcour];
 
-/// Half the side of what a pixel sees: one place.
+/// Half the side of the square that a pixel sees. It is so small that a pixel shows one place.
 const HALF_EXTENT: f32 = 1e-4;
 
 /// Surroundings that are measured: the hardest.
@@ -72,7 +72,7 @@ struct Point {
     wo: DVec3,
 }
 
-/// Places under the middles of the pixels of a picture with so many along a side.
+/// Places under the middles of the pixels of a square picture of `size` pixels a side.
 fn points(size: u32) -> Vec<Point> {
     let camera = Shape::Sphere.camera();
     let (eye, half) = (f64::from(camera.eye[2]), f64::from(camera.half_extent));
@@ -113,13 +113,13 @@ fn texels(skies: &[Arc<Environment>]) -> Vec<Texel> {
     texels
 }
 
-/// Radiance of all places in pictures: with the samples of a pixel that pictures have by default, and with one.
+/// Radiance of all places in pictures, with the default samples of a pixel and with one.
 struct Shown {
     of_all: Vec<[f64; 3]>,
     of_one: Vec<[f64; 3]>,
 }
 
-/// Radiance of all places under each sky: as pictures show it, and as a sum over all texels.
+/// Radiance of all places under each sky, in pictures and as a sum over all texels.
 struct Pictures {
     alpha: f64,
     shown: Vec<Shown>,
@@ -157,7 +157,7 @@ impl Pictures {
     }
 }
 
-/// Colours of points in pictures of a pixel each.
+/// Colours of points, each rendered as a picture of one pixel.
 fn colors(scene: &Scene, points: &[Point], settings: &RenderSettings) -> Outcome<Vec<[f64; 3]>> {
     let colors = points.iter().map(|point| {
         let target = point.normal.as_vec3().to_array();

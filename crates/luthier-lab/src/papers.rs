@@ -16,8 +16,7 @@ use luthier_terminal::{Failure, Outcome, deliver, valid};
 
 use crate::cli::{PapersOptions, call};
 
-/// Two layers each: a coat over a metal and over a diffuse base. Where the materials at hand have neither, the first with two layers
-/// stands in.
+/// Materials of two layers: a coat over a metal, and a coat over a diffuse base. If there are none, the first material of two layers is taken.
 const MATERIALS: [&str; 2] = ["car-paint", "red-lacquer"];
 
 /// The goal: shares of the form `full` and of Phong's model in inverse throughput, at this error.
@@ -96,12 +95,12 @@ pub(crate) fn of_tables(materials: &[Material]) -> Outcome<Vec<&Material>> {
     Ok(chosen)
 }
 
-/// A material as the tables have it by Elek's model, and by Phong's.
+/// A material with the settings of the papers' tables, by Elek's model and by Phong's.
 pub(crate) fn of_models(material: &Material) -> [Material; 2] {
     [ShadingModel::Elek, ShadingModel::Phong].map(|model| {
         let mut material = material.clone();
         material.bake.model = Some(model);
-        // Both forms are to mean the same.
+        // Both forms must have the same colour.
         material.bake.color = Some(ColorMode::ThreeWavelengths);
         // Elek's tables (section 3.1): rows over the cosine, D over an angle and the slope parameter.
         material.bake.fresnel = FresnelSettings {
@@ -228,7 +227,7 @@ const MEASURES: [Measure; 3] = [
 /// Counts of one family: the two harnesses, and all kernels of all cases in order.
 type FamilyCounts = (Family, Counts, Counts, Vec<Counts>);
 
-/// The tables beside those of the papers.
+/// The tables of this run, with those of the papers.
 fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
     out.push_str(
         "\n## Elek's Table 1 and section 3.4.2 of the course\n\n\
@@ -281,7 +280,7 @@ fn command(options: &PapersOptions) -> String {
     words.join(" ")
 }
 
-/// The variant of a role that is alike in its constants.
+/// The variant of a role with the same kind of constants.
 fn partner(case: &PaperCase, i: usize, role: Role) -> usize {
     let constant = case.variants[i].constant;
     case.variants.iter().position(|v| v.role == role && v.constant == constant).unwrap_or(i)
@@ -293,13 +292,13 @@ fn cost(measure: &Measure, (_, bare, framed, kernels): &FamilyCounts, first: usi
     if measure.net { all - (measure.count)(harness) } else { all }
 }
 
-/// The cost of a variant over that of another.
+/// The ratio of the costs of two variants.
 fn ratio(measure: &Measure, family: &FamilyCounts, first: usize, pair: [usize; 2]) -> f64 {
     let [own, other] = pair.map(|i| cost(measure, family, first, i) as f64);
     own / other
 }
 
-/// The goal against what was found.
+/// Compares the costs and errors with the goal.
 fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCounts]) {
     let (of_full, of_phong, error) = GOAL;
     let _ = writeln!(

@@ -10,7 +10,7 @@ use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, 
 
 use crate::cli::{PARITY_PAIRS, ParityOptions, call};
 
-/// Least slope parameter of the polished variants: that of layer records.
+/// Least slope parameter of the polished variants, as in layer records.
 const ALPHA_MIN: f64 = luthier_layers::layers::ALPHA_MIN;
 
 /// Compares every shader with its f64 twin.

@@ -1,4 +1,4 @@
-//! `texels`: hashes of the numbers that the files of bakes hold, whatever their containers are like.
+//! `texels`: hashes of the numbers in files of bakes, independent of their containers.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -30,8 +30,8 @@ pub(crate) fn run(options: &TexelsOptions) -> Outcome {
     print(&lines)
 }
 
-/// The numbers that a file holds: of a texture its format, its size and the bytes that a device gets, of an image its size and its values, of a
-/// material buffer its words. `None` for files of other kinds.
+/// The numbers in a file: format, size and device bytes of a texture, size and values of an image, words of a material buffer. `None` for other
+/// files.
 fn numbers(ending: &str, bytes: Vec<u8>) -> Result<Option<Vec<u8>>, TextureError> {
     Ok(Some(match ending {
         "ktx2" => {
@@ -52,7 +52,7 @@ fn values(image: &Image) -> Vec<u8> {
     bytes
 }
 
-/// The files below a folder but for hidden ones.
+/// The files below a folder, without hidden ones.
 fn below(folder: &Path, found: &mut Vec<PathBuf>) -> Outcome {
     for entry in std::fs::read_dir(folder).map_err(files(folder, "list"))? {
         let path = entry.map_err(files(folder, "list"))?.path();

@@ -132,7 +132,7 @@ fn page(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> String {
             [values[2], values[3]].map(|value| value.zip(values[0]).map_or(f64::NAN, |(value, full)| value / full));
         let _ = writeln!(page, "| {name} | {} | {precomputed:.2} | {phong:.2} |", cells.join(" | "));
     }
-    // A GPU takes picoseconds of its whole width.
+    // On a whole GPU, an evaluation takes picoseconds.
     let (scale, unit) = if rows.iter().all(|row| row.spread.median < 0.5) { (1e3, "ps") } else { (1.0, "ns") };
     page.push_str(
         "\nHere are times of one evaluation by the clock of the device: the time of a run over its evaluations, which the device makes side by side. An evaluation is what a pixel of the \
@@ -166,7 +166,7 @@ fn page(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> String {
     page
 }
 
-/// How many times as fast a row is as the row of a role of its material, with constants or without as it is.
+/// Speed of a row over the speed of a role's row, for the same material and the same kind of constants.
 fn over(rows: &[Time], row: &Time, role: Role) -> f64 {
     let mut alike = rows.iter().filter(|r| r.material == row.material && r.constant == row.constant);
     alike.find(|r| r.role == role).map_or(f64::NAN, |r| r.net() / row.net())

@@ -1,4 +1,4 @@
-//! `varying`: how near lobes come to the simulation between the nodes over what a texture scales.
+//! `varying`: errors of lobes against the simulation between the nodes of a factor that a texture scales.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -108,7 +108,7 @@ fn words(varying: Varying) -> &'static str {
     }
 }
 
-/// The fractional number of a node of what varies, for one of eight nodes.
+/// The fractional number of a node of `varying`, for a number among eight nodes.
 fn place(varying: Varying, of_eight: f64) -> f64 {
     match varying {
         Varying::Alpha | Varying::Patina(_) => of_eight,
@@ -131,7 +131,7 @@ const FILM_NM: [f64; 2] = [500.0, 100.0];
 /// Index of the film: titanium dioxide.
 const FILM_INDEX: f64 = 2.4;
 
-/// An error of a stack from those of its views.
+/// An error of a stack from the errors of its views.
 type Worst = fn(&[ViewError]) -> f64;
 
 /// Titles of the tables, and the error that they show.

@@ -132,7 +132,7 @@ macro_rules! of_class {
     };
 }
 
-/// A material of the course for each class, a to h: name, label, text.
+/// Name, label and text of a material of the course for each class, a to h.
 const CLASSES: [(&str, &str, &str); 8] = [
     of_class!("ceramic-glaze", "glaze"),
     of_class!("red-lacquer", "lacquer"),
@@ -144,7 +144,7 @@ const CLASSES: [(&str, &str, &str); 8] = [
     of_class!("house-paint", "house"),
 ];
 
-/// Exposure of a material: bright rough metals are whiter than the light is meant for.
+/// Exposure of a material. Bright rough metals would be blown out under the usual one.
 pub(super) fn exposure(material: &str) -> f32 {
     match material {
         "silver-paint" => 0.35,
@@ -191,12 +191,12 @@ pub(super) fn by_course(name: &str, layers: &str) -> Outcome<Material> {
     layered(name, layers, ShadingModel::WeidlichWilkie)
 }
 
-/// White under a yellow varnish. The absorption is ours.
 /// Materials by the course's model, with numbers in their names.
 pub(super) fn numbered(stem: &str, all: impl IntoIterator<Item = String>) -> Outcome<Vec<Material>> {
     all.into_iter().enumerate().map(|(i, layers)| by_course(&format!("{stem}-{i}"), &layers)).collect()
 }
 
+/// White under a yellow varnish. The course does not state the absorption.
 fn varnished(thickness: f64) -> String {
     format!(
         "[[layer]]

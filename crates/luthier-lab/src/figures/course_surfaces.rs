@@ -179,7 +179,7 @@ pub(super) fn square(studio: &Studio) -> Outcome<RenderSettings> {
 /// Places of the unit square in which shares are counted, along each side.
 const COUNTED: u32 = 512;
 
-/// Share of each map of a surface: the cells that cover it, those of its switches, and the particles.
+/// Shares of a surface that its maps cover: its cells, the cells of its switches, its particles.
 fn shares(surface: &SurfaceEntry) -> Vec<f64> {
     let mut numbered = surface.clone();
     let SurfaceEntry { cells, switches, glitter, .. } = &mut numbered;
@@ -256,7 +256,7 @@ fn maps(studio: &Studio, made: &mut Made) -> Outcome {
     Ok(())
 }
 
-/// Of each pixel whether two pictures differ there, by more than rounding.
+/// True for each pixel in which two pictures differ by more than rounding.
 fn differ(a: &Image, b: &Image) -> Vec<bool> {
     a.texels().zip(b.texels()).map(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3)).collect()
 }

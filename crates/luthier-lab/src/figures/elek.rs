@@ -205,7 +205,7 @@ fn metal_width(picture: &Image) -> f64 {
     spot_of(picture, |[red, _, blue]| red - KEY_RED_OVER_BLUE * blue).share.sqrt()
 }
 
-/// Slope parameters at which tables are compared, and which of them is that of figure 4.
+/// Slope parameters at which tables are compared, and the number of the one in figure 4.
 const SHARP: [f64; 6] = [0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125];
 const SHOWN: usize = 2;
 

@@ -119,7 +119,7 @@ fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let mut rows = [Vec::new(), Vec::new()];
     let mut noises = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
-        // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
+        // A pixel always has the same width at the eye. The picture of a far ball has fewer pixels, and is enlarged.
         let size = (studio.size >> step).max(8);
         let [pictures, means] = [1, MANY_RAYS].map(|samples| {
             studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| {
@@ -137,7 +137,7 @@ fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
         let (Some(smooth), Some(mean_smooth)) = (pictures.last().cloned(), means.last()) else { continue };
         let rows = rows.iter_mut().zip(&mut noises).zip(["scaled", "plain"]);
         for (((row, noises), what), (image, mean)) in rows.zip(pictures.into_iter().zip(&means)) {
-            // One ray without the noise of flakes: the smooth paint with what flakes change of it on the mean.
+            // One ray without the noise of flakes: the smooth paint, plus the mean change that flakes make.
             let mut expected = smooth.clone();
             for (value, (mean, smooth)) in expected.data.iter_mut().zip(mean.data.iter().zip(&mean_smooth.data)) {
                 *value += mean - smooth;
@@ -205,7 +205,7 @@ pub(super) fn from_above(studio: &Studio, package: &Package) -> Outcome<Vec<Imag
     studio.rendered(package, Form::Baked, Shape::Plane, |_, settings| *settings = square.clone())
 }
 
-/// How dark the map of the patina is in each pixel of the middle half of a level square, row by row.
+/// Darkness of the patina's map in each pixel of the middle half of a level square, row by row.
 fn darkness(package: &Package, square: Option<&Image>) -> Vec<f64> {
     let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| map.picture.image());
     let (Some(map), Some(square)) = (map, square) else { return Vec::new() };

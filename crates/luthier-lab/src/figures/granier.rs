@@ -233,7 +233,7 @@ struct Coating {
     thickness_nm: [f64; 2],
     /// Phong's exponents of the boundaries.
     exponents: [f64; 2],
-    /// Weight of the diffuse part; that of the specular one is 1.
+    /// Weight of the diffuse part. The weight of the specular part is 1.
     diffuse: f64,
     /// Lean of the inner boundary.
     tilt_deg: f64,
@@ -292,7 +292,7 @@ fn diffuse(studio: &Studio, made: &mut Made) -> Outcome {
     let pictures = studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
     for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
-        // The specular part is the same in both: what is left is the diffuse one.
+        // The specular part is equal in both, so the difference is the diffuse part.
         if let [lit, unlit] = pair {
             let image = less(lit, unlit);
             made.measure(format!("{name}, {min} to {max} nm: spread of the channels"), spread(&image));
@@ -387,7 +387,7 @@ fn correlated(studio: &Studio, made: &mut Made) -> Outcome {
 /// Thickness at which the beams of a film of index 1.6 are in phase at 80 degrees and 525 nm: 525 / (2 1.6 0.788).
 const IN_PHASE_NM: f64 = 208.0;
 
-/// Index of the film of figure 6, and for want of others of figure 3.
+/// Index of the film of figure 6, used for figure 3, too, which states none.
 const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
 
 fn combined(studio: &Studio, made: &mut Made) -> Outcome {
@@ -426,8 +426,7 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
 
     let green = Coating { name: "green", ior: [1.6; 3], thickness_nm: [100.0; 2], frequency: 1, ..COATING };
     let stack = green.material()?.stack;
-    let over_thickness = (0..=350_u32).map(|i| (f64::from(i) * 2.0, f64::from(i) * 2.0, 0.0));
-    let over_thickness = curves(&stack, over_thickness);
+    let over_thickness = curves(&stack, (0..=350_u32).map(|i| (f64::from(i) * 2.0, f64::from(i) * 2.0, 0.0)));
     let over_angle = (0..=178_u32).map(|i| (f64::from(i) * 0.5, IN_PHASE_NM, (f64::from(i) * 0.5).to_radians()));
     let over_angle = curves(&stack, over_angle);
     for (what, curves) in [("at the normal, over thickness", &over_thickness), ("at 208 nm, over angle", &over_angle)] {
@@ -458,8 +457,7 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
     Ok(())
 }
 
-/// A film in air, `waves` wavelengths of vacuum thick.
-/// Reflectances in the mirror direction by the model and by Airy's formula, at places on an axis with a thickness in nm and an angle.
+/// Reflectances in the mirror direction by the model and by Airy's formula. Each point has a place on the axis, a thickness in nm and an angle.
 fn curves(stack: &Stack, points: impl Iterator<Item = (f64, f64, f64)>) -> [Curve; 2] {
     let (mut beams, mut exact) = (Vec::new(), Vec::new());
     for (x, thickness_nm, theta) in points {
@@ -479,6 +477,7 @@ fn curves(stack: &Stack, points: impl Iterator<Item = (f64, f64, f64)>) -> [Curv
     })
 }
 
+/// A film in air, `waves` wavelengths of vacuum thick.
 fn film(ior: f64, waves: f64, exponent: f64) -> Film {
     Film { eta: ior, f0: None, waves_inside: Some(ior * waves), inner_normal: DVec3::Z, exponents: [exponent; 2] }
 }
@@ -493,7 +492,7 @@ fn spread(image: &Image) -> f64 {
     spreads.sum::<f64>() / image.texel_count() as f64
 }
 
-/// The light of a picture that another has not.
+/// The light that a picture has in excess of another.
 fn less(picture: &Image, other: &Image) -> Image {
     let mut rest = picture.clone();
     rest.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = (*a - b).max(0.0));

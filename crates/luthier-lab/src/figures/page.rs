@@ -41,7 +41,7 @@ pub(crate) fn json(adapter: Option<&str>, made: &[Done]) -> Value {
     })
 }
 
-/// The manifest that an earlier run left; `None` where there is none of this version.
+/// The manifest of an earlier run; `None` if there is none of this version.
 pub(crate) fn read(path: &Path) -> Outcome<Option<Value>> {
     let text = match std::fs::read_to_string(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),

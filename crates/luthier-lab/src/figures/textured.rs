@@ -323,7 +323,7 @@ fn bumps(studio: &Studio, made: &mut Made) -> Outcome {
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
         made.errors(&format!("{label} against flat"), picture, &shown[0])?;
     }
-    // Under a varnish that lets nothing through, its own reflection is left.
+    // An opaque varnish leaves only its own reflection.
     let mut alone = Vec::new();
     for (label, coat, base) in &all[..3] {
         let layers = varnished(coat, base).replace("thickness_um = 0.3", "thickness_um = 1\nabsorption_per_um = 100");

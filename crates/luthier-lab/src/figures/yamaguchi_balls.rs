@@ -76,7 +76,7 @@ const BALLS: [(&str, [f64; 3], [f64; 3]); 5] = [
     ("e crossed", [0.25, 0.06, 90.0], [0.45, 0.12, 0.0]),
 ];
 
-/// A coat of index 1.49 on gold (figure 1 (e)), of some slopes, with what else the file says of the coat. Wavelengths are labels, see
+/// A coat of index 1.49 on gold (figure 1 (e)) with slopes, and with further keys of the coat. Wavelengths are labels, see
 /// `materials/papers/yamaguchi-brushed.toml`.
 pub(super) fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
     let [coat, base] = [coat, base].map(|[x, y, turn]| format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}"));

@@ -42,7 +42,7 @@ pub(super) struct Counted {
     pub(super) noted: usize,
     /// Files of each note.
     pub(super) notes: BTreeMap<String, Vec<String>>,
-    /// Files of each reason, whose numbers are `N`.
+    /// Files by reason, with `N` in place of numbers.
     pub(super) refused: BTreeMap<String, Vec<String>>,
     /// Files of each panic.
     pub(super) panicked: BTreeMap<String, Vec<String>>,
@@ -66,7 +66,7 @@ impl Data {
         std::fs::write(path, text + "\n").map_err(files(path, "write"))
     }
 
-    /// The collection of a name, which is added in its place.
+    /// The collection of a name. A new one is added at its place in the order.
     pub(super) fn collection(&mut self, name: &str) -> &mut Collection {
         let at = self.collections.binary_search_by(|collection| collection.name.as_str().cmp(name));
         let at = at.unwrap_or_else(|at| {

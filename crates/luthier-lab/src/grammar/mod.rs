@@ -20,7 +20,7 @@ pub(crate) fn run(options: &GrammarOptions) -> Outcome {
     deliver(&page::write(&entries)?, options.destination.output.as_deref())
 }
 
-/// A table, and what there is to see of its keys.
+/// A table, with the sights of its keys.
 pub(crate) struct Entry {
     table: TableReference,
     sights: Vec<Sight>,
@@ -106,7 +106,7 @@ fn is_shared(earlier: &TableReference, table: &TableReference, key: &KeyReferenc
 mod tests {
     use super::*;
 
-    /// Every key that is new to the grammar has to say what it looks like.
+    /// Every new key of the grammar needs a sample, or a reason why there is nothing to see.
     #[test]
     fn a_key_without_a_sample_is_told() {
         let all = samples();

@@ -66,8 +66,8 @@ pub(crate) fn of(material: &Material, is_twin: bool) -> ModelSubject {
     ModelSubject { name: material.name.clone(), stack, wavelengths_nm: material.bake.wavelengths_nm() }
 }
 
-/// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has an index below
-/// that of what is above it.
+/// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has a lower index than the
+/// medium above it.
 pub(crate) fn random(seed: u64) -> ModelSubject {
     let mut draw = Draw(SplitMix64::new(seed.wrapping_mul(0x5851_f42d_4c95_7f2d)));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
@@ -141,7 +141,7 @@ pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
     ModelSubject { name, stack: Stack { exterior: Ior::vacuum(), layers }, wavelengths_nm: WAVELENGTHS_NM }
 }
 
-/// An index that does not hang on the wavelength.
+/// An index that does not depend on the wavelength.
 fn constant(n: f64) -> Ior {
     Ior::constant(n, 0.0).unwrap_or_else(|_| Ior::vacuum())
 }

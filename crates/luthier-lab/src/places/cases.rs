@@ -1,4 +1,4 @@
-//! Kinds of places, and what the shader and its twin are told of each.
+//! Kinds of places, with the statements for the shader and the place of its twin.
 
 use std::f64::consts::TAU;
 
@@ -63,7 +63,7 @@ const GLITTER: &str = "[effects.glitter]\nseed = 9\nfrequency = 60\nfilled = 0.5
 const DYED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n[[layer]]\ntype = \"diffuse\"\nreradiation = \"dye.csv\"\n";
 const DYE: &str = include_str!("../../maps/dye.csv");
 
-/// For the end of [`COATED`]: maps of the metal alone.
+/// Maps of the metal alone, to follow [`COATED`].
 const OF_THE_METAL: &str = "maps = { bumps = \"bumps.png\", alpha = \"thickness.png\" }\n";
 const CROSSED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha_x = 0.08\nalpha_y = 0.3\nmaps = { tangent = \"circles.png\" }\n\
     [[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.35\nalpha_y = 0.12\nmaps = { tangent = \"rays.png\", alpha_x = \"thickness.png\" }\n";
@@ -255,7 +255,7 @@ fn slopes(_: &[Material], n: usize) -> Spot {
 }
 
 fn tangents(_: &[Material], n: usize) -> Spot {
-    // Any texels, of which the directions are the halved angles.
+    // Any texels will do: the directions are their halved angles.
     let texels = [[0, 1], [1, 2]].map(|[a, b]: [usize; 2]| [part(n, STEPS[a]), part(n, STEPS[b])]);
     let alpha_factors = [factor(n, 0.4, 2.4), factor(n, 1.5, 0.5)];
     let own = texels.map(|texel| LayerSample { tangent: LayerSample::tangent_of(texel), ..LayerSample::NONE });
@@ -277,7 +277,7 @@ fn all_flakes(material: &Material) -> Flakes {
 fn flakes(materials: &[Material], n: usize) -> Spot {
     let flakes = all_flakes(&materials[0]);
     let cells = flakes.tiling * f64::from(flakes.count);
-    // In the middle of a cell, whose edges single precision may miss.
+    // In the middle of a cell, because single precision may miss its edges.
     let uv = (coordinate(n).0 * cells).floor() + 0.5;
     let uv = (uv / cells).as_vec2();
     let distance = factor(n, 0.0, 5.0);

@@ -27,7 +27,7 @@ const PLACES: usize = 8;
 /// Largest difference of the form `full`: arithmetic in single precision, over the brightest channel.
 const FULL: f64 = 2e-5;
 
-/// Largest difference of the form `baked`, whose tables are compared with exact terms: `FRESNEL_UNDER_A_COAT` of the parity page.
+/// Largest difference of the form `baked`, as `FRESNEL_UNDER_A_COAT` of the parity page: its tables are compared with exact terms.
 const BAKED: f64 = 2e-2;
 
 /// One kind of place in one model.
@@ -38,7 +38,7 @@ pub(crate) struct Row {
     model: ShadingModel,
     /// Errors of the forms, `full` first: the largest, and the median.
     errors: [Option<[f64; 2]>; 2],
-    /// The largest difference that the place makes in f64: what a shader that ignored it would be off by.
+    /// The largest difference that the place makes in f64, which is the error of a shader that ignores it.
     made: f64,
 }
 
@@ -81,7 +81,7 @@ fn measured(case: &Case, model: ShadingModel, gpu: &Gpu, pairs: u32) -> Outcome<
     let made = expected.iter().flat_map(|values| differences(values, &plain)).fold(0.0, f64::max);
     let mut errors = [None; 2];
     for (form, error) in [Form::Full, Form::Baked].into_iter().zip(&mut errors) {
-        // Without tables these models take facets as level, and `Shaded` does not.
+        // Without tables these models treat facets as level, unlike `Shaded`.
         let is_level = matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi);
         if form == Form::Full && is_level {
             continue;
@@ -115,7 +115,7 @@ fn in_f64(spot: &Spot, materials: &[Material], model: ShadingModel, pairs: &[Pai
     values.collect()
 }
 
-/// Values of the shader at every place: the material's number chooses it, because all materials beyond those of the case are copies.
+/// Values of the shader at every place. The number of the material chooses the place: materials beyond those of the case are copies.
 fn on_device(
     case: &Case,
     materials: &[Material],

@@ -1,4 +1,4 @@
-//! `simulation`: time and picture of the simulation on the device, beside those of models.
+//! `simulation`: times and pictures of the simulation on the device, compared with models.
 
 mod page;
 
@@ -44,7 +44,7 @@ struct Time {
     spread: Spread,
 }
 
-/// How far a model is from the simulation.
+/// Errors of models against the simulation.
 struct Error {
     material: String,
     turn: u32,
@@ -56,7 +56,7 @@ struct Error {
     rms: Vec<f64>,
 }
 
-/// A material on the device: the scene of its stack, and that of each model.
+/// A material on the device: a scene for the simulation of its stack, and a scene for each model.
 struct Subject {
     name: String,
     stack: Scene,
@@ -105,7 +105,7 @@ impl Subject {
         Ok(Self { name: material.name.clone(), stack: scene(gpu, material, ShadingModel::Phong)?, models })
     }
 
-    /// Times of a picture under surroundings alone; all ways in turn, so that they share what else the machine does.
+    /// Times of a picture under surroundings alone. All ways are timed in turn, so that other load of the machine affects them alike.
     fn times(&self, options: &SimulationOptions, sky: &Arc<Environment>) -> Outcome<Vec<Time>> {
         let mut times = Vec::new();
         for samples in SAMPLES {

@@ -19,7 +19,7 @@ const FLAKES: &str =
     "[effects.flakes]\ncells = { seed = 5, count = 64, spread_deg = 12 }\ntiling = 40\nscale = 0.8\nfade_start = 2\n";
 const GLITTER: &str = "[effects.glitter]\nseed = 9\nfrequency = 60\nfilled = 0.5\ntilt_deg = 20\n";
 
-/// Maps of the layer before, by key; the pictures are those of the grammar.
+/// Maps of the layer before, by key, with the pictures of the grammar.
 fn maps(keys: &[&str]) -> String {
     let maps = keys.iter().map(|key| match *key {
         "normal" | "bumps" => format!("{key} = \"bumps.png\""),
@@ -30,13 +30,13 @@ fn maps(keys: &[&str]) -> String {
     format!("maps = {{ {} }}\n", maps.collect::<Vec<_>>().join(", "))
 }
 
-/// Names and texts.
 /// A coat with maps on a base with maps.
 fn coat(keys: &[&str], base: &[&str], below: &str) -> String {
     let [own, base] = [keys, base].map(|keys| if keys.is_empty() { String::new() } else { maps(keys) });
     [COAT, &own, below, &base].concat()
 }
 
+/// Names and texts of the materials.
 fn texts() -> Vec<(&'static str, String)> {
     vec![
         ("roughness", coat(&["roughness"], &[], WOOD)),

@@ -73,8 +73,7 @@ fn shaders(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
 }
 
 fn rows(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
-    let simulated = judged.iter().filter_map(|judged| Some((judged, judged.at.simulated.as_ref()?)));
-    let simulated: Vec<_> = simulated.collect();
+    let simulated: Vec<_> = judged.iter().filter_map(|judged| Some((judged, judged.at.simulated.as_ref()?))).collect();
     let paths: u64 = simulated.iter().map(|(_, found)| found.paths).sum();
     let noise = simulated.iter().map(|(_, found)| noise(found)).fold(0.0, f64::max);
     writeln!(

@@ -13,7 +13,7 @@ pub(crate) struct Claim {
     pub(crate) checks: &'static [Check],
 }
 
-/// A comparison of numbers, which it names as the table of the figure does.
+/// A comparison of numbers of the figure, by their names in its table.
 #[derive(Clone, Copy)]
 pub(crate) enum Check {
     /// Each number is larger than the next.
@@ -22,10 +22,10 @@ pub(crate) enum Check {
     Within(&'static str, f64, f64),
 }
 
-/// Whether a claim holds, and the comparisons that say so, with their numbers.
+/// The outcome of a claim, and the comparisons that decide it, with their numbers.
 pub(crate) struct Verdict {
     pub(crate) holds: bool,
-    /// All comparisons of a claim that holds; of another those that fail.
+    /// All comparisons if the claim holds, else those that fail.
     pub(crate) because: Vec<String>,
 }
 

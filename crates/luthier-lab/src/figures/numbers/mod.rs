@@ -26,7 +26,7 @@ pub(crate) fn brightness(image: &Image) -> f64 {
     luminance(middle(image, 1.0))
 }
 
-/// Mean of a channel over that of the red one, in the middle half of a picture.
+/// Mean of a channel over the mean of red, in the middle half of a picture.
 pub(crate) fn over_red(image: &Image, channel: usize) -> f64 {
     let mean = middle(image, 0.5);
     mean[channel] / mean[0].max(1e-9)

@@ -13,13 +13,13 @@ pub(crate) fn sparkles(image: &Image) -> f64 {
     share(points(image).into_iter())
 }
 
-/// Share of the sparkles of a picture that another has in the same pixels.
+/// Share of a picture's sparkles that are in the same pixels of another.
 pub(crate) fn sparkles_that_stay(image: &Image, other: &Image) -> f64 {
     let (here, there) = (points(image), points(other));
     share(here.into_iter().zip(there).filter(|(is_here, _)| *is_here).map(|(_, is_there)| is_there))
 }
 
-/// Of each pixel of the middle half whether it sparkles: the median is that of nine by nine places around it.
+/// True for each pixel of the middle half that sparkles. Its median is over nine by nine places around it.
 fn points(image: &Image) -> Vec<bool> {
     let reach = (f64::from(image.width) / 16.0).max(4.0);
     let offsets: Vec<i64> = (-4..=4).map(|i| (f64::from(i) * reach / 4.0).round() as i64).collect();
@@ -42,8 +42,8 @@ fn points(image: &Image) -> Vec<bool> {
     is_point
 }
 
-/// Standard deviation of the noise that a picture has and the mean of many of the same surface has not, over the mean of that
-/// one, in the middle half. A broad change is no noise: each pixel is compared with the mean of its eight neighbours.
+/// Standard deviation of a picture's noise in the middle half, against a smooth picture of the same surface and over its mean. Broad changes are no
+/// noise: each pixel is compared with the mean of its eight neighbours.
 pub(crate) fn noise(image: &Image, smooth: &Image) -> f64 {
     let apart = |x: u32, y: u32| value(image, x, y) - value(smooth, x, y);
     let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
