@@ -1,4 +1,4 @@
-//! The data of a page: what its script reads.
+//! The data that the script of a page reads.
 
 use std::collections::BTreeMap;
 
@@ -87,8 +87,8 @@ impl PageData {
             })
             .collect::<Result<_, GalleryError>>()?;
         let mut all: Vec<PageTable> = Vec::new();
-        let packages = of_packages.into_iter();
-        let packages = packages.map(|tables| tables.into_iter().map(|table| number(&mut all, table)).collect());
+        let packages =
+            of_packages.into_iter().map(|own| own.into_iter().map(|table| number(&mut all, table)).collect());
         let packages = packages.collect();
         let shown = gallery.packages.iter().flat_map(|package| &package.manifest.materials);
         let reads = Reads::of(shown.filter(|entry| is_blurred(entry)));

@@ -1,4 +1,4 @@
-//! Sets of materials that share a shader: those of one bake with one model.
+//! Sets of materials that share a shader: the materials of one bake with one model.
 
 use luthier_export::Package;
 use luthier_lut::{TableKind, TexelFormat};
@@ -194,7 +194,7 @@ fn tile(name: &str, kind: TableKind) -> String {
     format!("#define VIEW_{name}_TILE view_word(first + {word}u)[{channel}]\n")
 }
 
-/// Whether surroundings that were blurred beforehand show a material: where the bake has the reflectance and the albedo of every interface, or
+/// True where surroundings that were blurred beforehand can light a material: the bake has the reflectance and the albedo of every interface, or
 /// lobes, and no layer has maps of its own.
 pub(crate) fn is_blurred(entry: &MaterialEntry) -> bool {
     if entry.shown_layer_maps(Form::Baked).next().is_some() {
@@ -209,7 +209,7 @@ pub(crate) fn is_blurred(entry: &MaterialEntry) -> bool {
         })
 }
 
-/// A material as lights meet it, under a name of its own.
+/// A material with slopes widened by the light, under a name of its own.
 fn lit(entry: &MaterialEntry) -> MaterialEntry {
     MaterialEntry { name: format!("{}-lit", entry.name), ..entry.widened(LIGHT_RADIUS) }
 }

@@ -25,7 +25,7 @@ fn print_source(source: &Source) {
     print_diagnostics(source.diagnostics(), &source.text);
 }
 
-/// The materials of all files; or, when any is invalid, its diagnostics and a failure.
+/// The materials of all files. If any file is invalid, its diagnostics are printed and the result is a failure.
 pub fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>> {
     let broken: Vec<&Source> = sources.iter().filter(|s| s.parsed.is_err()).collect();
     if !broken.is_empty() {

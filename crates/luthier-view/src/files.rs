@@ -1,4 +1,4 @@
-//! The material files as the window knows them.
+//! The material files of the window.
 
 use luthier_material::Material;
 
@@ -31,8 +31,8 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// Takes what is on disk now. Broken files keep the material that they had; the selection stays with its file. The labels
-    /// of those whose material is another one than before.
+    /// Takes the files on disk. Broken files keep their last material, and the selection stays with its file. Returns the labels of files whose
+    /// material changed.
     pub(crate) fn update(&mut self, files: Vec<MaterialFile>) -> Vec<String> {
         let before = self.selected().map(|entry| entry.label.clone());
         let entries = files.into_iter().map(|file| {

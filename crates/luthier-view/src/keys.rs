@@ -58,7 +58,7 @@ pub(crate) const KEYS: [(Modifiers, Key, &str, Action, &str); 20] = [
 pub(crate) const MOUSE: [(&str, &str); 4] =
     [("drag", "turn the shape"), ("right drag", "turn the light"), ("drag the divider", "move it"), ("wheel", "zoom")];
 
-/// The actions that were asked for since the last frame; none while a number is being typed.
+/// The actions of keys that were pressed since the last frame; none while a number is being typed.
 pub(crate) fn actions(context: &Context) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();

@@ -55,7 +55,7 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     app.problem(ui, rect);
 }
 
-/// Draws the pictures, the divider between them, and who made which.
+/// Draws the pictures, the divider between them, and the names of their makers.
 fn draw(app: &mut App, ui: &Ui, rect: Rect) {
     let painter = ui.painter();
     let names = app.names();

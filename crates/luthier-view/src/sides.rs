@@ -1,4 +1,4 @@
-//! The two pictures: who makes them, and the orders for them.
+//! The two pictures: their makers, and the orders for them.
 
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ impl App {
         self.against_problems.iter().flatten().next().map(String::as_str)
     }
 
-    /// The material as it is shown, and the one beside it.
+    /// The shown material, and the one beside it.
     fn subjects(&self) -> Option<[Option<Subject>; 2]> {
         let material = self.material()?;
         let revision = self.files.selected().map_or(0, |entry| entry.revision);
@@ -58,13 +58,13 @@ impl App {
         };
         let second = self.comparison.way(self.form).map(|way| match self.comparison.against {
             Some(Against::Shader { model, .. }) => subject(model.or(self.model), way),
-            // Models play no part in it: another one leaves its picture as it is.
+            // The simulation needs no model. It gets the same subject for all models, so that another choice keeps its picture.
             _ => Subject { material: material.clone(), way, revision },
         });
         Some([Some(subject(self.model, Way::Shader(self.form))), second])
     }
 
-    /// Gives the threads what has changed.
+    /// Sends the threads new orders where something changed.
     pub(crate) fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
         if let Some(subjects) = self.subjects()
             && self.bake_order.as_ref().is_none_or(|last| last.subjects != subjects)
@@ -111,7 +111,7 @@ impl App {
     }
 }
 
-/// What makes the picture of the second side.
+/// The maker of the second picture.
 fn second_maker(subjects: &[Option<Subject>; 2]) -> Option<(Way, Option<ShadingModel>)> {
     subjects[1].as_ref().map(|subject| (subject.way, subject.material.bake.model))
 }

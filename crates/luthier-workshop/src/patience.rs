@@ -50,7 +50,7 @@ impl Patience {
     ///
     /// # Errors
     ///
-    /// What it did in place of progress, once that is too much.
+    /// The work or the sleep of the program, once it is too much without progress.
     pub fn look(&mut self) -> Result<(), String> {
         let seen = Seen::of(self.process);
         let work = seen.ticks.saturating_sub(self.before);

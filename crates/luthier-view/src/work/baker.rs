@@ -12,7 +12,7 @@ use crate::error::ViewError;
 use crate::host::Host;
 use crate::work::latest::Latest;
 
-/// How a picture comes about.
+/// The way of making a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     /// By the shader of a model in this form.
@@ -68,43 +68,36 @@ impl Baker {
     }
 }
 
-/// Bakes what is ordered until the orders end.
+/// Bakes the latest order, until the orders end.
 fn work(host: &dyn Host, orders: &Latest<BakeOrder>, results: &Latest<Baked>, context: &egui::Context) {
     // A side that did not change keeps its package, and with it pipelines and samples.
     let mut last: [Option<(Subject, Ready)>; 2] = [None, None];
     while let Some(BakeOrder { version, subjects }) = orders.wait() {
         let [first, second] = subjects;
-        let [first_last, second_last] = &mut last;
-        let sides = [bake(host, first_last, first), bake(host, second_last, second)];
+        let first = first.map(|subject| bake(host, &mut last[0], subject));
+        let sides = [first, second.map(|subject| bake(host, &mut last[1], subject))];
         results.put(Baked { version, sides });
         context.request_repaint();
     }
 }
 
-fn bake(
-    host: &dyn Host,
-    last: &mut Option<(Subject, Ready)>,
-    subject: Option<Subject>,
-) -> Option<Result<Ready, String>> {
-    let subject = subject?;
+fn bake(host: &dyn Host, last: &mut Option<(Subject, Ready)>, subject: Subject) -> Result<Ready, String> {
     if let Some((of, ready)) = last
         && *of == subject
     {
-        return Some(Ok(ready.clone()));
+        return Ok(ready.clone());
     }
     let package = match subject.way {
         Way::Shader(form) => host.bake(&subject.material, form),
         Way::Simulation => host.simulated(&subject.material),
     };
-    Some(package.map(|package| {
-        let ready = Ready { package: Arc::new(package), way: subject.way };
-        *last = Some((subject, ready.clone()));
-        ready
-    }))
+    let ready = Ready { package: Arc::new(package?), way: subject.way };
+    *last = Some((subject, ready.clone()));
+    Ok(ready)
 }
 
 impl Drop for Baker {
-    /// The thread ends after the bake that it is at; nobody waits for it.
+    /// Closes the orders. The thread ends after its present bake, and the window does not wait for it.
     fn drop(&mut self) {
         self.orders.close();
     }

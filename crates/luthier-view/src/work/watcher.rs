@@ -1,4 +1,4 @@
-//! The thread that looks whether files changed.
+//! The thread that watches files for changes.
 
 use std::sync::Arc;
 use std::thread;
@@ -10,7 +10,7 @@ use crate::error::ViewError;
 use crate::host::{Host, MaterialFile};
 use crate::work::latest::Latest;
 
-/// Time between two looks: editors save less often, and a tenth of a second goes unnoticed.
+/// Time between two checks. Editors save less often, and a user does not notice such a delay.
 const INTERVAL: Duration = Duration::from_millis(150);
 
 /// The thread, and the slot from it.
