@@ -1,4 +1,4 @@
-//! Pictures that materials name: read, made into the map that ships, and looked at for what is unlikely to be meant.
+//! Pictures that materials name: read, and made into the maps that ship.
 
 use luthier_lut::{Image, Picture, PictureSamples, srgb};
 use luthier_material::{Channel, PictureRef, TexelUse};
@@ -9,7 +9,7 @@ use luthier_export::input;
 
 use crate::paths;
 
-/// A picture as its material reads it.
+/// A picture that was read: the texels that a material asks for, and its file.
 pub(crate) struct Read {
     /// Texels as they ship.
     pub(crate) picture: Picture,
@@ -19,7 +19,7 @@ pub(crate) struct Read {
     pub(crate) decoded: Decoded,
 }
 
-/// Reads a picture that a material names, relative to the material's file: the texels that ship.
+/// Reads the texels that ship of a picture that a material names, relative to the material's file.
 ///
 /// # Errors
 /// Why it cannot be used, in words.
@@ -42,7 +42,7 @@ pub(crate) fn read(material: &str, picture: &PictureRef, texels: TexelUse) -> Re
     Ok(Read { picture: made, bytes, decoded })
 }
 
-/// The file of a map that ships: that of its source where this is a PNG whose texels stay.
+/// The file of a map that ships. A PNG whose texels do not change ships as it is.
 pub(crate) fn file(read: Read, picture: &PictureRef) -> Result<(Picture, Vec<u8>), String> {
     if picture.keeps_texels() && read.decoded.container == Container::Png {
         return Ok((read.picture, read.bytes));
@@ -77,7 +77,7 @@ fn scaled(texel: [f32; 4], texels: TexelUse, scale: f32) -> [f32; 3] {
     }
 }
 
-/// One channel of a picture, as grey. Grey has the same red, green and blue.
+/// One channel of a picture, as grey. In a grey picture, red, green and blue are equal.
 fn one_channel(picture: &Picture, channel: Channel) -> Result<Picture, String> {
     let place = match (channel, picture.channels) {
         (Channel::A, 1 | 3) => return Err("its channel `a` is asked for, and it has no alpha".to_owned()),
@@ -97,7 +97,7 @@ fn every<T: Copy>(values: &[T], channels: u32, place: usize) -> Vec<T> {
     values.iter().skip(place).step_by(channels as usize).copied().collect()
 }
 
-/// A picture with other texels, in the bits and by the curve of the given one: RGB, or grey where that is grey without alpha.
+/// A picture with other texels, but with the bit depth and curve of `picture`. It is grey if `picture` is grey without alpha, else RGB.
 fn replaced(picture: &Picture, texel: impl Fn([f32; 4]) -> [f32; 3]) -> Picture {
     let channels = if picture.channels == 1 { 1 } else { 3 };
     let values = picture.texels().flat_map(|t| texel(t).into_iter().take(channels));

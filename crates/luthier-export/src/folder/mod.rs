@@ -1,4 +1,4 @@
-//! The one reader of a bake's folder.
+//! Reads the folder of a bake; no other code does.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,8 +12,22 @@ use sha2::{Digest, Sha256};
 use crate::publish::{self, READY};
 use crate::{MANIFEST, MAX_FILE_BYTES, Map, Package, PackageError, Shader, Table};
 
-/// A bake in its folder, of which nothing is believed before it is checked: the manifest's schema, that files are regular ones within the
-/// folder, their sizes and hashes, and that texels are those that the manifest describes.
+/// A bake in its folder. Everything is checked before it is used: the schema of the manifest, that files are regular and inside the folder, their
+/// sizes and hashes, and that texels match the manifest.
+///
+/// ```
+/// use luthier_export::{Encoded, Folder, GENERATOR, PackageError};
+/// use luthier_manifest::{FileEntry, Manifest};
+///
+/// let folder = tempfile::tempdir()?;
+/// let manifest = Manifest::new(GENERATOR, Vec::new(), Vec::new());
+/// Encoded { manifest, files: Vec::new() }.write(folder.path())?;
+/// let bake = Folder::open(folder.path())?;
+/// assert_eq!(bake.manifest().generator, GENERATOR);
+/// let secret = FileEntry { path: "../secret".to_owned(), sha256: String::new() };
+/// assert!(matches!(bake.read(&secret), Err(PackageError::Outside { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Folder {
     /// Path without links, so that a file's place can be compared with it.
@@ -124,14 +138,13 @@ impl Folder {
         if found == expected { Ok((bytes, picture)) } else { Err(PackageError::MapSize { path, found, expected }) }
     }
 
-    /// All that a program needs that renders: tables, shaders in WGSL, maps.
+    /// Everything that a renderer needs: tables, shaders in WGSL, maps.
     ///
     /// # Errors
     /// Those of the other functions, and of [`Package::from_parts`].
     pub fn package(&self) -> Result<Package, PackageError> {
         let manifest = &self.manifest;
-        let tables = manifest.tables.iter();
-        let tables = tables.map(|entry| Ok(Table { kind: entry.kind, texture: self.texture(entry)?, truth: None }));
+        let tables = manifest.tables.iter().map(|t| Ok(Table { kind: t.kind, texture: self.texture(t)?, truth: None }));
         let tables = tables.collect::<Result<_, PackageError>>()?;
         let texts = manifest.shaders.iter().filter(|s| s.target == Target::Wgsl);
         let shaders = texts
@@ -150,21 +163,21 @@ impl Folder {
         Ok(package)
     }
 
-    /// The bytes of a file; of one that is about to be published if the bake before this one was interrupted then.
+    /// The bytes of a file. An interrupted publication may have left it among the files that are ready.
     fn bytes(&self, path: &Path, named: &str) -> Result<Vec<u8>, PackageError> {
         let ready = self.named.join(READY).join(named);
         regular(&self.root, if ready.exists() { &ready } else { path }, named)
     }
 }
 
-/// The bytes of a regular file that lies within a folder, wherever links lead.
+/// The bytes of a regular file that lies inside a folder after links are followed.
 fn regular(root: &Path, path: &Path, named: &str) -> Result<Vec<u8>, PackageError> {
     let unreadable = |source| PackageError::Read { path: path.to_owned(), source };
     let target = path.canonicalize().map_err(unreadable)?;
     if !target.starts_with(root) {
         return Err(PackageError::Outside { path: named.to_owned() });
     }
-    // Asked before it is opened: opening a pipe waits for its writer.
+    // This comes before opening, because opening a pipe waits for its writer.
     let metadata = target.metadata().map_err(unreadable)?;
     if !metadata.is_file() {
         return Err(PackageError::NotAFile { path: path.to_owned() });

@@ -1,4 +1,4 @@
-//! Errors of the numbers of the model `granier-heidrich`: of files whose model is another, and of parts that a material does not have.
+//! Errors about numbers of the model `granier-heidrich`: the material has another model, or lacks the part that a number describes.
 
 use luthier_manifest::ModelPart;
 use luthier_manifest::ShadingModel;
@@ -8,7 +8,7 @@ use luthier_optics::stack::Base;
 const TABLE: &str = "bake.granier-heidrich";
 const EXPONENTS: &str = "layer.0.exponents";
 
-/// The keys that give numbers of the model: exponents of the first layer, and the table of `[bake]`.
+/// The keys of the model's numbers that a material has: exponents of the first layer, and the table of `[bake]`.
 pub(crate) fn keys(material: &Material) -> impl Iterator<Item = &'static str> {
     let has_exponents = material.layers.first().is_some_and(|first| first.exponents.is_some());
     let given = [(EXPONENTS, has_exponents), (TABLE, material.bake.beams.is_some())];

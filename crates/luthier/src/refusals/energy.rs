@@ -1,9 +1,8 @@
-//! Doubts about energy: a model that returns more light than falls in, or other than a simulation of the layers.
+//! Doubts about energy: a model that returns more light than falls in, or an albedo that differs from a simulation of the layers.
 //!
-//! Both are measured here, in f64, at the numbers of the file: maps multiply them, so that they are those of white texels. Albedos of a model are
-//! sums over directions, those of the simulation ([`ColorPaths`]) means over paths. Three wavelengths stand for the colour. Effects are left out.
-//! A material takes some hundredths of a second, one with energies of rough interfaces some tenths; `lobes` takes nothing, because its albedos are
-//! those of the simulation.
+//! Both are measured here, in f64, with the numbers of the file, as at white texels of its maps. Albedos of a model are sums over directions; albedos
+//! of the simulation ([`ColorPaths`]) are means over paths. Three wavelengths stand for the colour. Effects are left out. A material takes some
+//! hundredths of a second, one with energies of rough interfaces some tenths. `lobes` is not measured, because it is fitted to the simulation.
 
 use std::borrow::Cow;
 
@@ -23,13 +22,13 @@ use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::parts::parts_of;
 
-/// More than this share of the light is told. Sums and interpolated tables are not that precise at 1.
+/// Returned share of the light above which there is a warning. Sums and interpolated tables are not precise enough for a limit of 1.
 const ALL: f64 = 1.02;
 
-/// Albedo by which a model that a file names for one interface may differ from the simulation without a word.
+/// Largest difference of albedo from the simulation that causes no warning, for one interface whose model the file names.
 const TOLERATED: f64 = 0.1;
 
-/// Angles of the eye from the normal, degrees: models gain the most between.
+/// Angles of the eye from the normal, degrees. Models gain the most between them.
 const ANGLES_DEG: [f64; 5] = [0.0, 30.0, 50.0, 70.0, 80.0];
 
 /// Points on either side of the mirror direction, in the angle from the normal and in azimuth: sums over lobes of all widths are within 0.003.
@@ -46,7 +45,7 @@ const SEED: u64 = 37;
 pub struct Returned {
     /// Share of the light that the model returns.
     pub model: f64,
-    /// Share that the simulation returns; none where it has not the facets.
+    /// Share that the simulation returns; `None` where it has no such facets.
     pub simulated: Option<f64>,
     /// Angle of the eye from the normal, degrees.
     pub angle_deg: f64,
@@ -71,15 +70,15 @@ impl Returned {
     }
 }
 
-/// A warning where a model returns more light than falls in, or where its albedo is off: of one interface whose model the file or the command line
-/// names by more than a tenth, and of a model that stands in for `lobes` in any case. `asked` is the model of the command line.
+/// A warning if a model returns more light than falls in, or if its albedo is wrong. For one interface with a named model, an error above a tenth
+/// counts; for a model that stands in for `lobes`, any error. `asked` is the model of the command line.
 pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     if !is_questionable(material, model) {
         return None;
     }
     let stands_in = asked.is_none() && !material.unfit_for_lobes().is_empty();
-    // Stacks of named models are known to be off (`docs/pages/models.md`); a simulation says by how much where something is told.
+    // Named models of stacks are known to be inexact (`docs/pages/models.md`), so they are simulated only for the words of a warning.
     let is_compared = stands_in || material.stack.layers.len() == 1;
     let gains = !is_compared && albedos(material, model, false).iter().any(|found| found.model > ALL);
     if !is_compared && !gains {
@@ -118,17 +117,18 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
     Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 
-/// Whether albedos of a model may be wrong at all: those of `lobes` are simulated, and one bounce off a smooth interface or a base is exact.
+/// True where albedos of a model can be wrong. `lobes` is fitted to a simulation, and one bounce off a smooth interface or a base is exact.
 fn is_questionable(material: &Material, model: ShadingModel) -> bool {
     !model.is_fitted() && (material.has_further_bounces() || model.facts().family == Family::Coefficients)
 }
 
-/// Albedos of a material in a model, angle by angle: at white texels of its maps, and where textures make a metal of it, without metal, too.
+/// Albedos of a material in a model, angle by angle, at white texels of its maps. Where a texture decides what is metal, places without metal are
+/// measured, too.
 pub fn returned(material: &Material, model: ShadingModel) -> Vec<Returned> {
     albedos(material, model, true)
 }
 
-/// As [`returned`], with the simulation or without.
+/// Albedos as [`returned`] has them, with or without the simulation.
 fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<Returned> {
     let is_simulated = is_compared && material.stack.layers.iter().all(has_walks);
     let nm = material.bake.wavelengths_nm();
@@ -153,7 +153,7 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
     all
 }
 
-/// True where the simulation can walk among the facets of a layer, or needs not.
+/// True where the simulation has the facets of a layer, or needs none.
 fn has_walks(layer: &Layer) -> bool {
     matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks()
 }
@@ -184,7 +184,7 @@ fn at(stack: &Stack, place: &Place) -> Stack {
     let mut here = stack.clone();
     let metal = place.layers.last().and_then(|sample| sample.f0).filter(|_| place.base_color == Some([0.0; 3]));
     if let Some(f0) = metal {
-        // Metal is opaque, as where a file gives it without maps.
+        // Metal is opaque, as in a file without maps.
         here.layers.truncate(place.layers.len());
         if let Some(layer) = here.layers.last_mut() {
             layer.base = Base::Conductor { ior: Ior::vacuum().with_f0(f0) };

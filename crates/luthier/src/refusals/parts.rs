@@ -1,5 +1,4 @@
-//! Doubts about the parts of a model that a material chooses: those that its model does not have, distributions among them, and errors of
-//! approximations.
+//! Doubts about the parts of a model that a material chooses: parts and distributions that its model lacks, and the errors of approximations.
 
 use luthier_layers::twins::parts::Parts;
 use luthier_lut::TableKind;
@@ -14,8 +13,8 @@ use luthier_optics::schlick::schlick;
 
 use super::beams::{self, of_beams};
 
-/// Errors for parts that a model does not have, and for films of which a curve knows nothing; warnings of what the others do. `asked` is the
-/// model of the command line.
+/// Errors for parts that a model lacks, and for films where the chosen curve of a reflectance has none; warnings with the effect of other parts.
+/// `asked` is the model of the command line.
 pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut doubts = Vec::new();
@@ -31,7 +30,7 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts
 }
 
-/// The parts of a model that a material chooses, as f64 has them.
+/// The parts of a model that a material chooses, for the f64 twin.
 pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let bake = &material.bake;
     let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
@@ -78,7 +77,7 @@ fn chosen_part(material: &Material, place: &str) -> Diagnostic {
     material.diagnostic(Severity::Error, place, message, Some(hint))
 }
 
-/// The first of so many layers whose distribution has no walks in closed form.
+/// The first of the upper `layers` layers whose distribution has no walks in closed form.
 fn first_free(material: &Material, layers: usize) -> Option<usize> {
     let mut surfaces = material.stack.layers.iter().take(layers).map(|layer| &layer.surface);
     surfaces.position(|surface| !surface.is_smooth() && !surface.distribution.has_walks())
@@ -88,8 +87,8 @@ fn first_free(material: &Material, layers: usize) -> Option<usize> {
 const OF_ANY_SLOPES: [&str; 8] =
     ["microfacet-", "weidlich-wilkie", "elek", "heterogeneous-", "flakes", "patina", "lambert", "oren-nayar"];
 
-/// An error where a function in f64, by its name, has no use for the distribution of a layer: of a model with a shader where that has none, of others
-/// where they walk between facets, draw visible normals or follow statistics of lobes.
+/// An error where a function in f64, given by name, cannot use the distribution of a layer. A model with a shader cannot where its shader cannot;
+/// other functions cannot if they walk between facets, draw visible normals or follow statistics of lobes.
 pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
     if let Some(model) = ShadingModel::from_name(name) {
         return of_distribution(material, model);
@@ -101,7 +100,7 @@ pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
     Some(no_slopes(material, name, layer))
 }
 
-/// The error of a model that has no use for the distribution of a layer.
+/// The error for a model that cannot use the distribution of a layer.
 fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
     let distribution = material.stack.layers[layer].surface.distribution;
     let name = distribution.name();
@@ -112,7 +111,7 @@ fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
     material.diagnostic(Severity::Error, &key, message, Some(hint))
 }
 
-/// An error where a model, its masking or a table has no use for the distribution of a layer.
+/// An error where a model, its masking or a table cannot use the distribution of a layer.
 fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
     let read = if model.facts().reach == Reach::First { 1 } else { material.stack.layers.len() };
     let layer = first_free(material, read)?;

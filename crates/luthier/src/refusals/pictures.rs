@@ -1,4 +1,4 @@
-//! Pictures that cannot be used, and doubts about others: what a file may say, but rarely means.
+//! Errors for pictures that cannot be used, and doubts about pictures that are probably not meant so.
 
 use luthier_lut::Picture;
 use luthier_material::{Diagnostic, Material, NamedImage, PictureRef, Severity, TexelUse};
@@ -10,14 +10,13 @@ pub fn of_pictures(material: &Material) -> Vec<Diagnostic> {
     material.images().iter().flat_map(|image| told(material, image)).collect()
 }
 
-/// Diagnostics of a picture that a material names: why it cannot be used, or doubts about it.
+/// Diagnostics of a picture that a material names: an error if it cannot be used, else doubts.
 fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
     let NamedImage { key, picture, texels } = image;
     let path = &picture.path;
     match pictures::read(&material.source, picture, *texels) {
         Ok(read) => {
-            let doubts = doubts(&read, picture, *texels).into_iter();
-            let warnings = doubts.map(|(sentence, hint)| {
+            let warnings = doubts(&read, picture, *texels).into_iter().map(|(sentence, hint)| {
                 material.diagnostic(Severity::Warning, key, format!("the map `{path}`: {sentence}"), Some(hint))
             });
             warnings.collect()
@@ -30,16 +29,16 @@ fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
     }
 }
 
-/// Texels that are looked at; of larger pictures every n-th row and column.
+/// Most texels that are examined. Of larger pictures, every n-th row and column is.
 const SEEN_MAX: usize = 1 << 20;
 
-/// Share of texels whose normal points into the surface, from where it is no accident.
+/// Share of normals pointing into the surface above which the map is doubted: a few may be accidents.
 const INWARD: f64 = 0.01;
 
-/// A mean of normals that leans more than this is that of no height field that repeats: cosine of 30 degrees.
+/// Cosine of the largest lean of the mean normal, 30 degrees. The mean normal of a height field that repeats does not lean.
 const UPRIGHT: f64 = 0.866;
 
-/// How much better a height field explains the normals with green turned over than as it is.
+/// Ratio of the errors of a height field, as it is to green turned over, above which the map is doubted.
 const FLIPPED: f64 = 4.0;
 
 /// A sentence and a hint for each doubt.
@@ -71,7 +70,7 @@ struct Normals {
     grey: f64,
     /// Sum of the unit normals.
     sum: [f64; 3],
-    /// Squares of what is left of the normals besides a height field, with green as it is and turned over.
+    /// Squared curl of the slopes, which is 0 for a height field: with green as it is, and turned over.
     curl: [f64; 2],
 }
 
@@ -126,7 +125,7 @@ impl Normals {
     }
 }
 
-/// The normal of a texel, not of unit length. Texels beyond the border are those of the other side.
+/// The normal of a texel, not of unit length. The map repeats beyond its border.
 fn normal(picture: &Picture, x: u32, y: u32) -> [f64; 3] {
     let [width, height] = picture.size();
     let [r, g, b, _] = picture.texel(x % width, y % height);

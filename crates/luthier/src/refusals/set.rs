@@ -7,7 +7,7 @@ use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::pictures::read_image;
 
-/// Diagnostics of materials together, each with the number of the material that it is said of.
+/// Diagnostics of materials as a set, each with the number of its material.
 pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
     let mut found = Vec::new();
     for error in luthier_bake::check(materials, &luthier_bake::Options::default()).err().unwrap_or_default() {
@@ -24,7 +24,7 @@ pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
             }
         };
         match named.get(&identifier) {
-            // Equal names have been told.
+            // Equal names have an error already.
             Some(first) if first.name != material.name => {
                 let (name, other, place) = (&material.name, &first.name, first.place("name"));
                 let message = format!("`{name}` and `{other}` of {place} are both `{identifier}` in a shader");
@@ -40,15 +40,14 @@ pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
     diagnostics.collect()
 }
 
-/// An error of the first material where the material buffer or a texture cannot hold all of them, shaded as they are. A bake plans its tables, and
-/// says so itself.
+/// An error of the first material if the material buffer or a texture cannot hold all materials. A bake finds this itself when it plans its tables.
 pub fn too_many(materials: &[Material]) -> Option<Diagnostic> {
     let options = luthier_bake::Options { search: false, fits: false, ..luthier_bake::Options::default() };
     match luthier_bake::outline_with(materials, &options, &read_image, &MemoryStore::default()) {
         Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) => {
             Some(materials.first()?.diagnostic(Severity::Error, "name", error.to_string(), None))
         }
-        // Anything else has been told.
+        // Other errors have diagnostics already.
         _ => None,
     }
 }

@@ -12,6 +12,15 @@ use super::TomlFile;
 use crate::sha256;
 
 /// A surface file that was read, and its surface or its errors. [`surface_map`] evaluates the entry of one.
+///
+/// ```
+/// use luthier::{Files, TomlFile};
+///
+/// let file = TomlFile { path: "stone.toml".into(), bytes: b"surface = 1\nname = \"stone\"\n".to_vec() };
+/// let stone = &Files::of(vec![file]).surfaces[0];
+/// assert!(stone.entry().is_none(), "it has no cells");
+/// assert!(stone.diagnostics()[0].is_error());
+/// ```
 #[derive(Debug, Clone)]
 pub struct SurfaceSource {
     /// The file.
@@ -22,7 +31,7 @@ pub struct SurfaceSource {
     pub text: String,
     /// The surface, or why it is none.
     pub parsed: Result<Surface, Vec<Diagnostic>>,
-    /// Doubts about a surface that can be used.
+    /// Warnings about a usable surface.
     pub warnings: Vec<Diagnostic>,
     /// The numbers of its materials among those of the package, in the order of [`Surface::materials`].
     pub(crate) numbers: Vec<usize>,
@@ -41,12 +50,12 @@ impl SurfaceSource {
         Self { path, label, text, parsed, warnings: Vec::new(), numbers: Vec::new() }
     }
 
-    /// Its errors; of a surface that can be used, its warnings.
+    /// The errors of an unusable surface, or the warnings of a usable one.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         self.parsed.as_ref().err().map_or(&self.warnings, Vec::as_slice)
     }
 
-    /// The surface as the manifest has it; `None` where it is unusable.
+    /// The entry of the surface in a manifest; `None` where it is unusable.
     pub fn entry(&self) -> Option<SurfaceEntry> {
         let surface = self.parsed.as_ref().ok()?;
         let mut numbers = self.numbers.iter().map(|&number| number as u32);
@@ -69,7 +78,7 @@ impl SurfaceSource {
     }
 }
 
-/// Cells with the next numbers of materials, as many as they name.
+/// A record of cells, which takes as many of the next material numbers as the cells name materials.
 fn cells_record(cells: &SurfaceCells, numbers: &mut impl Iterator<Item = u32>) -> CellsRecord {
     let materials = numbers.take(cells.materials.len()).collect();
     CellsRecord { seed: cells.seed, frequency: cells.frequency, materials }
@@ -112,7 +121,7 @@ pub fn surface_map(surface: &SurfaceEntry) -> Map {
     }
 }
 
-/// The cells and the numbers of their stacks, which are those of materials.
+/// The cells as the twin has them, and the material number of each stack.
 fn twin(record: &CellsRecord) -> (Voronoi, Vec<usize>) {
     let stacks = record.materials.iter().map(|&material| material as usize).collect();
     (Voronoi { seed: record.seed, frequency: record.frequency }, stacks)
