@@ -20,12 +20,11 @@ pub(crate) fn materials() -> Outcome<Vec<Material>> {
             let roughness = ROUGHNESS[0] + f64::from(column) / last * (ROUGHNESS[1] - ROUGHNESS[0]);
             let name = format!("grid-{row}-{column}");
             let text = text(&name, metallic, roughness);
-            let parsed = parse(&name, &text, &|_| Err(std::io::ErrorKind::NotFound.into()));
-            let wrong = |errors: Vec<luthier_material::Diagnostic>| {
+            let parsed = parse(&name, &text, &|_| Err(std::io::ErrorKind::NotFound.into())).map_err(|errors| {
                 let messages: Vec<String> = errors.into_iter().map(|e| e.render(&text)).collect();
                 Failure::Input(anyhow::anyhow!(messages.join("\n")))
-            };
-            materials.push(parsed.map_err(wrong)?.material);
+            })?;
+            materials.push(parsed.material);
         }
     }
     Ok(materials)

@@ -11,7 +11,7 @@ pub(crate) fn named_text(path: &Path) -> Outcome<String> {
     input::text(path).map_err(files(path, "read"))
 }
 
-/// The text of a file, or of standard input for `-`, and what to call it.
+/// The text of a file, or of standard input for `-`, and its name in messages.
 pub(crate) fn labelled(path: &Path) -> Outcome<(String, String)> {
     if path == Path::new("-") {
         return Ok((standard()?, "standard input".to_owned()));

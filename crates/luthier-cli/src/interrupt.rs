@@ -1,4 +1,4 @@
-//! Signals: between files, never within them.
+//! Signals end the program between files, never while one is written.
 
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -9,18 +9,18 @@ static WRITING: Mutex<()> = Mutex::new(());
 /// Exit code after SIGINT, SIGTERM or SIGHUP, as shells have it for the first.
 const INTERRUPTED: i32 = 130;
 
-/// From here on a signal ends the program as soon as no folder is being written to. Signals that whoever started the program has it ignore, as
-/// `nohup` does, stay ignored.
+/// Installs a handler: a signal ends the program as soon as it writes to no folder. Signals that the parent process made it ignore, as `nohup` does,
+/// stay ignored.
 pub(crate) fn watch() {
-    // Without a handler the program ends at once, and the next one sweeps what it left.
+    // Without a handler the program ends at once, and the next one sweeps the files that it left.
     let _ = handle(|| {
         let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
         std::process::exit(INTERRUPTED);
     });
 }
 
-/// Does some writing into a folder that signals wait for. Another program that publishes there is waited for before, so that signals
-/// need not.
+/// Writes into a folder while signals wait. It waits for another program that publishes there before this, so that signals need not wait for that
+/// program.
 pub(crate) fn whole<T>(folder: &Path, write: impl FnOnce() -> T) -> T {
     luthier_export::wait(folder);
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);

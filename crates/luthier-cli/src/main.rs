@@ -1,4 +1,4 @@
-//! The `luthier` command: all that a user of luthier runs. What it has in common with `luthier-lab` is in luthier-terminal.
+//! The `luthier` command: everything that a user of luthier runs. Code that `luthier-lab` needs, too, is in luthier-terminal.
 
 mod cli;
 mod directions;

@@ -6,26 +6,26 @@ use luthier_manifest::{
     Form, FunctionGroup, Manifest, MaterialEntry, ModelPart, Reflectance, ShadingModel, SurfaceEntry,
 };
 use luthier_material::{Diagnostic, Material};
-use luthier_optics::stack::{Base, Layer};
+use luthier_optics::stack::Base;
 use luthier_terminal::{Broken, Failure, Outcome, complain, print_diagnostics, valid};
 
 use crate::cli::Shading;
 
 impl Shading {
-    /// These options for shaders of some forms; none stands for all.
+    /// These options, restricted to shaders of some forms; empty for all forms.
     pub(crate) fn in_forms(&self, forms: &[Form]) -> luthier::Shading {
         let Self { model, no_fit, fresnel: reflectance, tables } = self.clone();
         luthier::Shading { model, no_fit, reflectance, tables, forms: forms.to_vec() }
     }
 }
 
-/// The materials that can be baked, shaded as the command line asks for; or, when anything is refused, its diagnostics and a failure.
+/// The materials, shaded as the command line asks for. If any cannot be baked, its diagnostics are printed and the result is a failure.
 pub(crate) fn bakeable(mut sources: Vec<Source>, shading: &luthier::Shading, quiet: bool) -> Outcome<Vec<Material>> {
     refuse(&mut sources, |material| shading.doubts(material));
     Ok(shading.shaded(valid(sources, quiet)?))
 }
 
-/// The materials and surfaces of files that can be baked, or a failure, as `bakeable` has it; the materials of surfaces are among them.
+/// The materials and surfaces of files, or a failure as of `bakeable`. Materials that only surfaces name are included.
 pub(crate) fn bakeable_with_surfaces(
     files: Files,
     shading: &luthier::Shading,
@@ -37,7 +37,7 @@ pub(crate) fn bakeable_with_surfaces(
     Ok((shading.shaded(valid(sources.materials, quiet)?), surfaces))
 }
 
-/// The surfaces of all files; or, when any is invalid, its diagnostics and a failure.
+/// The surfaces of all files. If any is invalid, its diagnostics are printed and the result is a failure.
 pub(crate) fn valid_surfaces(surfaces: &[SurfaceSource]) -> Outcome<Vec<SurfaceEntry>> {
     let mut diagnostics = Vec::new();
     for source in surfaces {
@@ -53,7 +53,7 @@ pub(crate) fn valid_surfaces(surfaces: &[SurfaceSource]) -> Outcome<Vec<SurfaceE
     Err(Failure::input(Broken { sentence, diagnostics }))
 }
 
-/// A warning for every layer of a bake that reads a tile which misses its aim; unless quiet, they are printed.
+/// Warnings for layers of a bake whose tiles miss their aim. They are printed unless `quiet`.
 pub(crate) fn tell_misses(manifest: &Manifest, materials: &[Material], quiet: bool) -> Vec<Diagnostic> {
     let warnings = misses(manifest, materials);
     for warning in warnings.iter().filter(|_| !quiet) {
@@ -74,13 +74,12 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
     )))
 }
 
-/// Whether the form `baked` of a material shows the environment.
+/// True where the form `baked` of a material shows a blurred environment.
 pub(crate) fn shows_environment(material: &Material) -> bool {
-    let is_interface = |layer: &Layer| !matches!(layer.base, Base::Diffuse(_));
-    material.model().is_fitted() && material.stack.layers.iter().any(is_interface)
+    material.model().is_fitted() && material.stack.layers.iter().any(|layer| !matches!(layer.base, Base::Diffuse(_)))
 }
 
-/// Has a material shaded by one of several models that are compared: each with the parts that it has, of the file or the command line.
+/// Makes a model shade a material for a comparison of models. The model keeps the chosen parts that it has, from the file or the command line.
 pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Option<Reflectance>) -> Outcome {
     material.bake.reflectance = fresnel.or(material.bake.reflectance);
     material.shade_by(model);
@@ -93,11 +92,13 @@ pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Op
 /// The models that are asked for, or all; without a fit, all but `lobes`.
 #[cfg(any(feature = "cost", feature = "gpu"))]
 pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> {
-    let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || !model.is_fitted()).collect();
-    if asked.is_empty() { all() } else { asked.to_vec() }
+    match asked {
+        [] => ShadingModel::ALL.into_iter().filter(|model| !no_fit || !model.is_fitted()).collect(),
+        _ => asked.to_vec(),
+    }
 }
 
-/// Whether a material can be shaded by a model. Where no model is asked for, one that has not its distribution of slopes is left out, and that is said.
+/// True where a model can shade a material. If no model was asked for, a model without the material's slope distribution is left out with a warning.
 pub(crate) fn is_shaded_by(material: &Material, model: ShadingModel, asked: &[ShadingModel]) -> bool {
     let lack = of_function(material, model.name()).filter(|_| !asked.contains(&model));
     if let Some(lack) = &lack {
@@ -106,7 +107,7 @@ pub(crate) fn is_shaded_by(material: &Material, model: ShadingModel, asked: &[Sh
     lack.is_none()
 }
 
-/// Gives a material the model and the parts of its entry in a manifest; whether the entry was made from it.
+/// Gives a material the model and the parts of its entry in a manifest. Returns true if the entry was made from this material.
 pub(crate) fn is_baked_as(material: &mut Material, entry: &MaterialEntry) -> Outcome<bool> {
     let (masking, reflectance) = entry.parts();
     material.bake.model = Some(entry.model);

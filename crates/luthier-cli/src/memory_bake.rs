@@ -12,7 +12,7 @@ use crate::cli::Shading;
 use crate::materials::{bakeable, bakeable_with_surfaces};
 use crate::store::store;
 
-/// A material or surface to look at: by file, which is baked for pictures, or by its name in a bake on disk, shaded as that was.
+/// A material or surface for a picture: by its file, which is baked in memory, or by its name in a bake on disk.
 pub(crate) fn shown(subject: &str, shading: &Shading, out: &Path) -> Outcome<(Package, Shown)> {
     let file = Path::new(subject);
     if file.extension().is_some_and(|e| e == "toml") {
@@ -30,7 +30,7 @@ pub(crate) fn shown(subject: &str, shading: &Shading, out: &Path) -> Outcome<(Pa
     Ok((package, Shown::Material(number)))
 }
 
-/// A material by file, which is baked for pictures in some forms, or by its name in a bake on disk, shaded as that was; and its number.
+/// A package with a material, and the number of the material. It is named by its file, which is baked in memory, or by its name in a bake on disk.
 pub(crate) fn find(material: &str, shading: &Shading, forms: &[Form], out: &Path) -> Outcome<(Package, u32)> {
     let file = Path::new(material);
     if file.extension().is_some_and(|e| e == "toml") {

@@ -6,7 +6,7 @@ use luthier_export::input;
 use luthier_gpu::{Mesh, soup};
 use luthier_terminal::{Failure, Outcome, complain, files};
 
-/// Reads a glTF file, with the buffers beside it. What is not shown as it stands in the file is told.
+/// Reads a glTF file, with the buffers beside it. Warnings name the parts that pictures do not show.
 pub(crate) fn read(path: &Path) -> Outcome<Mesh> {
     let bytes = input::mesh(path).map_err(files(path, "read"))?;
     let folder = path.parent().unwrap_or(Path::new(""));

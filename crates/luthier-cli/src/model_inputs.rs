@@ -1,4 +1,4 @@
-//! Options of `eval` that some models take, and what becomes of them.
+//! Options of `eval` that only some models take.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -113,12 +113,12 @@ impl ModelInputs {
         }
     }
 
-    /// The effects of a file that a model shows, and the names of those that it does not.
+    /// The effects of a file that a model shows, and the names of the other effects.
     pub(crate) fn shown(&self, material: &Material, model: &dyn Model) -> (Effects, Vec<&'static str>) {
         if self.no_effects {
             return Default::default();
         }
-        // As in the shaders: what lies below the first interface is theirs, and a particle's normal is anybody's.
+        // As in the shaders, only some models show effects below the first interface, and any model shows the normal of a particle.
         let effects = &material.effects;
         let shading = model.info().shading();
         let is_path = shading.is_some_and(ShadingModel::is_path);
@@ -138,21 +138,18 @@ impl ModelInputs {
         (shown, dropped)
     }
 
-    /// The maps of single layers of a file that a model shows, each with its layer, and the names of those that it does not.
+    /// The maps of single layers that a model shows, each with its layer, and the names of the other maps' features.
     pub(crate) fn layer_maps(&self, material: &Material, model: &dyn Model) -> (Vec<LayerMap>, Vec<&'static str>) {
         if self.no_effects {
             return Default::default();
         }
         let maps =
             material.layers.iter().enumerate().flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map)));
-        let lacks = |feature: Feature| match ShadingModel::from_name(model.info().name) {
-            Some(shader) => !Form::ALL.iter().any(|&form| shader.honours(feature, form)),
-            None => true,
-        };
+        let shader = ShadingModel::from_name(model.info().name);
         let (mut shown, mut dropped) = (Vec::new(), Vec::new());
         for (layer, map) in maps {
             match map.slot.layer_feature(layer as u32) {
-                Some(feature) if lacks(feature) => dropped.push(feature.name()),
+                Some(feature) if shader.is_none_or(|shader| lacks(shader, feature)) => dropped.push(feature.name()),
                 Some(_) => {
                     shown.push(LayerMap { layer, slot: map.slot, picture: map.picture.clone(), texels: map.texels() })
                 }
@@ -173,12 +170,6 @@ impl ModelInputs {
         environment: bool,
     ) -> Outcome {
         let (flakes, patina) = (shown.flakes.is_some(), shown.patina.is_some());
-        let by_effects = |input: Input| match input {
-            Input::Uv => is_surface || has_maps || flakes || patina || shown.glitter.is_some(),
-            Input::Distance => flakes,
-            Input::Extent | Input::Map => patina,
-            _ => false,
-        };
         let given = [
             (Input::Uv, self.uv.is_some()),
             (Input::Distance, self.distance.is_some()),
@@ -193,7 +184,6 @@ impl ModelInputs {
             (Input::Seed, self.seed.is_some()),
         ];
         let info = model.info();
-        let takes_base_color = |model: ShadingModel| model.facts().family != Family::Coefficients;
         if self.base_color().is_some() && !info.shading().is_some_and(takes_base_color) {
             let takers = ShadingModel::ALL.into_iter().filter(|model| takes_base_color(*model)).map(ShadingModel::name);
             let takers: Vec<&str> = takers.collect();
@@ -203,9 +193,15 @@ impl ModelInputs {
                 takers.join(", ")
             )));
         }
-        let refused = given
-            .into_iter()
-            .find(|(input, is_given)| *is_given && !info.inputs.contains(input) && !by_effects(*input));
+        let refused = given.into_iter().find(|(input, is_given)| {
+            let by_effects = match input {
+                Input::Uv => is_surface || has_maps || flakes || patina || shown.glitter.is_some(),
+                Input::Distance => flakes,
+                Input::Extent | Input::Map => patina,
+                _ => false,
+            };
+            *is_given && !info.inputs.contains(input) && !by_effects
+        });
         let Some((input, _)) = refused else { return Ok(()) };
         let infos = models().into_iter().map(|model| model.info());
         let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
@@ -239,7 +235,7 @@ impl ModelInputs {
         model.with_inputs(&inputs).unwrap_or(model)
     }
 
-    /// The model as textures show it.
+    /// The model with the values of textures at the place.
     pub(crate) fn textured(sample: TextureSample, model: Box<dyn Model>) -> Box<dyn Model> {
         if sample == TextureSample::NONE { model } else { Box::new(Textured { sample, model }) }
     }
@@ -265,11 +261,9 @@ impl FromStr for Uv {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || "expected a texture coordinate u,v, such as 0.25,0.5".to_owned();
-        let (u, v) = text.split_once(',').ok_or_else(expected)?;
-        match (number(u.trim()), number(v.trim())) {
-            (Ok(u), Ok(v)) => Ok(Self(DVec2::new(u, v))),
-            _ => Err(expected()),
+        match text.split_once(',').map(|(u, v)| [u, v].map(|text| number(text.trim()))) {
+            Some([Ok(u), Ok(v)]) => Ok(Self(DVec2::new(u, v))),
+            _ => Err("expected a texture coordinate u,v, such as 0.25,0.5".to_owned()),
         }
     }
 }
@@ -285,4 +279,13 @@ impl FromStr for BaseColor {
         let rgb = values.ok().and_then(|values| Rgb::try_from(values).ok());
         rgb.map(Self).ok_or_else(|| "expected three numbers from 0 to 1, such as 0.8,0.3,0.1".to_owned())
     }
+}
+
+/// True where the shader of a model shows a feature in no form.
+fn lacks(shader: ShadingModel, feature: Feature) -> bool {
+    !Form::ALL.iter().any(|&form| shader.honours(feature, form))
+}
+
+fn takes_base_color(model: ShadingModel) -> bool {
+    model.facts().family != Family::Coefficients
 }

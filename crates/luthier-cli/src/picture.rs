@@ -14,7 +14,7 @@ use crate::{meshes, surroundings};
 /// Rows of the maps of surroundings that luthier makes.
 const SKY_ROWS: u32 = 512;
 
-/// The settings that options ask for. A file takes the place of the shape.
+/// The settings that options ask for. A mesh file replaces the shape.
 pub(crate) fn settings(look: &Look, shape: ShapeName, mesh: Option<&Path>, size: u32) -> Outcome<RenderSettings> {
     let mut settings = match mesh {
         Some(path) => {
@@ -78,7 +78,7 @@ impl Format {
         }
     }
 
-    /// Writes a linear picture: EXR as it is, PNG with a tone curve and the transfer function of sRGB.
+    /// Writes a linear picture: unchanged as EXR, with a tone curve and the transfer function of sRGB as PNG.
     pub(crate) fn write(self, path: &Path, image: Image, tone: ToneMapping) -> Outcome {
         let bytes = match self {
             Self::Png => png::encode_image(&tone.image(image)),

@@ -66,7 +66,7 @@ impl BakeProgress {
         }
     }
 
-    /// The phase that ends next begins now: the time since the last one was another package's.
+    /// Begins the phase that ends next. The time since the last phase belongs to another package.
     pub(crate) fn resumes(&self) {
         self.lock().phase = Some(Instant::now());
     }

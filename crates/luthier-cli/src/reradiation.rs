@@ -23,8 +23,8 @@ impl Reradiation {
         Ok(Self { label, matrix })
     }
 
-    /// The model of light at `excitation_nm` seen at `wavelength_nm`, on the stack that `at` has for a wavelength; and the wavelengths
-    /// of the two bins, which are the nearest.
+    /// The model of light at `excitation_nm` seen at `wavelength_nm`, on the stack that `at` gives for a wavelength; and the wavelengths of the two
+    /// nearest bins.
     pub(crate) fn between(
         &self,
         excitation_nm: f64,

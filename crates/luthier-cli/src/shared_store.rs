@@ -1,4 +1,4 @@
-//! The store that machines share, below that of the process.
+//! The store that machines share, below the store of the process.
 
 use std::env::{self, VarError};
 
@@ -22,15 +22,15 @@ pub(crate) fn address(text: &str) -> Result<String, String> {
 
 /// The address that is asked for.
 fn asked(url: Option<&str>) -> Outcome<Option<String>> {
-    let refused = |reason| Failure::Usage(anyhow::anyhow!("variable {VARIABLE}: {reason}"));
-    match url {
+    let found = match url {
         Some(url) => Ok(Some(url.to_owned())),
         None => match env::var(VARIABLE) {
-            Ok(url) if !url.is_empty() => address(&url).map(Some).map_err(refused),
+            Ok(url) if !url.is_empty() => address(&url).map(Some),
             Ok(_) | Err(VarError::NotPresent) => Ok(None),
-            Err(error) => Err(refused(error.to_string())),
+            Err(error) => Err(error.to_string()),
         },
-    }
+    };
+    found.map_err(|reason| Failure::Usage(anyhow::anyhow!("variable {VARIABLE}: {reason}")))
 }
 
 /// The store of the process, because this build has no other.
@@ -53,10 +53,10 @@ mod remote {
 
     use super::*;
 
-    /// The two stores, once they were asked for.
+    /// The two stores, made at their first use.
     static BOTH: OnceLock<Both> = OnceLock::new();
 
-    /// The store of the process, and what machines share.
+    /// The store of the process, and the shared one.
     struct Both {
         near: &'static dyn Store,
         far: RemoteStore,
@@ -80,7 +80,7 @@ mod remote {
         }
     }
 
-    /// The store of the process, with what machines share below it where that is asked for.
+    /// The store of the process, with the shared store below it where that is asked for.
     pub(crate) fn below(near: &'static dyn Store, url: Option<&str>) -> Outcome<&'static dyn Store> {
         if let Some(both) = BOTH.get() {
             return Ok(both);
@@ -90,7 +90,7 @@ mod remote {
         Ok(BOTH.get_or_init(|| Both { near, far }))
     }
 
-    /// Waits for uploads, and says what went wrong.
+    /// Waits for uploads, and prints a warning for those that failed.
     pub(crate) fn close() {
         let Some(Both { far, .. }) = BOTH.get() else { return };
         far.close();

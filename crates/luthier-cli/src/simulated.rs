@@ -30,7 +30,7 @@ pub(crate) fn find(material: &str, out: &Path) -> Outcome<(Package, u32)> {
     Ok((package(valid(sources, false)?)?, 0))
 }
 
-/// Materials, ready to be simulated: models play no part, so that nothing is fitted and no table is baked.
+/// A package of materials for the simulation. It needs no model, so nothing is fitted and no table is baked.
 pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
     for material in &mut materials {
         material.shade_by(ShadingModel::Phong);
@@ -39,27 +39,26 @@ pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
     Ok(Bake::lit().package(&materials, store()?)?)
 }
 
-/// Reasons why a material is not simulated, each with its file and line; none where it is.
+/// Reasons why a material cannot be simulated, each with its file and line; empty if it can.
 #[cfg(feature = "view")]
 pub(crate) fn refusals(material: &Material) -> Vec<String> {
-    let sentence = |Diagnostic { message, label, line, .. }| format!("{message} ({label}:{line})");
-    beyond(material).into_iter().map(sentence).collect()
+    let beyond = beyond(material).into_iter();
+    beyond.map(|Diagnostic { message, label, line, .. }| format!("{message} ({label}:{line})")).collect()
 }
 
 /// Refusals of the parts of a material that the simulation on the device does not take.
 pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
     let mut found: Vec<(String, Feature)> = Vec::new();
     for (number, layer) in material.stack.layers.iter().enumerate() {
-        let key = |name: &str| format!("layer.{number}.{name}");
         if !layer.films.is_empty() {
-            found.push((key("film.0.type"), Feature::Films));
+            found.push((format!("layer.{number}.film.0.type"), Feature::Films));
         }
         if material.layers[number].reradiation.is_some() {
-            found.push((key("reradiation"), Feature::Reradiation));
+            found.push((format!("layer.{number}.reradiation"), Feature::Reradiation));
         }
         let slopes = layer.surface.distribution;
         if !layer.surface.is_smooth() && !slopes.has_walks() {
-            found.push((key(distribution_key(slopes)), Feature::Distribution));
+            found.push((format!("layer.{number}.{}", distribution_key(slopes)), Feature::Distribution));
         }
         for map in material.layers[number].maps.named() {
             let of_surface = match map.slot {
@@ -68,7 +67,7 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
                 _ => Feature::ThicknessMap,
             };
             let feature = map.slot.layer_feature(number as u32).unwrap_or(of_surface);
-            found.push((key(&format!("maps.{}", map.key)), feature));
+            found.push((format!("layer.{number}.maps.{}", map.key), feature));
         }
     }
     let effects = &material.effects;
@@ -81,12 +80,12 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
             found.push((key.to_owned(), feature));
         }
     }
-    let refusal = |(key, feature): (String, Feature)| {
+    let refusals = found.into_iter().map(|(key, feature)| {
         let message = format!("the simulation on the device does not take {}", feature.name());
         let hint = "leave it out for the simulation, or render the material by a model: leave out `--simulated`";
         material.diagnostic(Severity::Error, &key, message, Some(hint.to_owned()))
-    };
-    found.into_iter().map(refusal).collect()
+    });
+    refusals.collect()
 }
 
 /// A simulated picture, and the root of the mean square of the standard errors of its pixels.
@@ -98,7 +97,7 @@ pub(crate) struct Picture {
 /// Samples that are added at once.
 const STEP: u32 = 32;
 
-/// Simulates a picture with so many samples of each pixel. Shows it to `so_far` whenever they have doubled.
+/// Simulates a picture with `samples` samples of each pixel. `so_far` sees it whenever their number has doubled.
 pub(crate) fn picture(
     gpu: &Gpu,
     package: &Package,

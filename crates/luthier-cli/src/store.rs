@@ -1,4 +1,4 @@
-//! The store of results that all verbs share.
+//! The store of results, which all verbs share.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -34,7 +34,7 @@ pub(crate) struct StoreOptions {
 /// The options of this process.
 static OPTIONS: OnceLock<StoreOptions> = OnceLock::new();
 
-/// The store of this process, once it was asked for.
+/// The store of this process, made at its first use.
 static STORE: OnceLock<Opened> = OnceLock::new();
 
 enum Opened {
@@ -47,11 +47,11 @@ pub(crate) fn configure(options: &StoreOptions) {
     let _ = OPTIONS.set(options.clone());
 }
 
-/// The store of this process: on disk, or in memory where there is none, and what machines share below it.
+/// The store of this process: on disk, or in memory if there is none on disk, with the store that machines share below it.
 ///
 /// # Errors
-/// [`Failure::Usage`] where what machines share has no address of a store, or this build has no such stores.
-/// [`Failure::Files`] where the folder that was asked for cannot be used. The folder that was not asked for does no harm: a line says why it is not used.
+/// [`Failure::Usage`] where the address of the shared store is none, or this build has no such stores. [`Failure::Files`] where the folder that was
+/// asked for cannot be used. A default folder that cannot be used causes a warning only.
 pub(crate) fn store() -> Outcome<&'static dyn Store> {
     let near: &dyn Store = match opened()? {
         Opened::Disk(store) => store,
@@ -116,7 +116,7 @@ pub(crate) fn folder(options: &StoreOptions) -> Option<(PathBuf, bool)> {
     Some((etcetera::BaseStrategy::cache_dir(&caches).join("luthier"), false))
 }
 
-/// Counts what was written, and says what went wrong. To be called when the work is done.
+/// Closes the stores, and prints a warning if results could not be kept. Call it when all work is done.
 pub(crate) fn close() {
     shared_store::close();
     let Some(Opened::Disk(store)) = STORE.get() else { return };

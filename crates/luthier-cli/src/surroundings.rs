@@ -14,15 +14,15 @@ pub(crate) struct Surroundings {
     pub(crate) sha256: String,
     /// Texels across and down.
     pub(crate) size: [u32; 2],
-    /// Values below 0, which were set to it.
+    /// Number of values below 0, which were set to 0.
     pub(crate) negative: usize,
 }
 
-/// Reads a Radiance HDR or OpenEXR file. A warning tells what of it was converted, left out or set to 0.
+/// Reads a Radiance HDR or OpenEXR file. Warnings name what was converted, left out or set to 0.
 pub(crate) fn read(path: &Path) -> Outcome<Surroundings> {
     let bytes = input::image(path).map_err(files(path, "read"))?;
-    let unusable = |source: anyhow::Error| Failure::Input(source.context(path.display().to_string()));
-    let Picture { image: mut map, notes } = radiance::decode(&bytes).map_err(|source| unusable(source.into()))?;
+    let decoded = radiance::decode(&bytes).map_err(|source| unusable(path, source.into()))?;
+    let Picture { image: mut map, notes } = decoded;
     for note in notes {
         complain(&format!("warning: {}: {note}", path.display()));
     }
@@ -36,6 +36,10 @@ pub(crate) fn read(path: &Path) -> Outcome<Surroundings> {
         complain(&format!("warning: {}: {negative} values are below 0 and count as 0", path.display()));
     }
     let size = [map.width, map.height];
-    let environment = Environment::new(map).map_err(|source| unusable(source.into()))?;
+    let environment = Environment::new(map).map_err(|source| unusable(path, source.into()))?;
     Ok(Surroundings { environment, sha256: sha256(&bytes), size, negative })
+}
+
+fn unusable(path: &Path, source: anyhow::Error) -> Failure {
+    Failure::Input(source.context(path.display().to_string()))
 }

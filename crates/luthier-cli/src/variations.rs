@@ -19,20 +19,20 @@ impl FromStr for Range {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no KEY=FROM..TO, for instance roughness=0.1..1");
-        let (key, range) = text.split_once('=').ok_or_else(wrong)?;
-        let (from, to) = range.split_once("..").ok_or_else(wrong)?;
-        let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong);
-        let (from, to) = (number(from)?, number(to)?);
-        if key.is_empty() || key.split('.').any(str::is_empty) {
-            return Err(wrong());
+        let parts = text.split_once('=').and_then(|(key, range)| Some((key, range.split_once("..")?)));
+        match parts.map(|(key, (from, to))| (key, [from, to].map(str::parse::<f64>))) {
+            Some((key, [Ok(from), Ok(to)]))
+                if from.is_finite() && to.is_finite() && !key.split('.').any(str::is_empty) =>
+            {
+                Ok(Self { key: key.to_owned(), from, to })
+            }
+            _ => Err(format!("`{text}` is no KEY=FROM..TO, for instance roughness=0.1..1")),
         }
-        Ok(Self { key: key.to_owned(), from, to })
     }
 }
 
 impl Range {
-    /// The number at one of some equal steps, to ten digits so that it is written as people write it.
+    /// The number at one of `steps` equal steps. It is rounded to ten digits, so that 0.3 is not written as 0.30000000000000004.
     fn at(&self, step: u32, steps: u32) -> f64 {
         let t = f64::from(step) / f64::from(steps - 1);
         let number = self.from * (1.0 - t) + self.to * t;
@@ -40,8 +40,8 @@ impl Range {
     }
 }
 
-/// A file whose first key grows along the rows and whose second grows down the columns, row by row from the top left; with the two numbers of each.
-/// If one of them is no material, it is the only one that is returned.
+/// Variations of a file, row by row from the top left, each with its two numbers. The first key grows along the rows, the second down the columns. If
+/// a variation is no material, it is the only one that is returned.
 ///
 /// # Errors
 /// The file cannot be read, or has no place for a key.
@@ -74,8 +74,8 @@ fn rounded(number: f64) -> String {
     short.to_string()
 }
 
-/// Writes a number at a key. A key with dots leads from the top of the file, and counts elements of arrays from 0. One without is that of the
-/// topmost layer that has it, or else a new one of the first layer.
+/// Writes a number at a key. A key with dots leads from the top of the file, and counts elements of arrays from 0. A key without dots belongs to the
+/// topmost layer that has it, or else is new in the first layer.
 fn set(document: &mut DocumentMut, key: &str, number: f64) -> Result<(), String> {
     let path: Vec<String> = if key.contains('.') {
         key.split('.').map(str::to_owned).collect()
@@ -121,28 +121,31 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// A whole number stays one where one was.
+    /// Writes the number. Where a whole number was, a whole number stays one.
     fn write(self, last: &str, number: f64) -> Option<()> {
-        let float = || Value::Float(Formatted::new(number));
-        let like = |old: &Value| match old {
-            Value::Integer(_) if number.fract() == 0.0 => Value::Integer(Formatted::new(number as i64)),
-            _ => float(),
-        };
         match self {
             Self::Table(table) => {
                 let value = match table.get(last) {
-                    None | Some(Item::None) => float(),
-                    Some(item) => like(item.as_value()?),
+                    None | Some(Item::None) => Value::Float(Formatted::new(number)),
+                    Some(item) => like(item.as_value()?, number),
                 };
                 table.insert(last, Item::Value(value));
             }
             Self::Tables(_) => return None,
             Self::Array(array) => {
                 let old = array.get_mut(last.parse().ok()?)?;
-                *old = like(old);
+                *old = like(old, number);
             }
         }
         Some(())
+    }
+}
+
+/// A number as a value: a whole number where a whole number was.
+fn like(old: &Value, number: f64) -> Value {
+    match old {
+        Value::Integer(_) if number.fract() == 0.0 => Value::Integer(Formatted::new(number as i64)),
+        _ => Value::Float(Formatted::new(number)),
     }
 }
 

@@ -23,7 +23,7 @@ use crate::simulated;
 use crate::store::store;
 use crate::watched::{State, seen, state};
 
-/// Each file that matters; `None` where it cannot be read.
+/// Each watched file with its state; `None` if it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<State>>;
 
 /// The command, as the window sees it.
@@ -47,9 +47,8 @@ impl ViewHost {
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
         let mut materials = lit(std::slice::from_ref(material));
-        let is_chosen = |material: &Material| self.fresnel.is_some() && material.model().takes(ModelPart::Reflectance);
-        for material in materials.iter_mut().filter(|material| is_chosen(material)) {
-            material.bake.reflectance = self.fresnel;
+        for material in materials.iter_mut().filter(|material| material.model().takes(ModelPart::Reflectance)) {
+            material.bake.reflectance = self.fresnel.or(material.bake.reflectance);
         }
         let store = Layers(&[&self.store, store()?]);
         let package = Bake::lit().in_forms(&[form]).package(&materials, &store)?;
@@ -68,11 +67,11 @@ impl Host for ViewHost {
         }
         let files: Vec<MaterialFile> = match find(&self.paths) {
             Ok(paths) => paths.iter().map(|path| file(path)).collect(),
-            // A folder that is being replaced: what was there is missing for now.
+            // The folder is being replaced: its files are missing for a moment.
             Err(_) => last_files.iter().map(|file| self::file(Path::new(&file.label))).collect(),
         };
         let is_new = seen.as_ref().is_none_or(|(_, last)| *last != files);
-        // Names of files may have changed, and with them what to look at.
+        // Materials may name other files now, so the list of watched files is made anew.
         *seen = Some((self::stamps(&self.paths, &files), files.clone()));
         is_new.then_some(files)
     }
@@ -109,7 +108,7 @@ impl Host for ViewHost {
         };
         let bytes =
             png::encode_rgb(screenshot.width, screenshot.height, &screenshot.rgb8).map_err(|e| e.to_string())?;
-        // Whoever waits for the file finds all of it.
+        // The file is renamed when it is complete, so that a program that waits for it never reads a part.
         let part = path.with_extension("png.part");
         let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, &path));
         match written {
@@ -178,8 +177,8 @@ fn numbered(path: &Path, number: u32) -> PathBuf {
 
 /// A name in the current folder that nothing has yet.
 fn free() -> PathBuf {
-    let name = |i: u32| PathBuf::from(format!("luthier-view-{i}.png"));
-    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+    let mut names = (1..).map(|i: u32| PathBuf::from(format!("luthier-view-{i}.png")));
+    names.find(|path| !path.exists()).unwrap_or_else(|| "luthier-view-0.png".into())
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -237,7 +236,7 @@ mod tests {
         luthier_view::Handle::Alpha(0).set(&mut material, 0.4);
         let jobs = host.store.len();
         let rougher = host.bake(&material, Form::Baked).unwrap();
-        // Nothing new was computed: what is not used again would have been swept.
+        // Nothing new was computed, and results that this bake did not use would have been swept.
         assert_eq!(host.store.len(), jobs);
         assert_eq!(rougher.tables, first.tables);
         assert_eq!(rougher.manifest.materials[0].layers[0].alpha, 0.4);

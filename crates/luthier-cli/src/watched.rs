@@ -1,4 +1,4 @@
-//! Files that are looked at again: whether they have changed.
+//! States of files, by which changes are found.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

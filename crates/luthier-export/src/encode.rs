@@ -11,17 +11,36 @@ use rayon::prelude::*;
 use crate::origins::from_folder;
 use crate::{GENERATOR, MANIFEST, Package, PackageError, Shader, Table, publish, sha256};
 
-/// Whether texels are compressed inside KTX2 files.
+/// Compression of the texels inside KTX2 files.
+///
+/// ```
+/// use luthier_export::Compression;
+///
+/// assert_eq!(Compression::default(), Compression::Zstd);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Compression {
     /// Zstandard, a supercompression scheme of KTX2.
     #[default]
     Zstd,
-    /// None: for loaders without a decompressor.
+    /// No compression, for loaders without a decompressor.
     None,
 }
 
 /// The files of a package, with their paths relative to the folder, and the manifest that names them by their hashes.
+///
+/// ```
+/// use luthier_export::{Encoded, GENERATOR};
+/// use luthier_manifest::Manifest;
+///
+/// let files = vec![("shaders/baked.wgsl".to_owned(), b"fn shade() {}".to_vec())];
+/// let encoded = Encoded { manifest: Manifest::new(GENERATOR, Vec::new(), Vec::new()), files };
+/// let folder = tempfile::tempdir()?;
+/// assert_eq!(encoded.stale(folder.path())?, ["manifest.json", "shaders/baked.wgsl"]);
+/// encoded.write(folder.path())?;
+/// assert!(encoded.is_in(folder.path()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Encoded {
     /// The manifest.
@@ -31,8 +50,8 @@ pub struct Encoded {
 }
 
 impl Package {
-    /// Publishes the package in a folder as `luthier bake` does: texels compressed, sources named by their paths from the folder. The folder changes
-    /// at once or not at all.
+    /// Publishes the package in a folder as `luthier bake` does: with compressed texels, and with paths of sources from the folder. The folder
+    /// changes at once or not at all.
     ///
     /// # Errors
     /// Those of [`Package::encode`] and [`Encoded::write`](crate::Encoded::write).
@@ -63,12 +82,12 @@ impl Package {
         words.resize(manifest.material_texture.words(), [0.0; 4]);
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = files.add("materials.bin".to_owned(), bytes);
-        let mut shader = |shader: &Shader| {
-            let Shader { form, target, bytes, interface } = shader;
+        manifest.shaders.clear();
+        for Shader { form, target, bytes, interface } in &self.shaders {
             let file = files.add(format!("shaders/{form}.{}", target.extension()), bytes.clone());
-            ShaderEntry { target: *target, form: *form, file, interface: Some(interface.clone()) }
-        };
-        manifest.shaders = self.shaders.iter().map(&mut shader).collect();
+            let (target, form, interface) = (*target, *form, Some(interface.clone()));
+            manifest.shaders.push(ShaderEntry { target, form, file, interface });
+        }
         Ok(Encoded { manifest, files: files.0 })
     }
 
@@ -78,7 +97,7 @@ impl Package {
         let (Some(truth), Some(entry)) = (&table.truth, self.manifest.table(kind)) else {
             return Err(PackageError::NoTruth { kind });
         };
-        // Thickness without slopes is one channel of the kind's four.
+        // Thickness without slopes has one of the kind's four channels.
         let channels = if truth.channels == 1 { &["Y"] } else { kind.facts().channels };
         Ok(match (part, compression) {
             (Part::Texture, Compression::Zstd) => ktx2::encode(&table.texture)?,
@@ -96,7 +115,7 @@ enum Part {
     Texture,
     /// Values before they were rounded.
     Truth,
-    /// Something to look at.
+    /// A picture for people.
     Picture,
 }
 
@@ -113,7 +132,7 @@ impl Part {
 }
 
 impl Encoded {
-    /// The package as it is published in a folder: its manifest names files by their paths from there.
+    /// Makes the manifest name source files by their paths from a folder.
     #[must_use]
     pub fn for_folder(mut self, folder: &Path) -> Self {
         let manifest = &mut self.manifest;
@@ -124,8 +143,8 @@ impl Encoded {
         self
     }
 
-    /// Files under names that contain the hashes of their contents, before the extension: `tables/fresnel.0123456789abcdef.ktx2`. The manifest keeps its name, so
-    /// that its replacement alone switches from one bake to the next.
+    /// Gives files names with the hashes of their contents before the extension: `tables/fresnel.0123456789abcdef.ktx2`. The manifest keeps its name,
+    /// so its replacement alone switches from one bake to the next.
     #[must_use]
     pub fn with_hashed_names(mut self) -> Self {
         let entries = self.manifest.files_mut();
@@ -155,14 +174,14 @@ impl Encoded {
         publish::publish(folder, &files)
     }
 
-    /// Whether a folder holds this generation, and not another that a program has published since.
+    /// True where a folder holds this generation, and no other program has published another since.
     pub fn is_in(&self, folder: &Path) -> bool {
         let manifest = self.manifest.to_json();
         manifest.is_ok_and(|manifest| publish::current(folder, MANIFEST).as_deref() == Some(manifest.as_bytes()))
     }
 
-    /// The files that a folder lacks, or has with other bytes, and those that its manifest names and that would go: in the order of their paths. Empty where
-    /// [`Self::write`] would change nothing.
+    /// The files that [`Self::write`] would change in a folder, sorted: files that the folder lacks or has with other bytes, and files that its
+    /// manifest names and this one does not.
     ///
     /// # Errors
     /// [`PackageError::Table`] for a manifest that is no JSON.
@@ -170,8 +189,8 @@ impl Encoded {
         let manifest = self.manifest.to_json()?;
         let files = self.files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
         let all: BTreeMap<&str, &[u8]> = files.chain([(MANIFEST, manifest.as_bytes())]).collect();
-        let is_other = |(path, bytes): &(&&str, &&[u8])| publish::current(folder, path).as_deref() != Some(**bytes);
-        let mut stale: Vec<String> = all.iter().filter(is_other).map(|(path, _)| (*path).to_owned()).collect();
+        let others = all.iter().filter(|(path, bytes)| publish::current(folder, path).as_deref() != Some(**bytes));
+        let mut stale: Vec<String> = others.map(|(path, _)| (*path).to_owned()).collect();
         stale.extend(publish::named(folder).into_iter().filter(|path| !all.contains_key(path.as_str())));
         stale.sort();
         Ok(stale)
@@ -193,14 +212,13 @@ impl Files {
 /// Metadata of the unquantised values of a table.
 fn metadata(table: &TableEntry) -> Metadata {
     let AtlasLayout { x, y, apron, columns, tiles, base } = &table.layout;
-    let joined = |f: &dyn Fn(&Tile) -> String| table.tiles.iter().map(f).collect::<Vec<_>>().join("\n");
-    let hashes = joined(&|t| t.input_hash.clone());
+    let hashes = lines(table, |tile| &tile.input_hash);
     let mut pairs = vec![
         ("generator", GENERATOR.to_owned()),
         ("table", table.kind.name().to_owned()),
-        ("model", joined(&|t| t.model.clone())),
+        ("model", lines(table, |tile| &tile.model)),
         ("axis.x", axis(x)),
-        ("tile.names", joined(&|t| t.name.clone())),
+        ("tile.names", lines(table, |tile| &tile.name)),
         ("tile.count", tiles.to_string()),
         ("tile.columns", columns.to_string()),
         ("tile.apron", apron.to_string()),
@@ -214,6 +232,11 @@ fn metadata(table: &TableEntry) -> Metadata {
         pairs.push(("row.base", "schlick".to_owned()));
     }
     pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+/// A text of each tile of a table, one per line.
+fn lines(table: &TableEntry, of: fn(&Tile) -> &String) -> String {
+    table.tiles.iter().map(|tile| of(tile).as_str()).collect::<Vec<_>>().join("\n")
 }
 
 fn axis(axis: &Axis) -> String {
@@ -230,7 +253,7 @@ fn axis(axis: &Axis) -> String {
     format!("{quantity}: {min} to {max}{unit}, {size} nodes, {mapping}")
 }
 
-/// A table as something to look at: its first three channels, brought into 0..1 where they are signed.
+/// A picture of a table for people: its first three channels, brought into 0..1 where they are signed.
 fn picture(kind: TableKind, truth: &Image) -> Image {
     let channels = truth.channels.min(3);
     let mut data = Vec::with_capacity(truth.texel_count() * channels as usize);

@@ -1,4 +1,4 @@
-//! Faults of packages and of what they are made from.
+//! Errors of packages.
 
 use std::io;
 use std::path::PathBuf;
@@ -10,7 +10,15 @@ use thiserror::Error;
 
 use crate::MAX_FILE_BYTES;
 
-/// Why a package cannot be read, written, or used.
+/// An error of a package that is read, written or used.
+///
+/// ```
+/// use luthier_export::{Package, PackageError};
+///
+/// let error = Package::read("nowhere".as_ref()).unwrap_err();
+/// assert!(matches!(error, PackageError::NoBake { .. }));
+/// assert_eq!(error.to_string(), "no bake in nowhere: run `luthier bake` first");
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PackageError {

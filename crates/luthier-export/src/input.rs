@@ -1,4 +1,5 @@
-//! Files that users name: only regular ones, of a size that fits their purpose. A pipe would be waited for, and a device has no end.
+//! Reads files that users name: only regular files, of a size that fits their purpose. Reading a pipe would wait for its writer, and a device has no
+//! end.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -10,7 +11,7 @@ pub const TEXT_MAX: u64 = 64 << 20;
 /// Bytes of the largest image that is read: maps, environments, tables.
 const IMAGE_MAX: u64 = 1 << 30;
 
-/// Bytes of the largest file of a mesh: many times what triangles take that pictures show.
+/// Bytes of the largest file of a mesh: many times the triangles that pictures show.
 const MESH_MAX: u64 = 256 << 20;
 
 /// The bytes of an image.
@@ -56,7 +57,7 @@ pub fn text(path: &Path) -> io::Result<String> {
 }
 
 fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    // Asked before it is opened: to open a pipe is to wait for its other end.
+    // This comes before opening, because opening a pipe waits for its other end.
     let kind = std::fs::metadata(path).map_err(plainly)?;
     if kind.is_dir() {
         return Err(io::Error::other("it is a folder, not a file"));
@@ -68,7 +69,7 @@ fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(too_large(most));
     }
     let mut bytes = Vec::with_capacity(kind.len() as usize);
-    // Files can grow, and some systems have files that hold more than they say.
+    // The limit holds for reading, too: files can grow, and some systems have files that are longer than they state.
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
 }
@@ -77,7 +78,7 @@ fn too_large(most: u64) -> io::Error {
     io::Error::other(format!("it is larger than {} MiB", most >> 20))
 }
 
-/// The commonest error in words that do not depend on the system.
+/// Gives the most common error words that do not depend on the system.
 fn plainly(error: io::Error) -> io::Error {
     if error.kind() == ErrorKind::NotFound { io::Error::new(ErrorKind::NotFound, "no such file") } else { error }
 }

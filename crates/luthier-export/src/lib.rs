@@ -3,10 +3,10 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! [`Package::write`] encodes a package and publishes it as a whole; [`Package::read`] reads it back, and [`Folder`] reads parts of one. This crate
-//! depends on nothing that bakes: so does the runtime, `luthier-gpu`. Packages are made by the crate `luthier`.
+//! [`Package::write`] encodes a package and publishes it as a whole; [`Package::read`] reads it back, and [`Folder`] reads parts of one. Neither this
+//! crate nor the runtime, `luthier-gpu`, depends on a crate that bakes. The crate `luthier` makes packages.
 //!
-//! Modules, each of which uses those before it alone: hash, input, origins, error, publish, package, encode, folder.
+//! Modules, each of which uses only earlier ones: hash, input, origins, error, publish, package, encode, folder.
 
 mod encode;
 mod error;
@@ -28,8 +28,8 @@ pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_bes
 /// File name of the manifest.
 pub const MANIFEST: &str = "manifest.json";
 
-/// Most bytes of any file of a bake: the texels of the largest texture, and as much again for what is around them.
+/// Most bytes of any file of a bake: twice the texels of the largest texture, which leaves room for containers and metadata.
 pub const MAX_FILE_BYTES: u64 = 2 * luthier_texture::MAX_BYTES;
 
-/// Program and version, as manifests and reports name it.
+/// Program and version for manifests and reports.
 pub const GENERATOR: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));

@@ -1,13 +1,13 @@
-//! Where materials came from, as a manifest has it: paths from its folder, so that a package is the same in every checkout.
+//! Paths of source files in manifests. They lead from the manifest's folder, so that a package is the same in every checkout.
 
 use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf, absolute};
 
-/// A path as messages and manifests have it: with forward slashes everywhere.
+/// A path for messages and manifests, with forward slashes on every system.
 pub fn label(path: &Path) -> String {
     path.to_string_lossy().replace(MAIN_SEPARATOR, "/")
 }
 
-/// A path without the folders that `..` leaves again.
+/// A path without folders that a later `..` leaves.
 pub fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
@@ -23,11 +23,17 @@ pub fn plain(path: &Path) -> PathBuf {
 }
 
 /// The path of a file from the current folder, where `source` is its path from the folder of a manifest.
+///
+/// ```
+/// use std::path::Path;
+///
+/// assert_eq!(luthier_export::origin(Path::new("out"), "../m/gold.toml"), Path::new("m/gold.toml"));
+/// ```
 pub fn origin(folder: &Path, source: &str) -> PathBuf {
     plain(&folder.join(source))
 }
 
-/// The path from a folder to a file. It stays as it is where there is none: to another drive.
+/// The path from a folder to a file. A file on another drive has none, and `source` is returned.
 pub(crate) fn from_folder(folder: &Path, source: &str) -> String {
     let (Ok(folder), Ok(file)) = (absolute(folder), absolute(source)) else { return source.to_owned() };
     let (folder, file) = (plain(&folder), plain(&file));

@@ -1,4 +1,4 @@
-//! A package: all that a bake made, in memory.
+//! A package: the result of a bake, in memory.
 
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{Form, Interface, Manifest, MapSlot, MaterialEntry, Target};
@@ -7,19 +7,42 @@ use luthier_texture::Texture;
 use crate::PackageError;
 
 /// A bake in memory: the manifest, the texels of its tables, its shaders, the maps of its materials.
+///
+/// ```
+/// use luthier_export::{GENERATOR, Package, Shader};
+/// use luthier_manifest::{Form, Manifest};
+///
+/// let manifest = Manifest::new(GENERATOR, Vec::new(), Vec::new());
+/// let shaders = vec![Shader::wgsl(Form::Baked, "fn shade() {}\n".to_owned())];
+/// let package = Package { manifest, tables: Vec::new(), shaders, maps: Vec::new() };
+/// assert_eq!(package.wgsl(Form::Baked)?, "fn shade() {}\n");
+/// assert!(package.wgsl(Form::Full).is_err());
+/// # Ok::<(), luthier_export::PackageError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Package {
-    /// The manifest. Until files are made of the package, its entries of files have no hashes.
+    /// The manifest. Its entries of files have no hashes until the package is encoded.
     pub manifest: Manifest,
-    /// One for each table of the manifest, in its order.
+    /// Texels of each table of the manifest, in its order.
     pub tables: Vec<Table>,
-    /// The emitted shaders; those in WGSL where the package was read from a folder.
+    /// The emitted shaders. A package that was read from a folder has those in WGSL only.
     pub shaders: Vec<Shader>,
     /// Maps of the materials, in the manifest's order. Materials without maps are the same at every place.
     pub maps: Vec<Map>,
 }
 
 /// The texels of a table.
+///
+/// ```
+/// use luthier_export::Table;
+/// use luthier_lut::{TableKind, TexelFormat};
+/// use luthier_texture::Texture;
+///
+/// let texture = Texture { format: TexelFormat::R32Float, width: 1, height: 1, bytes: 0.5_f32.to_le_bytes().to_vec() };
+/// let table = Table { kind: TableKind::Distribution, texture, truth: None };
+/// assert_eq!(table.texture.image()?.data, [0.5]);
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// Kind of the table.
@@ -31,9 +54,18 @@ pub struct Table {
 }
 
 /// An emitted shader: functions only, no entry point.
+///
+/// ```
+/// use luthier_export::Shader;
+/// use luthier_manifest::Form;
+///
+/// let text = "fn luthier_layer_count(material: u32) -> u32 {\n    return 1u;\n}\n";
+/// let shader = Shader::wgsl(Form::Full, text.to_owned());
+/// assert!(shader.interface.function("luthier_layer_count").is_some());
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Shader {
-    /// How it evaluates a material.
+    /// The way of evaluating a material.
     pub form: Form,
     /// Its language.
     pub target: Target,
@@ -44,13 +76,26 @@ pub struct Shader {
 }
 
 /// A map of a material.
+///
+/// ```
+/// use luthier_export::Map;
+/// use luthier_lut::Image;
+/// use luthier_manifest::MapSlot;
+/// use luthier_texture::{picture, png};
+///
+/// let png = png::encode_gray(&Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] })?;
+/// let picture = picture::decode(&png)?.picture;
+/// let map = Map { material: 0, slot: MapSlot::Roughness, layer: None, picture, png };
+/// assert_eq!(map.picture.size(), [2, 1]);
+/// # Ok::<(), luthier_texture::TextureError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
     /// Number of the material.
     pub material: u32,
     /// Quantity that the map varies.
     pub slot: MapSlot,
-    /// The layer that it is of; `None` for those of the whole surface.
+    /// The layer that has the map; `None` if the whole surface has it.
     pub layer: Option<u32>,
     /// Its texels.
     pub picture: Picture,
@@ -75,7 +120,8 @@ impl Package {
     /// A package of parts in memory, without maps. Tables may come in any order.
     ///
     /// # Errors
-    /// When a table of the manifest has no texels or others than its entry says, and when there is nothing to shade.
+    /// [`PackageError::MissingTexels`] and [`PackageError::Table`] where texels do not match the manifest; [`PackageError::NoMaterials`],
+    /// [`PackageError::NoLayers`] and [`PackageError::NoSurfaceMaterial`] where it has nothing to shade.
     pub fn from_parts(manifest: Manifest, mut tables: Vec<Table>, shaders: Vec<Shader>) -> Result<Self, PackageError> {
         if manifest.materials.is_empty() {
             return Err(PackageError::NoMaterials);
@@ -83,8 +129,8 @@ impl Package {
         if let Some(MaterialEntry { name, .. }) = manifest.materials.iter().find(|m| m.layers.is_empty()) {
             return Err(PackageError::NoLayers { name: name.clone() });
         }
-        let is_foreign = |number: &u32| *number as usize >= manifest.materials.len();
-        if let Some(surface) = manifest.surfaces.iter().find(|s| s.materials().iter().any(is_foreign)) {
+        let count = manifest.materials.len();
+        if let Some(surface) = manifest.surfaces.iter().find(|s| s.materials().iter().any(|&m| m as usize >= count)) {
             return Err(PackageError::NoSurfaceMaterial { surface: surface.name.clone() });
         }
         let mut ordered = Vec::with_capacity(manifest.tables.len());
@@ -124,10 +170,10 @@ impl Package {
     /// # Errors
     /// [`PackageError::NoShader`].
     pub fn shader(&self, form: Form) -> Result<&Shader, PackageError> {
-        let texts = || self.shaders.iter().filter(|s| s.target == Target::Wgsl);
-        texts().find(|s| s.form == form).ok_or_else(|| PackageError::NoShader {
+        let texts: Vec<&Shader> = self.shaders.iter().filter(|s| s.target == Target::Wgsl).collect();
+        texts.iter().copied().find(|s| s.form == form).ok_or_else(|| PackageError::NoShader {
             form,
-            known: texts().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
+            known: texts.iter().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
         })
     }
 

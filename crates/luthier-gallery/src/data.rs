@@ -1,4 +1,4 @@
-//! The data of a page: what its script reads.
+//! The data that the script of a page reads.
 
 use std::collections::BTreeMap;
 
@@ -78,34 +78,26 @@ impl PageData {
         let sets: Vec<Vec<PageSet>> =
             numbered.par_iter().map(|(i, package)| PageSet::of(*i, package)).collect::<Result<_, GalleryError>>()?;
         let sets: Vec<PageSet> = sets.into_iter().flatten().collect();
-        let read = |package: usize| {
-            let of_package = sets.iter().filter(move |set| set.is_of(package));
-            of_package.flat_map(PageSet::tables).map(String::as_str).collect::<Vec<&str>>()
-        };
         let of_packages: Vec<Vec<PageTable>> = numbered
             .par_iter()
             .map(|(i, package)| {
-                let read = read(*i);
+                let own = sets.iter().filter(|set| set.is_of(*i));
+                let read: Vec<&str> = own.flat_map(PageSet::tables).map(String::as_str).collect();
                 tables(package, |name| read.contains(&name))
             })
             .collect::<Result<_, GalleryError>>()?;
         let mut all: Vec<PageTable> = Vec::new();
-        let mut number = |table: PageTable| {
-            let place = all.iter().position(|other| *other == table);
-            place.unwrap_or_else(|| {
-                all.push(table);
-                all.len() - 1
-            })
-        };
-        let packages = of_packages.into_iter().map(|tables| tables.into_iter().map(&mut number).collect()).collect();
+        let packages =
+            of_packages.into_iter().map(|own| own.into_iter().map(|table| number(&mut all, table)).collect());
+        let packages = packages.collect();
         let shown = gallery.packages.iter().flat_map(|package| &package.manifest.materials);
         let reads = Reads::of(shown.filter(|entry| is_blurred(entry)));
         let mut skies = vec![PageSky::studio(reads)?];
         for &scenery in &gallery.skies {
             skies.push(PageSky::scenery(scenery, reads)?);
         }
-        let material = |exhibit: &Exhibit| PageMaterial::new(exhibit, gallery, &sets);
-        let materials = gallery.exhibits.par_iter().map(material).collect::<Result<_, GalleryError>>()?;
+        let materials = gallery.exhibits.par_iter().map(|exhibit| PageMaterial::new(exhibit, gallery, &sets));
+        let materials = materials.collect::<Result<_, GalleryError>>()?;
         let sets = sets.into_iter().map(|set| Set { count: set.count(), set }).collect();
         Ok(Self { glsl: glsl(), tables: all, packages, sets, skies, materials })
     }
@@ -131,17 +123,25 @@ fn glsl() -> BTreeMap<&'static str, String> {
     glsl
 }
 
+/// The number of a table among all, to which it is added if it is new.
+fn number(all: &mut Vec<PageTable>, table: PageTable) -> usize {
+    let place = all.iter().position(|other| *other == table);
+    place.unwrap_or_else(|| {
+        all.push(table);
+        all.len() - 1
+    })
+}
+
 impl PageMaterial {
     fn new(exhibit: &Exhibit, gallery: &Gallery, sets: &[PageSet]) -> Result<Self, GalleryError> {
-        let missing = || GalleryError::NoLook { name: exhibit.name.clone() };
-        let first = exhibit.looks.first().ok_or_else(missing)?;
-        let look = |look: &Look| {
-            let package = gallery.packages.get(look.package).ok_or_else(missing)?;
-            PageLook::new(look, package, sets).ok_or_else(missing)
+        let looks = exhibit.looks.iter();
+        let looks = looks.map(|look| PageLook::new(look, gallery.packages.get(look.package)?, sets)).collect();
+        let (Some(first), Some(looks)) = (exhibit.looks.first(), looks) else {
+            return Err(GalleryError::NoLook { name: exhibit.name.clone() });
         };
         Ok(Self {
             name: exhibit.name.clone(),
-            looks: exhibit.looks.iter().map(look).collect::<Result<_, GalleryError>>()?,
+            looks,
             maps: PageMaps::of(&gallery.packages[first.package], first.material),
             simulated: exhibit.simulated.as_ref().map(PageSimulated::new),
         })
@@ -197,12 +197,11 @@ fn table_bytes(package: &Package, entry: &MaterialEntry) -> u64 {
 
 /// The largest error of the tiles that a material reads.
 fn table_error(package: &Package, entry: &MaterialEntry) -> Option<f64> {
-    let of = |table: &luthier_manifest::TableEntry| {
-        let errors =
-            tiles(entry, table.kind).into_iter().filter_map(|tile| Some(table.tiles.get(tile)?.error.max_abs_err));
-        errors.fold(None, |most: Option<f64>, error| Some(most.unwrap_or(0.0).max(error)))
-    };
-    package.manifest.tables.iter().filter_map(of).reduce(f64::max)
+    let errors = package.manifest.tables.iter().filter_map(|table| {
+        let tiles = tiles(entry, table.kind).into_iter().filter_map(|tile| table.tiles.get(tile));
+        tiles.fold(None, |most: Option<f64>, tile| Some(most.unwrap_or(0.0).max(tile.error.max_abs_err)))
+    });
+    errors.reduce(f64::max)
 }
 
 pub(crate) fn bytes(count: u64) -> String {

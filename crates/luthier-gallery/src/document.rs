@@ -1,4 +1,4 @@
-//! The page: what stands in it before its script runs.
+//! The page before its script runs.
 
 use std::fmt::Write;
 
@@ -24,7 +24,7 @@ pub(crate) fn html(gallery: &Gallery, data: &str) -> String {
     let mut out = String::with_capacity(data.len() + (256 << 10));
     out.push_str("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>");
     out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>");
-    // Nothing is read from anywhere.
+    // The page loads nothing from elsewhere.
     out.push_str("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\"/>");
     let _ = writeln!(out, "<title>{}</title><link rel=\"icon\" href=\"data:,\"/><style>", escape(&gallery.title));
     out.push_str(include_str!("page/style.css"));
@@ -85,10 +85,9 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
         out,
         "<article id=\"{name}\" aria-labelledby=\"page-name-{number}\">\n<div class=\"title\"><h2 id=\"page-name-{number}\">{name}</h2>"
     );
-    let beside = |i: Option<usize>| i.and_then(|i| gallery.exhibits.get(i));
     out.push_str("<nav aria-label=\"Materials\">");
-    for (other, words) in [(beside(number.checked_sub(1)), "Previous"), (beside(Some(number + 1)), "Next")] {
-        if let Some(other) = other {
+    for (other, words) in [(number.checked_sub(1), "Previous"), (Some(number + 1), "Next")] {
+        if let Some(other) = other.and_then(|other| gallery.exhibits.get(other)) {
             let other = escape(&other.name);
             let _ = write!(out, "<a href=\"#{other}\" title=\"{other}\">{words}</a>");
         }

@@ -5,7 +5,7 @@ use luthier_export::PackageError;
 use luthier_shader::ShaderError;
 use thiserror::Error;
 
-/// Why no page came of materials.
+/// An error of a page.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GalleryError {

@@ -11,9 +11,9 @@ pub struct Exhibit {
     pub name: String,
     /// A sentence about it; may be empty.
     pub description: String,
-    /// Text of its file, if it is at hand; else the page has the name that the manifest states.
+    /// Text of its file, if available; else the page shows the file's name from the manifest.
     pub text: Option<String>,
-    /// Its layers, to be drawn: of a material, or as the records of a bake have them (`CrossSection::recorded`).
+    /// The cross-section to draw, of a material or of the records of a bake (`CrossSection::recorded`).
     pub section: Option<CrossSection>,
     /// The looks that can be compared; the first one is shown.
     pub looks: Vec<Look>,

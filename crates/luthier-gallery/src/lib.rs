@@ -6,15 +6,15 @@
 //! A [`Gallery`] has packages and exhibits. Each [`Exhibit`] is a material with one look or several: its numbers in packages, which differ by model. The shaders are
 //! emitted anew in GLSL ES 3.00, one for each model of a package, so that a package needs none in that language.
 //!
-//! Pictures are those of luthier-gpu's ball: the same camera, light and surroundings, sample by sample. Surroundings that were blurred beforehand show what
-//! has tables of albedos (`luthier_export::lit`) or lobes; other materials draw directions.
+//! Pictures match those of luthier-gpu's ball in camera, light and surroundings, sample by sample. Surroundings that were blurred beforehand light
+//! materials with tables of albedos (`luthier::lit`) or lobes; other materials draw directions.
 //!
 //! # Roughness
 //!
-//! The large picture has a slider: a factor on the slopes of all interfaces, from a quarter to four. It is the `alpha_factor` of a `LuthierPlace`, which multiplies that of a
-//! roughness map where there is one. Shaders without places get them: the emitter is told of a roughness map of one texel, so that the code is the one that maps
-//! have, and nothing is baked for it. Tables are over the slope parameter or do not depend on it. What lights meet is widened by their size after the factor, so that a
-//! picture is that of a material whose file has the multiplied slopes.
+//! The large picture has a slider: a factor on the slopes of all interfaces, from a quarter to four. It is the `alpha_factor` of a `LuthierPlace`,
+//! which multiplies that of a roughness map where there is one. Shaders without places get them: the emitter is given a roughness map of one texel,
+//! so the code is the same as for maps, and nothing is baked for it. Tables are over the slope parameter or do not depend on it. Slopes are widened
+//! by the size of the light after the factor, so a picture equals that of a material whose file has the multiplied slopes.
 //!
 //! `lobes` is a fit for one roughness. Its shaders stay without places, and the slider is disabled and says why. Fits over `alpha_factor`, which a material with a roughness map has, follow
 //! down from 1. As with maps, the slopes of a base under patina stay where `base_alpha` states them, and `belcour` and `yamaguchi` keep the light that layers return to a diffuse base.
@@ -25,11 +25,11 @@
 //!
 //! # Rooms
 //!
-//! Each uses those above it, none below.
+//! Each uses only those above it.
 //!
-//! - `error`, `exhibit`, `markup`, `pack`, `roughness`: what is shown, and texts, numbers and factors of the page.
+//! - `error`, `exhibit`, `markup`, `pack`, `roughness`: exhibits, and texts, numbers and factors of the page.
 //! - `maps`, `sets`, `skies`, `section`: textures, shaders, surroundings and cross-sections.
-//! - `data`, `document`: what the script reads, and the page around it.
+//! - `data`, `document`: the data of the script, and the page around it.
 
 mod data;
 mod document;
@@ -50,7 +50,7 @@ pub use maps::hidden_maps;
 
 use luthier_export::Package;
 
-/// Angular radius of the light in radians, that of luthier-gpu's pictures.
+/// Angular radius of the light in radians, as in luthier-gpu's pictures.
 const LIGHT_RADIUS: f64 = 0.05_f32 as f64;
 
 /// Materials for a page.

@@ -57,7 +57,7 @@ pub fn hidden_maps(entry: &MaterialEntry) -> impl Iterator<Item = (u32, MapSlot)
     entry.shown_layer_maps(Form::Baked).filter(|(layer, slot)| place(Some(*layer), *slot).is_none())
 }
 
-/// Place of a map in `view.glsl`: of one of the whole surface, or of an albedo, of which a material has one.
+/// Place of a map in `view.glsl`, if the page shows it: a map of the whole surface, or the albedo of the base.
 fn place(layer: Option<u32>, map: MapSlot) -> Option<usize> {
     let is_own = map != MapSlot::Albedo && layer.is_some_and(|layer| map.layer_feature(layer).is_some());
     slot(map).filter(|_| !is_own)

@@ -7,23 +7,23 @@ use serde::Serialize;
 /// Doublings of the slopes at most.
 const OCTAVES: f64 = 2.0;
 
-/// Whether a look follows a factor on the slopes of all interfaces.
+/// The range of factors on the slopes of all interfaces that a look follows.
 #[derive(Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PageSlopes {
     /// Binary logarithm of the greatest factor that it follows.
     Octaves(f64),
-    /// Why it follows none, as a sentence.
+    /// The reason why it follows none, as a sentence.
     Fixed(&'static str),
 }
 
 impl PageSlopes {
     pub(crate) fn of(entry: &MaterialEntry) -> Self {
-        let interfaces = || entry.records().filter(|layer| layer.kind != LayerKind::Diffuse);
-        if interfaces().next().is_none() {
+        let mut interfaces = entry.records().filter(|layer| layer.kind != LayerKind::Diffuse).peekable();
+        if interfaces.peek().is_none() {
             return Self::Fixed("The material has no interface whose slopes could change.");
         }
-        if interfaces().all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= ALPHA_MIN) {
+        if interfaces.all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= ALPHA_MIN) {
             return Self::Fixed("All interfaces of the material are smooth, and a factor leaves them so.");
         }
         if !entry.model.is_fitted() {
@@ -38,7 +38,7 @@ impl PageSlopes {
     }
 }
 
-/// Gives the shader of materials places, whose `alpha_factor` is the factor: the page is to it a roughness map of one texel.
+/// Gives the shader of materials places whose `alpha_factor` is the factor. To the shader, the page is a roughness map of one texel.
 pub(crate) fn with_places(materials: &mut [MaterialEntry]) {
     if let Some(first) = materials.first_mut() {
         first.maps.push(MapEntry {

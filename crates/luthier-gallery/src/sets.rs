@@ -1,4 +1,4 @@
-//! Sets of materials that share a shader: those of one bake with one model.
+//! Sets of materials that share a shader: the materials of one bake with one model.
 
 use luthier_export::Package;
 use luthier_lut::{TableKind, TexelFormat};
@@ -90,14 +90,15 @@ impl PageSet {
         for table in manifest.tables.iter_mut().filter(|table| !FORMATS.contains(&table.format)) {
             table.format = TexelFormat::Rgba16Float;
         }
-        let shader = |form: Form| model.has(form).then(|| PageShader::new(&manifest, form)).transpose();
-        let (baked, full) = (shader(Form::Baked)?, shader(Form::Full)?);
+        let shaders =
+            [Form::Baked, Form::Full].map(|form| model.has(form).then(|| PageShader::new(&manifest, form)).transpose());
+        let [baked, full] = shaders;
         let mut words = material_buffer(&manifest.materials);
         let size = luthier_manifest::MaterialTexture::of(words.len());
         words.resize(size.words(), [0.0; 4]);
         let bytes: Vec<u8> = words.as_flattened().iter().flat_map(|word| word.to_le_bytes()).collect();
         let words = pack::bytes(&bytes, 4);
-        Ok(Self { package, words, size: [size.width, size.height], baked, full, numbers })
+        Ok(Self { package, words, size: [size.width, size.height], baked: baked?, full: full?, numbers })
     }
 
     /// Number of a material of a bake in this set.
@@ -178,10 +179,6 @@ fn widened(image: luthier_lut::Image) -> luthier_lut::Image {
 
 /// Numbers of the material buffer that the code of the page has, as lines of GLSL.
 pub(crate) fn constants() -> String {
-    let tile = |name: &str, kind: TableKind| {
-        let [word, channel] = kind.facts().slot.unwrap_or_default();
-        format!("#define VIEW_{name}_TILE view_word(first + {word}u)[{channel}]\n")
-    };
     [
         format!("#define VIEW_MATERIAL_WORDS {MATERIAL_WORDS}u\n#define VIEW_LAYER_WORDS {LAYER_WORDS}u\n"),
         tile("FRESNEL", TableKind::Fresnel),
@@ -191,7 +188,13 @@ pub(crate) fn constants() -> String {
     .concat()
 }
 
-/// Whether surroundings that were blurred beforehand show a material: where the bake has the reflectance and the albedo of every interface, or
+/// The macro for the number of a tile in a layer record.
+fn tile(name: &str, kind: TableKind) -> String {
+    let [word, channel] = kind.facts().slot.unwrap_or_default();
+    format!("#define VIEW_{name}_TILE view_word(first + {word}u)[{channel}]\n")
+}
+
+/// True where surroundings that were blurred beforehand can light a material: the bake has the reflectance and the albedo of every interface, or
 /// lobes, and no layer has maps of its own.
 pub(crate) fn is_blurred(entry: &MaterialEntry) -> bool {
     if entry.shown_layer_maps(Form::Baked).next().is_some() {
@@ -200,12 +203,13 @@ pub(crate) fn is_blurred(entry: &MaterialEntry) -> bool {
     let mut interfaces = entry.records().filter(|layer| layer.kind != LayerKind::Diffuse);
     entry.shows_lobes()
         || interfaces.all(|layer| {
-            let has = |kind: TableKind| layer.tiles[kind].is_some();
-            has(TableKind::Film) || (has(TableKind::Fresnel) && has(TableKind::Fgd))
+            let kinds = [TableKind::Film, TableKind::Fresnel, TableKind::Fgd];
+            let [film, fresnel, fgd] = kinds.map(|kind| layer.tiles[kind].is_some());
+            film || (fresnel && fgd)
         })
 }
 
-/// A material as lights meet it, under a name of its own.
+/// A material with slopes widened by the light, under a name of its own.
 fn lit(entry: &MaterialEntry) -> MaterialEntry {
     MaterialEntry { name: format!("{}-lit", entry.name), ..entry.widened(LIGHT_RADIUS) }
 }

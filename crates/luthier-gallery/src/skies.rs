@@ -46,7 +46,7 @@ pub(crate) struct PageSky {
     has_light: bool,
     /// Columns and rows of the map, of irradiance, and of the blurred maps.
     sizes: Vec<[u32; 2]>,
-    /// Number of the first blurred map of Beckmann and of GGX; that of the map where there is none.
+    /// Number of the first blurred map of Beckmann and of GGX; the number of the map itself if there is none.
     chains: [usize; 2],
     maps: String,
     /// Texels along the faces of the largest cube, 0 without cubes; each next one has half of it, down to 4.

@@ -1,4 +1,4 @@
-//! `anisotropic`: how near lobes of anisotropic stacks come to the simulation between the azimuths of their rows.
+//! `anisotropic`: errors of lobes of anisotropic stacks, against the simulation, between the azimuths of their rows.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -17,10 +17,10 @@ use crate::lobes::{JUDGE_SEED, anisotropic, judge_settings, of, table};
 /// Angles of the judge against the normal, degrees.
 const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 
-/// Angles from the tangent of the stack, degrees: no azimuth of rows.
+/// Angles from the tangent of the stack, degrees. None is an azimuth of rows.
 const PHIS_DEG: [f64; 3] = [20.0, 50.0, 70.0];
 
-/// A model of a paper beside the lobes.
+/// A model of a paper for comparison.
 const BESIDE: &str = "yamaguchi";
 
 /// A stack, fitted and judged.
@@ -41,23 +41,24 @@ impl Judged {
 
     /// The worst errors by angle of the eye, of lobes and beside them.
     fn worst(&self, error: Error) -> Vec<[f64; 2]> {
-        let of = |view: usize, fit: usize| {
-            let views = self.errors.iter().flat_map(|errors| errors[fit].iter().skip(3 * view).take(3));
-            views.map(error).fold(0.0, f64::max)
-        };
-        (0..THETAS_DEG.len()).map(|view| [of(view, 0), of(view, 1)]).collect()
+        let worst = (0..THETAS_DEG.len()).map(|view| {
+            [0, 1].map(|fit: usize| {
+                let views = self.errors.iter().flat_map(|errors| errors[fit].iter().skip(3 * view).take(3));
+                views.map(error).fold(0.0, f64::max)
+            })
+        });
+        worst.collect()
     }
 }
 
 /// Fits and judges, as a page.
 pub(crate) fn run(options: &AnisotropicOptions) -> Outcome {
     let materials = valid(read_materials(&options.sources.paths)?, false)?;
-    let is_anisotropic = |subject: &ModelSubject| {
-        subject.stack.layers.iter().any(|layer| layer.surface.alpha_x != layer.surface.alpha_y)
-    };
-    let random = (0..u64::from(options.random)).map(anisotropic);
-    let subjects: Vec<ModelSubject> =
-        materials.iter().map(|material| of(material, false)).filter(is_anisotropic).chain(random).collect();
+    let of_files = materials
+        .iter()
+        .map(|material| of(material, false))
+        .filter(|subject| subject.stack.layers.iter().any(|layer| layer.surface.alpha_x != layer.surface.alpha_y));
+    let subjects: Vec<ModelSubject> = of_files.chain((0..u64::from(options.random)).map(anisotropic)).collect();
     let bar = Bar::new("fitting and judging");
     let mut judged = Vec::new();
     for subject in &subjects {
@@ -73,19 +74,21 @@ fn judge(subject: &ModelSubject, options: &AnisotropicOptions) -> Judged {
     let started = Instant::now();
     let lobes = Lobes::of(&subject.stack, &Color::ThreeWavelengths(subject.wavelengths_nm));
     let seconds = started.elapsed().as_secs_f64();
-    let errors = |phi_deg: &f64| {
+    let errors = PHIS_DEG.iter().map(|phi_deg| {
         let angle = (PHI_DEG - phi_deg).to_radians();
         let mut here = ModelSubject { stack: subject.stack.clone(), name: subject.name.clone(), ..*subject };
         here.stack.layers.iter_mut().for_each(|layer| layer.surface.rotation += angle);
         let turn = [libm::cos(angle), libm::sin(angle)];
         let reference = Reference::new(&here, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
-        let back = |w: DVec3| DVec3::new(turn[0] * w.x + turn[1] * w.y, turn[0] * w.y - turn[1] * w.x, w.z);
         // Three errors for each angle, one by wavelength.
-        let own = reference.errors(Shown::Values(&|wi, wo| lobes.eval(back(wi), back(wo))));
+        let own = reference.errors(Shown::Values(&|wi, wo| {
+            let [wi, wo] =
+                [wi, wo].map(|w: DVec3| DVec3::new(turn[0] * w.x + turn[1] * w.y, turn[0] * w.y - turn[1] * w.x, w.z));
+            lobes.eval(wi, wo)
+        }));
         [own, model(BESIDE).map_or_else(Vec::new, |beside| reference.errors(Shown::Model(beside.as_ref())))]
-    };
-    let errors = PHIS_DEG.iter().map(errors).collect();
-    Judged { name: subject.name.clone(), lobes, seconds, errors }
+    });
+    Judged { name: subject.name.clone(), errors: errors.collect(), lobes, seconds }
 }
 
 fn page(judged: &[Judged], options: &AnisotropicOptions) -> Result<String, std::fmt::Error> {
@@ -103,8 +106,8 @@ fn page(judged: &[Judged], options: &AnisotropicOptions) -> Result<String, std::
         let rows: Vec<_> = judged.iter().map(|stack| (stack.words(), stack.worst(error))).collect();
         table(&mut out, [title, "axes"], &columns, &rows)?;
     }
-    let views = || judged.iter().flat_map(|stack| stack.errors.iter().flatten().flatten());
-    let noise = views().map(|view| view.lobe_floor).fold(0.0, f64::max);
+    let views = judged.iter().flat_map(|stack| stack.errors.iter().flatten().flatten());
+    let noise = views.map(|view| view.lobe_floor).fold(0.0, f64::max);
     writeln!(out, "\nThe judge's own random numbers make a lobe error of at most {noise:.3}.")?;
     let seconds: Vec<String> = judged.iter().map(|stack| format!("{:.1}", stack.seconds)).collect();
     if options.times {

@@ -1,4 +1,4 @@
-//! `budgets`: what searches for tables reach against fixed ones.
+//! `budgets`: bytes and errors of searched tables against fixed ones.
 
 use std::fmt::Write as _;
 
@@ -71,7 +71,7 @@ These are not among the candidates:
 - A fitted monotone map of an axis as a table of knots. It would need another fetch. The search fits one number per axis: the exponent or the bend.
 ";
 
-/// A material with rows and albedos of every interface, whatever its shader reads, of which its file decides nothing.
+/// A material with rows and albedos of every interface, even if its shader does not read them. Its file sets nothing of these tables.
 fn open(mut material: Material) -> Material {
     let tables = vec![TableKind::Fresnel, TableKind::Fgd];
     let BakeSettings { fresnel, distribution, fgd, phase, thickness, .. } = BakeSettings::default();
@@ -79,7 +79,7 @@ fn open(mut material: Material) -> Material {
     material
 }
 
-/// Measures what searches reach, as a page.
+/// Measures searches and writes the page.
 pub(crate) fn run(options: &BudgetsOptions) -> Outcome {
     let materials: Vec<Material> =
         valid(read_materials(&options.sources.paths)?, false)?.into_iter().map(open).collect();

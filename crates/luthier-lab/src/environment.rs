@@ -1,4 +1,4 @@
-//! `environment`: what pictures show of surroundings with detail, against sums over every texel of these.
+//! `environment`: pictures under detailed surroundings, against sums over every texel of these.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -14,10 +14,10 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 
 use crate::cli::{EnvironmentOptions, call};
 
-/// Models whose pictures stand beside those of lobes.
+/// Models that are measured in addition to `lobes`.
 const PAPERS: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::Belcour];
 
-/// Half the side of what a pixel sees: one place.
+/// Half the side of the square that a pixel sees. It is so small that a pixel shows one place.
 const HALF_EXTENT: f32 = 1e-4;
 
 /// Surroundings that are measured: the hardest.
@@ -72,14 +72,14 @@ struct Point {
     wo: DVec3,
 }
 
-/// Places under the middles of the pixels of a picture with so many along a side.
+/// Places under the middles of the pixels of a square picture of `size` pixels a side.
 fn points(size: u32) -> Vec<Point> {
     let camera = Shape::Sphere.camera();
     let (eye, half) = (f64::from(camera.eye[2]), f64::from(camera.half_extent));
     let mut points = Vec::new();
     for [x, y] in (0..size).flat_map(|y| (0..size).map(move |x| [x, y])) {
-        let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * half;
-        let ray = DVec3::new(at(x), -at(y), -eye).normalize();
+        let [x, y] = [x, y].map(|i| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * half);
+        let ray = DVec3::new(x, -y, -eye).normalize();
         let b = eye * ray.z;
         let discriminant = b * b - (eye * eye - 1.0);
         // Away from the silhouette, where f32 and f64 may disagree on a hit.
@@ -99,27 +99,27 @@ fn texels(skies: &[Arc<Environment>]) -> Vec<Texel> {
     let (width, height) = (map.width, map.height);
     let mut texels = Vec::new();
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let edge = |y: u32| libm::cos(PI * f64::from(y) / f64::from(height));
-        let solid_angle = 2.0 * PI / f64::from(width) * (edge(y) - edge(y + 1));
+        let [above, below] = [y, y + 1].map(|y| libm::cos(PI * f64::from(y) / f64::from(height)));
+        let solid_angle = 2.0 * PI / f64::from(width) * (above - below);
         let (sin_theta, cos_theta) = libm::sincos(PI * (f64::from(y) + 0.5) / f64::from(height));
         let (sin_phi, cos_phi) = libm::sincos(2.0 * PI * ((f64::from(x) + 0.5) / f64::from(width) - 0.5));
-        let light = |sky: &Arc<Environment>| {
+        let lights = skies.iter().map(|sky| {
             let texel = sky.map().texel(x, y);
             [0, 1, 2].map(|c| solid_angle * f64::from(texel[c]))
-        };
+        });
         let direction = DVec3::new(sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi);
-        texels.push((direction, skies.iter().map(light).collect()));
+        texels.push((direction, lights.collect()));
     }
     texels
 }
 
-/// Radiance of all places in pictures: with the samples of a pixel that pictures have by default, and with one.
+/// Radiance of all places in pictures, with the default samples of a pixel and with one.
 struct Shown {
     of_all: Vec<[f64; 3]>,
     of_one: Vec<[f64; 3]>,
 }
 
-/// Radiance of all places under each sky: as pictures show it, and as a sum over all texels.
+/// Radiance of all places under each sky, in pictures and as a sum over all texels.
 struct Pictures {
     alpha: f64,
     shown: Vec<Shown>,
@@ -144,17 +144,8 @@ impl Pictures {
             let environment = Arc::clone(sky);
             let settings =
                 RenderSettings { size: 1, lights: Vec::new(), environment, ..RenderSettings::new(Shape::Sphere)? };
-            let places = |samples: u32| -> Outcome<Vec<[f64; 3]>> {
-                let place = |point: &Point| {
-                    let target = point.normal.as_vec3().to_array();
-                    let camera = Camera { target, half_extent: HALF_EXTENT, ..settings.camera };
-                    let image = scene.render(&[0], &RenderSettings { camera, samples, ..settings.clone() })?;
-                    Ok([0, 1, 2].map(|c| f64::from(image.texel(0, 0)[c])))
-                };
-                points.iter().map(place).collect()
-            };
-            let of_one = places(1)?;
-            shown.push(Shown { of_all: places(settings.samples)?, of_one });
+            let of_one = colors(&scene, points, &RenderSettings { samples: 1, ..settings.clone() })?;
+            shown.push(Shown { of_all: colors(&scene, points, &settings)?, of_one });
         }
         let mut summed = vec![Vec::new(); skies.len()];
         for point in points {
@@ -166,14 +157,29 @@ impl Pictures {
     }
 }
 
+/// Colours of points, each rendered as a picture of one pixel.
+fn colors(scene: &Scene, points: &[Point], settings: &RenderSettings) -> Outcome<Vec<[f64; 3]>> {
+    let colors = points.iter().map(|point| {
+        let target = point.normal.as_vec3().to_array();
+        let camera = Camera { target, half_extent: HALF_EXTENT, ..settings.camera };
+        let image = scene.render(&[0], &RenderSettings { camera, ..settings.clone() })?;
+        Ok([0, 1, 2].map(|c| f64::from(image.texel(0, 0)[c])))
+    });
+    colors.collect()
+}
+
+fn local(frame: [DVec3; 3], direction: DVec3) -> [f32; 3] {
+    frame.map(|axis| direction.dot(axis) as f32)
+}
+
 /// The sum over the texels above the horizon of a place, in each sky.
 fn sums(scene: &Scene, point: &Point, texels: &[Texel], skies: usize) -> Outcome<Vec<[f64; 3]>> {
     let n = point.normal;
     let t = if n.y.abs() < 0.9 { DVec3::Y } else { DVec3::X }.cross(n).normalize();
-    let local = |d: DVec3| [d.dot(t), d.dot(n.cross(t)), d.dot(n)].map(|v| v as f32);
-    let wo = local(point.wo);
+    let frame = [t, n.cross(t), n];
+    let wo = local(frame, point.wo);
     let above: Vec<&Texel> = texels.iter().filter(|(direction, _)| direction.dot(n) > 0.0).collect();
-    let pairs: Vec<([f32; 3], [f32; 3])> = above.iter().map(|(direction, _)| (local(*direction), wo)).collect();
+    let pairs: Vec<([f32; 3], [f32; 3])> = above.iter().map(|(direction, _)| (local(frame, *direction), wo)).collect();
     let mut sums = vec![[0.0; 3]; skies];
     for ((_, light), value) in above.iter().zip(scene.evaluate(0, &pairs)?) {
         for (sum, light) in sums.iter_mut().zip(light) {

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use luthier::{Bake, MemoryStore, outline, read_materials};
 use luthier_bake::Options;
 use luthier_cost::{CostReport, Counts, Family, Harness, Kernel, Style, compile_apart};
-use luthier_export::{GENERATOR, Shader};
+use luthier_export::{GENERATOR, Package, Shader};
+use luthier_gpu::Gpu;
 use luthier_lut::TexelFormat;
 use luthier_manifest::{ColorMode, Manifest, ShadingModel};
 use luthier_material::{FresnelMapping, FresnelSettings, Material};
@@ -15,8 +16,7 @@ use luthier_terminal::{Failure, Outcome, deliver, valid};
 
 use crate::cli::{PapersOptions, call};
 
-/// Two layers each: a coat over a metal and over a diffuse base. Where the materials at hand have neither, the first with two layers
-/// stands in.
+/// Materials of two layers: a coat over a metal, and a coat over a diffuse base. If there are none, the first material of two layers is taken.
 const MATERIALS: [&str; 2] = ["car-paint", "red-lacquer"];
 
 /// The goal: shares of the form `full` and of Phong's model in inverse throughput, at this error.
@@ -26,8 +26,9 @@ const GOAL: (f64, f64, f64) = (0.40, 1.5, 0.01);
 pub(crate) fn run(options: &PapersOptions) -> Outcome {
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let cases = of_tables(&materials)?.into_iter().map(case).collect::<Outcome<Vec<PaperCase>>>()?;
-    let empty = |harness| Kernel::empty(harness).map_err(Failure::input);
-    let mut kernels = vec![empty(Harness::Bare)?, empty(Harness::NormalMapped)?];
+    let kernels =
+        [Harness::Bare, Harness::NormalMapped].into_iter().map(|to| Kernel::empty(to).map_err(Failure::input));
+    let mut kernels = kernels.collect::<Outcome<Vec<Kernel>>>()?;
     kernels.extend(cases.iter().flat_map(|case| &case.variants).flat_map(|variant| variant.kernels.clone()));
     let families: &[Family] = if options.family.is_empty() { &Family::ALL } else { &options.family };
     let mut report = CostReport { generator: GENERATOR.to_owned(), ..CostReport::default() };
@@ -94,12 +95,12 @@ pub(crate) fn of_tables(materials: &[Material]) -> Outcome<Vec<&Material>> {
     Ok(chosen)
 }
 
-/// A material as the tables have it by Elek's model, and by Phong's.
+/// A material with the settings of the papers' tables, by Elek's model and by Phong's.
 pub(crate) fn of_models(material: &Material) -> [Material; 2] {
-    let with = |model: ShadingModel| {
+    [ShadingModel::Elek, ShadingModel::Phong].map(|model| {
         let mut material = material.clone();
         material.bake.model = Some(model);
-        // Both forms are to mean the same.
+        // Both forms must have the same colour.
         material.bake.color = Some(ColorMode::ThreeWavelengths);
         // Elek's tables (section 3.1): rows over the cosine, D over an angle and the slope parameter.
         material.bake.fresnel = FresnelSettings {
@@ -109,8 +110,7 @@ pub(crate) fn of_models(material: &Material) -> [Material; 2] {
         };
         material.bake.distribution.size = Some([512, 512]);
         material
-    };
-    [with(ShadingModel::Elek), with(ShadingModel::Phong)]
+    })
 }
 
 /// The shader of a row of the tables, from the materials of a manifest, and its style.
@@ -132,8 +132,9 @@ fn case(material: &Material) -> Outcome<PaperCase> {
         for (name, role) in ROLES {
             let manifest = if role == Role::Phong { &of_phong } else { &of_elek };
             let (set, style) = shader(manifest, role, constant);
-            let kernel = |harness| Kernel::of_set(&set, style, harness).map_err(Failure::input);
-            let kernels = [kernel(Harness::Bare)?, kernel(Harness::NormalMapped)?];
+            let [bare, mapped] = [Harness::Bare, Harness::NormalMapped]
+                .map(|harness| Kernel::of_set(&set, style, harness).map_err(Failure::input));
+            let kernels = [bare?, mapped?];
             texts.push(luthier_cost::shader_text(&set, style).map_err(Failure::input)?);
             variants.push(PaperVariant { name, role, constant, error: None, kernels });
         }
@@ -152,33 +153,34 @@ const PAIRS: u32 = 20_000;
 /// The largest error of each shader against the first, on the device at hand: relative to the brightest channel, or to
 /// [`FLOOR`] where that is darker. Nothing where there is no device.
 fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
-    let Ok(gpu) = luthier_gpu::Gpu::open() else { return Ok(vec![None; texts.len()]) };
+    let Ok(gpu) = Gpu::open() else { return Ok(vec![None; texts.len()]) };
     let mut package = Bake::lit().package(std::slice::from_ref(material), &MemoryStore::default())?;
     // Phong's shader would read another buffer.
     let pairs: Vec<Pair> = ParitySet::ALL
         .iter()
         .flat_map(|set| set.pairs(PAIRS, &luthier_layers::layers::Layers::isotropic_rgb(&material.stack).layers))
         .collect();
-    let mut values = |text: &String| -> Outcome<Vec<[f32; 3]>> {
-        package.shaders = vec![Shader::wgsl(Form::Baked, text.clone())];
-        Ok(gpu.scene(&package, Form::Baked)?.evaluate(0, &pairs)?)
-    };
-    let exact = values(&texts[0])?;
+    let exact = values(&gpu, &mut package, &texts[0], &pairs)?;
     let mut errors = Vec::with_capacity(texts.len());
     for text in texts {
         errors.push(if text.contains("fn luthier_eval_elek") {
-            let found = values(text)?;
-            let error = |(found, exact): (&[f32; 3], &[f32; 3])| {
+            let found = values(&gpu, &mut package, text, &pairs)?;
+            let errors = found.iter().zip(&exact).map(|(found, exact)| {
                 let scale = exact.iter().fold(FLOOR, |scale, &channel| scale.max(f64::from(channel)));
                 let apart = found.iter().zip(exact).map(|(a, b)| (f64::from(*a) - f64::from(*b)).abs());
                 apart.fold(0.0, f64::max) / scale
-            };
-            Some(found.iter().zip(&exact).map(error).fold(0.0, f64::max))
+            });
+            Some(errors.fold(0.0, f64::max))
         } else {
             None
         });
     }
     Ok(errors)
+}
+
+fn values(gpu: &Gpu, package: &mut Package, text: &str, pairs: &[Pair]) -> Outcome<Vec<[f32; 3]>> {
+    package.shaders = vec![Shader::wgsl(Form::Baked, text.to_owned())];
+    Ok(gpu.scene(package, Form::Baked)?.evaluate(0, pairs)?)
 }
 
 /// Text on the figures above, from the machine code.
@@ -225,7 +227,7 @@ const MEASURES: [Measure; 3] = [
 /// Counts of one family: the two harnesses, and all kernels of all cases in order.
 type FamilyCounts = (Family, Counts, Counts, Vec<Counts>);
 
-/// The tables beside those of the papers.
+/// The tables of this run, with those of the papers.
 fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
     out.push_str(
         "\n## Elek's Table 1 and section 3.4.2 of the course\n\n\
@@ -278,7 +280,7 @@ fn command(options: &PapersOptions) -> String {
     words.join(" ")
 }
 
-/// The variant of a role that is alike in its constants.
+/// The variant of a role with the same kind of constants.
 fn partner(case: &PaperCase, i: usize, role: Role) -> usize {
     let constant = case.variants[i].constant;
     case.variants.iter().position(|v| v.role == role && v.constant == constant).unwrap_or(i)
@@ -290,13 +292,13 @@ fn cost(measure: &Measure, (_, bare, framed, kernels): &FamilyCounts, first: usi
     if measure.net { all - (measure.count)(harness) } else { all }
 }
 
-/// The cost of a variant over that of another.
+/// The ratio of the costs of two variants.
 fn ratio(measure: &Measure, family: &FamilyCounts, first: usize, pair: [usize; 2]) -> f64 {
     let [own, other] = pair.map(|i| cost(measure, family, first, i) as f64);
     own / other
 }
 
-/// The goal against what was found.
+/// Compares the costs and errors with the goal.
 fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCounts]) {
     let (of_full, of_phong, error) = GOAL;
     let _ = writeln!(
@@ -313,22 +315,23 @@ fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCou
             counts.iter().map(|family| ratio(measure, family, first, [i, other])).fold(0.0, f64::max)
         };
         let [own_full, own_phong] = [Role::Full, Role::Phong].map(|role| partner(case, i, role));
-        let says = |holds: bool| if holds { "reached" } else { "missed" };
         let [full, phong, default] = [own_full, own_phong, 0].map(|other| most(&MEASURES[0], other));
         let framed = most(&MEASURES[2], own_phong);
+        let [of_own_full, of_default, of_own_phong, of_framed] =
+            [full <= of_full, default <= of_full, phong <= of_phong, framed <= of_phong].map(says);
         let exact = match variant.error {
             Some(found) => format!("error {found:.1e}: {}", says(found <= error)),
             None => "error not measured".to_owned(),
         };
         let _ = writeln!(
             out,
-            "- {}{numbers}: {full:.2} of its full form: {}; {default:.2} of the full form that reads a buffer: {}; \
-             {phong:.2} of Phong: {}; {framed:.2} of Phong with normal map and environment: {}; {exact}.",
+            "- {}{numbers}: {full:.2} of its full form: {of_own_full}; {default:.2} of the full form that reads a buffer: {of_default}; \
+             {phong:.2} of Phong: {of_own_phong}; {framed:.2} of Phong with normal map and environment: {of_framed}; {exact}.",
             variant.name,
-            says(full <= of_full),
-            says(default <= of_full),
-            says(phong <= of_phong),
-            says(framed <= of_phong),
         );
     }
+}
+
+fn says(holds: bool) -> &'static str {
+    if holds { "reached" } else { "missed" }
 }

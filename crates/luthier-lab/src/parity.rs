@@ -4,13 +4,13 @@ use luthier::{Bake, MemoryStore, of_materials, read_materials};
 use luthier_export::{GENERATOR, Package};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
-use luthier_optics::stack::{Base, Layer, Stack};
+use luthier_optics::stack::{Base, Stack, Surface};
 use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
 use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, surface_maps, valid};
 
 use crate::cli::{PARITY_PAIRS, ParityOptions, call};
 
-/// Least slope parameter of the polished variants: that of layer records.
+/// Least slope parameter of the polished variants, as in layer records.
 const ALPHA_MIN: f64 = luthier_layers::layers::ALPHA_MIN;
 
 /// Compares every shader with its f64 twin.
@@ -36,13 +36,12 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
         let shaders = Shaders::new(&gpu, &package)?;
         adapter = luthier_report::Device::name(&shaders);
         let cases: Vec<ParityCase> = (0..).zip(&materials).map(|(n, material)| case(n, material)).collect();
-        let mut progress = || {
+        let subject = subject(&package, stacks)?;
+        let found = parity(&subject, &shaders, &cases, options.pairs, &mut || {
             done += 1;
             bar.set(done as u64, total as u64);
-        };
-        let subject = subject(&package, stacks)?;
-        let found = parity(&subject, &shaders, &cases, options.pairs, &mut progress).map_err(Failure::input)?;
-        rows.extend(found);
+        });
+        rows.extend(found.map_err(Failure::input)?);
     }
     drop(bar);
     let report = Parity::new(GENERATOR, adapter, options.pairs, rows);
@@ -87,15 +86,12 @@ fn variants(material: &Material, model: ShadingModel) -> Vec<Material> {
 
 /// Scales all slope parameters alike, so that the largest is `alpha`.
 fn polish(stack: &mut Stack, alpha: f64) {
-    let is_interface = |layer: &&mut Layer| !matches!(layer.base, Base::Diffuse(_));
-    let largest = stack
-        .layers
-        .iter_mut()
-        .filter(is_interface)
-        .fold(0.0, |largest: f64, layer| largest.max(layer.surface.alpha_x).max(layer.surface.alpha_y));
+    let interfaces = stack.layers.iter_mut().filter(|layer| !matches!(layer.base, Base::Diffuse(_)));
+    let surfaces: Vec<&mut Surface> = interfaces.map(|layer| &mut layer.surface).collect();
+    let largest = surfaces.iter().fold(0.0, |largest: f64, s| largest.max(s.alpha_x).max(s.alpha_y));
     let factor = if largest > 0.0 { alpha / largest } else { 1.0 };
-    for layer in stack.layers.iter_mut().filter(is_interface) {
-        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+    for surface in surfaces {
+        for alpha in [&mut surface.alpha_x, &mut surface.alpha_y] {
             *alpha = (*alpha * factor).max(ALPHA_MIN);
         }
     }

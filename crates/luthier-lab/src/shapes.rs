@@ -19,13 +19,13 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
         for mut material in materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material) {
             material.bake.model = Some(model);
             let shape = luthier_scene::shape_of(model, &luthier_scene::shape(&material.stack));
-            // What is no matter of shape, and what would make two materials of one shape differ.
+            // Remove what does not belong to a shape, and what would distinguish two materials of one shape.
             material.effects = Default::default();
             material.bake.distribution = Default::default();
             if keys.iter().any(|(known, _, s)| (*known, s) == (model, &shape)) {
                 continue;
             }
-            // Without a fit, lobes are as many as there may be: the dearest.
+            // Without a fit, lobes have their largest number, which costs the most.
             let options = Options { fits: false, ..Options::default() };
             let manifest = outline(std::slice::from_ref(&material), &options, &MemoryStore::default())?;
             let set = MaterialSet::from_manifest(&manifest);

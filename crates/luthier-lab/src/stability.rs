@@ -1,4 +1,4 @@
-//! `stability`: every method where methods fail.
+//! `stability`: every method on cases that make methods fail.
 
 use luthier::{Bake, MemoryStore, of_materials};
 use luthier_bake::Options;
@@ -58,15 +58,15 @@ struct Tables {
     models: &'static [ShadingModel],
 }
 
-/// The tables that ship by default, for all models; and those that settings and budgets can choose in their place, for the models that read
-/// all of them: rows of every family, D from a table, computed phases.
+/// The default tables, for all models, and tables that settings and budgets can choose instead, for the models that read all of them: rows of every
+/// family, D from a table, computed phases.
 fn tables() -> Vec<Tables> {
     let default = Options::default();
     let models: &[ShadingModel] = &[ShadingModel::Elek, ShadingModel::GranierHeidrich];
     let of =
         |name, options, rows| Tables { name: Some(name), options: Options { rows: Some(rows), ..options }, models };
     let fixed = Options { search: false, ..default };
-    // The fewest bytes for what is not fixed: D and phases are computed.
+    // With the fewest bytes for tables that are not fixed, D and phases are computed.
     let budget = Options { budget: Budget { max_bytes: Some(1 << 20), ..Budget::default() }, ..default };
     let (plain, schlick) = (RowBase::Zero, RowBase::Schlick);
     vec![
@@ -96,11 +96,10 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
             let shaders = Shaders::new(gpu, &package)?;
             adapter = luthier_report::Device::name(&shaders);
             let subject = subject(&package, stacks)?;
-            let mut progress = || {
+            let found = shader_cells(&subject, Some(&shaders), cases, *name, &mut || {
                 done += 1;
                 bar.set(done, total as u64);
-            };
-            let found = shader_cells(&subject, Some(&shaders), cases, *name, &mut progress);
+            });
             cells.extend(found.map_err(Failure::input)?);
         }
     }

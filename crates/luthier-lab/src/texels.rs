@@ -1,8 +1,9 @@
-//! `texels`: hashes of the numbers that the files of bakes hold, whatever their containers are like.
+//! `texels`: hashes of the numbers in files of bakes, independent of their containers.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use luthier_export::{input, label, sha256};
 use luthier_lut::Image;
 use luthier_terminal::{Failure, Outcome, files, print};
@@ -19,8 +20,8 @@ pub(crate) fn run(options: &TexelsOptions) -> Outcome {
     for path in found {
         let bytes = input::image(&path).map_err(files(&path, "read"))?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let undecoded = |error| anyhow::Error::new(error).context(format!("cannot decode {}", path.display()));
-        let numbers = numbers(ending, bytes).map_err(|error| Failure::Input(undecoded(error)))?;
+        let numbers = numbers(ending, bytes).with_context(|| format!("cannot decode {}", path.display()));
+        let numbers = numbers.map_err(Failure::Input)?;
         if let Some(numbers) = numbers {
             let name = path.strip_prefix(&options.folder).unwrap_or(&path);
             let _ = writeln!(lines, "{}  {}", sha256(&numbers), label(name));
@@ -29,8 +30,8 @@ pub(crate) fn run(options: &TexelsOptions) -> Outcome {
     print(&lines)
 }
 
-/// The numbers that a file holds: of a texture its format, its size and the bytes that a device gets, of an image its size and its values, of a
-/// material buffer its words. `None` for files of other kinds.
+/// The numbers in a file: format, size and device bytes of a texture, size and values of an image, words of a material buffer. `None` for other
+/// files.
 fn numbers(ending: &str, bytes: Vec<u8>) -> Result<Option<Vec<u8>>, TextureError> {
     Ok(Some(match ending {
         "ktx2" => {
@@ -51,7 +52,7 @@ fn values(image: &Image) -> Vec<u8> {
     bytes
 }
 
-/// The files below a folder but for hidden ones.
+/// The files below a folder, without hidden ones.
 fn below(folder: &Path, found: &mut Vec<PathBuf>) -> Outcome {
     for entry in std::fs::read_dir(folder).map_err(files(folder, "list"))? {
         let path = entry.map_err(files(folder, "list"))?.path();

@@ -74,9 +74,9 @@ fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome
     let layers = luthier_layers::layers::Layers::isotropic_rgb(&material.stack).layers;
     let pairs: Vec<Pair> =
         [ParitySet::Uniform, ParitySet::NearSpecular].iter().flat_map(|set| set.pairs(PAIRS / 2, &layers)).collect();
-    let package = |material: &Material| Bake::lit().package(std::slice::from_ref(material), &MemoryStore::default());
-    let [of_elek, of_phong] = of_models(material);
-    let (mut of_elek, mut of_phong) = (package(&of_elek)?, package(&of_phong)?);
+    let [of_elek, of_phong] =
+        of_models(material).map(|material| Bake::lit().package(&[material], &MemoryStore::default()));
+    let (mut of_elek, mut of_phong) = (of_elek?, of_phong?);
     let mut scenes: Vec<(&'static str, Role, bool, Scene)> = Vec::new();
     for constant in [false, true] {
         for (name, role) in ROLES {
@@ -87,22 +87,21 @@ fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome
             scenes.push((name, role, constant, gpu.scene(package, Form::Baked)?));
         }
     }
-    let watch = |scene, is_empty| Scene::stopwatch(scene, 0, &pairs, options.evaluations, is_empty);
-    let mut watches: Vec<Stopwatch<'_>> = vec![watch(&scenes[0].3, true)?];
+    let mut watches: Vec<Stopwatch<'_>> = vec![scenes[0].3.stopwatch(0, &pairs, options.evaluations, true)?];
     for (.., scene) in &scenes {
-        watches.push(watch(scene, false)?);
+        watches.push(scene.stopwatch(0, &pairs, options.evaluations, false)?);
     }
     let times = Stopwatch::in_turn(&watches, WARM_UP, options.repeats.get())?;
     let spreads: Vec<Spread> = times.iter().map(|times| Spread::of(times)).collect();
-    let row = |((name, role, constant, _), spread): (&(&'static str, Role, bool, Scene), &Spread)| Time {
+    let rows = scenes.iter().zip(&spreads[1..]).map(|((name, role, constant, _), spread)| Time {
         material: material.name.clone(),
         name,
         role: *role,
         constant: *constant,
         spread: *spread,
         harness: spreads[0].median,
-    };
-    Ok(scenes.iter().zip(&spreads[1..]).map(row).collect())
+    });
+    Ok(rows.collect())
 }
 
 /// Rows of the papers: title, then million pixels per second of full, approximated Fresnel, precomputed and Phong.
@@ -129,10 +128,11 @@ fn page(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> String {
     );
     for (name, values) in PAPERS {
         let cells = values.map(|v| v.map_or_else(|| "–".to_owned(), |v| format!("{v:.0}")));
-        let times = |of: usize| values[of].zip(values[0]).map_or(f64::NAN, |(of, full)| of / full);
-        let _ = writeln!(page, "| {name} | {} | {:.2} | {:.2} |", cells.join(" | "), times(2), times(3));
+        let [precomputed, phong] =
+            [values[2], values[3]].map(|value| value.zip(values[0]).map_or(f64::NAN, |(value, full)| value / full));
+        let _ = writeln!(page, "| {name} | {} | {precomputed:.2} | {phong:.2} |", cells.join(" | "));
     }
-    // A GPU takes picoseconds of its whole width.
+    // On a whole GPU, an evaluation takes picoseconds.
     let (scale, unit) = if rows.iter().all(|row| row.spread.median < 0.5) { (1e3, "ps") } else { (1.0, "ns") };
     page.push_str(
         "\nHere are times of one evaluation by the clock of the device: the time of a run over its evaluations, which the device makes side by side. An evaluation is what a pixel of the \
@@ -166,10 +166,10 @@ fn page(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> String {
     page
 }
 
-/// How many times as fast a row is as the row of a role of its material, with constants or without as it is.
+/// Speed of a row over the speed of a role's row, for the same material and the same kind of constants.
 fn over(rows: &[Time], row: &Time, role: Role) -> f64 {
-    let is_partner = |r: &&Time| r.material == row.material && r.constant == row.constant && r.role == role;
-    rows.iter().find(is_partner).map_or(f64::NAN, |r| r.net() / row.net())
+    let mut alike = rows.iter().filter(|r| r.material == row.material && r.constant == row.constant);
+    alike.find(|r| r.role == role).map_or(f64::NAN, |r| r.net() / row.net())
 }
 
 fn data(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> Value {

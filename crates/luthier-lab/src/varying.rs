@@ -1,4 +1,4 @@
-//! `varying`: how near lobes come to the simulation between the nodes over what a texture scales.
+//! `varying`: errors of lobes against the simulation between the nodes of a factor that a texture scales.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -38,10 +38,12 @@ pub(crate) fn run(options: &VaryingOptions) -> Outcome {
         .flat_map(|subject| {
             let absorbs = matches!(&subject.stack.layers[0].base, Base::Dielectric { slab, .. } if slab.optical_depth() != [0.0; 3]);
             let slab = absorbs.then_some(Varying::Slab);
-            let of = |varying| (ModelSubject { stack: subject.stack.clone(), name: subject.name.clone(), ..subject }, varying);
             let filmed = filmed(&subject);
             let film = Varying::film(&filmed.stack).map(|varying| (filmed, varying));
-            std::iter::once(Varying::Alpha).chain(slab).map(of).chain(film).collect::<Vec<_>>()
+            let bare = std::iter::once(Varying::Alpha).chain(slab).map(|varying| {
+                (ModelSubject { stack: subject.stack.clone(), name: subject.name.clone(), ..subject }, varying)
+            });
+            bare.chain(film).collect::<Vec<_>>()
         })
         .collect();
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
@@ -56,16 +58,16 @@ pub(crate) fn run(options: &VaryingOptions) -> Outcome {
 fn judge(subject: &ModelSubject, varying: Varying, options: &VaryingOptions) -> Judged {
     let color = Color::ThreeWavelengths(subject.wavelengths_nm);
     let varied = Varied::of(&subject.stack, &color, Some(varying));
-    let errors = |of_eight: &f64| {
+    let errors = PLACES.iter().map(|of_eight| {
         let factor = varying.factor(place(varying, *of_eight));
         let stack = varying.apply(&subject.stack, factor);
         let fits = [varied.at(factor), Lobes::of(&stack, &color)];
         let here = ModelSubject { stack, name: subject.name.clone(), ..*subject };
         let reference = Reference::new(&here, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
         fits.each_ref().map(|lobes| reference.errors(Shown::Lobes(lobes)))
-    };
+    });
     let lobes = varied.nodes[0].rows[0].lobes.len();
-    Judged { name: subject.name.clone(), varying, lobes, errors: PLACES.iter().map(errors).collect() }
+    Judged { name: subject.name.clone(), varying, lobes, errors: errors.collect() }
 }
 
 fn page(judged: &[Judged], options: &VaryingOptions) -> Result<String, std::fmt::Error> {
@@ -85,11 +87,11 @@ fn page(judged: &[Judged], options: &VaryingOptions) -> Result<String, std::fmt:
     }
     let columns = PLACES.map(|place| format!("node {place:.1}"));
     for (title, error) in TABLES {
-        let row = |stack: &Judged| {
+        let rows = judged.iter().map(|stack| {
             let errors = stack.errors.iter().map(|[between, alone]| [error(between), error(alone)]);
             (format!("{} | {} | {}", stack.name, words(stack.varying), stack.lobes), errors.collect())
-        };
-        let rows: Vec<(String, Vec<[f64; 2]>)> = judged.iter().map(row).collect();
+        });
+        let rows: Vec<(String, Vec<[f64; 2]>)> = rows.collect();
         table(&mut out, [title, "varies"], &columns, &rows)?;
     }
     let noise = judged.iter().flat_map(|stack| stack.errors.iter().flatten().flatten()).map(|view| view.lobe_floor);
@@ -106,7 +108,7 @@ fn words(varying: Varying) -> &'static str {
     }
 }
 
-/// The fractional number of a node of what varies, for one of eight nodes.
+/// The fractional number of a node of `varying`, for a number among eight nodes.
 fn place(varying: Varying, of_eight: f64) -> f64 {
     match varying {
         Varying::Alpha | Varying::Patina(_) => of_eight,
@@ -129,7 +131,7 @@ const FILM_NM: [f64; 2] = [500.0, 100.0];
 /// Index of the film: titanium dioxide.
 const FILM_INDEX: f64 = 2.4;
 
-/// An error of a stack from those of its views.
+/// An error of a stack from the errors of its views.
 type Worst = fn(&[ViewError]) -> f64;
 
 /// Titles of the tables, and the error that they show.

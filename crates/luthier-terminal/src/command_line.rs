@@ -8,13 +8,13 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches};
 use crate::end::{print_json, tell_failure, usage};
 use crate::output::{complain, has_colour, has_events};
 
-/// The command line of this process; exits where it asks for help or is wrong. `of_features` are verbs that a cargo feature brings, each
-/// with its feature: where such a verb is left out, the failure names the feature.
+/// Parses the command line of this process. Exits if it asks for help or is wrong. `of_features` lists verbs with the cargo features that they need:
+/// for a verb that the build lacks, the failure names the feature.
 pub fn parse<C: CommandFactory + FromArgMatches>(of_features: &[(&str, &str)]) -> C {
     if has_events() {
         std::panic::set_hook(Box::new(|panic| complain(&format!("error: {panic}"))));
     }
-    // The parser's own rule colours a dumb terminal of a build server.
+    // The rule of clap would colour the output on a dumb terminal of a build server.
     let colour = if has_colour() { ColorChoice::Auto } else { ColorChoice::Never };
     let matches = C::command().color(colour).try_get_matches();
     let line = matches.and_then(|matches| C::from_arg_matches(&matches));

@@ -22,14 +22,13 @@ impl Shaders {
     /// The shaders of a package on an adapter.
     ///
     /// # Errors
-    /// Whatever the adapter reports.
+    /// Errors of the adapter.
     pub fn new(gpu: &Gpu, package: &Package) -> Outcome<Self> {
-        let scene = |form| gpu.scene(package, form);
         let has_full = package.manifest.has(Form::Full);
-        let full = has_full.then(|| scene(Form::Full)).transpose()?;
+        let full = has_full.then(|| gpu.scene(package, Form::Full)).transpose()?;
         let texts: Vec<u8> = package.shaders.iter().flat_map(|shader| shader.bytes.iter().copied()).collect();
         let identity = format!("{} {}", adapter_label(gpu), sha256(&texts));
-        Ok(Self { name: adapter_label(gpu), identity, baked: scene(Form::Baked)?, full })
+        Ok(Self { name: adapter_label(gpu), identity, baked: gpu.scene(package, Form::Baked)?, full })
     }
 
     /// The pipelines of a form, if the bake has it.
@@ -64,13 +63,13 @@ impl Device for Shaders {
 
 /// The maps of a package, for the judge.
 pub fn surface_maps(package: &Package) -> Vec<SurfaceMap> {
-    let map = |map: &Map| SurfaceMap {
-        material: map.material,
-        slot: map.slot,
-        layer: map.layer,
-        picture: map.picture.clone(),
-    };
-    package.maps.iter().map(map).collect()
+    let maps = package.maps.iter().map(|Map { material, slot, layer, picture, .. }| SurfaceMap {
+        material: *material,
+        slot: *slot,
+        layer: *layer,
+        picture: picture.clone(),
+    });
+    maps.collect()
 }
 
 /// Name, interface and driver of an adapter, as pages have them.
@@ -78,7 +77,7 @@ pub fn adapter_label(gpu: &Gpu) -> String {
     format!("{} ({}, {})", gpu.adapter_name(), gpu.backend(), gpu.driver())
 }
 
-/// The adapter of measurements in JSON; `software` where it is a program on the CPU, which filters textures in software.
+/// The adapter of measurements in JSON. `software` is true for a program on the CPU, which filters textures in software.
 pub fn adapter_json(gpu: &Gpu) -> Value {
     json!({
         "name": gpu.adapter_name(),
@@ -88,9 +87,9 @@ pub fn adapter_json(gpu: &Gpu) -> Value {
     })
 }
 
-/// Begins the process again without Mesa's layer that sorts devices, where that would complain on standard error. The layer asks for a Wayland display,
-/// and libwayland says what it misses for one; pictures need none, and adapters are chosen by their kind. Returns where nobody would complain, and
-/// where the program cannot be found again. To be called before anything is read or written.
+/// Starts the process again without Mesa's layer that sorts devices, if that layer would complain on standard error. The layer asks for a Wayland
+/// display, and libwayland prints a message if there is none. Pictures need no display, and adapters are chosen by their kind, so the layer is not
+/// needed. Returns if there would be no message, or if the program's own file is not found. Call it before anything is read or written.
 pub fn without_display() {
     #[cfg(target_os = "linux")]
     {
@@ -98,7 +97,7 @@ pub fn without_display() {
 
         let value = std::env::var_os;
         let has_display = value("XDG_RUNTIME_DIR").is_some_and(|folder| std::path::Path::new(&folder).is_absolute());
-        // Whoever asks the layer for a device gets it.
+        // A user who asks the layer for a device keeps the layer.
         let is_settled = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT"].into_iter().any(|name| value(name).is_some());
         if has_display || is_settled {
             return;

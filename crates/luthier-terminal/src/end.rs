@@ -1,4 +1,4 @@
-//! Last words of a command, and its exit code.
+//! The end of a command: its failure in words, and its exit code.
 
 use std::process::ExitCode;
 
@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output::{asks_for, complain, has_events, print, tell};
 
 impl Failure {
-    /// Says what it is, in JSON too if that was asked for, and gives the exit code.
+    /// Prints the failure, also as JSON if that was asked for, and returns the exit code.
     pub fn exit(&self) -> ExitCode {
         let Some(failed) = self.as_json() else {
             return ExitCode::from(u8::from(matches!(self, Self::Verdict)));
@@ -18,7 +18,7 @@ impl Failure {
         ExitCode::from(failed["code"].as_u64().map_or(1, |code| code as u8))
     }
 
-    /// Says what it is on standard error.
+    /// Prints the failure on standard error.
     pub fn tell(&self) {
         match self.as_json() {
             Some(failed) if has_events() => tell_failure(failed),
@@ -33,7 +33,7 @@ pub(crate) fn usage(message: &str) -> Value {
     json!({"code": 2, "kind": "usage", "message": message, "diagnostics": []})
 }
 
-/// Writes a failure to standard output as JSON where the command line asks for JSON. A reader that is gone hears nothing.
+/// Writes a failure to standard output as JSON if the command line asks for JSON. A reader that is gone is no error here.
 pub(crate) fn print_json(failed: &Value) {
     if asks_for("--json") {
         let _ = print(&format!("{:#}", json!({ "error": failed })));

@@ -8,20 +8,20 @@ use luthier_export::PackageError;
 use luthier_material::{Diagnostic, did_you_mean};
 use serde_json::{Value, json};
 
-/// Why a command ends with another code than 0. `luthier --help` documents the codes.
+/// A reason for another exit code than 0. `luthier --help` documents the codes.
 #[derive(Debug)]
 pub enum Failure {
-    /// Exit code 1: the command did its work, and the verdict is no. What there is to say has been said.
+    /// Exit code 1: the command did its work, and the verdict is negative. The command has printed it.
     Verdict,
     /// Exit code 1: an input is not usable.
     Input(anyhow::Error),
-    /// Exit code 2: the command line asks for what there is not.
+    /// Exit code 2: the command line asks for something that does not exist.
     Usage(anyhow::Error),
     /// Exit code 3: a file cannot be read or written.
     Files(anyhow::Error),
     /// Exit code 4: no usable graphics adapter or driver, or it failed.
     Device(anyhow::Error),
-    /// Exit code 0: whoever reads our output has had enough.
+    /// Exit code 0: the reader of the output has closed it.
     BrokenPipe,
 }
 
@@ -87,9 +87,9 @@ pub fn diagnostic(d: &Diagnostic) -> Value {
 /// Files that cannot be used, and what is wrong with each.
 #[derive(Debug)]
 pub struct Broken {
-    /// Sentence that says how many files of how many cannot be used.
+    /// The sentence with the number of files that cannot be used.
     pub sentence: String,
-    /// Diagnostics that standard error has had.
+    /// Diagnostics that were printed on standard error.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -101,7 +101,7 @@ impl fmt::Display for Broken {
 
 impl std::error::Error for Broken {}
 
-/// An error and its causes. Many errors quote their cause already; what was said is not said again.
+/// An error and its causes. A cause that the error already quotes is left out.
 fn sentence(error: &anyhow::Error) -> String {
     let mut text = String::new();
     for cause in error.chain().map(ToString::to_string) {
@@ -142,7 +142,7 @@ impl From<Error> for Failure {
 }
 
 impl From<PackageError> for Failure {
-    /// A file that is missing or cannot be written is a matter of files, all else is wrong with the bake.
+    /// A missing file or one that cannot be written is a failure of files; other errors are defects of the bake.
     fn from(error: PackageError) -> Self {
         match error {
             PackageError::NoBake { .. } | PackageError::Read { .. } | PackageError::Write { .. } => {

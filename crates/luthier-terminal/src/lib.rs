@@ -1,9 +1,9 @@
-//! Terminal code that the commands of this workspace share, so that none of it is written twice.
+//! Terminal code that the commands of this workspace share.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! - [`Failure`]: why a command ends with another code than 0, and the codes. A verb returns an [`Outcome`];
+//! - [`Failure`]: reasons to end with another exit code than 0, and the codes. A verb returns an [`Outcome`];
 //! - [`print()`], [`deliver`], [`complain`], [`tell`]: the standard streams, whose readers may be gone. With `--events` standard error has lines of JSON only;
 //! - [`Bar`]: progress of work that takes longer than a second;
 //! - [`valid`]: the materials of files, with their diagnostics printed;
@@ -12,10 +12,10 @@
 //!
 //! # Rooms
 //!
-//! Each uses those above it, none below.
+//! Each uses only those above it.
 //!
-//! - `failure`, `output`, `end`: failures, the streams that say them, and the end of a command.
-//! - `command_line`, `device`, `materials`, `options`, `progress`: what verbs have in common.
+//! - `failure`, `output`, `end`: failures, standard streams, and the end of a command.
+//! - `command_line`, `device`, `materials`, `options`, `progress`: code that verbs share.
 
 mod command_line;
 #[cfg(feature = "gpu")]

@@ -25,14 +25,14 @@ fn print_source(source: &Source) {
     print_diagnostics(source.diagnostics(), &source.text);
 }
 
-/// The materials of all files; or, when any is invalid, its diagnostics and a failure.
+/// The materials of all files. If any file is invalid, its diagnostics are printed and the result is a failure.
 pub fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>> {
-    let broken = sources.iter().filter(|s| s.parsed.is_err()).count();
-    if broken > 0 {
-        let broken_sources = || sources.iter().filter(|s| s.parsed.is_err());
-        broken_sources().for_each(print_source);
-        let sentence = format!("{broken} of {} material files cannot be used; nothing was written", sources.len());
-        let diagnostics = broken_sources().flat_map(Source::diagnostics).cloned().collect();
+    let broken: Vec<&Source> = sources.iter().filter(|s| s.parsed.is_err()).collect();
+    if !broken.is_empty() {
+        broken.iter().for_each(|source| print_source(source));
+        let (count, all) = (broken.len(), sources.len());
+        let sentence = format!("{count} of {all} material files cannot be used; nothing was written");
+        let diagnostics = broken.into_iter().flat_map(Source::diagnostics).cloned().collect();
         return Err(Failure::input(Broken { sentence, diagnostics }));
     }
     if !quiet {

@@ -36,7 +36,7 @@ pub fn deliver(text: &str, file: Option<&Path>) -> Outcome {
     }
 }
 
-/// Writes bytes as they are. Those that are no text are refused where standard output is a terminal.
+/// Writes bytes unchanged. Bytes that are no text are refused if standard output is a terminal.
 ///
 /// # Errors
 /// [`Failure::Input`] where a terminal cannot show them; [`Failure::Files`], [`Failure::BrokenPipe`].
@@ -50,8 +50,8 @@ pub fn print_bytes(bytes: &[u8], is_text: bool) -> Outcome {
     Ok(())
 }
 
-/// Writes a text to standard error that begins with its severity, `error: ` or `warning: `, or is a note. Where the command line asks for events it is one, of that
-/// name. Where nobody listens there is nobody to tell.
+/// Writes a text to standard error. It begins with its severity, `error: ` or `warning: `, or is a note. If the command line asks for events, it is
+/// written as an event of that name. A closed standard error is ignored.
 pub fn complain(text: &str) {
     if !has_events() {
         say(text);
@@ -76,13 +76,13 @@ fn say(line: &str) {
     let _ = io::stderr().lock().write_all(format!("{line}\n").as_bytes());
 }
 
-/// Whether the command line asks for events: then standard error has lines of JSON and nothing else, even where the command line is wrong.
+/// True where the command line asks for events. Standard error then has only lines of JSON, even if the command line is wrong.
 pub fn has_events() -> bool {
     static IS_ASKED: OnceLock<bool> = OnceLock::new();
     *IS_ASKED.get_or_init(|| asks_for("--events"))
 }
 
-/// Whether a word is among the options of the command line, however wrong the others are.
+/// True where a word is among the options of the command line, even if others are wrong.
 pub(crate) fn asks_for(option: &str) -> bool {
     std::env::args_os().skip(1).take_while(|word| word != "--").any(|word| word == option)
 }
@@ -92,7 +92,7 @@ pub fn has_cursor() -> bool {
     !has_events() && io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// Whether standard error takes colours: where `NO_COLOR` has a value, it does not (no-color.org).
+/// True where standard error takes colours. If `NO_COLOR` has a value, it does not (no-color.org).
 pub fn has_colour() -> bool {
     has_cursor() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

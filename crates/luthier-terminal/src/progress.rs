@@ -9,14 +9,14 @@ use crate::has_cursor;
 /// Work shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A bar on standard error that appears when work takes longer than a second, and never when that is no terminal, or one that cannot move its cursor.
+/// A bar on standard error that appears when work takes longer than a second. It needs a terminal that can move its cursor.
 pub struct Bar {
     bar: ProgressBar,
     started: Instant,
 }
 
 impl Bar {
-    /// A bar that says what is going on.
+    /// A bar with a word for the work.
     pub fn new(what: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:32}] {pos}/{len} {elapsed}") {
@@ -26,7 +26,7 @@ impl Bar {
         Self { bar, started: Instant::now() }
     }
 
-    /// So much of all is done.
+    /// Sets the bar to `done` of `total`.
     pub fn set(&self, done: u64, total: u64) {
         self.bar.set_length(total);
         self.bar.set_position(done);

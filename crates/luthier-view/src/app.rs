@@ -1,4 +1,4 @@
-//! The window: what it knows, and what it does with orders and results.
+//! The state of the window, its orders and their results.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -69,12 +69,12 @@ pub(crate) struct App {
     painted: u64,
     finished: bool,
     paint_problem: Option<String>,
-    /// Reason why there is no second picture: of the bake, and of the painter.
+    /// Reasons why there is no second picture, from the bake and from the painter.
     pub(crate) against_problems: [Option<String>; 2],
     pub(crate) progress: Option<Progress>,
     pub(crate) differences: Option<Differences>,
     pub(crate) canvas: Canvas,
-    /// Whether the mouse is at work on what changes no picture.
+    /// True while the mouse moves something that changes no picture.
     pub(crate) is_still: bool,
     pub(crate) adapter: String,
     pub(crate) status: String,
@@ -150,7 +150,7 @@ impl App {
         self.edits.get(&entry.label).or(entry.material.as_ref())
     }
 
-    /// The model of a material where none is chosen: the form `full` has no tables, and so no fit.
+    /// The model of a material if none is chosen. The form `full` has no tables, so its model is not fitted.
     pub(crate) fn own_model(&self, material: &Material) -> ShadingModel {
         let has_fit = self.fits && self.form == Form::Baked && !self.comparison.is_of_forms(self.form);
         if has_fit { material.model() } else { material.model_without_fit() }
@@ -186,7 +186,7 @@ impl App {
     /// Takes what the threads have.
     pub(crate) fn receive(&mut self, context: &Context) {
         if let Some(files) = self.watcher.files.take() {
-            // What was edited is replaced by what was saved.
+            // A saved file replaces the edits of it.
             for label in self.files.update(files) {
                 self.edits.remove(&label);
                 self.history.forget(&label);
@@ -252,7 +252,7 @@ impl App {
             context.send_viewport_cmd(ViewportCommand::Close);
             return;
         }
-        // Later screenshots of the command line do not show that there were earlier ones.
+        // The status line does not mention screenshots of the command line: later ones would show it.
         if !asked {
             self.message = Some(match saved {
                 Ok(path) => format!("saved {path}"),
@@ -342,7 +342,7 @@ impl App {
         }
     }
 
-    /// Whether nothing is going on that would change what the window shows.
+    /// True while no thread works on anything that would change the window.
     pub(crate) fn settled(&self) -> bool {
         if !self.files_seen {
             return false;

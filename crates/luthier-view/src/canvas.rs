@@ -39,7 +39,7 @@ pub(crate) struct Canvas {
     difference: Shown,
     /// Factor and pictures of the difference at hand.
     of_difference: Option<(f32, [Picture; 2])>,
-    /// Whether the mouse has the divider.
+    /// True while the mouse holds the divider.
     pub(crate) holds_divider: bool,
 }
 

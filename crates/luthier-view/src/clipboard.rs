@@ -12,12 +12,11 @@ impl Clipboard {
     /// # Errors
     /// A message for people.
     pub(crate) fn copy(&mut self, text: &str) -> Result<(), String> {
-        let put = |system: &mut System| system.set_text(text);
-        let copied = match &mut self.0 {
-            Some(system) => put(system),
-            None => System::new().and_then(|system| put(self.0.insert(system))),
+        let system = match &mut self.0 {
+            Some(system) => Ok(system),
+            None => System::new().map(|system| self.0.insert(system)),
         };
-        copied.map_err(|error| format!("cannot copy: {error}"))
+        system.and_then(|system| system.set_text(text)).map_err(|error| format!("cannot copy: {error}"))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The picture beside that of the material: what makes it, where the two meet, and how their difference is shown.
+//! The second picture, beside the material's own: its maker, the divider, and the difference of the two.
 
 use luthier_gpu::ToneMapping;
 use luthier_lut::Image;
@@ -9,10 +9,10 @@ use crate::work::baker::Way;
 use crate::work::crop::shown;
 use crate::work::gathering::Progress;
 
-/// Maker of the picture beside that of the material.
+/// Maker of the second picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Against {
-    /// A shader; what is left out is as in the picture of the material.
+    /// A shader. Its model and form are those of the first picture unless stated.
     Shader {
         /// Its model.
         model: Option<ShadingModel>,
@@ -56,7 +56,7 @@ impl Comparison {
         self.divider = (self.divider + DIVIDER_STEP * steps).clamp(0.0, 1.0);
     }
 
-    /// How the second picture comes about beside one of a form.
+    /// The maker of the second picture if the first is of a form.
     pub(crate) fn way(&self, form: Form) -> Option<Way> {
         self.against.map(|against| match against {
             Against::Shader { form: own, .. } => Way::Shader(own.unwrap_or(form)),
@@ -64,7 +64,7 @@ impl Comparison {
         })
     }
 
-    /// Whether both forms have to have the model of the material where none is named.
+    /// True where the second picture has another form and no model of its own, so that the material's model needs both forms.
     pub(crate) fn is_of_forms(&self, form: Form) -> bool {
         matches!(self.against, Some(Against::Shader { model: None, form: Some(other) }) if other != form)
     }
@@ -112,7 +112,7 @@ mod tests {
     fn differences_are_linear_and_multiplied() {
         let a = image(1, &[0.5, 0.25, 4.0]);
         let b = image(1, &[0.375, 0.5, 4.0]);
-        // 0.5 in linear light is 188 in sRGB; what is above 1 is clipped.
+        // 0.5 in linear light is 188 in sRGB; values above 1 are clipped.
         assert_eq!(difference(&a, &b, 4.0), Some(vec![188, 255, 0]));
         assert_eq!(difference(&a, &b, 8.0), Some(vec![255, 255, 0]));
         assert_eq!(difference(&b, &a, 4.0), difference(&a, &b, 4.0));

@@ -1,4 +1,4 @@
-//! The material files as the window knows them.
+//! The material files of the window.
 
 use luthier_material::Material;
 
@@ -31,12 +31,12 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// Takes what is on disk now. Broken files keep the material that they had; the selection stays with its file. The labels
-    /// of those whose material is another one than before.
+    /// Takes the files on disk. Broken files keep their last material, and the selection stays with its file. Returns the labels of files whose
+    /// material changed.
     pub(crate) fn update(&mut self, files: Vec<MaterialFile>) -> Vec<String> {
         let before = self.selected().map(|entry| entry.label.clone());
         let entries = files.into_iter().map(|file| {
-            let old = self.entries.iter().find(|entry| entry.label == file.label);
+            let old = self.named(&file.label);
             let (material, problem) = match file.material {
                 Ok(material) => (Some(material), None),
                 Err(problem) => (old.and_then(|entry| entry.material.clone()), Some(problem)),
@@ -44,13 +44,17 @@ impl Files {
             Entry { label: file.label, material, problem, revision: file.revision }
         });
         let entries: Vec<Entry> = entries.collect();
-        let old = |label: &str| self.entries.iter().find(|entry| entry.label == label);
-        let differs = |new: &&Entry| old(&new.label).map(|old| &old.material) != Some(&new.material);
-        let changed = entries.iter().filter(differs).map(|entry| entry.label.clone()).collect();
+        let differing =
+            entries.iter().filter(|new| self.named(&new.label).map(|old| &old.material) != Some(&new.material));
+        let changed = differing.map(|entry| entry.label.clone()).collect();
         self.entries = entries;
         self.selected =
             before.and_then(|label| self.entries.iter().position(|entry| entry.label == label)).unwrap_or(0);
         changed
+    }
+
+    fn named(&self, label: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.label == label)
     }
 
     pub(crate) fn selected(&self) -> Option<&Entry> {

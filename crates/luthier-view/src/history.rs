@@ -14,7 +14,7 @@ pub(crate) struct Edit {
 pub(crate) struct History {
     past: Vec<Edit>,
     future: Vec<Edit>,
-    /// Whether edits belong to the last step: the gesture that made it is not over.
+    /// True while edits belong to the last step, because its gesture is not over.
     is_open: bool,
 }
 
@@ -40,7 +40,7 @@ impl History {
         self.is_open = false;
     }
 
-    /// The last step, whose material is to be shown again. `current` has the material of a file as it is now.
+    /// Takes back the last step and returns the edit to show. `current` gives the present material of a file.
     pub(crate) fn undo(&mut self, current: impl Fn(&str) -> Option<Material>) -> Option<Edit> {
         self.close();
         let edit = self.past.pop()?;
@@ -56,7 +56,7 @@ impl History {
         Some(edit)
     }
 
-    /// Forgets the steps of a file: it was saved, and they are of another text.
+    /// Forgets the steps of a file that was saved, because they belong to its old text.
     pub(crate) fn forget(&mut self, label: &str) {
         self.past.retain(|edit| edit.label != label);
         self.future.retain(|edit| edit.label != label);

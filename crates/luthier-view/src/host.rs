@@ -5,7 +5,7 @@ use luthier_lut::Image;
 use luthier_manifest::Form;
 use luthier_material::Material;
 
-/// Services that the window asks of the program around it. Called from several threads.
+/// Services that the program around the window provides. Several threads call them.
 pub trait Host: Send + Sync {
     /// Returns all material files if one of them, or a file that they name, changed since the last call. The first call always does.
     fn changed(&self) -> Option<Vec<MaterialFile>>;
@@ -28,11 +28,10 @@ pub trait Host: Send + Sync {
     /// A message for people.
     fn parsed(&self, label: &str, text: &str) -> Result<Material, String>;
 
-    /// Distance of two pictures of one size, linear RGB, behind a tone curve where that counts. `None` where they cannot be compared.
+    /// Distance of two linear RGB pictures of one size; FLIP sees them behind the tone curve. `None` if they cannot be compared.
     fn compare(&self, a: &Image, b: &Image, tone: ToneMapping) -> Option<Differences>;
 
-    /// Writes a screenshot. `number` counts from 1; `asked` says that it is one of those that the command line asks for, not
-    /// one that somebody took by hand. Gives the path.
+    /// Writes a screenshot and returns its path. `number` counts from 1. `asked` is true if the command line asks for it, false if a user took it.
     ///
     /// # Errors
     /// A message for people.
@@ -53,7 +52,7 @@ pub struct Differences {
 pub struct MaterialFile {
     /// The file, as messages name it.
     pub label: String,
-    /// The material; or what is wrong with it, with file, line and hint.
+    /// The material; or its faults, with file, line and hint.
     pub material: Result<Material, String>,
     /// Another number when a file that the material names changed.
     pub revision: u64,

@@ -58,20 +58,23 @@ pub(crate) const KEYS: [(Modifiers, Key, &str, Action, &str); 20] = [
 pub(crate) const MOUSE: [(&str, &str); 4] =
     [("drag", "turn the shape"), ("right drag", "turn the light"), ("drag the divider", "move it"), ("wheel", "zoom")];
 
-/// The actions that were asked for since the last frame; none while a number is being typed.
+/// The actions of keys that were pressed since the last frame; none while a number is being typed.
 pub(crate) fn actions(context: &Context) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    let of_event = |event: &Event| match event {
+    context.input(|input| input.events.iter().filter_map(of_event).collect())
+}
+
+fn of_event(event: &Event) -> Option<Action> {
+    match event {
         // Modifiers as they were when the key was pressed.
         Event::Key { key, pressed: true, modifiers, .. } => KEYS
             .iter()
             .find(|(with, of, ..)| of == key && modifiers.matches_exact(*with))
             .map(|(.., action, _)| *action),
         _ => None,
-    };
-    context.input(|input| input.events.iter().filter_map(of_event).collect())
+    }
 }
 
 #[cfg(test)]

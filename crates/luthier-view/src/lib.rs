@@ -3,9 +3,9 @@
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! Three threads stand behind the one of the window, each with the latest order only: one looks whether files changed, one
-//! bakes the material that is shown, one renders it, and the picture beside it. While something moves the picture is small and coarse; at rest it is
-//! rendered again with more samples. A simulated picture gathers paths as long as nothing changes that it depends on. A material that cannot be used leaves the last picture where it was, below the message.
+//! Three threads work for the thread of the window, each on its latest order only. One watches files, one bakes the shown material, one renders it
+//! and the picture beside it. While something moves the picture is small and coarse; at rest it is rendered again with more samples. A simulated
+//! picture gathers paths until something changes that it depends on. If a material cannot be used, the last picture stays below the message.
 //!
 //! Files, bakes and shaders come from a [`Host`]; this crate knows neither paths nor the baker.
 //!
@@ -15,11 +15,11 @@
 //!
 //! # Rooms
 //!
-//! Each uses those above it, none below.
+//! Each uses only those above it.
 //!
 //! - `error`, `host`, `keys`, `look`, `orbit`, `parameter`, `theme`, `clipboard`, `history`, `shots`: words, numbers and orders of the window.
-//! - `work`, `comparison`, `files`, `canvas`, `options`: threads and their results, what is compared, what is open, what is shown.
-//! - `app`, with `edits` and `sides`: the window, and what it does with orders and results.
+//! - `work`, `comparison`, `files`, `canvas`, `options`: threads and their results, comparisons, open files, textures, options.
+//! - `app`, with `edits` and `sides`: the state of the window, its orders and their results.
 //! - `panel`, `picture`, `frame`: one frame of it.
 //! - `window`: the loop that runs it.
 

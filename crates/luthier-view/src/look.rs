@@ -1,4 +1,4 @@
-//! Light, exposure and what is behind.
+//! Light, exposure and surroundings.
 
 use std::sync::{Arc, OnceLock};
 
@@ -17,13 +17,13 @@ pub struct Look {
     pub strength: f32,
     /// Number of the surroundings.
     pub surroundings: usize,
-    /// Whether they are seen behind.
+    /// True where the surroundings are seen behind the shape.
     pub background: bool,
     /// Tone curve.
     pub tone: ToneMapping,
 }
 
-/// Irradiance of the light at strength 1: that of [`RenderSettings::new`].
+/// Irradiance of the light at strength 1, as in [`RenderSettings::new`].
 const IRRADIANCE: [f32; 3] = [1.75, 1.7, 1.62];
 
 impl Look {
@@ -73,7 +73,7 @@ const SKY_ROWS: u32 = 256;
 #[derive(Debug)]
 pub(crate) struct Surroundings {
     ready: Vec<(&'static str, Arc<Environment>)>,
-    /// Those that take a moment to make, and are made when they are chosen.
+    /// Environments that are made when they are chosen, because they take a moment.
     made: Vec<(Scenery, OnceLock<Arc<Environment>>)>,
 }
 

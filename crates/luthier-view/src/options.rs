@@ -20,15 +20,15 @@ pub struct Options {
     pub shape: Shape,
     /// Form.
     pub form: Form,
-    /// Model; `None` is what each file asks for.
+    /// Model; `None` is the model that each file asks for.
     pub model: Option<ShadingModel>,
-    /// Whether files that ask for no model may have one that is fitted to a simulation.
+    /// True where files that name no model may have one that is fitted to a simulation.
     pub fits: bool,
-    /// The picture beside that of the material.
+    /// The second picture.
     pub comparison: Comparison,
     /// Inner size of the window in points.
     pub size: [f32; 2],
-    /// Dark; `None` is what the desktop says, or else dark.
+    /// Dark theme; `None` follows the desktop, or else is dark.
     pub dark: Option<bool>,
     /// Screenshots to take without being asked again.
     pub shots: Option<Shots>,

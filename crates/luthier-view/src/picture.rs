@@ -1,7 +1,7 @@
 //! The picture, or two of them with a divider, or their difference; and the mouse on it.
 
 use eframe::egui::{
-    Align2, Color32, CursorIcon, FontId, PointerButton, Rect, Sense, Stroke, TextureHandle, Ui, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Painter, PointerButton, Rect, Sense, Stroke, TextureHandle, Ui, pos2, vec2,
 };
 
 use crate::app::App;
@@ -21,14 +21,14 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     let share = [motion.x, motion.y].map(|points| f64::from(points) / side);
     let has_divider = app.comparison.against.is_some() && !app.comparison.difference;
     let divider = rect.left() + app.comparison.divider * rect.width();
-    let is_near = |x: f32| has_divider && (x - divider).abs() <= GRIP;
+    let is_near = has_divider && response.hover_pos().is_some_and(|at| (at.x - divider).abs() <= GRIP);
     let (is_pressed, is_down) = ui.input(|input| (input.pointer.primary_pressed(), input.pointer.primary_down()));
     if is_pressed {
-        app.canvas.holds_divider = response.hover_pos().is_some_and(|at| is_near(at.x));
+        app.canvas.holds_divider = is_near;
     }
     app.canvas.holds_divider &= is_down;
     let holds_divider = app.canvas.holds_divider;
-    if holds_divider || response.hover_pos().is_some_and(|at| is_near(at.x)) {
+    if holds_divider || is_near {
         ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
     }
     if response.dragged_by(PointerButton::Primary) {
@@ -55,19 +55,15 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     app.problem(ui, rect);
 }
 
-/// Draws the pictures, the divider between them, and who made which.
+/// Draws the pictures, the divider between them, and the names of their makers.
 fn draw(app: &mut App, ui: &Ui, rect: Rect) {
-    let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     let painter = ui.painter();
     let names = app.names();
-    let paint = |texture: &TextureHandle, clip: Rect| {
-        painter.with_clip_rect(clip).image(texture.id(), rect, all, Color32::WHITE);
-    };
     let is_compared = app.comparison.against.is_some() && !app.canvas.sides[1].is_empty();
     if is_compared && app.comparison.difference {
         let gain = app.comparison.gain;
         if let Some(texture) = app.canvas.difference(ui.ctx(), gain) {
-            paint(texture, rect);
+            paint(painter, texture, rect, rect);
             label(ui, rect, Align2::CENTER_TOP, &format!("|{} − {}| × {gain:.0}", names[0], names[1]));
             return;
         }
@@ -75,18 +71,24 @@ fn draw(app: &mut App, ui: &Ui, rect: Rect) {
     let [first, second] = &app.canvas.sides;
     let divider = if is_compared { rect.left() + app.comparison.divider * rect.width() } else { rect.right() };
     if let Some(texture) = &first.texture {
-        paint(texture, rect.with_max_x(divider));
+        paint(painter, texture, rect, rect.with_max_x(divider));
     }
     if !is_compared {
         return;
     }
     if let Some(texture) = &second.texture {
-        paint(texture, rect.with_min_x(divider));
+        paint(painter, texture, rect, rect.with_min_x(divider));
     }
     painter.vline(divider, rect.y_range(), Stroke::new(3.0, Color32::from_black_alpha(110)));
     painter.vline(divider, rect.y_range(), Stroke::new(1.0, Color32::from_white_alpha(220)));
     label(ui, rect.with_max_x(divider), Align2::RIGHT_TOP, &names[0]);
     label(ui, rect.with_min_x(divider), Align2::LEFT_TOP, &names[1]);
+}
+
+/// Paints the part of a picture inside `clip`; the whole picture would fill `rect`.
+fn paint(painter: &Painter, texture: &TextureHandle, rect: Rect, clip: Rect) {
+    let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    painter.with_clip_rect(clip).image(texture.id(), rect, all, Color32::WHITE);
 }
 
 /// A line of text at the upper edge of a part of the picture; none where it does not fit.

@@ -1,4 +1,4 @@
-//! The two pictures: who makes them, and the orders for them.
+//! The two pictures: their makers, and the orders for them.
 
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ impl App {
         self.against_problems.iter().flatten().next().map(String::as_str)
     }
 
-    /// The material as it is shown, and the one beside it.
+    /// The shown material, and the one beside it.
     fn subjects(&self) -> Option<[Option<Subject>; 2]> {
         let material = self.material()?;
         let revision = self.files.selected().map_or(0, |entry| entry.revision);
@@ -58,19 +58,18 @@ impl App {
         };
         let second = self.comparison.way(self.form).map(|way| match self.comparison.against {
             Some(Against::Shader { model, .. }) => subject(model.or(self.model), way),
-            // Models play no part in it: another one leaves its picture as it is.
+            // The simulation needs no model. It gets the same subject for all models, so that another choice keeps its picture.
             _ => Subject { material: material.clone(), way, revision },
         });
         Some([Some(subject(self.model, Way::Shader(self.form))), second])
     }
 
-    /// Gives the threads what has changed.
+    /// Sends the threads new orders where something changed.
     pub(crate) fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
         if let Some(subjects) = self.subjects()
             && self.bake_order.as_ref().is_none_or(|last| last.subjects != subjects)
         {
-            let second = |of: &[Option<Subject>; 2]| of[1].as_ref().map(|s| (s.way, s.material.bake.model));
-            if self.bake_order.as_ref().is_none_or(|last| second(&last.subjects) != second(&subjects)) {
+            if self.bake_order.as_ref().is_none_or(|last| second_maker(&last.subjects) != second_maker(&subjects)) {
                 // A picture of another maker is not shown under the name of this one.
                 self.canvas.sides[1].clear();
                 self.against_problems = [None, None];
@@ -82,13 +81,13 @@ impl App {
             self.bake_order = Some(order);
         }
         let Some((baked, side, other)) = &self.ready else { return };
-        let pixels = |points: f32| (points * ui.ctx().pixels_per_point()).round().max(1.0) as u32;
+        let pixels = [rect.width(), rect.height()].map(|points| points * ui.ctx().pixels_per_point());
         let view = View {
             shape: self.shape,
             orbit: self.orbit,
             look: self.look,
             backdrop: self.backdrop(ui.ctx().theme()),
-            size: [pixels(rect.width()), pixels(rect.height())],
+            size: pixels.map(|side| side.round().max(1.0) as u32),
             samples: self.settings.samples,
             environment_samples: self.settings.environment_samples,
             moving,
@@ -110,4 +109,9 @@ impl App {
             (Theme::Light, _) => LIGHT_BACKDROP,
         }
     }
+}
+
+/// The maker of the second picture.
+fn second_maker(subjects: &[Option<Subject>; 2]) -> Option<(Way, Option<ShadingModel>)> {
+    subjects[1].as_ref().map(|subject| (subject.way, subject.material.bake.model))
 }

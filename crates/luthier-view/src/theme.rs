@@ -5,7 +5,7 @@ use eframe::egui::{Color32, Context, CornerRadius, Stroke, Theme, Vec2, Visuals}
 /// Varnish.
 const ACCENT: [Color32; 2] = [Color32::from_rgb(0xd9, 0x9a, 0x3d), Color32::from_rgb(0x9c, 0x5f, 0x0c)];
 
-/// Linear colour behind the shape in the light theme; in the dark one it is that of the settings.
+/// Linear colour behind the shape in the light theme. The dark theme takes the colour of the settings.
 pub(crate) const LIGHT_BACKDROP: [f32; 3] = [0.62, 0.62, 0.61];
 
 /// Sets up both themes.

@@ -50,7 +50,7 @@ impl Patience {
     ///
     /// # Errors
     ///
-    /// What it did in place of progress, once that is too much.
+    /// The work or the sleep of the program, once it is too much without progress.
     pub fn look(&mut self) -> Result<(), String> {
         let seen = Seen::of(self.process);
         let work = seen.ticks.saturating_sub(self.before);
@@ -99,10 +99,10 @@ impl Seen {
         // Of itself and of children that have ended, each in user and system mode: proc(5).
         self.ticks += fields[11..15].iter().map(|field| field.parse::<u64>().unwrap_or(0)).sum::<u64>();
         for task in fs::read_dir(format!("/proc/{process}/task")).into_iter().flatten().flatten() {
-            let of_task = |file| task.path().join(file).display().to_string();
-            let state = self::fields(&of_task("stat")).map(|fields| fields[0].clone());
+            let folder = task.path().display().to_string();
+            let state = self::fields(&format!("{folder}/stat")).map(|fields| fields[0].clone());
             self.is_asleep &= state.is_none_or(|state| ["S", "I", "Z", "X"].contains(&state.as_str()));
-            for child in fs::read_to_string(of_task("children")).unwrap_or_default().split_whitespace() {
+            for child in fs::read_to_string(format!("{folder}/children")).unwrap_or_default().split_whitespace() {
                 self.add(child.parse().unwrap());
             }
         }

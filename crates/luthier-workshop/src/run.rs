@@ -42,8 +42,8 @@ impl Run {
 
     /// Lines that begin an error, but for the one that drivers of a machine without a desktop print.
     pub fn errors(&self) -> Vec<&str> {
-        let is_ours = |line: &&str| line.starts_with("error: ") && !line.contains("XDG_RUNTIME_DIR");
-        self.stderr.lines().filter(is_ours).collect()
+        let errors = self.stderr.lines().filter(|line| line.starts_with("error: "));
+        errors.filter(|line| !line.contains("XDG_RUNTIME_DIR")).collect()
     }
 
     /// Standard error with some parts in it.

@@ -10,6 +10,14 @@ use luthier_shader::ShaderError;
 use thiserror::Error;
 
 /// Why no package came of files.
+///
+/// ```
+/// use luthier::Error;
+///
+/// let error = luthier::parse("gold.toml", "schema = 1\nname = \"gold\"\n").unwrap_err();
+/// assert!(matches!(&error, Error::Refused { .. }));
+/// assert_eq!(error.diagnostics()[0].label, "gold.toml");
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -1,17 +1,17 @@
-//! The front door of luthier: files of materials become a package of tables and shaders, with everything that is wrong said where it stands.
+//! The front door of luthier: files of materials become a package of tables and shaders. Every fault is a diagnostic with its place in a file.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
 //! - [`Sources`]: scenes, surfaces and materials, each file read once, with diagnostics that have places in files;
-//! - [`Shading`]: the choice of models beside what the files say; [`Bake`]: all options of a bake;
+//! - [`Shading`]: the caller's choice of models, before that of the files; [`Bake`]: all options of a bake;
 //! - [`Bake::package`]: materials to a [`Package`], which is in memory until [`Package::write`] publishes it in a folder;
-//! - [`refusals`]: every reason why a material is refused, or doubted.
+//! - [`refusals`]: every reason to refuse or doubt a material.
 //!
-//! A bake computes what its [`Store`] lacks: [`MemoryStore`] starts empty, `luthier_store::DiskStore` keeps results between processes.
-//! An [`Observer`] hears of every job, and may cancel.
+//! A bake computes what its [`Store`] lacks: [`MemoryStore`] starts empty, `luthier_store::DiskStore` keeps results between processes. An
+//! [`Observer`] is told of every job, and may cancel the bake.
 //!
-//! Modules, each of which uses those before it alone: paths, pictures, refusals, shading, sources, bake.
+//! Modules, each of which uses only earlier ones: paths, pictures, refusals, shading, sources, bake.
 
 mod bake;
 mod error;

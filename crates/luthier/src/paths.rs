@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::Error;
 
-/// The files of paths: files, and the `*.toml` of folders, each once, in the order given and by name within a folder.
+/// Finds the files of paths: files, and the `*.toml` of folders. Each is listed once, in the order given and by name within a folder.
 ///
 /// # Errors
 /// [`Error::File`], [`Error::NoFiles`].
@@ -36,7 +36,7 @@ pub fn inner_files(paths: &[PathBuf]) -> Result<Vec<(String, PathBuf, PathBuf)>,
     Ok(all)
 }
 
-/// A path without links where the file is there: two paths of one file are the same.
+/// A path without links, if the file exists. Paths of one file are then equal.
 pub(crate) fn same(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
@@ -54,7 +54,7 @@ pub(crate) fn folder(file: &Path) -> &Path {
 /// The `*.toml` of a folder, by name.
 fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut paths = entries(folder)?;
-    // A broken link is a file that cannot be read, not one to leave out in silence.
+    // A broken link is kept: reading it is an error, and leaving it out would bake without it in silence.
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml") && !path.is_dir());
     Ok(paths)
 }
@@ -67,9 +67,9 @@ fn folders(folder: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
 
 /// All that a folder holds, by name.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let listed = |source| Error::file("list", folder, source);
-    let entries = std::fs::read_dir(folder).map_err(listed)?;
-    let mut paths = entries.map(|entry| Ok(entry.map_err(listed)?.path())).collect::<Result<Vec<_>, Error>>()?;
+    let listed: std::io::Result<Vec<PathBuf>> =
+        std::fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
+    let mut paths = listed.map_err(|source| Error::file("list", folder, source))?;
     paths.sort();
     Ok(paths)
 }

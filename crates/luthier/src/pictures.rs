@@ -1,4 +1,4 @@
-//! Pictures that materials name: read, made into the map that ships, and looked at for what is unlikely to be meant.
+//! Pictures that materials name: read, and made into the maps that ship.
 
 use luthier_lut::{Image, Picture, PictureSamples, srgb};
 use luthier_material::{Channel, PictureRef, TexelUse};
@@ -9,7 +9,7 @@ use luthier_export::input;
 
 use crate::paths;
 
-/// A picture as its material reads it.
+/// A picture that was read: the texels that a material asks for, and its file.
 pub(crate) struct Read {
     /// Texels as they ship.
     pub(crate) picture: Picture,
@@ -19,7 +19,7 @@ pub(crate) struct Read {
     pub(crate) decoded: Decoded,
 }
 
-/// Reads a picture that a material names, relative to the material's file: the texels that ship.
+/// Reads the texels that ship of a picture that a material names, relative to the material's file.
 ///
 /// # Errors
 /// Why it cannot be used, in words.
@@ -42,7 +42,7 @@ pub(crate) fn read(material: &str, picture: &PictureRef, texels: TexelUse) -> Re
     Ok(Read { picture: made, bytes, decoded })
 }
 
-/// The file of a map that ships: that of its source where this is a PNG whose texels stay.
+/// The file of a map that ships. A PNG whose texels do not change ships as it is.
 pub(crate) fn file(read: Read, picture: &PictureRef) -> Result<(Picture, Vec<u8>), String> {
     if picture.keeps_texels() && read.decoded.container == Container::Png {
         return Ok((read.picture, read.bytes));
@@ -61,8 +61,12 @@ fn shipped(stored: &Picture, asked: &PictureRef, texels: TexelUse) -> Result<Pic
     if asked.scale == 1.0 {
         return Ok(picture);
     }
-    let scale = asked.scale as f32;
-    let scaled = |texel: [f32; 4]| match texels {
+    Ok(replaced(&picture, |texel| scaled(texel, texels, asked.scale as f32)))
+}
+
+/// A texel times a factor; of a normal, its lean.
+fn scaled(texel: [f32; 4], texels: TexelUse, scale: f32) -> [f32; 3] {
+    match texels {
         TexelUse::Normal => {
             let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel[c] - 1.0);
             let (x, y) = (scale * x, scale * y);
@@ -70,11 +74,10 @@ fn shipped(stored: &Picture, asked: &PictureRef, texels: TexelUse) -> Result<Pic
             [x, y, z].map(|v| 0.5 + 0.5 * v / length)
         }
         _ => [0, 1, 2].map(|c| scale * texel[c]),
-    };
-    Ok(replaced(&picture, scaled))
+    }
 }
 
-/// One channel of a picture, as grey. Grey has the same red, green and blue.
+/// One channel of a picture, as grey. In a grey picture, red, green and blue are equal.
 fn one_channel(picture: &Picture, channel: Channel) -> Result<Picture, String> {
     let place = match (channel, picture.channels) {
         (Channel::A, 1 | 3) => return Err("its channel `a` is asked for, and it has no alpha".to_owned()),
@@ -94,11 +97,11 @@ fn every<T: Copy>(values: &[T], channels: u32, place: usize) -> Vec<T> {
     values.iter().skip(place).step_by(channels as usize).copied().collect()
 }
 
-/// A picture with other texels, in the bits and by the curve of the given one: RGB, or grey where that is grey without alpha.
+/// A picture with other texels, but with the bit depth and curve of `picture`. It is grey if `picture` is grey without alpha, else RGB.
 fn replaced(picture: &Picture, texel: impl Fn([f32; 4]) -> [f32; 3]) -> Picture {
     let channels = if picture.channels == 1 { 1 } else { 3 };
-    let coded = |value: f32| if picture.is_srgb { srgb::code(value) } else { f64::from(value).clamp(0.0, 1.0) };
-    let codes = picture.texels().flat_map(|t| texel(t).into_iter().take(channels)).map(coded);
+    let values = picture.texels().flat_map(|t| texel(t).into_iter().take(channels));
+    let codes = values.map(|v| if picture.is_srgb { srgb::code(v) } else { f64::from(v).clamp(0.0, 1.0) });
     let samples = match picture.samples {
         PictureSamples::Bits8(_) => PictureSamples::Bits8(codes.map(|code| (255.0 * code).round() as u8).collect()),
         _ => PictureSamples::Bits16(codes.map(|code| (65535.0 * code).round() as u16).collect()),

@@ -1,4 +1,4 @@
-//! The choice of models, beside what material files say.
+//! The caller's choices for all materials of a bake.
 
 use luthier_lut::TableKind;
 use luthier_manifest::{Form, Reflectance, ShadingModel};
@@ -6,7 +6,7 @@ use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::refusals::{of_energy, of_model};
 
-/// How materials are shaded, beside what their files say. The default leaves all to the files.
+/// Choices of models, reflectances, tables and forms that come before those of material files. The default leaves all to the files.
 ///
 /// ```
 /// use luthier::{Shading, ShadingModel};
@@ -21,19 +21,20 @@ use crate::refusals::{of_energy, of_model};
 pub struct Shading {
     /// The model of all materials.
     pub model: Option<ShadingModel>,
-    /// Whether nothing is simulated: materials whose files ask for no model take a closed form, and those that ask for a fitted one are refused.
+    /// True where nothing may be simulated. Materials whose files name no model take one in closed form; a material whose file names a fitted model
+    /// is refused.
     pub no_fit: bool,
-    /// How models come by the reflectance of an interface.
+    /// The source of an interface's reflectance, such as a table or a curve; `None` leaves it to the files.
     pub reflectance: Option<Reflectance>,
-    /// Kinds of tables to bake for every material, beside those that its shader reads.
+    /// Kinds of tables to bake for every material, in addition to those that its shader reads.
     pub tables: Vec<TableKind>,
-    /// Forms of the shaders; none stands for all that the models of all materials have. The form `full` computes all terms, so that
-    /// materials whose files name no model take one that is not fitted; with `full` alone a package has no tables.
+    /// Forms of the shaders; empty for every form that all models of the bake have. The form `full` computes all terms, so materials whose files name
+    /// no model take one without a fit. With `full` alone, a package has no tables.
     pub forms: Vec<Form>,
 }
 
 impl Shading {
-    /// The model of a material, unless it is the material's own choice.
+    /// The model that these choices give a material; `None` where the material chooses.
     fn model_of(&self, material: &Material) -> Option<ShadingModel> {
         let is_closed = self.no_fit || self.forms.contains(&Form::Full);
         self.model.or_else(|| is_closed.then(|| material.model_without_fit()))
@@ -56,7 +57,7 @@ impl Shading {
         materials
     }
 
-    /// Warnings of what the model leaves out, and refusals.
+    /// Warnings about features that the model leaves out, and refusals.
     pub fn doubts(&self, material: &Material) -> Vec<Diagnostic> {
         let model = self.model_of(material);
         let chosen = self.reflectance.map(|_| {
@@ -73,7 +74,7 @@ impl Shading {
         doubts
     }
 
-    /// A warning of energy that the model wins or loses.
+    /// A warning if the model gains or loses energy.
     pub(crate) fn doubts_of_energy(&self, material: &Material) -> Option<Diagnostic> {
         of_energy(material, self.model_of(material))
     }

@@ -27,10 +27,10 @@ impl FromStr for Thicknesses {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|nm| (1.0..=1e4).contains(nm));
-        let pair = text.split_once(',').and_then(|(min, max)| Some([number(min)?, number(max)?]));
-        let pair = pair.filter(|[min, max]| min < max);
-        pair.map(Self).ok_or_else(|| "expected MIN,MAX in nm, 1 to 10000 and ascending, such as 50,800".to_owned())
+        match text.split_once(',').map(|(min, max)| [min, max].map(|nm| nm.trim().parse::<f64>())) {
+            Some([Ok(min), Ok(max)]) if 1.0 <= min && min < max && max <= 1e4 => Ok(Self([min, max])),
+            _ => Err("expected MIN,MAX in nm, 1 to 10000 and ascending, such as 50,800".to_owned()),
+        }
     }
 }
 

@@ -349,10 +349,10 @@ pub(crate) enum DistributionName {
 
 /// Texels across and down.
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || "expected texels across and down, 4 to 1024 each, such as 64x64".to_owned();
-    let (width, height) = text.split_once('x').ok_or_else(wrong)?;
-    let side = |text: &str| text.parse::<u32>().ok().filter(|side| (4..=1024).contains(side)).ok_or_else(wrong);
-    Ok([side(width)?, side(height)?])
+    match text.split_once('x').map(|(width, height)| [width, height].map(str::parse::<u32>)) {
+        Some([Ok(width @ 4..=1024), Ok(height @ 4..=1024)]) => Ok([width, height]),
+        _ => Err("expected texels across and down, 4 to 1024 each, such as 64x64".to_owned()),
+    }
 }
 
 /// Most rows of all slices together: what every device takes as a side of a texture.
@@ -375,7 +375,6 @@ fn volume(text: &str) -> Result<[u32; 3], String> {
 
 /// Nodes along one to three axes.
 fn size3(text: &str) -> Result<[u32; 3], String> {
-    let wrong = || "expected nodes along each axis, 1 to 1024 each, such as 32x32 or 16x16x16".to_owned();
     let sides: Option<Vec<u32>> = text.split('x').map(|side| side.parse().ok()).collect();
     let mut size = [1; 3];
     match sides.as_deref() {
@@ -383,7 +382,7 @@ fn size3(text: &str) -> Result<[u32; 3], String> {
             size[..sides.len()].copy_from_slice(sides);
             Ok(size)
         }
-        _ => Err(wrong()),
+        _ => Err("expected nodes along each axis, 1 to 1024 each, such as 32x32 or 16x16x16".to_owned()),
     }
 }
 

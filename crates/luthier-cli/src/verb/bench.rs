@@ -76,11 +76,10 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
             .collect();
         let mut watches = Vec::new();
         for (i, subject) in subjects.iter().enumerate() {
-            let watch = |is_empty| subject.scene.stopwatch(0, &pairs, options.evaluations, is_empty);
-            if i == 0 {
-                watches.push(watch(true)?);
+            let kernels: &[bool] = if i == 0 { &[true, false] } else { &[false] };
+            for &is_empty in kernels {
+                watches.push(subject.scene.stopwatch(0, &pairs, options.evaluations, is_empty)?);
             }
-            watches.push(watch(false)?);
         }
         let times = Stopwatch::in_turn(&watches, options.warm_up, options.repeats.get())?;
         if let Some(watch) = watches.first() {
@@ -128,7 +127,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
         let mut package = Bake::lit().package(std::slice::from_ref(&shaded), store()?)?;
         let reads_d = model.reads_some(TableKind::Distribution);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
-        // Without a table of D to read, closed or not is the same.
+        // A shader without a table of D is the same in both styles.
         let distinct = if reads_d { 3 } else { 2 };
         for (form, closed) in styles.into_iter().take(distinct).filter(|(form, _)| model.has(*form)) {
             if form == Form::Baked && closed && reads_d {

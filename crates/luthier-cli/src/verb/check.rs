@@ -1,4 +1,4 @@
-//! `check`: what is wrong with files, without a bake.
+//! `check`: faults of files, found without a bake.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use crate::cli::CheckOptions;
 /// Validates files, materials of one package as one set; diagnostics go to standard error, one line per file to standard output.
 pub(crate) fn run(options: &CheckOptions) -> Outcome {
     let mut packages = Files::packages(&options.sources.paths)?;
-    // A bake of scenes has no other packages.
+    // A bake of scenes has no packages of folders inside.
     if !packages[0].2.scenes.is_empty() {
         packages.truncate(1);
     }
@@ -27,7 +27,7 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
     if sets.iter().all(|set| set.sources.is_usable()) { Ok(()) } else { Err(Failure::Verdict) }
 }
 
-/// Files that are baked together, with all that is wrong with them.
+/// Files that are baked together, with their diagnostics.
 struct Set {
     shading: luthier::Shading,
     sources: Sources,
@@ -40,11 +40,11 @@ impl Set {
         Self { shading, sources }
     }
 
-    /// All materials, and their models: those of a scene are the scene's to choose.
+    /// All materials with their models; `None` for materials of a scene, which chooses the models.
     fn all(&self) -> impl Iterator<Item = (&Source, Option<ShadingModel>)> {
-        let model = |source: &Source| source.parsed.as_ref().ok().map(|p| self.shading.model(&p.material));
         let of_scenes = self.sources.scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
-        self.sources.materials.iter().map(move |source| (source, model(source))).chain(of_scenes)
+        let own = self.sources.materials.iter().map(|s| (s, s.material().map(|material| self.shading.model(material))));
+        own.chain(of_scenes)
     }
 
     fn entries(&self) -> Vec<Value> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use luthier_export::Package;
-use luthier_gpu::{Shown, ToneMapping};
+use luthier_gpu::{Gpu, RenderSettings, Shown, ToneMapping};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures};
 use luthier_terminal::{Failure, Outcome, files, open, print};
@@ -28,20 +28,8 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     let mut settings = settings(look, options.shape, options.mesh.as_deref(), options.size)?;
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
     let gpu = open(look.adapter.as_deref())?;
-    let render = |subject: &Subject| -> Outcome<Picture> {
-        let Subject { package, material, way } = subject;
-        match *way {
-            Way::Shader(form) => {
-                let image = gpu.scene(package, form)?.render(&[*material], &settings)?;
-                Ok(Picture { image, noise: 0.0 })
-            }
-            Way::Simulated(samples) => {
-                simulated::picture(&gpu, package, &[Shown::Material(*material)], &settings, samples, |_| Ok(()))
-            }
-        }
-    };
-    let Picture { image: a, noise: noise_a } = render(&a)?;
-    let Picture { image: b, noise: noise_b } = render(&b)?;
+    let Picture { image: a, noise: noise_a } = a.render(&gpu, &settings)?;
+    let Picture { image: b, noise: noise_b } = b.render(&gpu, &settings)?;
     let noise = libm::hypot(noise_a, noise_b);
 
     let tone = ToneMapping::from(look.tone);
@@ -89,6 +77,19 @@ enum Way {
 }
 
 impl Subject {
+    fn render(&self, gpu: &Gpu, settings: &RenderSettings) -> Outcome<Picture> {
+        let Self { package, material, way } = self;
+        match *way {
+            Way::Shader(form) => {
+                let image = gpu.scene(package, form)?.render(&[*material], settings)?;
+                Ok(Picture { image, noise: 0.0 })
+            }
+            Way::Simulated(samples) => {
+                simulated::picture(gpu, package, &[Shown::Material(*material)], settings, samples, |_| Ok(()))
+            }
+        }
+    }
+
     fn of(options: &CompareOptions, side: &Side) -> Outcome<Self> {
         let choice = match side {
             Side::Shader(choice) => choice,
@@ -107,7 +108,7 @@ impl Subject {
             return Err(Failure::Usage(anyhow::anyhow!("the model `lobes` is fitted: leave out --no-fit")));
         }
         let shading = Shading { model: choice.model, no_fit: options.no_fit, ..Shading::default() };
-        // Both sides have the material's model, if neither names another: one that both forms have.
+        // If neither side names a model, both have the material's: one with both forms.
         let sides = [&options.a, &options.b].into_iter().filter_map(Side::shader);
         let own = sides.filter(|choice| choice.model.is_none());
         let forms: Vec<Form> = own.map(|choice| choice.form).collect();

@@ -83,11 +83,10 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
         };
         for (name, group) in groups {
             let manifest = outline(group, &Options::default(), store()?)?;
-            // Those that are asked for by name are refused where there are none.
-            let is_there = |form: &&Form| !options.form.is_empty() || model.has(**form);
-            for &form in forms.iter().filter(is_there) {
+            // A form that is asked for by name is kept: if the model lacks it, the emitter refuses it.
+            for &form in forms.iter().filter(|form| !options.form.is_empty() || model.has(**form)) {
                 for (closed, constant) in styles(options) {
-                    // What reads no table of D has it in closed form, or has none, either way.
+                    // A shader without a table of D is the same in both styles.
                     let has_d = manifest.table(TableKind::Distribution).is_some();
                     let has_table = form == Form::Baked && model.reads_some(TableKind::Distribution) && has_d;
                     if closed && !has_table && !options.closed {
@@ -106,15 +105,14 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
     Ok(variants)
 }
 
-/// Whether D is a closed form, and whether the material is constants.
+/// The styles to compile: whether D is a closed form, and whether the material is constants.
 fn styles(options: &CostOptions) -> Vec<(bool, bool)> {
     let all = [(false, false), (true, false), (false, true), (true, true)];
-    let wanted = |&(closed, constant): &(bool, bool)| {
+    let wanted = all.into_iter().filter(|&(closed, constant)| {
         (closed || !options.closed) && (constant || !options.constant) && !(constant && options.set)
-    };
-    // One kernel was asked for where its machine code is.
-    let exact = |style: &(bool, bool)| !options.assembly || *style == (options.closed, options.constant);
-    all.into_iter().filter(wanted).filter(exact).collect()
+    });
+    // Assembly is printed for one kernel only: the style that the options name.
+    wanted.filter(|style| !options.assembly || *style == (options.closed, options.constant)).collect()
 }
 
 /// The command line that makes the page.

@@ -77,7 +77,7 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     print(&format!("{} files, {bytes} bytes, into {}", files.len(), options.out.display()))
 }
 
-/// The environment that the options name, and what the manifest says of it.
+/// The environment that the options name, and its entry in the manifest.
 fn source(options: &EnvironmentOptions) -> Outcome<(Environment, Value)> {
     if let Some(sky) = options.sky {
         let environment = sky.environment(ROWS).map_err(Failure::input)?;
@@ -98,10 +98,6 @@ fn described(level: &Level, layout: Layout) -> Value {
 
 /// Levels as half floats, with a fourth channel of 1.
 fn stored(levels: &[Level]) -> Levels<'static> {
-    let face = |image: &Image| {
-        let data = image.texels().flat_map(|t| [t[0], t[1], t[2], 1.0].map(|v| v.min(LARGEST))).collect();
-        TexelFormat::Rgba16Float.encode(&Image { channels: 4, data, ..*image })
-    };
     let first = &levels[0];
     Levels {
         format: TexelFormat::Rgba16Float,
@@ -111,4 +107,10 @@ fn stored(levels: &[Level]) -> Levels<'static> {
         levels: levels.iter().map(|level| level.images.iter().flat_map(face).collect::<Vec<u8>>().into()).collect(),
         metadata: Vec::new(),
     }
+}
+
+/// A face as half floats with an opaque fourth channel.
+fn face(image: &Image) -> Vec<u8> {
+    let data = image.texels().flat_map(|t| [t[0], t[1], t[2], 1.0].map(|v| v.min(LARGEST))).collect();
+    TexelFormat::Rgba16Float.encode(&Image { channels: 4, data, ..*image })
 }

@@ -1,4 +1,4 @@
-//! `fit`: numbers of Granier and Heidrich's model for a lobe that values give, as a material file.
+//! `fit`: fits Granier and Heidrich's model to values of a lobe, and writes a material file.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,15 +15,15 @@ use crate::input;
 pub(crate) fn run(options: &FitOptions) -> Outcome {
     let is_standard = options.lobe == Path::new("-");
     let (text, label) = input::labelled(&options.lobe)?;
-    let wrong = |what: String| Failure::Input(anyhow::anyhow!("{label}{what}"));
-    let lobe = samples(&text).map_err(|error| wrong(error.to_string()))?;
+    let lobe = samples(&text).map_err(|error| Failure::Input(anyhow::anyhow!("{label}{error}")))?;
     let form = Form {
         wavelengths_nm: DEFAULT_WAVELENGTHS_NM,
         thickness_nm: options.film.map(|Thicknesses(range)| range),
         leans: options.lean,
     };
-    let fitted = fit(&lobe, &form)
-        .ok_or_else(|| wrong(format!(": {} values are too few for a fit, or all are 0", lobe.len())))?;
+    let fitted = fit(&lobe, &form).ok_or_else(|| {
+        Failure::Input(anyhow::anyhow!("{label}: {} values are too few for a fit, or all are 0", lobe.len()))
+    })?;
     if options.json {
         return print(&format!("{:#}", numbers(&fitted, lobe.len())));
     }
@@ -54,7 +54,6 @@ fn numbers(fitted: &Fitted, samples: usize) -> serde_json::Value {
 
 /// A material file with the numbers, six digits each.
 fn material(fitted: &Fitted, stem: &str, label: &str, samples: usize) -> String {
-    let short = |value: f64| -> f64 { format!("{value:.5e}").parse().unwrap_or(value) };
     let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(100).collect();
     let label = label.replace(|c: char| c.is_control() || c == '"' || c == '\\', "-");
     let Fitted { index, thickness_nm, exponents, specular_weight, diffuse, rms_err, lobe_err, .. } = *fitted;
@@ -89,4 +88,9 @@ fn material(fitted: &Fitted, stem: &str, label: &str, samples: usize) -> String 
         let _ = writeln!(out, "inner_tilt_deg = {}\ninner_azimuth_deg = {}", short(tilt), short(azimuth));
     }
     out
+}
+
+/// A number rounded to six digits.
+fn short(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::constants::{Dataset, dataset, datasets};
-use luthier_optics::f0_table::{DIELECTRIC_F0, DielectricF0, F0_TABLE, F0Entry};
+use luthier_optics::f0_table::{DIELECTRIC_F0, F0_TABLE};
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_terminal::{Failure, Outcome, print};
@@ -104,7 +104,6 @@ fn index_of(f0: f64) -> f64 {
 }
 
 fn f0_text() -> String {
-    let triple = |rgb: Rgb| format!("{:>7.3} {:>6.3} {:>6.3}", rgb[0], rgb[1], rgb[2]);
     let mut out = format!(
         "F0 in air, linear sRGB\n{:<18} {:<22} {:<8} {:<22} difference\n",
         "metal", "printed in the lecture", "data set", "computed under D65"
@@ -125,7 +124,7 @@ fn f0_text() -> String {
 }
 
 fn f0_tables() -> Value {
-    let metal = |entry: &F0Entry| {
+    let metals = F0_TABLE.iter().map(|entry| {
         json!({
             "name": entry.name,
             "printed_linear": entry.linear,
@@ -134,13 +133,14 @@ fn f0_tables() -> Value {
             "computed_linear": entry.computed(),
             "difference": entry.difference(),
         })
-    };
-    let dielectric = |class: &DielectricF0| {
+    });
+    let dielectrics = DIELECTRIC_F0.iter().map(|class| {
         let index = class.linear.map(index_of);
         json!({"name": class.name, "printed_linear": class.linear, "printed_srgb": class.srgb, "index": index})
-    };
-    json!({
-        "metals": F0_TABLE.iter().map(metal).collect::<Value>(),
-        "dielectrics": DIELECTRIC_F0.iter().map(dielectric).collect::<Value>(),
-    })
+    });
+    json!({ "metals": metals.collect::<Value>(), "dielectrics": dielectrics.collect::<Value>() })
+}
+
+fn triple(rgb: Rgb) -> String {
+    format!("{:>7.3} {:>6.3} {:>6.3}", rgb[0], rgb[1], rgb[2])
 }

@@ -1,7 +1,7 @@
 //! `preview`: a picture of one material, or of the grid.
 
 use luthier::{Bake, lit};
-use luthier_gpu::{RenderSettings, Shape, Shown};
+use luthier_gpu::{RenderSettings, Scene, Shape, Shown};
 use luthier_lut::Image;
 use luthier_manifest::Form;
 use luthier_terminal::{Bar, Failure, Outcome, open};
@@ -31,25 +31,31 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
-        // A bake on disk has albedos only where a shader reads them, or where they were asked for; blurred maps know no layer's own.
+        // Blurred maps need tables of albedos, which a bake on disk may lack, and ignore maps of single layers.
         if look.environment_samples.is_none() && (!scene.has_albedo(material)? || scene.has_layer_maps(material)?) {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
     }
-    let write = |image| format.write(&options.output, image, look.tone.into());
-    let render = |settings: &RenderSettings, what: &str| -> Outcome<Image> {
-        let bar = Bar::new(what);
-        let watched = |done: usize, count: usize| {
-            bar.set(done as u64, count as u64);
-            true
-        };
-        Ok(scene.render_watched(&parts, settings, &watched)?.expect("nobody stops it"))
-    };
     if gpu.is_software() && settings.samples > 1 {
-        // A first picture by one sample of each pixel, to look at meanwhile.
-        write(render(&RenderSettings { samples: 1, ..settings.clone() }, "first picture")?)?;
+        // A software adapter takes long: a first picture with one sample of each pixel comes before.
+        let draft = RenderSettings { samples: 1, ..settings.clone() };
+        write(options, format, render(&scene, &parts, &draft, "first picture")?)?;
     }
-    write(render(&settings, "rendering")?)
+    write(options, format, render(&scene, &parts, &settings, "rendering")?)
+}
+
+/// Renders, and shows progress.
+fn render(scene: &Scene, parts: &[Shown], settings: &RenderSettings, what: &str) -> Outcome<Image> {
+    let bar = Bar::new(what);
+    let image = scene.render_watched(parts, settings, &|done, count| {
+        bar.set(done as u64, count as u64);
+        true
+    });
+    Ok(image?.expect("nobody stops it"))
+}
+
+fn write(options: &PreviewOptions, format: Format, image: Image) -> Outcome {
+    format.write(&options.output, image, options.look.tone.into())
 }
 
 /// The picture by random walks of light through the stack of each material.
@@ -65,12 +71,12 @@ fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
     let look = &options.look;
     let settings = settings(look, shape, None, options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let write = |image| format.write(&options.output, image, look.tone.into());
-    let picture = simulated::picture(&gpu, &package, &parts, &settings, samples, write)?;
-    write(picture.image)
+    let picture =
+        simulated::picture(&gpu, &package, &parts, &settings, samples, |image| write(options, format, image))?;
+    write(options, format, picture.image)
 }
 
-/// The material that is named, which the grid alone does without.
+/// The material that is named; `None` for the grid, which needs none.
 fn named(options: &PreviewOptions, shape: ShapeName) -> Outcome<Option<&String>> {
     let text = match (&options.material, shape) {
         (None, ShapeName::Grid) => return Ok(None),

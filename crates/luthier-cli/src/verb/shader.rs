@@ -44,12 +44,13 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     }
 }
 
-/// Refuses a file whose ending is that of another language. Endings of no language say nothing.
+/// Refuses a file whose ending belongs to another language. Endings of no language are accepted.
 fn refuse_ending(path: &Path, target: Target) -> Outcome {
     let name = path.to_string_lossy().to_lowercase();
-    let ends = |target: &Target| name.ends_with(&format!(".{}", target.extension()));
+    let fitting = Target::ALL.into_iter().filter(|target| name.ends_with(&format!(".{}", target.extension())));
+    let fitting: Vec<Target> = fitting.collect();
     // Both kinds of GLSL are found in files that end in .glsl alone.
-    let other = Target::ALL.into_iter().find(ends).filter(|_| !ends(&target));
+    let other = fitting.first().copied().filter(|_| !fitting.contains(&target));
     let is_glsl = name.ends_with(".glsl") && !target.extension().ends_with("glsl");
     let Some(other) = other.map(Target::name).or(is_glsl.then_some("glsl450 or glsl-es300")) else { return Ok(()) };
     Err(Failure::Usage(anyhow::anyhow!(

@@ -23,11 +23,11 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
     {
         return Err(Failure::Input(anyhow::anyhow!("cannot write {}: screenshots are .png", path.display())));
     }
-    // A path that is none is a mistake of the command line; what is in the files is shown in the window.
+    // A path that does not exist is a mistake of the command line; the window shows faults of files.
     read_materials(&options.sources.paths)?;
     let look = &options.look;
     let mut settings = settings(look, shape, options.mesh.as_deref(), 1)?;
-    // The window may come to it.
+    // The model can be chosen as the shape later, in the window.
     settings.mesh = settings.mesh.or_else(|| Some(Arc::new(model::mesh())));
     let shape = settings.shape;
     let gpu = open(look.adapter.as_deref())?;

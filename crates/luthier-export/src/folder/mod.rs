@@ -1,4 +1,4 @@
-//! The one reader of a bake's folder.
+//! Reads the folder of a bake; no other code does.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,8 +12,22 @@ use sha2::{Digest, Sha256};
 use crate::publish::{self, READY};
 use crate::{MANIFEST, MAX_FILE_BYTES, Map, Package, PackageError, Shader, Table};
 
-/// A bake in its folder, of which nothing is believed before it is checked: the manifest's schema, that files are regular ones within the
-/// folder, their sizes and hashes, and that texels are those that the manifest describes.
+/// A bake in its folder. Everything is checked before it is used: the schema of the manifest, that files are regular and inside the folder, their
+/// sizes and hashes, and that texels match the manifest.
+///
+/// ```
+/// use luthier_export::{Encoded, Folder, GENERATOR, PackageError};
+/// use luthier_manifest::{FileEntry, Manifest};
+///
+/// let folder = tempfile::tempdir()?;
+/// let manifest = Manifest::new(GENERATOR, Vec::new(), Vec::new());
+/// Encoded { manifest, files: Vec::new() }.write(folder.path())?;
+/// let bake = Folder::open(folder.path())?;
+/// assert_eq!(bake.manifest().generator, GENERATOR);
+/// let secret = FileEntry { path: "../secret".to_owned(), sha256: String::new() };
+/// assert!(matches!(bake.read(&secret), Err(PackageError::Outside { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Folder {
     /// Path without links, so that a file's place can be compared with it.
@@ -47,9 +61,8 @@ impl Folder {
             return Err(PackageError::NoBake { folder: named });
         };
         let bytes = regular(&root, &path, MANIFEST)?;
-        let unusable = |source| PackageError::Manifest { path: path.clone(), source };
         let text = std::str::from_utf8(&bytes).map_err(|_| PackageError::Text { path: path.clone() })?;
-        let manifest = Manifest::from_json(text).map_err(unusable)?;
+        let manifest = Manifest::from_json(text).map_err(|source| PackageError::Manifest { path, source })?;
         Ok(Self { root, named, manifest, sha256: hex(&bytes) })
     }
 
@@ -95,9 +108,9 @@ impl Folder {
     /// # Errors
     /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::Manifest`] where they are not those of the entry.
     pub fn texture(&self, table: &TableEntry) -> Result<Texture, PackageError> {
-        let path = || self.named.join(&table.texture.path);
         let bytes = self.read(&table.texture)?;
-        let texture = ktx2::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let path = self.named.join(&table.texture.path);
+        let texture = ktx2::decode(&bytes).map_err(|source| PackageError::Texture { path, source })?;
         let Texture { format, width, height, bytes } = &texture;
         let checked = table.check([*width, *height], *format, bytes.len());
         checked.map_err(|source| PackageError::Manifest { path: self.named.join(MANIFEST), source })?;
@@ -117,26 +130,22 @@ impl Folder {
     /// # Errors
     /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::MapSize`].
     pub fn map(&self, map: &MapEntry) -> Result<(Vec<u8>, Picture), PackageError> {
-        let path = || self.named.join(&map.file.path);
+        let path = self.named.join(&map.file.path);
         let bytes = self.read(&map.file)?;
-        let decoded = picture::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let decoded = picture::decode(&bytes).map_err(|source| PackageError::Texture { path: path.clone(), source })?;
         let picture = Picture { is_srgb: map.srgb, ..decoded.picture };
         let (found, expected) = (picture.size(), [map.width, map.height]);
-        if found == expected {
-            Ok((bytes, picture))
-        } else {
-            Err(PackageError::MapSize { path: path(), found, expected })
-        }
+        if found == expected { Ok((bytes, picture)) } else { Err(PackageError::MapSize { path, found, expected }) }
     }
 
-    /// All that a program needs that renders: tables, shaders in WGSL, maps.
+    /// Everything that a renderer needs: tables, shaders in WGSL, maps.
     ///
     /// # Errors
     /// Those of the other functions, and of [`Package::from_parts`].
     pub fn package(&self) -> Result<Package, PackageError> {
         let manifest = &self.manifest;
-        let table = |entry: &TableEntry| Ok(Table { kind: entry.kind, texture: self.texture(entry)?, truth: None });
-        let tables = manifest.tables.iter().map(table).collect::<Result<_, PackageError>>()?;
+        let tables = manifest.tables.iter().map(|t| Ok(Table { kind: t.kind, texture: self.texture(t)?, truth: None }));
+        let tables = tables.collect::<Result<_, PackageError>>()?;
         let texts = manifest.shaders.iter().filter(|s| s.target == Target::Wgsl);
         let shaders = texts
             .map(|entry| {
@@ -154,21 +163,21 @@ impl Folder {
         Ok(package)
     }
 
-    /// The bytes of a file; of one that is about to be published if the bake before this one was interrupted then.
+    /// The bytes of a file. An interrupted publication may have left it among the files that are ready.
     fn bytes(&self, path: &Path, named: &str) -> Result<Vec<u8>, PackageError> {
         let ready = self.named.join(READY).join(named);
         regular(&self.root, if ready.exists() { &ready } else { path }, named)
     }
 }
 
-/// The bytes of a regular file that lies within a folder, wherever links lead.
+/// The bytes of a regular file that lies inside a folder after links are followed.
 fn regular(root: &Path, path: &Path, named: &str) -> Result<Vec<u8>, PackageError> {
     let unreadable = |source| PackageError::Read { path: path.to_owned(), source };
     let target = path.canonicalize().map_err(unreadable)?;
     if !target.starts_with(root) {
         return Err(PackageError::Outside { path: named.to_owned() });
     }
-    // Asked before it is opened: opening a pipe waits for its writer.
+    // This comes before opening, because opening a pipe waits for its writer.
     let metadata = target.metadata().map_err(unreadable)?;
     if !metadata.is_file() {
         return Err(PackageError::NotAFile { path: path.to_owned() });

@@ -1,19 +1,20 @@
-//! Publication of files into a folder, all or none.
+//! Publishes files into a folder, all or none.
 //!
-//! Files are staged in `.luthier-new/`. Its renaming to `.luthier-ready/` is the moment of publication: before it the folder
-//! holds the old generation, after it [`crate::Folder`] reads the new one. Then every file is moved to its place, the manifest last. A
-//! program that was killed between leaves `.luthier-ready/`, whose files the next publication moves before its own; a `.luthier-new/` is
-//! removed. One program publishes into a folder at a time: others wait for its lock on the folder.
+//! Files are staged in `.luthier-new/`. Its renaming to `.luthier-ready/` is the moment of publication: before it the folder holds the old
+//! generation, after it [`crate::Folder`] reads the new one. Then every file is moved to its place, the manifest last. A program that is killed in
+//! between leaves `.luthier-ready/`, whose files the next publication moves before its own. A `.luthier-new/` that was left is removed. One program
+//! publishes into a folder at a time: others wait for its lock on the folder.
 //!
-//! A file whose bytes are in place already is not staged: it keeps its time of modification, and build systems see that it did not change.
+//! A file whose bytes are in place already is not staged. It keeps its time of modification, so build systems see that it did not change.
 //!
-//! Where the names in a manifest contain the hashes of their files ([`crate::Encoded::with_hashed_names`]), no file is replaced but the manifest: its renaming alone is the
-//! publication for readers that know nothing of these folders. The files of the generation before stay for those that have read its manifest, which is kept
-//! as `.luthier-before.json`; the next publication removes what neither it nor the manifest in place names.
+//! Where the names in a manifest contain the hashes of their files ([`crate::Encoded::with_hashed_names`]), only the manifest is replaced. For
+//! readers that know nothing of these folders, its renaming is the publication. Files of the previous generation stay for readers that have its
+//! manifest, which is kept as `.luthier-before.json`. The next publication removes the files that neither its own manifest nor the one in place
+//! names.
 //!
-//! Nothing is flushed to the disk (`fsync`) before it is published. That cost 150 ms to 200 ms for the 30 files of a bake of `materials` on
-//! ext4, against 3 ms to 8 ms without. After a loss of power files may be empty: readers know them by their hashes, and the next bake
-//! writes them again, because it compares bytes and not times.
+//! Nothing is flushed to the disk (`fsync`) before it is published. That cost 150 ms to 200 ms for the 30 files of a bake of `materials` on ext4,
+//! against 3 ms to 8 ms without. After a loss of power, files may be empty. Readers detect these by their hashes, and the next bake writes them
+//! again, because it compares bytes, not times.
 
 mod names;
 mod settle;
@@ -31,7 +32,7 @@ use crate::{MANIFEST, PackageError, input};
 const NEW: &str = ".luthier-new";
 /// Folder of complete files that are being moved to their places.
 pub(crate) const READY: &str = ".luthier-ready";
-/// The manifest of the generation before, where names contain hashes: its files stay until the next publication.
+/// Manifest of the previous generation, if names contain hashes. Its files stay until the next publication.
 const BEFORE: &str = ".luthier-before.json";
 /// File that a program locks while it publishes, on systems where it cannot lock the folder.
 const LOCK: &str = ".luthier.lock";
@@ -48,8 +49,9 @@ pub const REPORT_FOLDER: &str = "report";
 /// The report: for programs, for pull requests, and for people.
 pub const REPORT_FILES: [&str; 3] = ["report/report.json", "report/report.md", "report/index.html"];
 
-/// Writes files into a folder, which is made if it does not exist: all of them, or none. Where one is a manifest or the list of an environment, what
-/// the one before it named is removed unless it is written again, the report on that bake too. Files that the folder holds already stay as they are.
+/// Writes all files into a folder, or none; the folder is made if it does not exist. A new manifest or list of an environment also removes the files
+/// that its predecessor named and that are not written again, and a manifest the report on the previous bake. Files that the folder already has stay
+/// as they are.
 ///
 /// # Errors
 /// [`PackageError::Write`]; the folder then holds the files that it held.
@@ -57,34 +59,34 @@ pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageErro
     publish_where(folder, files, || Ok(()))
 }
 
-/// Writes files beside the bake that the manifest with this SHA-256 describes, as [`publish`] does: a report on it.
+/// Writes files beside a bake, such as a report on it, as [`publish`] does. The SHA-256 of its manifest identifies the bake.
 ///
 /// # Errors
 /// [`PackageError::Rebaked`] where another bake has taken its place; [`PackageError::Write`].
 pub fn publish_beside(folder: &Path, manifest_sha256: &str, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     publish_where(folder, files, || {
         let manifest = input::image(&folder.join(MANIFEST)).unwrap_or_default();
-        let rebaked = || PackageError::Rebaked { folder: folder.to_owned() };
-        (crate::sha256(&manifest) == manifest_sha256).then_some(()).ok_or_else(rebaked)
+        let is_same = crate::sha256(&manifest) == manifest_sha256;
+        is_same.then_some(()).ok_or_else(|| PackageError::Rebaked { folder: folder.to_owned() })
     })
 }
 
-/// Waits while another program publishes into a folder. [`publish`] waits, too: programs that must not be held up there call this before.
+/// Waits while another program publishes into a folder. [`publish`] waits, too; a program that must not wait there calls this first.
 pub fn wait(folder: &Path) {
     if let Ok(handle) = handle(folder) {
         let _ = handle.lock();
     }
 }
 
-/// A lock that keeps others from publishing into a folder until it is dropped; `None` where the folder cannot be locked. Whoever holds it must not
-/// publish into that folder.
+/// A lock that keeps others from publishing into a folder until it is dropped; `None` where the folder cannot be locked. Its holder must not publish
+/// into that folder, which would wait for ever.
 pub fn shared(folder: &Path) -> Option<File> {
     let handle = handle(folder).ok()?;
     handle.lock_shared().ok()?;
     Some(handle)
 }
 
-/// Publishes under the lock, if the folder is as it should be. Folders that were made for nothing go.
+/// Publishes under the lock, if `allowed` permits it. If nothing is published, the folders that were made are removed.
 fn publish_where(
     folder: &Path,
     files: &[(&str, &[u8])],
@@ -99,7 +101,7 @@ fn publish_where(
         Err(error) => (None, Err(error)),
     };
     if published.is_err() {
-        // The innermost was made last. One that holds something stays.
+        // The innermost was made last. A folder that is not empty stays.
         made.iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
     }
     published
@@ -120,8 +122,8 @@ fn lock(folder: &Path, made: &mut Vec<PathBuf>) -> Result<File, PackageError> {
 
 /// Stages the files that are not in place yet, and publishes them.
 fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
-    let is_new = |(path, bytes): &&(&str, &[u8])| !stage::holds(&folder.join(path), bytes);
-    let mut files: Vec<_> = files.iter().filter(is_new).copied().collect();
+    let mut files: Vec<_> =
+        files.iter().filter(|(path, bytes)| !stage::holds(&folder.join(path), bytes)).copied().collect();
     if files.is_empty() {
         return Ok(());
     }
@@ -141,12 +143,12 @@ fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     settle::settle(folder)
 }
 
-/// The bytes of a file of the generation that a folder holds, wherever an interrupted publication left it.
+/// The bytes of a file of a folder's generation, which an interrupted publication may have left among the files that are ready.
 pub(crate) fn current(folder: &Path, path: &str) -> Option<Vec<u8>> {
     [folder.join(READY), folder.to_owned()].iter().find_map(|folder| input::image(&folder.join(path)).ok())
 }
 
-/// The files that the manifest of a folder names and that are there, with forward slashes.
+/// The existing files that the manifest of a folder names, with forward slashes.
 pub(crate) fn named(folder: &Path) -> Vec<String> {
     let Some(manifest) = current(folder, MANIFEST) else { return Vec::new() };
     let named = names::named_by(&String::from_utf8_lossy(&manifest));
@@ -154,7 +156,7 @@ pub(crate) fn named(folder: &Path) -> Vec<String> {
     there.map(|path| path.to_string_lossy().replace('\\', "/")).collect()
 }
 
-/// The file by which a folder is locked: the folder itself, or, where folders are no files, one inside it.
+/// The file by which a folder is locked: the folder itself, or a file inside it on systems that cannot open folders.
 fn handle(folder: &Path) -> io::Result<File> {
     if cfg!(unix) {
         File::open(folder)

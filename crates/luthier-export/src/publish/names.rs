@@ -1,4 +1,5 @@
-//! Names of files in a manifest of any schema. It is read piece by piece: that of ten thousand materials has 45 MB, and ten times as much as a tree.
+//! Names of files in a manifest of any schema. A manifest is read as a stream: with ten thousand materials it has 45 MB, and a parsed tree takes ten
+//! times as much.
 
 use std::fmt;
 use std::path::{Component, PathBuf};
@@ -6,7 +7,7 @@ use std::path::{Component, PathBuf};
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 
-/// Digits of a hash in a name: 64 bits, of which no two of a folder's few files are the same.
+/// Digits of a hash in a name. They are 64 bits, so no two of a folder's few files collide.
 const DIGITS: usize = 16;
 
 /// A path whose file name contains the hash of the file, before its extension.
@@ -18,17 +19,17 @@ pub(crate) fn hashed(path: &str, sha256: &str) -> String {
     }
 }
 
-/// Whether all names in a manifest contain the hashes of their files: then no file of one generation takes the place of another's.
+/// True where all names in a manifest contain the hashes of their files. No file then replaces one of another generation.
 pub(super) fn are_hashed(manifest: &str) -> bool {
     let named = named_with_hashes(manifest);
-    let is_hashed = |(path, hash): &(String, String)| hash.get(..DIGITS).is_some_and(|digits| path.contains(digits));
-    !named.is_empty() && named.iter().all(is_hashed)
+    let mut digits = named.iter().map(|(path, hash)| (path, hash.get(..DIGITS)));
+    !named.is_empty() && digits.all(|(path, digits)| digits.is_some_and(|digits| path.contains(digits)))
 }
 
-/// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
+/// The files inside the folder that a manifest of luthier, of any schema, names with a hash.
 pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
-    let is_inside = |path: &PathBuf| path.components().all(|part| matches!(part, Component::Normal(_)));
-    named_with_hashes(manifest).into_iter().map(|(path, _)| PathBuf::from(path)).filter(is_inside).collect()
+    let paths = named_with_hashes(manifest).into_iter().map(|(path, _)| PathBuf::from(path));
+    paths.filter(|path| path.components().all(|part| matches!(part, Component::Normal(_)))).collect()
 }
 
 /// Paths and hashes in a manifest of luthier.
@@ -37,8 +38,7 @@ fn named_with_hashes(manifest: &str) -> Vec<(String, String)> {
     struct Head {
         generator: String,
     }
-    let is_ours = |head: Head| head.generator.starts_with("luthier ");
-    if !serde_json::from_str(manifest).is_ok_and(is_ours) {
+    if !serde_json::from_str(manifest).is_ok_and(|head: Head| head.generator.starts_with("luthier ")) {
         return Vec::new();
     }
     let mut names = Vec::new();
@@ -49,7 +49,7 @@ fn named_with_hashes(manifest: &str) -> Vec<(String, String)> {
     names
 }
 
-/// Collects the paths and hashes of all objects that have both; gives the value where it is a text.
+/// Collects the paths and hashes of all objects that have both. The value of this seed is the text, if it is one.
 struct Names<'n>(&'n mut Vec<(String, String)>);
 
 impl<'de> DeserializeSeed<'de> for Names<'_> {

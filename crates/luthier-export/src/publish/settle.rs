@@ -1,5 +1,5 @@
-//! Files at their places: what is ready is moved there, and what it replaces goes. Of names with hashes nothing is replaced, and what the generation before the last
-//! named goes.
+//! Moves files that are ready to their places, and removes the files that they replace. Names with hashes replace nothing; then the files of the
+//! generation before the last are removed.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -9,7 +9,7 @@ use super::names::{are_hashed, named_by};
 use super::{BEFORE, LISTS, NEW, READY, REPORT_FILES, at, list};
 use crate::{MANIFEST, PackageError};
 
-/// Moves what is ready to its places, the manifest last, and removes what an interrupted program left.
+/// Moves the files that are ready to their places, the manifest last, and removes what an interrupted program left.
 pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
     sweep(folder)?;
     let ready = folder.join(READY);
@@ -18,29 +18,35 @@ pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
     }
     let mut files = Vec::new();
     at("list", &ready, list(&ready, &mut files))?;
-    let relative = |file: &PathBuf| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default();
-    let (lists, others): (Vec<_>, Vec<_>) =
-        files.iter().map(relative).partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
-    let place = |path: &Path| {
-        let place = folder.join(path);
-        // Someone may have tidied up between an interrupted publication and this one.
-        place.parent().map_or(Ok(()), |parent| at("make the folder", parent, std::fs::create_dir_all(parent)))?;
-        at("write", &place, std::fs::rename(ready.join(path), &place))
-    };
+    let paths = files.iter().map(|file| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default());
+    let (lists, others): (Vec<_>, Vec<_>) = paths.partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
     let (before, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|path| path == Path::new(BEFORE));
-    others.iter().try_for_each(|path| place(path))?;
+    others.iter().try_for_each(|path| place(folder, path))?;
     for list in lists {
-        remove_stale(folder, &list, &std::fs::read_to_string(ready.join(&list)).unwrap_or_default())?;
+        remove_stale(folder, &list, &text(&ready.join(&list)))?;
         if list == Path::new(MANIFEST) {
-            // What it named is gone: from here on it is the manifest that is about to be replaced.
-            before.iter().try_for_each(|path| place(path))?;
+            // The files of the kept manifest are gone. It becomes the manifest that is about to be replaced.
+            before.iter().try_for_each(|path| place(folder, path))?;
         }
-        place(&list)?;
+        place(folder, &list)?;
     }
     at("remove", &ready, std::fs::remove_dir_all(&ready))
 }
 
-/// Removes files that were not published, and the folders at their places that were made for them.
+/// Moves a file that is ready to its place.
+fn place(folder: &Path, path: &Path) -> Result<(), PackageError> {
+    let place = folder.join(path);
+    // The folder may be gone if a user tidied up after an interrupted publication.
+    place.parent().map_or(Ok(()), |parent| at("make the folder", parent, std::fs::create_dir_all(parent)))?;
+    at("write", &place, std::fs::rename(folder.join(READY).join(path), &place))
+}
+
+/// The text of a list. One that cannot be read is empty, because it names nothing.
+fn text(list: &Path) -> String {
+    std::fs::read_to_string(list).unwrap_or_default()
+}
+
+/// Removes files that were not published, and the folders that were made for them at their places.
 pub(super) fn sweep(folder: &Path) -> Result<(), PackageError> {
     let new = folder.join(NEW);
     if !new.exists() {
@@ -48,7 +54,7 @@ pub(super) fn sweep(folder: &Path) -> Result<(), PackageError> {
     }
     let mut folders = Vec::new();
     at("list", &new, list_folders(&new, &mut folders))?;
-    // The innermost come last. One that holds something stays.
+    // The innermost come last. A folder that is not empty stays.
     for inner in folders.iter().rev().filter_map(|inner| inner.strip_prefix(&new).ok()) {
         let _ = std::fs::remove_dir(folder.join(inner));
     }
@@ -67,7 +73,7 @@ fn list_folders(folder: &Path, folders: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes what is [`stale`], and the folders that this empties.
+/// Removes the files that are [`stale`], and the folders that this empties.
 fn remove_stale(folder: &Path, list: &Path, next: &str) -> Result<(), PackageError> {
     for path in stale(folder, list, next) {
         if path.is_file() {
@@ -79,12 +85,10 @@ fn remove_stale(folder: &Path, list: &Path, next: &str) -> Result<(), PackageErr
     Ok(())
 }
 
-/// The files that the list in place names and the next one does not; where names contain hashes, those of the list before the one in place that neither of them
-/// names. Some of them may be gone.
+/// The files to remove: those that the list in place names and the next one does not. If names contain hashes, they are the files of the list before
+/// the one in place that neither of the two names. Some may not exist.
 pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
-    // Unreadable is as good as none: it names nothing.
-    let read = |list: &Path| std::fs::read_to_string(folder.join(list)).unwrap_or_default();
-    let old = read(list);
+    let old = text(&folder.join(list));
     let replaced = if old == next { Vec::new() } else { named_by(&old) };
     if replaced.is_empty() {
         return Vec::new();
@@ -92,7 +96,7 @@ pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
     let mut current: BTreeSet<PathBuf> = named_by(next).into_iter().chain([list.to_owned()]).collect();
     let mut stale = Vec::new();
     if list == Path::new(MANIFEST) {
-        stale.extend(named_by(&read(Path::new(BEFORE))));
+        stale.extend(named_by(&text(&folder.join(BEFORE))));
         if are_hashed(next) {
             current.extend(replaced);
         } else {

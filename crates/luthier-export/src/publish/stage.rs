@@ -1,7 +1,7 @@
-//! Files on their way: written into a folder of their own, after everything that could stop them later has been asked for.
+//! Stages files: writes them into a folder of their own, and checks that nothing can stop their publication later.
 
 use std::collections::BTreeSet;
-use std::fs::{File, Metadata};
+use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -9,13 +9,13 @@ use super::settle::stale;
 use super::{LISTS, NEW, at};
 use crate::PackageError;
 
-/// Makes a folder and those around it, and notes which it made, the outermost first.
+/// Makes a folder and its parents, and notes those that it made, the outermost first.
 pub(super) fn make(folder: &Path, made: &mut Vec<PathBuf>) -> Result<(), PackageError> {
     let missing: Vec<&Path> = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.is_dir()).collect();
     for missing in missing.into_iter().rev() {
         match std::fs::create_dir(missing) {
             Ok(()) => made.push(missing.to_owned()),
-            // Another program was faster.
+            // Another program has just made it.
             Err(error) if error.kind() == ErrorKind::AlreadyExists && missing.is_dir() => {}
             Err(error) => return at("make the folder", missing, Err(in_the_way(missing, error))),
         }
@@ -23,7 +23,7 @@ pub(super) fn make(folder: &Path, made: &mut Vec<PathBuf>) -> Result<(), Package
     Ok(())
 }
 
-/// Error of a folder that cannot be made; where something is in its way, in words that do not depend on the system.
+/// The error of a folder that cannot be made. If something is in its way, its words do not depend on the system.
 fn in_the_way(folder: &Path, error: io::Error) -> io::Error {
     match std::fs::symlink_metadata(folder) {
         Ok(found) if found.is_symlink() => io::Error::other("a broken link is in its place"),
@@ -32,13 +32,13 @@ fn in_the_way(folder: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Whether a place holds a regular file of these bytes.
+/// True where a place holds a regular file with these bytes.
 pub(super) fn holds(place: &Path, bytes: &[u8]) -> bool {
-    let is_alike = |found: Metadata| found.is_file() && found.len() == bytes.len() as u64;
-    std::fs::symlink_metadata(place).is_ok_and(is_alike) && std::fs::read(place).is_ok_and(|found| found == bytes)
+    std::fs::symlink_metadata(place).is_ok_and(|found| found.is_file() && found.len() == bytes.len() as u64)
+        && std::fs::read(place).is_ok_and(|found| found == bytes)
 }
 
-/// Writes all files into a folder of their own, and makes sure that nothing will be in the way of any.
+/// Writes all files into a folder of their own, and checks that nothing is in the way at their places.
 pub(super) fn stage(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     let new = folder.join(NEW);
     at("write to", folder, std::fs::create_dir(&new))?;
@@ -48,7 +48,7 @@ pub(super) fn stage(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), Packag
         if place.is_dir() {
             return at("write", &place, Err(ErrorKind::IsADirectory.into()));
         }
-        // First the one that tells which others were made, should this end here.
+        // The folder in `.luthier-new` comes first: if the program ends here, a sweep knows from it which folders were made at their places.
         [file.parent(), place.parent()].into_iter().flatten().try_for_each(|parent| make(parent, &mut Vec::new()))?;
         parents.extend(place.parent().map(Path::to_owned));
         at("write", &place, std::fs::write(&file, bytes))?;
@@ -60,7 +60,7 @@ pub(super) fn stage(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), Packag
     parents.iter().try_for_each(|parent| at("write to", parent, takes_files(parent, &new)))
 }
 
-/// Whether files can be moved from one folder into another, and out of it: permissions, and one file system.
+/// True where files can be moved from one folder into another and out of it: permissions allow it, and the file system is the same.
 #[cfg(unix)]
 fn takes_files(parent: &Path, from: &Path) -> io::Result<()> {
     use std::os::unix::fs::MetadataExt;
@@ -75,16 +75,16 @@ fn takes_files(parent: &Path, from: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether an open folder, or file of its lock, is the one at this path.
+/// True where an open folder, or the file of its lock, is the one at this path.
 #[cfg(unix)]
 pub(super) fn is_at(handle: &File, folder: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
 
-    let place = |found: Metadata| (found.dev(), found.ino());
-    handle.metadata().map(place).is_ok_and(|open| folder.metadata().map(place).is_ok_and(|there| open == there))
+    let (Ok(open), Ok(there)) = (handle.metadata(), folder.metadata()) else { return false };
+    (open.dev(), open.ino()) == (there.dev(), there.ino())
 }
 
-/// Whether the folder of an open lock is at this path: it cannot be removed while the lock is open.
+/// True where the folder of an open lock is at this path: on these systems it cannot be removed while the lock is open.
 #[cfg(not(unix))]
 pub(super) fn is_at(_: &File, folder: &Path) -> bool {
     folder.is_dir()

@@ -1,7 +1,7 @@
 //! Figures of the course of Weidlich and Wilkie.
 
 use luthier::{Bake, MemoryStore};
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_gpu::Shape;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
@@ -132,7 +132,7 @@ macro_rules! of_class {
     };
 }
 
-/// A material of the course for each class, a to h: name, label, text.
+/// Name, label and text of a material of the course for each class, a to h.
 const CLASSES: [(&str, &str, &str); 8] = [
     of_class!("ceramic-glaze", "glaze"),
     of_class!("red-lacquer", "lacquer"),
@@ -144,7 +144,7 @@ const CLASSES: [(&str, &str, &str); 8] = [
     of_class!("house-paint", "house"),
 ];
 
-/// Exposure of a material: bright rough metals are whiter than the light is meant for.
+/// Exposure of a material. Bright rough metals would be blown out under the usual one.
 pub(super) fn exposure(material: &str) -> f32 {
     match material {
         "silver-paint" => 0.35,
@@ -160,9 +160,10 @@ fn classes(studio: &Studio, made: &mut Made) -> Outcome {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
     let package = Bake::lit().package(&materials, &MemoryStore::default())?;
-    let look = |n: usize, settings: &mut RenderSettings| settings.exposure = exposure(CLASSES[n].0);
-    let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
-    let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
+    let [baked, full] = [Form::Baked, Form::Full].map(|form| {
+        studio.rendered(&package, form, Shape::Sphere, |n, settings| settings.exposure = exposure(CLASSES[n].0))
+    });
+    let (baked, full) = (baked?, full?);
     let dark = even_sky(0.0)?;
     let lit = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, KEY))?;
     let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| settings.lights.clear())?;
@@ -190,12 +191,12 @@ pub(super) fn by_course(name: &str, layers: &str) -> Outcome<Material> {
     layered(name, layers, ShadingModel::WeidlichWilkie)
 }
 
-/// White under a yellow varnish. The absorption is ours.
 /// Materials by the course's model, with numbers in their names.
 pub(super) fn numbered(stem: &str, all: impl IntoIterator<Item = String>) -> Outcome<Vec<Material>> {
     all.into_iter().enumerate().map(|(i, layers)| by_course(&format!("{stem}-{i}"), &layers)).collect()
 }
 
+/// White under a yellow varnish. The course does not state the absorption.
 fn varnished(thickness: f64) -> String {
     format!(
         "[[layer]]

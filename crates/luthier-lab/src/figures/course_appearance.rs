@@ -210,9 +210,8 @@ const GRAZING: [f32; 3] = [0.95, 0.0, -0.3];
 
 /// Numbers of the samples under single lights.
 fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Outcome {
-    let under = |materials: &[Material], from| studio.lit(materials, Form::Full, Shape::Sphere, from);
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
-    for (material, lit) in materials.iter().zip(under(&materials, KEY)?) {
+    for (material, lit) in materials.iter().zip(studio.lit(&materials, Form::Full, Shape::Sphere, KEY)?) {
         made.measure(format!("{}: width of the highlight", material.name), spot(&lit).share.sqrt());
         made.measure(format!("{}: brightest place", material.name), brightest(&lit));
     }
@@ -225,7 +224,8 @@ fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Out
             None => by_course("black", &black(GARNET))?,
         };
         let pair = [whole.clone(), coat];
-        let (key, eye) = (under(&pair, KEY)?, under(&pair, FROM_EYE)?);
+        let [key, eye] = [KEY, FROM_EYE].map(|from| studio.lit(&pair, Form::Full, Shape::Sphere, from));
+        let (key, eye) = (key?, eye?);
         if let ([whole, coat], [seen, mirrored]) = (key.as_slice(), eye.as_slice()) {
             made.measure(
                 format!("{name}: highlight over the base"),
@@ -237,8 +237,8 @@ fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Out
         }
         if name == "garnet" {
             for (what, direction) in [("grazing", GRAZING), ("steep", FROM_EYE)] {
-                let most = under(&pair[1..], direction)?.first().map_or(0.0, brightest);
-                made.measure(format!("{name}: highlight of a {what} light"), most);
+                let lit = studio.lit(&pair[1..], Form::Full, Shape::Sphere, direction)?;
+                made.measure(format!("{name}: highlight of a {what} light"), lit.first().map_or(0.0, brightest));
             }
         }
     }

@@ -31,7 +31,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
             Check::Within("5 degrees: forward, green over orange", 1.0, 1e6),
             Check::Falls(&["5 degrees: green, to the right", "5 degrees: orange, to the right"]),
             Check::Falls(&["20 degrees: green, to the right", "20 degrees: orange, to the right"]),
-            // The same from all sides: the middle of its light is that of the disk.
+            // The base looks the same from all sides, so the middle of its light is the middle of the disk.
             Check::Within("5 degrees: orange, to the right", -0.05, 0.05),
             Check::Within("60 degrees: orange, to the right", -0.05, 0.05),
         ],
@@ -53,7 +53,7 @@ fn cardboard(studio: &Studio, made: &mut Made) -> Outcome {
                 [[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
     let stack = material("cardboard", text)?.stack;
     let coats = [532.0, 600.0].map(|nm| Monochrome::new(&stack, nm, 1)).to_vec();
-    // Rows are the bin that comes out, columns that of the light.
+    // Rows are bins of the light that comes out, columns bins of the light that falls in.
     let surface = Fluorescent::new(coats, &[0.05, 0.0, 0.7, 0.7]).map_err(Failure::input)?;
     let size = studio.size;
     let mut pictures = Vec::new();

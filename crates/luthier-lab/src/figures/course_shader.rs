@@ -343,8 +343,6 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
 
 fn parts(studio: &Studio, made: &mut Made) -> Outcome {
     let base = diffuse("[0.7, 0.55, 0.3]");
-    // The course's `blinnD`.
-    let coat = |thickness_um, absorption| coat(thickness_um, absorption).replace("beckmann", "blinn");
     let all = [
         ("coat", coat(0.5, CLEAR) + &diffuse("0")),
         ("base", base.clone()),
@@ -352,7 +350,8 @@ fn parts(studio: &Studio, made: &mut Made) -> Outcome {
         ("absorbs", coat(0.5, RED) + &base),
         ("and rough", coat(0.5, RED).replace("slope_deg = 1.5", "slope_deg = 8") + &base),
     ];
-    let materials = numbered("part", all.iter().map(|(_, layers)| layers.clone()))?;
+    // The course's `blinnD`.
+    let materials = numbered("part", all.iter().map(|(_, layers)| layers.replace("beckmann", "blinn")))?;
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((label, _), picture) in all.iter().zip(&pictures) {
         made.measure(format!("{label}: mean luminance"), brightness(picture));
@@ -376,14 +375,13 @@ const METAL: &str = "[[layer]]\ntype = \"conductor\"\nior = \"al\"\nslope_deg = 
 fn varnishes(studio: &Studio, made: &mut Made) -> Outcome {
     let white = diffuse("[0.75, 0.72, 0.65]");
     let matt = coat(0.3, CLEAR).replace("slope_deg = 1.5", "slope_deg = 7");
-    let map = |coat: String, key: &str, file: &str| coat + &format!("[layer.maps]\n{key} = \"{file}\"\n");
     let bumps = "[effects.flakes]\nnormal_map = \"bumps.png\"\ntiling = 4\nscale = 1\nfade_start = 1000\n";
     let all = [
         ("a clear", coat(0.5, CLEAR) + &white),
         ("b tinted", coat(0.5, RED) + &white),
-        ("c thickness", map(coat(2.0, RED), "thickness", "thickness.png") + &white),
+        ("c thickness", coat(2.0, RED) + "[layer.maps]\nthickness = \"thickness.png\"\n" + &white),
         ("d below", matt.clone() + METAL + bumps),
-        ("e above", map(matt.clone(), "normal", "bumps.png") + METAL),
+        ("e above", matt.clone() + "[layer.maps]\nnormal = \"bumps.png\"\n" + METAL),
     ];
     let numbered = numbered("varnish", all.iter().map(|(_, layers)| layers.clone()))?;
     let mut materials: Vec<Material> = numbered.into_iter().map(mapped).collect();

@@ -137,14 +137,12 @@ fn stones(studio: &Studio, made: &mut Made) -> Outcome {
             format!("{name}: share of the square that glitters"),
             shares(&surface).last().copied().unwrap_or_default(),
         );
-        // Directions would be drawn about the level surface, which misses what tilted flakes mirror.
-        let settings = |_| Ok(RenderSettings { environment_samples: 0, ..studio.settings(Shape::Sphere)? });
         let plain = SurfaceEntry { name: "plain".to_owned(), glitter: None, ..surface.clone() };
-        let plain = pictures(studio, &materials, &[plain], settings)?;
-        let picture = pictures(studio, &materials, std::slice::from_ref(&surface), settings)?;
-        let moved = pictures(studio, &materials, &[surface], |n| {
+        let plain = pictures(studio, &materials, &[plain], |_| ball(studio))?;
+        let picture = pictures(studio, &materials, std::slice::from_ref(&surface), |_| ball(studio))?;
+        let moved = pictures(studio, &materials, &[surface], |_| {
             let lights = vec![Light::Directional { direction: [0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] }];
-            Ok(RenderSettings { lights, ..settings(n)? })
+            Ok(RenderSettings { lights, ..ball(studio)? })
         })?;
         for ((picture, moved), plain) in picture.iter().zip(&moved).zip(&plain) {
             made.measure(format!("{name}: share at least twice as bright as the median"), glittering(picture));
@@ -160,6 +158,16 @@ fn stones(studio: &Studio, made: &mut Made) -> Outcome {
     Ok(())
 }
 
+/// A surface with other cells, and without switches and glitter.
+fn bare(whole: &SurfaceEntry, name: &str, cells: CellsRecord) -> SurfaceEntry {
+    SurfaceEntry { name: name.to_owned(), cells, switches: Vec::new(), glitter: None, ..whole.clone() }
+}
+
+/// A ball without samples of the environment: their directions would be drawn about the level surface, and miss what tilted flakes mirror.
+fn ball(studio: &Studio) -> Outcome<RenderSettings> {
+    Ok(RenderSettings { environment_samples: 0, ..studio.settings(Shape::Sphere)? })
+}
+
 /// A square of the plane, from above, that fills the picture. Its environment is blurred beforehand, so that flakes have no grain.
 pub(super) fn square(studio: &Studio) -> Outcome<RenderSettings> {
     let mut settings = studio.settings(Shape::Plane)?;
@@ -171,20 +179,17 @@ pub(super) fn square(studio: &Studio) -> Outcome<RenderSettings> {
 /// Places of the unit square in which shares are counted, along each side.
 const COUNTED: u32 = 512;
 
-/// Share of each map of a surface: the cells that cover it, those of its switches, and the particles.
+/// Shares of a surface that its maps cover: its cells, the cells of its switches, its particles.
 fn shares(surface: &SurfaceEntry) -> Vec<f64> {
     let mut numbered = surface.clone();
-    let only = |cells: &mut CellsRecord, number: usize| cells.materials = vec![number as u32];
-    only(&mut numbered.cells, 0);
-    let switches = numbered.switches.len();
-    for (number, switch) in numbered.switches.iter_mut().enumerate() {
-        only(&mut switch.cells, number + 1);
-    }
-    if let Some(glitter) = &mut numbered.glitter {
-        only(&mut glitter.cells, switches + 1);
+    let SurfaceEntry { cells, switches, glitter, .. } = &mut numbered;
+    let inside = switches.iter_mut().map(|switch| &mut switch.cells);
+    let all = std::iter::once(cells).chain(inside).chain(glitter.as_mut().map(|glitter| &mut glitter.cells));
+    for (number, cells) in (0..).zip(all) {
+        cells.materials = vec![number];
     }
     let map = surface_map(&numbered);
-    let mut counts = vec![0.0; switches + 2];
+    let mut counts = vec![0.0; numbered.switches.len() + 2];
     for i in 0..COUNTED * COUNTED {
         let uv = (DVec2::new(f64::from(i % COUNTED), f64::from(i / COUNTED)) + 0.5) / f64::from(COUNTED);
         counts[map.pick(uv).stack] += f64::from(COUNTED * COUNTED).recip();
@@ -199,48 +204,47 @@ const FILLED: f64 = 0.3;
 
 fn maps(studio: &Studio, made: &mut Made) -> Outcome {
     let (mut materials, entry) = stone("lepidolite")?;
-    let mut plain = |name: &str, albedo: f64| -> Outcome<[u32; 1]> {
+    for (name, albedo) in [("transparent", 0.02), ("grey", 0.5)] {
         let layers = format!(
             "[[layer]]\ntype = \"dielectric\"\nior = 1.56\nslope_deg = 4\n[[layer]]\ntype = \"diffuse\"\nalbedo = {albedo}\n"
         );
         materials.push(by_course(name, &layers)?);
-        Ok([materials.len() as u32 - 1])
-    };
-    let (transparent, grey) = (plain("transparent", 0.02)?, plain("grey", 0.5)?);
+    }
+    let last = materials.len() as u32 - 1;
+    let (transparent, grey) = ([last - 1], [last]);
     let glitter = entry.glitter.clone();
     let glitter = glitter.ok_or_else(|| Failure::Input(anyhow::anyhow!("the lepidolite does not glitter")))?;
-    let particles = |materials: &[u32], tilt: f64| {
-        let cells = CellsRecord { frequency: LARGE, materials: materials.to_vec(), ..glitter.cells.clone() };
-        Some(ParticlesRecord { cells, filled: FILLED, tilt })
-    };
-    let surface = |name: &str, grains: &[u32], glitter: Option<ParticlesRecord>| SurfaceEntry {
-        name: name.to_owned(),
-        cells: CellsRecord { frequency: SMALL, materials: grains.to_vec(), ..entry.cells.clone() },
-        switches: Vec::new(),
-        glitter,
-        ..entry.clone()
-    };
-    let (grains, flakes) = (&entry.cells.materials, &glitter.cells.materials);
+    let (grains, flakes) = (&entry.cells.materials[..], &glitter.cells.materials[..]);
     let surfaces = [
-        surface("surface", grains, None),
-        surface("glitter", &transparent, particles(flakes, 0.0)),
-        surface("surface-glitter", grains, particles(flakes, 0.0)),
-        surface("bump", &grey, particles(&grey, glitter.tilt)),
-        surface("combined", grains, particles(flakes, glitter.tilt)),
+        ("surface", grains, None),
+        ("glitter", &transparent[..], Some((flakes, 0.0))),
+        ("surface-glitter", grains, Some((flakes, 0.0))),
+        ("bump", &grey[..], Some((&grey[..], glitter.tilt))),
+        ("combined", grains, Some((flakes, glitter.tilt))),
     ];
+    let surfaces = surfaces.map(|(name, grains, particles)| {
+        let cells = CellsRecord { frequency: SMALL, materials: grains.to_vec(), ..entry.cells.clone() };
+        let glitter = particles.map(|(materials, tilt)| {
+            let cells = CellsRecord { frequency: LARGE, materials: materials.to_vec(), ..glitter.cells.clone() };
+            ParticlesRecord { cells, filled: FILLED, tilt }
+        });
+        SurfaceEntry { glitter, ..bare(&entry, name, cells) }
+    });
     let labels = ["1 surface", "2 glitter", "3 both", "4 bumps", "5 combined"];
     let all = pictures(studio, &materials, &surfaces, |_| square(studio))?;
-    let bare = [surface("transparent", &transparent, None), surface("level", &grey, None)];
-    let bare = pictures(studio, &materials, &bare, |_| square(studio))?;
-    let filled = differ(&all[1], &bare[0]);
-    let among = |of: &[bool], places: bool| {
-        share(of.iter().zip(&filled).filter(|(_, filled)| **filled == places).map(|(hit, _)| *hit))
-    };
+    let level = [("transparent", transparent), ("level", grey)].map(|(name, materials)| {
+        let cells = CellsRecord { frequency: SMALL, materials: materials.to_vec(), ..entry.cells.clone() };
+        bare(&entry, name, cells)
+    });
+    let level = pictures(studio, &materials, &level, |_| square(studio))?;
+    let filled = differ(&all[1], &level[0]);
     made.measure("2: share that is not transparent", share(filled.iter().copied()));
-    for (what, of) in [("3", differ(&all[2], &all[0])), ("4", differ(&all[3], &bare[1]))] {
+    for (what, of) in [("3", differ(&all[2], &all[0])), ("4", differ(&all[3], &level[1]))] {
         let is = if what == "3" { "differ from 1" } else { "are tilted" };
-        made.measure(format!("{what}: share of the transparent places that {is}"), among(&of, false));
-        made.measure(format!("{what}: share of the other places that {is}"), among(&of, true));
+        for (which, is_filled) in [("transparent", false), ("other", true)] {
+            let hits = of.iter().zip(&filled).filter(|(_, filled)| **filled == is_filled).map(|(hit, _)| *hit);
+            made.measure(format!("{what}: share of the {which} places that {is}"), share(hits));
+        }
     }
     made.measure("3: brightest place", brightest(&all[2]));
     made.measure("5: brightest place", brightest(&all[4]));
@@ -252,7 +256,7 @@ fn maps(studio: &Studio, made: &mut Made) -> Outcome {
     Ok(())
 }
 
-/// Of each pixel whether two pictures differ there, by more than rounding.
+/// True for each pixel in which two pictures differ by more than rounding.
 fn differ(a: &Image, b: &Image) -> Vec<bool> {
     a.texels().zip(b.texels()).map(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3)).collect()
 }
@@ -262,21 +266,14 @@ fn lepidolite(studio: &Studio, made: &mut Made) -> Outcome {
     let [marble, bright] = &whole.switches[..] else {
         return Err(Failure::Input(anyhow::anyhow!("the lepidolite has other switches than marble and bright tiles")));
     };
-    let map = |name: &str, cells: &CellsRecord| SurfaceEntry {
-        name: name.to_owned(),
-        cells: cells.clone(),
-        switches: Vec::new(),
-        glitter: None,
-        ..whole.clone()
-    };
-    let combined = SurfaceEntry { switches: whole.switches.clone(), ..map("combined", &whole.cells) };
-    let tiles = SurfaceEntry { switches: vec![bright.clone()], ..map("tiles", &whole.cells) };
+    let combined = SurfaceEntry { name: "combined".to_owned(), glitter: None, ..whole.clone() };
+    let tiles = SurfaceEntry { switches: vec![bright.clone()], ..bare(&whole, "tiles", whole.cells.clone()) };
     let surfaces = [
         whole.clone(),
-        map("dark", &whole.cells),
-        map("bright", &bright.cells),
+        bare(&whole, "dark", whole.cells.clone()),
+        bare(&whole, "bright", bright.cells.clone()),
         tiles,
-        map("marble", &marble.cells),
+        bare(&whole, "marble", marble.cells.clone()),
         combined,
     ];
     let labels = ["a close-up", "b dark tiles", "bright tiles", "larger tiles", "marble", "combined"];

@@ -205,7 +205,7 @@ fn metal_width(picture: &Image) -> f64 {
     spot_of(picture, |[red, _, blue]| red - KEY_RED_OVER_BLUE * blue).share.sqrt()
 }
 
-/// Slope parameters at which tables are compared, and which of them is that of figure 4.
+/// Slope parameters at which tables are compared, and the number of the one in figure 4.
 const SHARP: [f64; 6] = [0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125];
 const SHOWN: usize = 2;
 
@@ -214,13 +214,13 @@ const ZOOM: [f64; 2] = [3.3, 7.0];
 
 /// Metal alone, one for each slope parameter.
 fn sharp() -> Outcome<Vec<Material>> {
-    let one = |(i, alpha): (usize, f64)| {
+    let metals = SHARP.into_iter().enumerate().map(|(i, alpha)| {
         let mut metal = coated("sharp", [alpha, alpha])?;
         metal.stack.layers.remove(0);
         metal.layers.remove(0);
         Ok(shaded(&metal, &format!("sharp-{i}"), ShadingModel::Elek))
-    };
-    SHARP.into_iter().enumerate().map(one).collect()
+    });
+    metals.collect()
 }
 
 fn mapping(studio: &Studio, made: &mut Made) -> Outcome {
@@ -266,9 +266,8 @@ fn mapping(studio: &Studio, made: &mut Made) -> Outcome {
     }
     let mipped = mipped(&full[SHOWN], SHARP[SHOWN]);
     made.measure("MIP level 3, m = 0.01: largest error over the peak", error(&mipped, &full[SHOWN]));
-    let size = |image: &Image| spot(image).share.sqrt();
     for (label, picture) in [("u^8, even m", &tables[1].2[SHOWN]), ("MIP level 3", &mipped)] {
-        let ratio = size(picture) / size(&full[SHOWN]).max(1e-9);
+        let ratio = spot(picture).share.sqrt() / spot(&full[SHOWN]).share.sqrt().max(1e-9);
         made.measure(format!("{label}, m = 0.01: size of the highlight over that of the full evaluation"), ratio);
         made.measure(format!("{label}, m = 0.01: size of the highlight is off by"), (ratio - 1.0).abs());
     }
@@ -289,8 +288,7 @@ fn mapping(studio: &Studio, made: &mut Made) -> Outcome {
 
 /// Largest difference of the green channel, over its peak.
 fn error(image: &Image, full: &Image) -> f64 {
-    let green = |image: &Image| image.texels().map(|texel| texel[1]).collect::<Vec<f32>>();
-    let (image, full) = (green(image), green(full));
+    let [image, full] = [image, full].map(|image| image.texels().map(|texel| texel[1]).collect::<Vec<f32>>());
     let peak = full.iter().copied().fold(0.0, f32::max);
     f64::from(image.iter().zip(&full).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) / peak)
 }
@@ -326,10 +324,6 @@ fn mipped(full: &Image, alpha: f64) -> Image {
     const SIDE: u32 = 512;
     const BLOCK: u32 = 8;
     const LARGEST_HALF: f64 = 65504.0;
-    let beckmann = |theta: f64, m: f64| {
-        let (tan, cos) = (libm::tan(theta), libm::cos(theta));
-        libm::exp(-tan * tan / (m * m)) / (PI * m * m * cos * cos * cos * cos)
-    };
     let mut table = Image::zeros(SIDE / BLOCK, SIDE / BLOCK, 1);
     for j in 0..SIDE {
         for i in 0..SIDE {
@@ -350,6 +344,11 @@ fn mipped(full: &Image, alpha: f64) -> Image {
     image
 }
 
+fn beckmann(theta: f64, m: f64) -> f64 {
+    let (tan, cos) = (libm::tan(theta), libm::cos(theta));
+    libm::exp(-tan * tan / (m * m)) / (PI * m * m * cos * cos * cos * cos)
+}
+
 fn tables(studio: &Studio, made: &mut Made) -> Outcome {
     let ours = shaded(&coated("coated", [0.08, 0.3])?, "coated", ShadingModel::Elek);
     let mut his = ours.clone();
@@ -359,9 +358,8 @@ fn tables(studio: &Studio, made: &mut Made) -> Outcome {
     let (his, ours) = (his?, ours?);
     let his_difference = made.compare("tables of the paper against full", &his, &full)?;
     let our_difference = made.compare("default tables against full", &ours, &full)?;
-    let shown = |label: &str, image: Image| (label.to_owned(), super::figure::TONE.image(image));
-    let pictures =
-        vec![shown("full", full), shown("its tables", his), his_difference, shown("our tables", ours), our_difference];
-    made.shown("elek-5", pictures, 5);
+    let shown = [("full", full), ("its tables", his), ("our tables", ours)];
+    let [full, his, ours] = shown.map(|(label, image)| (label.to_owned(), super::figure::TONE.image(image)));
+    made.shown("elek-5", vec![full, his, his_difference, ours, our_difference], 5);
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use luthier::{Bake, MemoryStore, lit};
 use luthier_export::Package;
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
 use luthier_material::{Material, PictureRef, VariationSource};
@@ -105,30 +105,30 @@ const MANY_RAYS: u32 = 8;
 
 fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
-    let variant = |name: &str, fade_start: f64, scale: f64| -> Outcome<Material> {
-        let mut paint = shaded(&paint, name, ShadingModel::Elek);
-        let missing = || Failure::Input(anyhow::anyhow!("chromium-car-paint.toml has no flakes"));
-        let flakes = paint.effects.flakes.as_mut().ok_or_else(missing)?;
-        (flakes.fade_start, flakes.scale) = (fade_start, scale);
-        Ok(paint)
-    };
     let near = f64::from(DISTANCES[0]);
-    let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
+    let mut materials = Vec::new();
+    for (name, fade_start, scale) in [("fading", near, 1.0), ("not-fading", 1e6, 1.0), ("smooth", near, 0.0)] {
+        let mut paint = shaded(&paint, name, ShadingModel::Elek);
+        let Some(flakes) = &mut paint.effects.flakes else {
+            return Err(Failure::Input(anyhow::anyhow!("chromium-car-paint.toml has no flakes")));
+        };
+        (flakes.fade_start, flakes.scale) = (fade_start, scale);
+        materials.push(paint);
+    }
     let package = Bake::lit().package(&lit(&materials), &MemoryStore::default())?;
     let mut rows = [Vec::new(), Vec::new()];
     let mut noises = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
-        // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
+        // A pixel always has the same width at the eye. The picture of a far ball has fewer pixels, and is enlarged.
         let size = (studio.size >> step).max(8);
-        let look = |samples: u32| {
-            move |_: usize, settings: &mut RenderSettings| {
+        let [pictures, means] = [1, MANY_RAYS].map(|samples| {
+            studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| {
                 settings.camera.eye = [0.0, 0.0, distance];
                 settings.camera.half_extent = 1.25;
                 (settings.size, settings.samples, settings.environment_samples) = (size, samples, 0);
-            }
-        };
-        let pictures = studio.rendered(&package, Form::Baked, Shape::Sphere, look(1))?;
-        let means = studio.rendered(&package, Form::Baked, Shape::Sphere, look(MANY_RAYS))?;
+            })
+        });
+        let (pictures, means) = (pictures?, means?);
         if let ([scaled, plain, _], [_, mean, _]) = (pictures.as_slice(), means.as_slice()) {
             for (what, picture) in [("scaled", scaled), ("plain", plain)] {
                 made.apart(&format!("{what} against rays, distance {distance}"), picture, mean)?;
@@ -137,7 +137,7 @@ fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
         let (Some(smooth), Some(mean_smooth)) = (pictures.last().cloned(), means.last()) else { continue };
         let rows = rows.iter_mut().zip(&mut noises).zip(["scaled", "plain"]);
         for (((row, noises), what), (image, mean)) in rows.zip(pictures.into_iter().zip(&means)) {
-            // One ray without the noise of flakes: the smooth paint with what flakes change of it on the mean.
+            // One ray without the noise of flakes: the smooth paint, plus the mean change that flakes make.
             let mut expected = smooth.clone();
             for (value, (mean, smooth)) in expected.data.iter_mut().zip(mean.data.iter().zip(&mean_smooth.data)) {
                 *value += mean - smooth;
@@ -167,8 +167,8 @@ pub(super) fn grown(name: &str, extent: f64, transition: f64) -> Outcome<Materia
     let absorption = "absorption_per_um = [0.9, 0.25, 0.5]\n";
     let crusted = PATINA.replace(absorption, &format!("{absorption}maps = {{ thickness = \"crust.png\" }}\n"));
     let mut stage = shaded(&material("copper-patina.toml", &crusted)?, name, ShadingModel::Elek);
-    let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
-    let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
+    let patina = stage.effects.patina.as_mut();
+    let patina = patina.ok_or_else(|| Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina")))?;
     (patina.extent, patina.transition) = (extent, transition);
     patina.map = VariationSource::Image(PictureRef::plain("patina.png"));
     Ok(mapped(stage))
@@ -205,7 +205,7 @@ pub(super) fn from_above(studio: &Studio, package: &Package) -> Outcome<Vec<Imag
     studio.rendered(package, Form::Baked, Shape::Plane, |_, settings| *settings = square.clone())
 }
 
-/// How dark the map of the patina is in each pixel of the middle half of a level square, row by row.
+/// Darkness of the patina's map in each pixel of the middle half of a level square, row by row.
 fn darkness(package: &Package, square: Option<&Image>) -> Vec<f64> {
     let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| map.picture.image());
     let (Some(map), Some(square)) = (map, square) else { return Vec::new() };

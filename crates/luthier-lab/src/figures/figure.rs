@@ -9,14 +9,14 @@ use super::claim::Claim;
 use super::numbers::pixels;
 use super::studio::Studio;
 
-/// A figure of a paper, and how to make it anew.
+/// A figure of a paper, and the function that makes it anew.
 #[derive(Clone, Copy)]
 pub(crate) struct Figure {
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
     /// Paper and number there.
     pub(crate) source: &'static str,
-    /// Text below the figure: what the paper shows, what differs here, what to see.
+    /// Text below the figure: its content in the paper, differences here, and what to see.
     pub(crate) caption: &'static str,
     /// Side of each single picture in pixels, where the command line has none.
     pub(crate) size: u32,
@@ -43,7 +43,7 @@ pub(crate) struct Measured {
     pub(crate) value: f64,
 }
 
-/// Pictures and what stands below each.
+/// Pictures with the labels below them.
 pub(crate) type Labelled = Vec<(String, Image)>;
 
 /// Side of a picture of two or three on a sheet.
@@ -91,7 +91,7 @@ impl Made {
         self.measured.push(Measured { what: what.into(), value });
     }
 
-    /// Notes how far two linear pictures are apart for the eye.
+    /// Notes the visible difference of two linear pictures.
     pub(crate) fn apart(&mut self, what: &str, a: &Image, b: &Image) -> Outcome {
         self.measure(format!("{what}: mean FLIP"), compared(a, b)?.flip_mean);
         Ok(())
@@ -105,8 +105,7 @@ impl Made {
         Ok(())
     }
 
-    /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a
-    /// display shows, with its label.
+    /// Compares two linear pictures, and notes RMSE, largest difference and FLIP. Returns their brightened difference on a display, with its label.
     pub(crate) fn compare(&mut self, what: &str, a: &Image, b: &Image) -> Outcome<(String, Image)> {
         self.errors(what, a, b)?;
         let (shown, gain) = brightened_difference(a, b, |v| TONE.value(v));

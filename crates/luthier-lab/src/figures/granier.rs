@@ -8,6 +8,7 @@ use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
+use luthier_optics::stack::Stack;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
 use luthier_terminal::Outcome;
 
@@ -181,11 +182,7 @@ fn on_a_mesh(studio: &Studio, made: &mut Made) -> Outcome {
         materials.push(Coating { name, thickness_nm, ..on_mesh }.with_tables(tables)?);
     }
     let package = Bake::lit().package(&materials, &MemoryStore::default())?;
-    let look = |settings: &mut RenderSettings| {
-        settings.environment_samples = 8;
-        settings.exposure = 0.8;
-    };
-    let pictures = studio.staged(&package, |_, settings| look(settings))?;
+    let pictures = studio.staged(&package, |_, settings| mesh_look(settings))?;
     let mut shown = Vec::new();
     for ([min, max], picture) in MESH_RANGES_NM.into_iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
@@ -201,10 +198,15 @@ fn on_a_mesh(studio: &Studio, made: &mut Made) -> Outcome {
     made.sheet("granier-7", shown, 2);
     // One as large as a page is wide.
     let mut settings = studio.stage()?;
-    look(&mut settings);
+    mesh_look(&mut settings);
     settings.size = studio.size * 4;
     made.picture("granier-7-large", studio.gpu()?.scene(&package, Form::Baked)?.render(&[1], &settings)?);
     Ok(())
+}
+
+fn mesh_look(settings: &mut RenderSettings) {
+    settings.environment_samples = 8;
+    settings.exposure = 0.8;
 }
 
 /// The wavelengths of the paper.
@@ -231,7 +233,7 @@ struct Coating {
     thickness_nm: [f64; 2],
     /// Phong's exponents of the boundaries.
     exponents: [f64; 2],
-    /// Weight of the diffuse part; that of the specular one is 1.
+    /// Weight of the diffuse part. The weight of the specular part is 1.
     diffuse: f64,
     /// Lean of the inner boundary.
     tilt_deg: f64,
@@ -281,17 +283,16 @@ fn materials(coatings: &[Coating]) -> Outcome<Vec<Material>> {
 }
 
 fn diffuse(studio: &Studio, made: &mut Made) -> Outcome {
-    let coating = |name, thickness_nm, diffuse| Coating { name, thickness_nm, diffuse, frequency: 6, ..COATING };
     let ranges = [("old metal", [52.0, 84.0]), ("coloured", [200.0, 700.0]), ("clay", [54.0, 68.0])];
     let names = [["metal", "metal-0"], ["coloured", "coloured-0"], ["clay", "clay-0"]];
-    let pairs = ranges
-        .iter()
-        .zip(names)
-        .flat_map(|((_, range), [lit, unlit])| [coating(lit, *range, 0.6), coating(unlit, *range, 0.0)]);
+    let pairs = ranges.iter().zip(names).flat_map(|((_, thickness_nm), [lit, unlit])| {
+        let film = Coating { thickness_nm: *thickness_nm, frequency: 6, ..COATING };
+        [Coating { name: lit, diffuse: 0.6, ..film }, Coating { name: unlit, diffuse: 0.0, ..film }]
+    });
     let pictures = studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
     for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
-        // The specular part is the same in both: what is left is the diffuse one.
+        // The specular part is equal in both, so the difference is the diffuse part.
         if let [lit, unlit] = pair {
             let image = less(lit, unlit);
             made.measure(format!("{name}, {min} to {max} nm: spread of the channels"), spread(&image));
@@ -305,12 +306,12 @@ fn diffuse(studio: &Studio, made: &mut Made) -> Outcome {
     let mut curves = Vec::new();
     let channels = [("R", PlotColor::Red), ("G", PlotColor::Green), ("B", PlotColor::Blue)];
     for ((channel, color), (nm, ior)) in channels.into_iter().zip(WAVELENGTHS_NM.iter().zip(COMBINED_IOR)) {
-        let point = |i: u32| {
+        let points = (0..=350_u32).map(|i| {
             let d = f64::from(i) * 2.0;
             [d, film(ior, d / nm, 0.0).diffuse()]
-        };
+        });
         let name = format!("{channel}: {nm} nm, index {ior}");
-        curves.push(Curve { name, color, points: (0..=350).map(point).collect() });
+        curves.push(Curve { name, color, points: points.collect() });
     }
     made.plot(
         "granier-3-thickness",
@@ -364,20 +365,14 @@ fn deviation(studio: &Studio, made: &mut Made) -> Outcome {
 }
 
 fn correlated(studio: &Studio, made: &mut Made) -> Outcome {
-    let coating = |name, extent_um, thickness_nm| Coating {
-        name,
-        ior: [1.4, 1.45, 1.6],
-        thickness_nm,
-        exponents: [90.0; 2],
-        extent_um,
-        ..COATING
-    };
+    let film = Coating { ior: [1.4, 1.45, 1.6], exponents: [90.0; 2], ..COATING };
     let coatings = [
-        coating("flat", FLAT_UM, [100.0, 400.0]),
-        coating("hilly", HILLY_UM, [100.0, 400.0]),
-        coating("flat-oil", FLAT_UM, [200.0, 900.0]),
-        coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
+        ("flat", FLAT_UM, [100.0, 400.0]),
+        ("hilly", HILLY_UM, [100.0, 400.0]),
+        ("flat-oil", FLAT_UM, [200.0, 900.0]),
+        ("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
     ];
+    let coatings = coatings.map(|(name, extent_um, thickness_nm)| Coating { name, extent_um, thickness_nm, ..film });
     let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, look)?;
     let labels = ["flat 100-400", "bump 100-400", "flat 200-900", "bump 200-900"];
     for (label, picture) in labels.iter().zip(&pictures) {
@@ -392,7 +387,7 @@ fn correlated(studio: &Studio, made: &mut Made) -> Outcome {
 /// Thickness at which the beams of a film of index 1.6 are in phase at 80 degrees and 525 nm: 525 / (2 1.6 0.788).
 const IN_PHASE_NM: f64 = 208.0;
 
-/// Index of the film of figure 6, and for want of others of figure 3.
+/// Index of the film of figure 6, used for figure 3, too, which states none.
 const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
 
 fn combined(studio: &Studio, made: &mut Made) -> Outcome {
@@ -431,35 +426,9 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
 
     let green = Coating { name: "green", ior: [1.6; 3], thickness_nm: [100.0; 2], frequency: 1, ..COATING };
     let stack = green.material()?.stack;
-    let exact = |thickness_nm: f64, cos_theta: f64| {
-        let mut here = Monochrome::new(&stack, WAVELENGTHS_NM[1], 1);
-        here.layers
-            .iter_mut()
-            .flat_map(|layer| &mut layer.films)
-            .for_each(|film| film.waves = thickness_nm / WAVELENGTHS_NM[1]);
-        here.layers.first().map_or(0.0, |layer| layer.reflectance(cos_theta))
-    };
-    let curves = |point: &dyn Fn(u32) -> (f64, f64, f64), last: u32| {
-        let curve = |name: &str, color, value: &dyn Fn(f64, f64) -> f64| {
-            let points = (0..=last).map(|i| {
-                let (x, thickness, theta) = point(i);
-                [x, value(thickness, theta)]
-            });
-            Curve { name: name.to_owned(), color, points: points.collect() }
-        };
-        vec![
-            curve("two beams (eq. 5), lobes of height one", PlotColor::Ink, &|thickness_nm: f64, theta: f64| {
-                let (sin, cos) = libm::sincos(theta);
-                film(1.6, thickness_nm / WAVELENGTHS_NM[1], 130.0)
-                    .specular(DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos))
-            }),
-            curve("exact, film of index 1.6 on an object of index 2", PlotColor::Red, &|d, theta| {
-                exact(d, libm::cos(theta))
-            }),
-        ]
-    };
-    let over_thickness = curves(&|i| (f64::from(i) * 2.0, f64::from(i) * 2.0, 0.0), 350);
-    let over_angle = curves(&|i| (f64::from(i) * 0.5, IN_PHASE_NM, (f64::from(i) * 0.5).to_radians()), 178);
+    let over_thickness = curves(&stack, (0..=350_u32).map(|i| (f64::from(i) * 2.0, f64::from(i) * 2.0, 0.0)));
+    let over_angle = (0..=178_u32).map(|i| (f64::from(i) * 0.5, IN_PHASE_NM, (f64::from(i) * 0.5).to_radians()));
+    let over_angle = curves(&stack, over_angle);
     for (what, curves) in [("at the normal, over thickness", &over_thickness), ("at 208 nm, over angle", &over_angle)] {
         for curve in curves {
             let largest = curve.points.iter().map(|p| p[1]).fold(0.0, f64::max);
@@ -473,7 +442,7 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
             title: "Reflectance at the normal against the thickness of the film".to_owned(),
             x: PlotAxis::new("thickness of the film, nm", [0.0, 700.0], 100.0),
             y: y.clone(),
-            curves: over_thickness,
+            curves: over_thickness.into(),
         },
     );
     made.plot(
@@ -482,10 +451,30 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
             title: "Reflectance in the mirror direction against the angle, film of 208 nm".to_owned(),
             x: PlotAxis::new("angle to the normal, degrees", [0.0, 90.0], 15.0),
             y: y.clone(),
-            curves: over_angle,
+            curves: over_angle.into(),
         },
     );
     Ok(())
+}
+
+/// Reflectances in the mirror direction by the model and by Airy's formula. Each point has a place on the axis, a thickness in nm and an angle.
+fn curves(stack: &Stack, points: impl Iterator<Item = (f64, f64, f64)>) -> [Curve; 2] {
+    let (mut beams, mut exact) = (Vec::new(), Vec::new());
+    for (x, thickness_nm, theta) in points {
+        let waves = thickness_nm / WAVELENGTHS_NM[1];
+        let (sin, cos) = libm::sincos(theta);
+        let (wi, wo) = (DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos));
+        beams.push([x, film(1.6, waves, 130.0).specular(wi, wo)]);
+        let mut here = Monochrome::new(stack, WAVELENGTHS_NM[1], 1);
+        here.layers.iter_mut().flat_map(|layer| &mut layer.films).for_each(|film| film.waves = waves);
+        exact.push([x, here.layers.first().map_or(0.0, |layer| layer.reflectance(libm::cos(theta)))]);
+    }
+    let (model, airy) = ("two beams (eq. 5), lobes of height one", "exact, film of index 1.6 on an object of index 2");
+    [(model, PlotColor::Ink, beams), (airy, PlotColor::Red, exact)].map(|(name, color, points)| Curve {
+        name: name.to_owned(),
+        color,
+        points,
+    })
 }
 
 /// A film in air, `waves` wavelengths of vacuum thick.
@@ -495,15 +484,15 @@ fn film(ior: f64, waves: f64, exponent: f64) -> Film {
 
 /// Largest channel less the smallest, as a display shows them, mean over the picture.
 fn spread(image: &Image) -> f64 {
-    let one = |texel: &[f32]| {
+    let spreads = image.texels().map(|texel| {
         let (low, high) =
             texel.iter().map(|v| TONE.value(*v)).fold((f32::INFINITY, 0.0_f32), |(a, b), v| (a.min(v), b.max(v)));
         f64::from(high - low)
-    };
-    image.texels().map(one).sum::<f64>() / image.texel_count() as f64
+    });
+    spreads.sum::<f64>() / image.texel_count() as f64
 }
 
-/// The light of a picture that another has not.
+/// The light that a picture has in excess of another.
 fn less(picture: &Image, other: &Image) -> Image {
     let mut rest = picture.clone();
     rest.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = (*a - b).max(0.0));

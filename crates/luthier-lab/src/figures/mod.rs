@@ -64,8 +64,9 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
     if let Some(unknown) = options.names.iter().find(|name| !names.contains(&name.as_str())) {
         return Err(Failure::unknown("figure", unknown, &names));
     }
-    let is_asked = |figure: &&Figure| options.names.is_empty() || options.names.iter().any(|name| name == figure.name);
-    let asked: Vec<&Figure> = all.iter().filter(is_asked).collect();
+    let is_all = options.names.is_empty();
+    let asked: Vec<&Figure> =
+        all.iter().filter(|f| is_all || options.names.iter().any(|name| name == f.name)).collect();
 
     let folder = &options.output;
     std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
@@ -96,7 +97,7 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
     let (count, written) = (new.len(), new.iter().map(|done| done.files.len()).sum::<usize>());
     // Figures that an earlier run made, and this one did not, stay on the page.
     let mut made = new;
-    for figure in all.iter().filter(|figure| !is_asked(figure)) {
+    for figure in all.iter().filter(|figure| !asked.iter().any(|asked| asked.name == figure.name)) {
         made.extend(old.as_ref().map(|old| page::kept(figure, old)).transpose()?.flatten());
     }
     made.sort_by_key(|done| all.iter().position(|figure| figure.name == done.figure.name));

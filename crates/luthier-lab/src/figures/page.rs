@@ -17,7 +17,7 @@ const SCHEMA: u64 = 2;
 
 /// The manifest.
 pub(crate) fn json(adapter: Option<&str>, made: &[Done]) -> Value {
-    let entry = |Done { figure, size, command, files, measured, verdict }: &Done| {
+    let figures = made.iter().map(|Done { figure, size, command, files, measured, verdict }| {
         let measured: Vec<Value> = measured.iter().map(|m| json!({"what": m.what, "value": m.value})).collect();
         json!({
             "name": figure.name,
@@ -32,16 +32,16 @@ pub(crate) fn json(adapter: Option<&str>, made: &[Done]) -> Value {
             "measured": measured,
             "command": command,
         })
-    };
+    });
     json!({
         "schema": SCHEMA,
         "generator": GENERATOR,
         "adapter": adapter,
-        "figures": made.iter().map(entry).collect::<Vec<Value>>(),
+        "figures": figures.collect::<Vec<Value>>(),
     })
 }
 
-/// The manifest that an earlier run left; `None` where there is none of this version.
+/// The manifest of an earlier run; `None` if there is none of this version.
 pub(crate) fn read(path: &Path) -> Outcome<Option<Value>> {
     let text = match std::fs::read_to_string(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -60,9 +60,9 @@ pub(crate) fn adapter(old: &Value) -> Option<String> {
 pub(crate) fn kept<'a>(figure: &'a Figure, old: &Value) -> Outcome<Option<Done<'a>>> {
     let entries = old["figures"].as_array().into_iter().flatten();
     let Some(entry) = entries.into_iter().find(|entry| entry["name"] == figure.name) else { return Ok(None) };
-    let texts = |key: &str| entry[key].as_array().into_iter().flatten();
-    let files = texts("files").filter_map(Value::as_str).map(str::to_owned).collect();
-    let measured = texts("measured").filter_map(|measured| {
+    let [files, measured] = ["files", "measured"].map(|key| entry[key].as_array().into_iter().flatten());
+    let files = files.filter_map(Value::as_str).map(str::to_owned).collect();
+    let measured = measured.filter_map(|measured| {
         Some(Measured { what: measured["what"].as_str()?.to_owned(), value: measured["value"].as_f64()? })
     });
     let size = entry["size"].as_u64().unwrap_or(0) as u32;

@@ -21,7 +21,7 @@ use crate::cli::FiguresOptions;
 /// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
 const ENVIRONMENT_SAMPLES: u32 = 32;
 
-/// A key from the upper left and a dimmer one from behind on the right: of no paper.
+/// A key from the upper left, and a dimmer light from behind on the right. No paper states its lights.
 const LIGHTS: [DistantLight; 2] = [
     DistantLight { direction: [-0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] },
     DistantLight { direction: [0.9, 0.1, -0.2], irradiance: [1.0, 1.1, 1.25] },
@@ -119,12 +119,12 @@ impl Studio {
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
         let scene = self.gpu()?.scene(package, form)?;
-        let render = |n: usize| {
+        let images = (0..package.manifest.materials.len()).map(|n| {
             let mut settings = settings.clone();
             adjust(n, &mut settings);
             Ok(scene.render(&[n as u32], &settings)?)
-        };
-        (0..package.manifest.materials.len()).map(render).collect()
+        });
+        images.collect()
     }
 
     /// Bakes a material and renders it, linear.
@@ -181,7 +181,7 @@ pub(crate) fn layered(name: &str, layers: &str, model: ShadingModel) -> Outcome<
     Ok(shaded(&material(name, &text)?, name, model))
 }
 
-/// A material whose maps are those of the lab, in `maps/`.
+/// A material that finds its maps in the lab's folder `maps/`.
 pub(crate) fn mapped(material: Material) -> Material {
     Material { source: concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").to_owned(), ..material }
 }

@@ -181,11 +181,12 @@ fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
 /// where they fall. Rows of a map run down, and +y of a normal is up.
 fn slopes(made: &mut Made, heights: &Image, normals: &Image) {
     let (width, height) = (heights.width, heights.height);
-    let at = |x: u32, y: u32| f64::from(heights.texel(x % width, y % height)[0]);
     let mut lists: [[Vec<f64>; 2]; 2] = Default::default();
     for (x, y) in pixels(heights) {
         let texel = normals.texel(x * normals.width / width, y * normals.height / height);
-        let fall = [at(x + width - 1, y) - at(x + 1, y), at(x, y + 1) - at(x, y + height - 1)];
+        let around = [(x + width - 1, y), (x + 1, y), (x, y + 1), (x, y + height - 1)];
+        let [left, right, below, above] = around.map(|(x, y)| f64::from(heights.texel(x % width, y % height)[0]));
+        let fall = [left - right, below - above];
         for (axis, list) in lists.iter_mut().enumerate() {
             list[0].push(2.0 * f64::from(texel[axis]) - 1.0);
             list[1].push(fall[axis]);
@@ -221,12 +222,12 @@ fn painted(studio: &Studio, made: &mut Made) -> Outcome {
             three.extend(studio.lit(&[material], Form::Full, Shape::Sphere, KEY)?);
         }
         if let [painted, white, black] = three.as_slice() {
-            let quotient = |i: usize| {
+            let of_texels = (0..white.data.len()).map(|i| {
                 let [painted, white, black] = [painted, white, black].map(|image| f64::from(image.data[i]));
                 // Where there is light on a base; the backdrop is the same in all.
                 (white - black > 0.02).then(|| (painted - black) / (white - black))
-            };
-            quotients.push((0..white.data.len()).map(quotient).collect::<Vec<Option<f64>>>());
+            });
+            quotients.push(of_texels.collect::<Vec<Option<f64>>>());
         }
     }
     if let [bare, lacquered] = quotients.as_slice() {
@@ -244,19 +245,13 @@ fn painted(studio: &Studio, made: &mut Made) -> Outcome {
 }
 
 fn metal(studio: &Studio, made: &mut Made) -> Outcome {
-    let surface = |metallic: u32, maps: &str| {
-        format!(
-            "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.95, 0.6, 0.4]\nmetallic = {metallic}\nroughness = 0.5\n{maps}"
-        )
-    };
-    let all = [
-        ("paint", surface(0, "")),
-        ("map", surface(1, "maps = { metallic = \"thickness.png\" }\n")),
-        ("metal", surface(1, "")),
-    ];
+    let all = [("paint", 0, ""), ("map", 1, "maps = { metallic = \"thickness.png\" }\n"), ("metal", 1, "")];
     let mut shown = Vec::new();
-    for (label, layers) in &all {
-        let material = mapped(layered(&format!("metal-{label}"), layers, ShadingModel::Elek)?);
+    for (label, metallic, maps) in all {
+        let layers = format!(
+            "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.95, 0.6, 0.4]\nmetallic = {metallic}\nroughness = 0.5\n{maps}"
+        );
+        let material = mapped(layered(&format!("metal-{label}"), &layers, ShadingModel::Elek)?);
         shown.push(studio.picture(material, Form::Full, Shape::Sphere)?);
     }
     made.errors("the map against paint", &shown[1], &shown[0])?;
@@ -270,7 +265,7 @@ fn metal(studio: &Studio, made: &mut Made) -> Outcome {
             made.measure(format!("{label} places of the map: difference to {to}"), average(apart));
         }
     }
-    made.sheet("lecture-metal", all.iter().map(|(label, _)| *label).zip(shown), 3);
+    made.sheet("lecture-metal", all.iter().map(|(label, ..)| *label).zip(shown), 3);
     Ok(())
 }
 
@@ -283,15 +278,13 @@ fn crossed(studio: &Studio, made: &mut Made) -> Outcome {
     ];
     let (mut shown, mut measured) = (Vec::new(), Vec::new());
     for (label, [coat, base], above, below) in all {
-        let surface = |[x, y]: [f64; 2], map: &str| {
+        let [above, below] = [(above, coat), (below, base)].map(|([x, y], map)| {
             let map = if map.is_empty() { String::new() } else { format!("maps = {{ tangent = \"{map}\" }}\n") };
             format!("alpha_x = {x}\nalpha_y = {y}\n{map}")
-        };
+        });
         let layers = format!(
-            "[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{}[[layer]]\ntype = \"conductor\"\n\
-             ior = {{ n = [0.143, 0.373, 1.444], k = [3.983, 2.387, 1.602], wavelengths_nm = [690, 550, 450] }}\n{}",
-            surface(above, coat),
-            surface(below, base)
+            "[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{above}[[layer]]\ntype = \"conductor\"\n\
+             ior = {{ n = [0.143, 0.373, 1.444], k = [3.983, 2.387, 1.602], wavelengths_nm = [690, 550, 450] }}\n{below}"
         );
         let material = mapped(layered(&format!("field-{label}"), &layers, ShadingModel::Yamaguchi)?);
         shown.push(studio.picture(material.clone(), Form::Baked, Shape::Sphere)?);
@@ -317,17 +310,11 @@ fn crossed(studio: &Studio, made: &mut Made) -> Outcome {
 const BESIDE: [f32; 3] = [0.5, 0.5, 0.7];
 
 fn bumps(studio: &Studio, made: &mut Made) -> Outcome {
-    let layers = |coat: &str, base: &str| {
-        let bumpy = "maps = { bumps = \"bumps.png\" }\n";
-        let of = |which: &str| if which == "bumps" { bumpy } else { "" };
-        let varnish = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 4\ndistribution = \"beckmann\"\nthickness_um = 0.3\n";
-        let metal = "[[layer]]\ntype = \"conductor\"\nior = \"al\"\nslope_deg = 6\ndistribution = \"beckmann\"\n";
-        [varnish, of(coat), metal, of(base)].concat()
-    };
-    let all = [("flat", "", ""), ("below", "", "bumps"), ("above", "bumps", ""), ("both", "bumps", "bumps")];
+    let bumpy = "maps = { bumps = \"bumps.png\" }\n";
+    let all = [("flat", "", ""), ("below", "", bumpy), ("above", bumpy, ""), ("both", bumpy, bumpy)];
     let mut shown = Vec::new();
     for (label, coat, base) in all {
-        let material = layered(&format!("bumps-{label}"), &layers(coat, base), ShadingModel::WeidlichWilkie)?;
+        let material = layered(&format!("bumps-{label}"), &varnished(coat, base), ShadingModel::WeidlichWilkie)?;
         // Directions are drawn about the level surface: steep bumps need more.
         shown.extend(studio.pictures(&[mapped(material)], Form::Full, Shape::Torus, |_, settings| {
             settings.environment_samples = 128
@@ -336,10 +323,10 @@ fn bumps(studio: &Studio, made: &mut Made) -> Outcome {
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
         made.errors(&format!("{label} against flat"), picture, &shown[0])?;
     }
-    // Under a varnish that lets nothing through, its own reflection is left.
+    // An opaque varnish leaves only its own reflection.
     let mut alone = Vec::new();
     for (label, coat, base) in &all[..3] {
-        let layers = layers(coat, base).replace("thickness_um = 0.3", "thickness_um = 1\nabsorption_per_um = 100");
+        let layers = varnished(coat, base).replace("thickness_um = 0.3", "thickness_um = 1\nabsorption_per_um = 100");
         let material = mapped(layered(&format!("opaque-{label}"), &layers, ShadingModel::WeidlichWilkie)?);
         alone.extend(studio.lit(&[material], Form::Full, Shape::Torus, KEY)?);
     }
@@ -348,4 +335,12 @@ fn bumps(studio: &Studio, made: &mut Made) -> Outcome {
     }
     made.sheet("course-3-9-own", all.iter().map(|(label, ..)| *label).zip(shown), 4);
     Ok(())
+}
+
+/// Varnished aluminium, with keys of the varnish and of the metal.
+fn varnished(coat: &str, base: &str) -> String {
+    let varnish =
+        "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 4\ndistribution = \"beckmann\"\nthickness_um = 0.3\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"al\"\nslope_deg = 6\ndistribution = \"beckmann\"\n";
+    [varnish, coat, metal, base].concat()
 }

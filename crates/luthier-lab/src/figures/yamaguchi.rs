@@ -52,8 +52,7 @@ fn simulation(studio: &Studio, made: &mut Made) -> Outcome {
     for (name, coat, base) in BRUSHINGS {
         let material = brushed("brushed", coat, base, "")?;
         let reference = studio.simulated(&material)?;
-        let shown = |label: &str, image: &Image| (label.to_owned(), TONE.image(image.clone()));
-        pictures.push(shown(name, &reference.image));
+        pictures.push((name.to_owned(), TONE.image(reference.image.clone())));
         made.measure(format!("{name}, simulation: noise, in units of the RMSE"), reference.noise);
         for model in ["yamaguchi", "belcour"] {
             let image = studio.ball(&material, model)?;
@@ -62,7 +61,7 @@ fn simulation(studio: &Studio, made: &mut Made) -> Outcome {
             // Errors of the simulation are independent of those of the model.
             let own = (rms * rms - reference.noise * reference.noise).max(0.0).sqrt();
             made.measure(format!("{name}, {model} against simulation: RMSE less the noise"), own);
-            pictures.push(shown(model, &image));
+            pictures.push((model.to_owned(), TONE.image(image.clone())));
             let (apart, gain) = brightened_difference(&image, &reference.image, |v| TONE.value(v));
             pictures.push((format!("diff. x{gain}"), apart));
         }

@@ -76,16 +76,14 @@ const BALLS: [(&str, [f64; 3], [f64; 3]); 5] = [
     ("e crossed", [0.25, 0.06, 90.0], [0.45, 0.12, 0.0]),
 ];
 
-/// A coat of index 1.49 on gold (figure 1 (e)), of some slopes, with what else the file says of the coat. Wavelengths are labels, see
+/// A coat of index 1.49 on gold (figure 1 (e)) with slopes, and with further keys of the coat. Wavelengths are labels, see
 /// `materials/papers/yamaguchi-brushed.toml`.
 pub(super) fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
-    let surface = |[x, y, turn]: [f64; 3]| format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}");
+    let [coat, base] = [coat, base].map(|[x, y, turn]| format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}"));
     let text = format!(
-        "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{}\n{more}[[layer]]\ntype = \"conductor\"\n{}\n\
+        "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{coat}\n{more}[[layer]]\ntype = \"conductor\"\n{base}\n\
          ior = {{ n = [0.143, 0.373, 1.444], k = [3.983, 2.387, 1.602], wavelengths_nm = [690, 550, 450] }}\n\
-         [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [690, 550, 450]\n",
-        surface(coat),
-        surface(base)
+         [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [690, 550, 450]\n"
     );
     Ok(shaded(&material(name, &text)?, name, ShadingModel::Yamaguchi))
 }
@@ -120,6 +118,12 @@ fn balls(studio: &Studio, made: &mut Made) -> Outcome {
 /// Side of the grid on which deviations are measured.
 const FINE: u32 = 768;
 
+/// A picture of a function of directions above the base plane, and its spot on a fine grid.
+fn fine(size: u32, f: &dyn Fn(DVec3) -> f64) -> (Image, Spot) {
+    let f = |x: f64, y: f64| f(DVec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt()));
+    (over_plane(size, f).0, over_plane(FINE, f).1)
+}
+
 /// A picture of a function over the unit disk of the base plane, as a share of its greatest value, with the part above half of it.
 fn over_plane(size: u32, f: impl Fn(f64, f64) -> f64) -> (Image, Spot) {
     let values: Vec<f64> = (0..size * size)
@@ -140,19 +144,17 @@ fn projected(studio: &Studio, made: &mut Made) -> Outcome {
     let turned = Monochrome::new(&material("turned", &format!("{text}rotation_deg = 30\n"))?.stack, 550.0, 1);
     let model =
         registry::model("microfacet").ok_or_else(|| Failure::Input(anyhow::anyhow!("no model `microfacet`")))?;
-    let up = |x: f64, y: f64| DVec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt());
-    // Half vectors of light and eye in one direction: D over the square of the cosine, and masking.
-    let fine = |f: &dyn Fn(f64, f64) -> f64| (over_plane(studio.size, f).0, over_plane(FINE, f).1);
     let wi = DVec3::new(0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt());
     let [(normals, brdf), (turned_normals, turned_brdf)] = [&stack, &turned].map(|stack| {
-        let normals = fine(&|x, y| model.eval(stack, up(x, y), up(x, y)) * up(x, y).z);
-        (normals, fine(&|x, y| model.eval(stack, wi, up(x, y))))
+        // Half vectors of light and eye in one direction: D over the square of the cosine, and masking.
+        let normals = fine(studio.size, &|wo| model.eval(stack, wo, wo) * wo.z);
+        (normals, fine(studio.size, &|wo| model.eval(stack, wi, wo)))
     });
     let axes = [turned_normals, turned_brdf].map(|(_, spot)| spot.axis_deg());
     made.measure("turned: axis of the normals, degrees", axes[0]);
     made.measure("turned: axis of the BRDF less that of the normals, degrees", axes[1] - axes[0]);
-    let deviations = |(image, spot): (Image, Spot)| (image, [spot.deviation([1.0, 0.0]), spot.deviation([0.0, 1.0])]);
-    let (normals, brdf) = (deviations(normals), deviations(brdf));
+    let [normals, brdf] =
+        [normals, brdf].map(|(image, spot)| (image, [spot.deviation([1.0, 0.0]), spot.deviation([0.0, 1.0])]));
     let mut pictures: Labelled = Vec::new();
     for (c, axis) in ["x", "y"].into_iter().enumerate() {
         let ratio = brdf.1[c] / normals.1[c].max(1e-9);

@@ -13,7 +13,7 @@ use crate::cli::ForeignKind;
 /// Outcome of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Read {
-    /// It is read, with notes on what of it is ignored.
+    /// It is read, with notes on its ignored parts.
     Whole(Vec<String>),
     Refused(String),
     Panicked(String),

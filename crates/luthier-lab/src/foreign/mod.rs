@@ -1,4 +1,4 @@
-//! `foreign`: files that others wrote, each tried with the reader of its kind.
+//! `foreign`: tries files that others wrote with the reader of their kind.
 
 mod kinds;
 mod page;
@@ -15,7 +15,7 @@ use self::kinds::Read;
 use self::record::{Collection, Data, Tried};
 use crate::cli::{ForeignKind, ForeignOptions};
 
-/// Tries the files of a collection, keeps the outcome among those of others, and writes the page of all.
+/// Tries the files of a collection, adds the outcome to the records of all collections, and writes their page.
 pub(crate) fn run(options: &ForeignOptions) -> Outcome {
     let mut data = options.data.as_deref().map_or(Ok(Data::default()), Data::read)?;
     if let Some(name) = &options.collection {
@@ -32,7 +32,7 @@ pub(crate) fn run(options: &ForeignOptions) -> Outcome {
     deliver(&page::of(&data), options.page.as_deref())
 }
 
-/// Where a collection is and under which licence, as the options say or an earlier run did.
+/// Address and licence of a collection, from the options or from an earlier run.
 fn describe(collection: &mut Collection, options: &ForeignOptions) -> Outcome {
     for (known, said) in [(&mut collection.from, &options.from), (&mut collection.licence, &options.licence)] {
         if let Some(said) = said {

@@ -42,7 +42,7 @@ pub(super) struct Counted {
     pub(super) noted: usize,
     /// Files of each note.
     pub(super) notes: BTreeMap<String, Vec<String>>,
-    /// Files of each reason, whose numbers are `N`.
+    /// Files by reason, with `N` in place of numbers.
     pub(super) refused: BTreeMap<String, Vec<String>>,
     /// Files of each panic.
     pub(super) panicked: BTreeMap<String, Vec<String>>,
@@ -66,7 +66,7 @@ impl Data {
         std::fs::write(path, text + "\n").map_err(files(path, "write"))
     }
 
-    /// The collection of a name, which is added in its place.
+    /// The collection of a name. A new one is added at its place in the order.
     pub(super) fn collection(&mut self, name: &str) -> &mut Collection {
         let at = self.collections.binary_search_by(|collection| collection.name.as_str().cmp(name));
         let at = at.unwrap_or_else(|at| {
@@ -96,21 +96,23 @@ impl Counted {
             if seconds > counted.slowest_s {
                 (counted.slowest, counted.slowest_s) = (name.clone(), seconds);
             }
-            let add = |to: &mut BTreeMap<String, Vec<String>>, text: &str| {
-                to.entry(without_numbers(text)).or_default().push(name.clone());
-            };
             match read {
                 Read::Whole(notes) => {
                     counted.read += 1;
                     counted.noted += usize::from(!notes.is_empty());
-                    notes.iter().for_each(|note| add(&mut counted.notes, note));
+                    notes.iter().for_each(|note| add(&mut counted.notes, note, name));
                 }
-                Read::Refused(reason) => add(&mut counted.refused, reason),
-                Read::Panicked(text) => add(&mut counted.panicked, text),
+                Read::Refused(reason) => add(&mut counted.refused, reason, name),
+                Read::Panicked(text) => add(&mut counted.panicked, text, name),
             }
         }
         counted
     }
+}
+
+/// Adds a file to those of its sentence.
+fn add(to: &mut BTreeMap<String, Vec<String>>, text: &str, file: &str) {
+    to.entry(without_numbers(text)).or_default().push(file.to_owned());
 }
 
 /// A sentence with `N` in the place of each number, so that sentences of one reason are the same.

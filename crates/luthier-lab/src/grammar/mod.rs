@@ -20,7 +20,7 @@ pub(crate) fn run(options: &GrammarOptions) -> Outcome {
     deliver(&page::write(&entries)?, options.destination.output.as_deref())
 }
 
-/// A table, and what there is to see of its keys.
+/// A table, with the sights of its keys.
 pub(crate) struct Entry {
     table: TableReference,
     sights: Vec<Sight>,
@@ -76,12 +76,12 @@ fn entries(tables: &[TableReference], samples: &[Sample]) -> Outcome<Vec<Entry>>
         }
         entries.push(Entry { table: table.clone(), sights });
     }
-    let exists = |listed: &str| {
-        tables.iter().any(|table| table.keys.iter().any(|key| covers(listed, &format!("{}.{}", table.name, key.name))))
-    };
+    let keys = tables.iter().flat_map(|table| table.keys.iter().map(move |key| format!("{}.{}", table.name, key.name)));
+    let keys: Vec<String> = keys.collect();
     let unused = samples.iter().zip(used).filter(|(_, used)| !used).map(|(sample, _)| sample.key);
     wrong.extend(unused.map(|key| format!("a sample is of `{key}`, which has no place of its own")));
-    let reasons = UNSEEN.iter().flat_map(|unseen| unseen.keys).filter(|listed| !exists(listed));
+    let reasons = UNSEEN.iter().flat_map(|unseen| unseen.keys);
+    let reasons = reasons.filter(|listed| !keys.iter().any(|key| covers(listed, key)));
     wrong.extend(reasons.map(|listed| format!("a reason is of `{listed}`, which does not exist")));
     if wrong.is_empty() { Ok(entries) } else { Err(Failure::Input(anyhow::anyhow!(wrong.join("\n")))) }
 }
@@ -93,20 +93,20 @@ fn covers(listed: &str, name: &str) -> bool {
 
 /// Whether a key is one of an earlier table of the same family, word for word.
 fn is_shared(earlier: &TableReference, table: &TableReference, key: &KeyReference) -> bool {
-    let family = |table: &TableReference| match table.name {
+    let [earlier_family, family] = [earlier.name, table.name].map(|name| match name {
         "dielectric" | "conductor" | "diffuse" | "metallic-roughness" => "layers",
         name if name.ends_with("-maps") => "maps",
         "picture" | "map" | "flake-heights" => "pictures",
         name => name,
-    };
-    family(earlier) == family(table) && earlier.keys.contains(key)
+    });
+    earlier_family == family && earlier.keys.contains(key)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Every key that is new to the grammar has to say what it looks like.
+    /// Every new key of the grammar needs a sample, or a reason why there is nothing to see.
     #[test]
     fn a_key_without_a_sample_is_told() {
         let all = samples();

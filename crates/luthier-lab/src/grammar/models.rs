@@ -1,4 +1,4 @@
-//! Models that show a key, by what `luthier check` says of its sample.
+//! Models that show a key, found by checking its sample.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use luthier_terminal::{Outcome, valid};
 
 use super::samples::Sample;
 
-/// The materials of a sample, by value. Maps are those of the lab.
+/// The materials of a sample, one for each value. Their maps are in the lab's folder.
 pub(crate) fn materials(sample: &Sample) -> Outcome<Vec<Material>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
     let sources: Vec<Source> = sample.texts().into_iter().map(|text| Source::of_text(&path, text)).collect();
@@ -31,18 +31,17 @@ pub(crate) fn sentence(sample: &Sample) -> Outcome<String> {
     for model in ShadingModel::ALL {
         let name = format!("`{}`", model.name());
         let of_values: Vec<Shown> = materials.iter().map(|material| of_value(material, sample.at, model)).collect();
-        let has = |shown: Shown| of_values.contains(&shown);
-        if has(Shown::Refused) {
+        if of_values.contains(&Shown::Refused) {
             refused.push(name.clone() + &some(sample, &of_values, Shown::Refused));
         }
-        if has(Shown::Not) {
+        if of_values.contains(&Shown::Not) {
             dropped.push(name.clone() + &some(sample, &of_values, Shown::Not));
         }
-        if has(Shown::WithMasking) {
+        if of_values.contains(&Shown::WithMasking) {
             partly.push(format!("{name} (with `masking = \"{}\"`)", MASKING.name()));
-        } else if let Some(form) = Form::ALL.into_iter().find(|form| has(Shown::In(*form))) {
+        } else if let Some(form) = Form::ALL.into_iter().find(|form| of_values.contains(&Shown::In(*form))) {
             partly.push(format!("{name} (in the form `{form}`)"));
-        } else if !has(Shown::Refused) && !has(Shown::Not) {
+        } else if !of_values.contains(&Shown::Refused) && !of_values.contains(&Shown::Not) {
             shown.push(name);
         }
     }
@@ -65,7 +64,7 @@ enum Shown {
     Whole,
     /// In one form of the shader alone.
     In(Form),
-    /// Where the file has another masking than its default.
+    /// Only if the file has another masking than the default.
     WithMasking,
     Not,
     Refused,
@@ -88,13 +87,14 @@ fn of_value(material: &Material, at: &str, model: ShadingModel) -> Shown {
     }
 }
 
-/// Whether what a model leaves out is a key, or the layer that it belongs to.
+/// True where the part that a model leaves out is `key` or its layer.
 fn hides(left_out: &str, key: &str) -> bool {
-    let layer = |key: &str| key.strip_prefix("layer.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
-    left_out == key || left_out.ends_with(".type") && !left_out.contains("film") && layer(left_out) <= layer(key)
+    let [above, layer] = [left_out, key]
+        .map(|key| key.strip_prefix("layer.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok()));
+    left_out == key || left_out.ends_with(".type") && !left_out.contains("film") && above <= layer
 }
 
-/// The values of a choice of which something holds, in brackets, unless it holds of all.
+/// The values that a model shows in a way, in brackets; empty if it is all of them.
 fn some(sample: &Sample, of_values: &[Shown], which: Shown) -> String {
     let is_choice = sample.labels().all(|label| label.starts_with('\''));
     if !is_choice || of_values.iter().all(|shown| *shown == which) {
@@ -105,7 +105,7 @@ fn some(sample: &Sample, of_values: &[Shown], which: Shown) -> String {
     format!(" ({})", values.join(", "))
 }
 
-/// Whether a file with this model is refused because of the key.
+/// True where a file with this model is refused because of the key.
 fn is_refused(material: &Material, at: &str, model: ShadingModel) -> bool {
     let place = material.places.span(at);
     let doubts = of_model(material, Some(model));

@@ -13,7 +13,8 @@ use luthier_texture::png;
 use super::samples::Sample;
 use crate::cli::GrammarOptions;
 
-/// Directions of the environment for a lobe and a sample of a pixel. Blurred environments would need albedos, whose tables take longer than all pictures.
+/// Directions of the environment for a lobe and a sample of a pixel. Blurred environments need tables of albedos, which take longer than all
+/// pictures.
 const ENVIRONMENT_SAMPLES: u32 = 64;
 
 /// Pixels between pictures.
@@ -22,16 +23,16 @@ const GAP: u32 = 4;
 /// Brightness of these pixels.
 const PAPER: f32 = 1.0;
 
-/// File beside the pictures with the hash of each sample, by which a test finds a picture of an older one.
+/// File beside the pictures with the hash of each sample. By it a test finds pictures that are out of date.
 pub(crate) const HASHES: &str = "samples.txt";
 
 /// The text of that file.
 pub(crate) fn hashes(samples: &[Sample]) -> String {
-    let line = |sample: &Sample| format!("{} {}\n", sample.picture(), &sha256(sample.hashed().as_bytes())[..16]);
-    samples.iter().map(line).collect()
+    let samples = samples.iter();
+    samples.map(|sample| format!("{} {}\n", sample.picture(), &sha256(sample.hashed().as_bytes())[..16])).collect()
 }
 
-/// Renders strips into a folder: those of the keys that are asked for, or all.
+/// Renders strips into a folder: of the keys that are asked for, or of all.
 pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions) -> Outcome {
     let names: Vec<&str> = samples.iter().map(|sample| sample.key).collect();
     if let Some(unknown) = options.keys.iter().find(|key| !names.contains(&key.as_str())) {
@@ -39,8 +40,9 @@ pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions
     }
     std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
     let (gpu, size) = (open(options.adapter.name.as_deref())?, options.size);
-    let is_asked = |sample: &&Sample| options.keys.is_empty() || options.keys.iter().any(|key| key == sample.key);
-    let asked: Vec<&Sample> = samples.iter().filter(is_asked).collect();
+    let is_all = options.keys.is_empty();
+    let asked: Vec<&Sample> =
+        samples.iter().filter(|s| is_all || options.keys.iter().any(|key| key == s.key)).collect();
     let bar = Bar::new("pictures");
     let work = std::env::temp_dir().join(format!("luthier-grammar-{}", std::process::id()));
     std::fs::create_dir_all(&work).map_err(files(&work, "make"))?;
@@ -57,9 +59,10 @@ pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions
     }
     let path = folder.join(HASHES);
     let before = std::fs::read_to_string(&path).unwrap_or_default();
-    // A picture that was not asked for stays that of its older sample.
+    // A picture that was not asked for is still of its older sample, so its hash stays.
     let after = hashes(samples);
-    let lines = samples.iter().zip(after.lines()).filter_map(|(sample, line)| match is_asked(&sample) {
+    let lines = samples.iter().zip(after.lines());
+    let lines = lines.filter_map(|(sample, line)| match asked.iter().any(|asked| asked.key == sample.key) {
         true => Some(line),
         false => before.lines().find(|known| known.split(' ').next() == line.split(' ').next()),
     });

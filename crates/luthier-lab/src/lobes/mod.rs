@@ -1,4 +1,4 @@
-//! `lobes`: how near fits of lobes come to the simulation, on materials, on their twins in the other distribution, and on random stacks.
+//! `lobes`: errors of fitted lobes against the simulation, for materials, for their twins in the other distribution, and for random stacks.
 
 mod page;
 mod reasons;
@@ -21,10 +21,10 @@ use crate::cli::{LobesOptions, Precision};
 
 pub(crate) use self::stacks::{anisotropic, of, random};
 
-/// Angles of the judge against the normal, degrees: those of `luthier-lab judge`, and others between.
+/// Angles of the judge against the normal, degrees: the angles of `luthier-lab judge`, and others between.
 const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
 
-/// Models of papers beside them.
+/// Models of papers for comparison.
 const BESIDE: [&str; 2] = ["belcour", "elek"];
 
 /// Standard error that albedos of the judge may have.
@@ -39,7 +39,7 @@ const QUANTITIES: usize = 2;
 /// Errors that a stack should not exceed, by quantity.
 const LIMITS: [f64; QUANTITIES] = [0.05, 0.003];
 
-/// Random stacks by quantity whose errors are traced to a reason.
+/// Number of random stacks, for each quantity, whose errors are traced to a reason.
 const WORST: usize = 10;
 
 /// A stack, fitted and judged.
@@ -84,18 +84,18 @@ enum Choice {
 impl Choice {
     /// Numbers of the stacks whose error of a quantity is looked into, the largest first.
     fn of(self, stacks: &[&Judged], quantity: usize) -> Vec<usize> {
-        let error = |number: usize| stacks[number].error(quantity);
+        let errors: Vec<f64> = stacks.iter().map(|stack| stack.error(quantity)).collect();
         let mut numbers: Vec<usize> = (0..stacks.len()).collect();
-        numbers.sort_by(|a, b| error(*b).total_cmp(&error(*a)));
+        numbers.sort_by(|a, b| errors[*b].total_cmp(&errors[*a]));
         match self {
-            Self::Beyond => numbers.retain(|number| error(*number) > LIMITS[quantity]),
+            Self::Beyond => numbers.retain(|number| errors[*number] > LIMITS[quantity]),
             Self::Worst => numbers.truncate(WORST),
         }
         numbers
     }
 }
 
-/// A group of stacks: its title, its stacks, and which of them are looked into.
+/// A group of stacks with its title, and the choice of those whose errors are traced.
 struct Group {
     title: &'static str,
     stacks: Vec<Judged>,
@@ -140,16 +140,16 @@ fn judge_all(
     let mut chosen: Vec<usize> = (0..QUANTITIES).flat_map(|quantity| choice.of(&stacks, quantity)).collect();
     chosen.sort_unstable();
     chosen.dedup();
-    let reasons = |number: &usize| {
-        let (stack, reference) = &judged[*number];
-        Reasons::of(&subjects[*number], stack, reference, options)
-    };
-    let reasons: Vec<Reasons> = chosen.par_iter().map(reasons).collect();
+    let reasons = chosen.par_iter().map(|&number| {
+        let (stack, reference) = &judged[number];
+        Reasons::of(&subjects[number], stack, reference, options)
+    });
+    let reasons: Vec<Reasons> = reasons.collect();
     chosen.into_iter().zip(reasons).for_each(|(number, reasons)| judged[number].0.reasons = Some(reasons));
     judged.into_iter().map(|(stack, _)| stack).collect()
 }
 
-/// A table of errors by stack and column, those of another fit in brackets, and their medians.
+/// A table of errors by stack and column, with errors of another fit in brackets, and with medians.
 pub(crate) fn table(
     out: &mut String,
     [title, kind]: [&str; 2],
@@ -187,7 +187,7 @@ fn fit_settings(options: &LobesOptions) -> FitSettings {
     FitSettings { rows, paths, ..FitSettings::default() }
 }
 
-/// The light of a stack as bakes see it.
+/// The simulated light of a stack, as in bakes.
 fn simulated(stack: &Stack, wavelengths_nm: [f64; 3], settings: FitSettings) -> Simulation {
     Simulation::new(&shown(stack), &Color::ThreeWavelengths(wavelengths_nm), settings)
 }

@@ -79,8 +79,7 @@ their tails.
 
 /// Angle and wavelength of the largest error of a quantity.
 fn place(views: &[ViewError], quantity: usize) -> String {
-    let error = |view: &ViewError| of_view(view)[quantity];
-    let view = views.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
+    let view = views.iter().max_by(|a, b| of_view(a)[quantity].total_cmp(&of_view(b)[quantity]));
     view.map_or(String::new(), |view| format!("{} deg, {} nm", view.theta_deg, view.wavelength_nm))
 }
 
@@ -117,15 +116,15 @@ fn summary(out: &mut String, groups: &[Group], options: &LobesOptions) -> std::f
             )?;
         }
     }
-    let all = || groups.iter().flat_map(|group| &group.stacks);
-    let errors = || all().flat_map(|stack| &stack.errors).flat_map(of_view);
-    let infinite = errors().filter(|error| !error.is_finite()).count();
+    let stacks: Vec<_> = groups.iter().flat_map(|group| &group.stacks).collect();
+    let errors: Vec<f64> = stacks.iter().flat_map(|stack| &stack.errors).flat_map(of_view).collect();
+    let infinite = errors.iter().filter(|error| !error.is_finite()).count();
     let finite = if infinite == 0 { "all are finite".to_owned() } else { format!("{infinite} are not finite") };
     writeln!(
         out,
         "\nOf {} errors, {finite}. The judge traced {:.0} million paths, up to a noise of {} and a standard error of {ALBEDO_STD_ERR}.",
-        errors().count(),
-        all().map(|stack| stack.paths).sum::<u64>() as f64 * 1e-6,
+        errors.len(),
+        stacks.iter().map(|stack| stack.paths).sum::<u64>() as f64 * 1e-6,
         options.precision.noise
     )
 }

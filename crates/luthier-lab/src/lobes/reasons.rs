@@ -1,4 +1,4 @@
-//! Why a fit is as far from the simulation as it is: the fit anew, with one thing changed at a time.
+//! Reasons for the error of a fit, found by fitting again with one thing changed at a time.
 
 use luthier_layers::models::lobes::{EXCESS, FitSettings, LOBES, Lobes, most_lobes, shown};
 use luthier_layers::monochrome::Monochrome;
@@ -55,7 +55,7 @@ impl Change {
     }
 }
 
-/// Share of an error that a change takes away, at least, where it is the reason.
+/// Least share of an error that a change takes away if it is the reason.
 pub(super) const GAIN_MIN: f64 = 0.25;
 
 /// Errors of a stack with one thing changed.
@@ -69,22 +69,28 @@ impl Reasons {
     pub(super) fn of(subject: &ModelSubject, judged: &Judged, reference: &Reference, options: &LobesOptions) -> Self {
         let settings = fit_settings(options);
         let nm = subject.wavelengths_nm;
-        let fit = |settings| simulated(&subject.stack, nm, settings).fit_fewest(most_lobes(&subject.stack), EXCESS);
+        let stack = &subject.stack;
         let lobes = judged.lobes.rows[0].lobes.len();
-        let of_lobes = |lobes: &Lobes| reference.errors(Shown::Lobes(lobes));
-        let errors = |change: Change| match change {
-            Change::Paths => Some(of_lobes(&fit(FitSettings { paths: 4 * settings.paths, ..settings }))),
-            Change::Rows => Some(of_lobes(&fit(FitSettings { rows: 2 * settings.rows - 1, ..settings }))),
-            Change::AllLobes if lobes == LOBES => None,
-            Change::AllLobes => Some(of_lobes(&simulated(&subject.stack, nm, settings).fit(LOBES))),
-            Change::OneMore => Some(of_lobes(&simulated(&subject.stack, nm, settings).fit(LOBES + 1))),
-            Change::Channels => Some((0..3).flat_map(|c| alone(subject, c, reference, settings)).collect()),
-            Change::Judge => {
-                let other = Reference::new(subject, &THETAS_DEG, judge_settings(&options.precision, 2 * JUDGE_SEED));
-                Some(other.errors(Shown::Lobes(&judged.lobes)))
-            }
-        };
-        Self { changed: Change::ALL.map(|change| (change, errors(change).map(|views| largest(&views)))).to_vec() }
+        let changed = Change::ALL.map(|change| {
+            let fitted = match change {
+                Change::Paths => fewest(stack, nm, FitSettings { paths: 4 * settings.paths, ..settings }),
+                Change::Rows => fewest(stack, nm, FitSettings { rows: 2 * settings.rows - 1, ..settings }),
+                Change::AllLobes if lobes == LOBES => return (change, None),
+                Change::AllLobes => simulated(stack, nm, settings).fit(LOBES),
+                Change::OneMore => simulated(stack, nm, settings).fit(LOBES + 1),
+                Change::Channels => {
+                    let views = (0..3).flat_map(|c| alone(subject, c, reference, settings));
+                    return (change, Some(largest(&views.collect::<Vec<_>>())));
+                }
+                Change::Judge => {
+                    let settings = judge_settings(&options.precision, 2 * JUDGE_SEED);
+                    let other = Reference::new(subject, &THETAS_DEG, settings);
+                    return (change, Some(largest(&other.errors(Shown::Lobes(&judged.lobes)))));
+                }
+            };
+            (change, Some(largest(&reference.errors(Shown::Lobes(&fitted)))))
+        });
+        Self { changed: changed.to_vec() }
     }
 
     /// The errors of a quantity with each change.
@@ -99,7 +105,11 @@ impl Reasons {
     }
 }
 
-/// Errors of one channel by lobes that were fitted to this channel alone, from as many paths of its wavelength as the fit of all has.
+fn fewest(stack: &Stack, nm: [f64; 3], settings: FitSettings) -> Lobes {
+    simulated(stack, nm, settings).fit_fewest(most_lobes(stack), EXCESS)
+}
+
+/// Errors of one channel by lobes that are fitted to this channel alone, with as many paths of its wavelength as the joint fit has.
 fn alone(subject: &ModelSubject, channel: usize, reference: &Reference, settings: FitSettings) -> Vec<ViewError> {
     let stack = shown(&subject.stack);
     let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(&stack, subject.wavelengths_nm[c], c));

@@ -17,6 +17,13 @@ const METALS: [&str; 7] = ["au", "ag", "cu", "al", "cr", "ti", "fe"];
 struct Draw(SplitMix64);
 
 impl Draw {
+    /// A surface, anisotropic where it is brushed, and its slope parameters.
+    fn brushed(&mut self, distribution: Distribution, is_brushed: bool, rotation_deg: f64) -> (Surface, [f64; 2]) {
+        let [alpha_x, alpha_y] = [0; 2].map(|_| 0.02 * libm::pow(30.0, self.uniform()));
+        let alpha_y = if is_brushed { alpha_y } else { alpha_x };
+        (Surface { distribution, alpha_x, alpha_y, rotation: rotation_deg.to_radians() }, [alpha_x, alpha_y])
+    }
+
     fn uniform(&mut self) -> f64 {
         self.0.unit()
     }
@@ -59,8 +66,8 @@ pub(crate) fn of(material: &Material, is_twin: bool) -> ModelSubject {
     ModelSubject { name: material.name.clone(), stack, wavelengths_nm: material.bake.wavelengths_nm() }
 }
 
-/// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has an index below
-/// that of what is above it.
+/// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has a lower index than the
+/// medium above it.
 pub(crate) fn random(seed: u64) -> ModelSubject {
     let mut draw = Draw(SplitMix64::new(seed.wrapping_mul(0x5851_f42d_4c95_7f2d)));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
@@ -102,16 +109,11 @@ pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
     let mut draw = Draw(SplitMix64::new((seed + 1).wrapping_mul(0x9fb2_1c65_1e98_df25)));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
     let mut name = format!("{seed} {}:", distribution.name());
-    let surface = |draw: &mut Draw, is_brushed: bool, rotation_deg: f64| {
-        let [alpha_x, alpha_y] = [0; 2].map(|_| 0.02 * libm::pow(30.0, draw.uniform()));
-        let alpha_y = if is_brushed { alpha_y } else { alpha_x };
-        (Surface { distribution, alpha_x, alpha_y, rotation: rotation_deg.to_radians() }, [alpha_x, alpha_y])
-    };
     let is_crossed = seed % 2 == 1;
     let is_metal = draw.chance(0.5) || is_crossed;
     let is_coat_brushed = is_crossed || !is_metal || draw.chance(0.5);
     let rotation_deg = if is_crossed { libm::round(draw.between(15.0, 75.0)) } else { 90.0 };
-    let (mut coat, [x, y]) = surface(&mut draw, is_coat_brushed, rotation_deg);
+    let (mut coat, [x, y]) = draw.brushed(distribution, is_coat_brushed, rotation_deg);
     if !is_coat_brushed && draw.chance(0.5) {
         coat = Surface::smooth();
     }
@@ -128,7 +130,7 @@ pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
         vec![Layer { films: Vec::new(), surface: coat, base: Base::Dielectric { ior: constant(index), slab } }];
     if is_metal {
         let (id, ior) = draw.metal();
-        let (base, [x, y]) = surface(&mut draw, true, 0.0);
+        let (base, [x, y]) = draw.brushed(distribution, true, 0.0);
         name += &format!(" {id}/{x:.3}x{y:.3}");
         layers.push(Layer { films: Vec::new(), surface: base, base: Base::Conductor { ior } });
     } else {
@@ -139,7 +141,7 @@ pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
     ModelSubject { name, stack: Stack { exterior: Ior::vacuum(), layers }, wavelengths_nm: WAVELENGTHS_NM }
 }
 
-/// An index that does not hang on the wavelength.
+/// An index that does not depend on the wavelength.
 fn constant(n: f64) -> Ior {
     Ior::constant(n, 0.0).unwrap_or_else(|_| Ior::vacuum())
 }

@@ -1,4 +1,4 @@
-//! Kinds of places, and what the shader and its twin are told of each.
+//! Kinds of places, with the statements for the shader and the place of its twin.
 
 use std::f64::consts::TAU;
 
@@ -63,7 +63,7 @@ const GLITTER: &str = "[effects.glitter]\nseed = 9\nfrequency = 60\nfilled = 0.5
 const DYED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n[[layer]]\ntype = \"diffuse\"\nreradiation = \"dye.csv\"\n";
 const DYE: &str = include_str!("../../maps/dye.csv");
 
-/// For the end of [`COATED`]: maps of the metal alone.
+/// Maps of the metal alone, to follow [`COATED`].
 const OF_THE_METAL: &str = "maps = { bumps = \"bumps.png\", alpha = \"thickness.png\" }\n";
 const CROSSED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha_x = 0.08\nalpha_y = 0.3\nmaps = { tangent = \"circles.png\" }\n\
     [[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.35\nalpha_y = 0.12\nmaps = { tangent = \"rays.png\", alpha_x = \"thickness.png\" }\n";
@@ -80,11 +80,6 @@ const MAPPED: &[ShadingModel] = &[Elek, WeidlichWilkie, GranierHeidrich, Microfa
 
 /// All kinds.
 pub(super) fn all() -> Vec<Case> {
-    let case = |name, key, models, files, spot| Case { name, key, models, files, spot, surface: None };
-    let of_surface = |name, key, models, surface: fn() -> SurfaceEntry, spot| Case {
-        surface: Some(surface),
-        ..case(name, key, models, &[], spot)
-    };
     vec![
         case("normal map", "place.normal", MAPPED, &[COATED], normal),
         case("roughness map", "place.alpha_factor", ROUGH, &[COATED], roughness),
@@ -112,10 +107,27 @@ pub(super) fn all() -> Vec<Case> {
         case("flakes as a normal map", "luthier_flake_tilt", PATH, &[COATED, FLAKES], flake_map),
         case("patina", "luthier_patina_amount", PATH, &[COATED, GREEN], patina),
         case("glitter", "luthier_glitter_normal", &[Elek, WeidlichWilkie, Microfacet], &[COATED, GLITTER], glitter),
-        of_surface("surface of several materials", "luthier_pick", MAPPED, grains, |_, n| pick(&grains(), n)),
-        of_surface("surface with switches", "luthier_perlin", MAPPED, switched, |_, n| pick(&switched(), n)),
+        Case {
+            surface: Some(grains),
+            ..case("surface of several materials", "luthier_pick", MAPPED, &[], |_, n| pick(&grains(), n))
+        },
+        Case {
+            surface: Some(switched),
+            ..case("surface with switches", "luthier_perlin", MAPPED, &[], |_, n| pick(&switched(), n))
+        },
         case("fluorescent base", "luthier_eval_lit_at", PATH, &[DYED], dyed),
     ]
+}
+
+/// A case without a surface of several materials.
+fn case(
+    name: &'static str,
+    key: &'static str,
+    models: &'static [ShadingModel],
+    files: &'static [&'static str],
+    spot: fn(&[Material], usize) -> Spot,
+) -> Case {
+    Case { name, key, models, files, spot, surface: None }
 }
 
 impl Case {
@@ -126,15 +138,15 @@ impl Case {
         } else {
             vec![self.files.concat()]
         };
-        let material = |(n, text): (usize, &String)| {
+        let materials = texts.iter().enumerate().map(|(n, text)| {
             let text = format!("schema = 1\nname = \"m{n}\"\n{text}");
             let parsed = parse("m.toml", &text, &|_| Ok(DYE.to_owned()));
             let mut material = parsed.unwrap_or_else(|errors| panic!("{}", errors[0].render(&text))).material;
             concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").clone_into(&mut material.source);
             at_three_wavelengths(&mut material, model);
             material
-        };
-        texts.iter().enumerate().map(material).collect()
+        });
+        materials.collect()
     }
 
     /// The surfaces of the bake.
@@ -243,15 +255,15 @@ fn slopes(_: &[Material], n: usize) -> Spot {
 }
 
 fn tangents(_: &[Material], n: usize) -> Spot {
-    // Any texels, of which the directions are the halved angles.
+    // Any texels will do: the directions are their halved angles.
     let texels = [[0, 1], [1, 2]].map(|[a, b]: [usize; 2]| [part(n, STEPS[a]), part(n, STEPS[b])]);
     let alpha_factors = [factor(n, 0.4, 2.4), factor(n, 1.5, 0.5)];
     let own = texels.map(|texel| LayerSample { tangent: LayerSample::tangent_of(texel), ..LayerSample::NONE });
-    let set = |(i, [x, y]): (usize, [f64; 2])| {
+    let tangents = texels.into_iter().enumerate().map(|(i, [x, y])| {
         format!("place.layers[{i}].tangent = luthier_tangent(vec2<f32>({:?}, {:?})); ", x as f32, y as f32)
-    };
+    });
+    let make: String = tangents.collect();
     let [x, y] = alpha_factors.map(|factor| factor as f32);
-    let make: String = texels.into_iter().enumerate().map(set).collect();
     let make = format!("{make}place.layers[1].alpha_factors = vec2<f32>({x:?}, {y:?});");
     at(make, layered(own[0], LayerSample { alpha_factors, ..own[1] }))
 }
@@ -265,7 +277,7 @@ fn all_flakes(material: &Material) -> Flakes {
 fn flakes(materials: &[Material], n: usize) -> Spot {
     let flakes = all_flakes(&materials[0]);
     let cells = flakes.tiling * f64::from(flakes.count);
-    // In the middle of a cell, whose edges single precision may miss.
+    // In the middle of a cell, because single precision may miss its edges.
     let uv = (coordinate(n).0 * cells).floor() + 0.5;
     let uv = (uv / cells).as_vec2();
     let distance = factor(n, 0.0, 5.0);

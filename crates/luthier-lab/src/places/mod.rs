@@ -27,7 +27,7 @@ const PLACES: usize = 8;
 /// Largest difference of the form `full`: arithmetic in single precision, over the brightest channel.
 const FULL: f64 = 2e-5;
 
-/// Largest difference of the form `baked`, whose tables are compared with exact terms: `FRESNEL_UNDER_A_COAT` of the parity page.
+/// Largest difference of the form `baked`, as `FRESNEL_UNDER_A_COAT` of the parity page: its tables are compared with exact terms.
 const BAKED: f64 = 2e-2;
 
 /// One kind of place in one model.
@@ -38,7 +38,7 @@ pub(crate) struct Row {
     model: ShadingModel,
     /// Errors of the forms, `full` first: the largest, and the median.
     errors: [Option<[f64; 2]>; 2],
-    /// The largest difference that the place makes in f64: what a shader that ignored it would be off by.
+    /// The largest difference that the place makes in f64, which is the error of a shader that ignores it.
     made: f64,
 }
 
@@ -53,15 +53,13 @@ impl Row {
 pub(crate) fn run(options: &PlacesOptions) -> Outcome {
     let gpu = open(options.adapter.name.as_deref())?;
     let cases = cases::all();
-    let is_asked = |model: &ShadingModel| options.model.is_empty() || options.model.contains(model);
-    let total: usize = cases.iter().map(|case| case.models.iter().filter(|model| is_asked(model)).count()).sum();
+    let all = cases.iter().flat_map(|case| case.models.iter().map(move |&model| (case, model)));
+    let asked: Vec<_> = all.filter(|(_, model)| options.model.is_empty() || options.model.contains(model)).collect();
     let bar = Bar::new("comparing");
     let mut rows = Vec::new();
-    for case in &cases {
-        for &model in case.models.iter().filter(|model| is_asked(model)) {
-            rows.push(measured(case, model, &gpu, options.pairs)?);
-            bar.set(rows.len() as u64, total as u64);
-        }
+    for &(case, model) in &asked {
+        rows.push(measured(case, model, &gpu, options.pairs)?);
+        bar.set(rows.len() as u64, asked.len() as u64);
     }
     drop(bar);
     let page = page::write(&rows, GENERATOR, &adapter_label(&gpu), PLACES, options.pairs);
@@ -83,7 +81,7 @@ fn measured(case: &Case, model: ShadingModel, gpu: &Gpu, pairs: u32) -> Outcome<
     let made = expected.iter().flat_map(|values| differences(values, &plain)).fold(0.0, f64::max);
     let mut errors = [None; 2];
     for (form, error) in [Form::Full, Form::Baked].into_iter().zip(&mut errors) {
-        // Without tables these models take facets as level, and `Shaded` does not.
+        // Without tables these models treat facets as level, unlike `Shaded`.
         let is_level = matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi);
         if form == Form::Full && is_level {
             continue;
@@ -99,9 +97,8 @@ fn measured(case: &Case, model: ShadingModel, gpu: &Gpu, pairs: u32) -> Outcome<
 /// Pairs of directions: half all over the hemisphere, half near the mirrored one.
 fn directions(material: &Material, count: u32) -> Vec<Pair> {
     let layers = Layers::isotropic_rgb(&material.stack).layers;
-    let of = |set: ParitySet, count: u32| set.pairs(count, &layers);
     let near = if layers.is_empty() { ParitySet::Uniform } else { ParitySet::NearSpecular };
-    [of(ParitySet::Uniform, count.div_ceil(2)), of(near, count / 2)].concat()
+    [(ParitySet::Uniform, count.div_ceil(2)), (near, count / 2)].map(|(set, count)| set.pairs(count, &layers)).concat()
 }
 
 /// Values of the f64 twin.
@@ -111,15 +108,14 @@ fn in_f64(spot: &Spot, materials: &[Material], model: ShadingModel, pairs: &[Pai
     let color = Color::ThreeWavelengths(wavelengths_nm);
     let shaded = Shaded::with(model, &material.reflecting_stack(), wavelengths_nm, color, &spot.place, Parts::PLAIN);
     let Some(shaded) = shaded else { return Vec::new() };
-    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
-    let value = |&(wi, wo): &Pair| match spot.light {
-        Some(light) => shaded.eval_lit(light, wide(wi), wide(wo)),
-        None => shaded.eval(wide(wi), wide(wo)),
-    };
-    pairs.par_iter().map(value).collect()
+    let values = pairs.par_iter().map(|&(wi, wo)| {
+        let [wi, wo] = [wi, wo].map(|w| DVec3::from(w.map(f64::from)));
+        spot.light.map_or_else(|| shaded.eval(wi, wo), |light| shaded.eval_lit(light, wi, wo))
+    });
+    values.collect()
 }
 
-/// Values of the shader at every place: the material's number chooses it, because all materials beyond those of the case are copies.
+/// Values of the shader at every place. The number of the material chooses the place: materials beyond those of the case are copies.
 fn on_device(
     case: &Case,
     materials: &[Material],

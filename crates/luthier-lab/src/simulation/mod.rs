@@ -1,4 +1,4 @@
-//! `simulation`: time and picture of the simulation on the device, beside those of models.
+//! `simulation`: times and pictures of the simulation on the device, compared with models.
 
 mod page;
 
@@ -44,7 +44,7 @@ struct Time {
     spread: Spread,
 }
 
-/// How far a model is from the simulation.
+/// Errors of models against the simulation.
 struct Error {
     material: String,
     turn: u32,
@@ -56,7 +56,7 @@ struct Error {
     rms: Vec<f64>,
 }
 
-/// A material on the device: the scene of its stack, and that of each model.
+/// A material on the device: a scene for the simulation of its stack, and a scene for each model.
 struct Subject {
     name: String,
     stack: Scene,
@@ -88,48 +88,30 @@ pub(crate) fn run(options: &SimulationOptions) -> Outcome {
 /// The surroundings at each turn.
 fn skies() -> Outcome<Vec<Arc<Environment>>> {
     let map = Scenery::StripStudio.map(ROWS).map_err(Failure::input)?;
-    let turned = |(_, third): &(u32, u32)| {
+    let skies = TURNS.iter().map(|(_, third)| {
         let (width, shift) = (map.width, map.width * third / 3);
         let mut turned = map.clone();
         for (y, x) in (0..map.height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             turned.texel_mut((x + shift) % width, y).copy_from_slice(map.texel(x, y));
         }
         Environment::new(turned).map(Arc::new).map_err(Failure::input)
-    };
-    TURNS.iter().map(turned).collect()
+    });
+    skies.collect()
 }
 
 impl Subject {
     fn new(gpu: &Gpu, material: &Material) -> Outcome<Self> {
-        let scene = |model: ShadingModel| -> Outcome<Scene> {
-            let mut shaded = material.clone();
-            shaded.shade_by(model);
-            // Those of the simulation.
-            shaded.bake.color = Some(ColorMode::ThreeWavelengths);
-            let package = Bake::lit().package(&lit(&[shaded]), &MemoryStore::default())?;
-            Ok(gpu.scene(&package, Form::Baked)?)
-        };
-        let models = MODELS.iter().map(|model| scene(*model)).collect::<Outcome<_>>()?;
-        Ok(Self { name: material.name.clone(), stack: scene(ShadingModel::Phong)?, models })
+        let models = MODELS.iter().map(|model| scene(gpu, material, *model)).collect::<Outcome<_>>()?;
+        Ok(Self { name: material.name.clone(), stack: scene(gpu, material, ShadingModel::Phong)?, models })
     }
 
-    /// Times of a picture under surroundings alone; all ways in turn, so that they share what else the machine does.
+    /// Times of a picture under surroundings alone. All ways are timed in turn, so that other load of the machine affects them alike.
     fn times(&self, options: &SimulationOptions, sky: &Arc<Environment>) -> Outcome<Vec<Time>> {
         let mut times = Vec::new();
         for samples in SAMPLES {
             let mut runs: Vec<(String, Vec<f64>)> = Vec::new();
-            // The first round compiles.
             for round in 0..=options.repeats.get() {
-                let mut next = 0;
-                let mut note = |way: &str, started: Instant| {
-                    let milliseconds = started.elapsed().as_secs_f64() * 1e3;
-                    if round == 0 {
-                        runs.push((way.to_owned(), Vec::new()));
-                    } else {
-                        runs[next].1.push(milliseconds);
-                    }
-                    next += 1;
-                };
+                let mut took = Vec::new();
                 let settings = settings(options.time_size, sky)?;
                 let per_pixel = settings.samples * settings.samples;
                 for (way, facets) in [("simulation", Facets::Walk), ("simulation, one facet", Facets::One)] {
@@ -137,13 +119,20 @@ impl Subject {
                     let simulation = SimulationSettings { facets, seed: 0 };
                     let mut picture = self.stack.simulation(&[Shown::Material(0)], &settings, &simulation)?;
                     picture.add(if round == 0 { 1 } else { samples })?;
-                    note(way, started);
+                    took.push((way, started.elapsed().as_secs_f64() * 1e3));
                 }
                 for (model, scene) in MODELS.iter().zip(&self.models) {
                     let environment_samples = if round == 0 { 1 } else { samples.div_ceil(per_pixel) };
                     let started = Instant::now();
                     scene.render(&[0], &RenderSettings { environment_samples, ..settings.clone() })?;
-                    note(model.name(), started);
+                    took.push((model.name(), started.elapsed().as_secs_f64() * 1e3));
+                }
+                for (i, (way, milliseconds)) in took.into_iter().enumerate() {
+                    match runs.get_mut(i) {
+                        Some((_, all)) => all.push(milliseconds),
+                        // The first round compiles: its times do not count.
+                        None => runs.push((way.to_owned(), Vec::new())),
+                    }
                 }
             }
             times.extend(runs.into_iter().map(|(way, runs)| Time {
@@ -158,23 +147,23 @@ impl Subject {
 
     /// Pictures of the models against the simulated one.
     fn errors(&self, options: &SimulationOptions, skies: &[Arc<Environment>]) -> Outcome<Vec<Error>> {
-        let error = |((turn, _), sky): (&(u32, u32), &Arc<Environment>)| -> Outcome<Error> {
+        let errors = TURNS.iter().zip(skies).map(|((turn, _), sky)| {
             let settings = settings(options.size, sky)?;
             let mut simulation =
                 self.stack.simulation(&[Shown::Material(0)], &settings, &SimulationSettings::default())?;
             simulation.add(options.samples.get())?;
             let (truth, noise) = (simulation.image(), mean_square(&simulation.noise()));
-            let rms = |scene: &Scene| -> Outcome<f64> {
+            let rms = self.models.iter().map(|scene| {
                 let settings = RenderSettings { environment_samples: DIRECTIONS, ..settings.clone() };
                 let image = scene.render(&[0], &settings)?;
                 let compared = compare_pictures(&image, &truth, |v| v).map_err(Failure::input)?;
                 Ok((compared.rms_err * compared.rms_err - noise).max(0.0).sqrt())
-            };
+            });
             let mean = truth.data.iter().map(|v| f64::from(*v)).sum::<f64>() / truth.data.len() as f64;
-            let rms = self.models.iter().map(rms).collect::<Outcome<_>>()?;
+            let rms = rms.collect::<Outcome<_>>()?;
             Ok(Error { material: self.name.clone(), turn: *turn, mean, noise: noise.sqrt(), rms })
-        };
-        TURNS.iter().zip(skies).map(error).collect()
+        });
+        errors.collect()
     }
 }
 
@@ -191,6 +180,15 @@ fn settings(size: u32, sky: &Arc<Environment>) -> Outcome<RenderSettings> {
 
 fn mean_square(image: &Image) -> f64 {
     image.data.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>() / image.data.len() as f64
+}
+
+/// A material in the scene of a model, at the wavelengths of the simulation.
+fn scene(gpu: &Gpu, material: &Material, model: ShadingModel) -> Outcome<Scene> {
+    let mut shaded = material.clone();
+    shaded.shade_by(model);
+    shaded.bake.color = Some(ColorMode::ThreeWavelengths);
+    let package = Bake::lit().package(&lit(&[shaded]), &MemoryStore::default())?;
+    Ok(gpu.scene(&package, Form::Baked)?)
 }
 
 impl Time {

@@ -50,6 +50,10 @@ fn find<'a>(times: &'a [Time], material: &str, way: &str, samples: u32) -> Optio
     times.iter().find(|time| time.material == material && time.way == way && time.samples == samples)
 }
 
+fn median(times: &[Time], material: &str, way: &str, samples: u32) -> f64 {
+    find(times, material, way, samples).map_or(f64::NAN, |time| time.spread.median)
+}
+
 fn materials(times: &[Time]) -> Vec<&str> {
     let mut names: Vec<&str> = times.iter().map(|time| time.material.as_str()).collect();
     names.dedup();
@@ -58,8 +62,8 @@ fn materials(times: &[Time]) -> Vec<&str> {
 
 fn ways(times: &[Time]) -> Vec<&str> {
     let first = times.first().map(|time| (time.material.as_str(), time.samples));
-    let is_first = |time: &&Time| Some((time.material.as_str(), time.samples)) == first;
-    times.iter().filter(is_first).map(|time| time.way.as_str()).collect()
+    let of_first = times.iter().filter(|time| Some((time.material.as_str(), time.samples)) == first);
+    of_first.map(|time| time.way.as_str()).collect()
 }
 
 fn ratios(page: &mut String, times: &[Time]) {
@@ -73,8 +77,7 @@ fn ratios(page: &mut String, times: &[Time]) {
          | material | way | ms | deviation | simulation over it | one facet over it | the paper |\n|---|---|--:|--:|--:|--:|--:|\n"
     );
     for material in materials(times) {
-        let of = |way: &str| find(times, material, way, most).map_or(f64::NAN, |time| time.spread.median);
-        let (walks, one) = (of("simulation"), of("simulation, one facet"));
+        let [walks, one] = ["simulation", "simulation, one facet"].map(|way| median(times, material, way, most));
         for way in ways(times) {
             let Some(time) = find(times, material, way, most) else { continue };
             let paper = if way == "yamaguchi" { format!("{PAPER:.1}") } else { "-".to_owned() };
@@ -102,12 +105,12 @@ fn curves(page: &mut String, times: &[Time]) {
     let _ = writeln!(page, " yamaguchi over belcour |\n|---|--:|{}--:|", "--:|".repeat(ways(times).len()));
     for material in materials(times) {
         for samples in SAMPLES {
-            let of = |way: &str| find(times, material, way, samples).map_or(f64::NAN, |time| time.spread.median);
             let _ = write!(page, "| {material} | {samples} |");
             for way in ways(times) {
-                let _ = write!(page, " {:.0} |", of(way));
+                let _ = write!(page, " {:.0} |", median(times, material, way, samples));
             }
-            let _ = writeln!(page, " {:+.0} % |", 100.0 * (of("yamaguchi") / of("belcour") - 1.0));
+            let [yamaguchi, belcour] = ["yamaguchi", "belcour"].map(|way| median(times, material, way, samples));
+            let _ = writeln!(page, " {:+.0} % |", 100.0 * (yamaguchi / belcour - 1.0));
         }
     }
     page.push('\n');

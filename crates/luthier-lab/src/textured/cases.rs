@@ -19,25 +19,25 @@ const FLAKES: &str =
     "[effects.flakes]\ncells = { seed = 5, count = 64, spread_deg = 12 }\ntiling = 40\nscale = 0.8\nfade_start = 2\n";
 const GLITTER: &str = "[effects.glitter]\nseed = 9\nfrequency = 60\nfilled = 0.5\ntilt_deg = 20\n";
 
-/// Maps of the layer before, by key; the pictures are those of the grammar.
+/// Maps of the layer before, by key, with the pictures of the grammar.
 fn maps(keys: &[&str]) -> String {
-    let picture = |key: &str| match key {
-        "normal" | "bumps" => "bumps.png",
-        "albedo" | "base_color" => "paint.png",
-        "tangent" => "circles.png",
-        _ => "thickness.png",
-    };
-    let all: Vec<String> = keys.iter().map(|key| format!("{key} = \"{}\"", picture(key))).collect();
-    format!("maps = {{ {} }}\n", all.join(", "))
+    let maps = keys.iter().map(|key| match *key {
+        "normal" | "bumps" => format!("{key} = \"bumps.png\""),
+        "albedo" | "base_color" => format!("{key} = \"paint.png\""),
+        "tangent" => format!("{key} = \"circles.png\""),
+        _ => format!("{key} = \"thickness.png\""),
+    });
+    format!("maps = {{ {} }}\n", maps.collect::<Vec<_>>().join(", "))
 }
 
-/// Names and texts.
+/// A coat with maps on a base with maps.
+fn coat(keys: &[&str], base: &[&str], below: &str) -> String {
+    let [own, base] = [keys, base].map(|keys| if keys.is_empty() { String::new() } else { maps(keys) });
+    [COAT, &own, below, &base].concat()
+}
+
+/// Names and texts of the materials.
 fn texts() -> Vec<(&'static str, String)> {
-    let of = |parts: &[&str]| parts.concat();
-    let coat = |keys: &[&str], base: &[&str], below: &str| {
-        let own = if base.is_empty() { String::new() } else { maps(base) };
-        of(&[COAT, &if keys.is_empty() { String::new() } else { maps(keys) }, below, &own])
-    };
     vec![
         ("roughness", coat(&["roughness"], &[], WOOD)),
         ("thickness", coat(&["thickness"], &[], WOOD)),
@@ -50,36 +50,36 @@ fn texts() -> Vec<(&'static str, String)> {
         ("normal-thickness-albedo", coat(&["normal", "thickness"], &["albedo"], WHITE)),
         ("roughness-thickness", coat(&["roughness", "thickness"], &[], WOOD)),
         ("roughness-thickness-albedo", coat(&["roughness", "thickness"], &["albedo"], WHITE)),
-        ("metal-roughness", of(&[VARNISH, &maps(&["roughness"]), METAL])),
-        ("metal-thickness", of(&[VARNISH, &maps(&["thickness"]), METAL])),
-        ("film", of(&[FILM, VARNISH, METAL])),
-        ("film-albedo", of(&[FILM, VARNISH, WHITE, &maps(&["albedo"])])),
-        ("film-roughness", of(&[FILM, VARNISH, &maps(&["roughness"]), METAL])),
-        ("patina", of(&[VARNISH, METAL, PATINA])),
-        ("patina-scatters", of(&[VARNISH, METAL, PATINA, SCATTERS])),
-        ("flakes", of(&[VARNISH, METAL, FLAKES])),
-        ("flakes-roughness", of(&[VARNISH, &maps(&["roughness"]), METAL, FLAKES])),
-        ("glitter", of(&[VARNISH, METAL, GLITTER])),
-        ("bumps-alpha", of(&[VARNISH, METAL, &maps(&["bumps", "alpha"])])),
-        ("inner-thickness", of(&[VARNISH, VARNISH, &maps(&["thickness"]), WOOD])),
-        ("tangent", of(&[BRUSHED, &maps(&["tangent", "alpha_x"])])),
-        ("coated-tangent", of(&[VARNISH, BRUSHED, &maps(&["tangent", "alpha_x"])])),
-        ("base-color-metallic", of(&[GLTF, &maps(&["base_color", "metallic"])])),
-        ("base-color-metallic-roughness", of(&[GLTF, &maps(&["base_color", "metallic", "roughness"])])),
-        ("coated-base-color-metallic", of(&[VARNISH, GLTF, &maps(&["base_color", "metallic"])])),
+        ("metal-roughness", [VARNISH, &maps(&["roughness"]), METAL].concat()),
+        ("metal-thickness", [VARNISH, &maps(&["thickness"]), METAL].concat()),
+        ("film", [FILM, VARNISH, METAL].concat()),
+        ("film-albedo", [FILM, VARNISH, WHITE, &maps(&["albedo"])].concat()),
+        ("film-roughness", [FILM, VARNISH, &maps(&["roughness"]), METAL].concat()),
+        ("patina", [VARNISH, METAL, PATINA].concat()),
+        ("patina-scatters", [VARNISH, METAL, PATINA, SCATTERS].concat()),
+        ("flakes", [VARNISH, METAL, FLAKES].concat()),
+        ("flakes-roughness", [VARNISH, &maps(&["roughness"]), METAL, FLAKES].concat()),
+        ("glitter", [VARNISH, METAL, GLITTER].concat()),
+        ("bumps-alpha", [VARNISH, METAL, &maps(&["bumps", "alpha"])].concat()),
+        ("inner-thickness", [VARNISH, VARNISH, &maps(&["thickness"]), WOOD].concat()),
+        ("tangent", [BRUSHED, &maps(&["tangent", "alpha_x"])].concat()),
+        ("coated-tangent", [VARNISH, BRUSHED, &maps(&["tangent", "alpha_x"])].concat()),
+        ("base-color-metallic", [GLTF, &maps(&["base_color", "metallic"])].concat()),
+        ("base-color-metallic-roughness", [GLTF, &maps(&["base_color", "metallic", "roughness"])].concat()),
+        ("coated-base-color-metallic", [VARNISH, GLTF, &maps(&["base_color", "metallic"])].concat()),
     ]
 }
 
 /// The materials; their maps lie beside this crate's sources.
 pub(super) fn all() -> Vec<Material> {
-    let material = |(name, body): (&str, String)| {
+    let materials = texts().into_iter().map(|(name, body)| {
         let text = format!("schema = 1\nname = \"{name}\"\n{body}");
         let parsed = parse("textured.toml", &text, &|_| Err(std::io::Error::other("no file")));
         let mut material = parsed.unwrap_or_else(|errors| panic!("{}", errors[0].render(&text))).material;
         concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").clone_into(&mut material.source);
         material
-    };
-    texts().into_iter().map(material).collect()
+    });
+    materials.collect()
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ struct Judged {
 }
 
 impl Judged {
-    /// Whether the shader is what its tables are.
+    /// True where the shader agrees with its tables.
     fn holds(&self) -> bool {
         self.at.shader.as_ref().is_none_or(|shader| shader.not_finite == 0 && shader.relative_dim.p99 <= AT_PLACES)
     }
@@ -78,7 +78,7 @@ fn varies(material: &Material) -> bool {
     has_maps || material.effects != Effects::default() || film.is_some_and(Film::varies)
 }
 
-/// The material in the model that it would have if its file named none.
+/// The material with the model that it would have if its file named none.
 fn as_by_default(material: &Material) -> Option<Material> {
     let mut other = material.clone();
     other.bake.model = None;

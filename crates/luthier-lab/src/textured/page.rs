@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_report::{AT_PLACES, SimulatedAt, SimulatedErrors};
+use luthier_report::{AT_PLACES, SimulatedErrors};
 use luthier_terminal::{Failure, Outcome};
 
 use super::{Judged, THETAS_DEG};
@@ -73,9 +73,9 @@ fn shaders(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
 }
 
 fn rows(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
-    let simulated = || judged.iter().filter_map(|judged| Some((judged, judged.at.simulated.as_ref()?)));
-    let paths: u64 = simulated().map(|(_, found)| found.paths).sum();
-    let noise = simulated().map(|(_, found)| noise(found)).fold(0.0, f64::max);
+    let simulated: Vec<_> = judged.iter().filter_map(|judged| Some((judged, judged.at.simulated.as_ref()?))).collect();
+    let paths: u64 = simulated.iter().map(|(_, found)| found.paths).sum();
+    let noise = simulated.iter().map(|(_, found)| noise(found)).fold(0.0, f64::max);
     writeln!(
         out,
         "\n## Rows against the simulation\n\n{} million paths; the largest noise of a lobe error is {noise:.4}.\n",
@@ -85,12 +85,9 @@ fn rows(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
         out,
         "| material | places and angles | lobe error | albedo | grazing | misses |\n|---|--:|--:|--:|--:|--:|"
     )?;
-    for (Judged { name, .. }, found) in simulated() {
-        let worst = |of: fn(&SimulatedAt) -> [f64; 2]| {
-            let [error, noise] = found.worst(of);
-            format!("{error:.3} ± {noise:.3}")
-        };
-        let [lobe, albedo, grazing] = [worst(|v| v.lobe), worst(|v| v.albedo), worst(|v| v.grazing)];
+    for (Judged { name, .. }, found) in simulated {
+        let worst = [found.worst(|v| v.lobe), found.worst(|v| v.albedo), found.worst(|v| v.grazing)];
+        let [lobe, albedo, grazing] = worst.map(|[error, noise]| format!("{error:.3} ± {noise:.3}"));
         let (views, misses) = (found.views.len(), found.misses().count());
         writeln!(out, "| {name} | {views} | {lobe} | {albedo} | {grazing} | {misses} |")?;
     }
@@ -114,9 +111,9 @@ fn misses(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
     )?;
     writeln!(out, "| material | place | angle | what | fitted there | cause |\n|---|---|--:|---|---|---|")?;
     for (Judged { name, left_out, .. }, (worst, again)) in all {
-        let quantities = |view: &SimulatedAt| {
+        let [there, fitted] = [worst, again].map(|view| {
             format!("lobe {:.3}, albedo {:.3}, grazing {:.3}", view.lobe[0], view.albedo[0], view.grazing[0])
-        };
+        });
         let cause = if !left_out.is_empty() {
             format!("the model leaves out {}", left_out.join(", "))
         } else if again.misses().is_empty() {
@@ -125,7 +122,7 @@ fn misses(out: &mut String, judged: &[Judged]) -> std::fmt::Result {
             "shape: two lobes have not this one".to_owned()
         };
         let (place, theta_deg) = (&worst.place, worst.theta_deg);
-        writeln!(out, "| {name} | {place} | {theta_deg} | {} | {} | {cause} |", quantities(worst), quantities(again))?;
+        writeln!(out, "| {name} | {place} | {theta_deg} | {there} | {fitted} | {cause} |")?;
     }
     Ok(())
 }

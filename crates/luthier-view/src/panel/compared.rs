@@ -1,4 +1,4 @@
-//! Choice of the second picture, and what is known of the two.
+//! Choice of the second picture, and the comparison of the two.
 
 use eframe::egui::{ComboBox, RichText, Slider, SliderClamping, Ui};
 use luthier_manifest::{Form, ShadingModel};

@@ -1,5 +1,6 @@
 //! Cross-section through the material: a sketch, with the numbers of each part beside it.
 
+use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
     Color32, FontId, Galley, Mesh, Painter, Rect, RichText, Sense, Shape, Stroke, Ui, ecolor, pos2, vec2,
 };
@@ -54,19 +55,19 @@ pub(super) fn show(ui: &mut Ui, section: &CrossSection) {
 
 /// Name and numbers of a part.
 fn text(ui: &Ui, part: &Part, room: f32) -> Arc<Galley> {
-    use eframe::egui::text::{LayoutJob, TextFormat};
     let visuals = ui.visuals();
-    let format = |color| TextFormat { font_id: FontId::proportional(LETTERS), color, ..TextFormat::default() };
+    let [strong, weak, plain] = [visuals.strong_text_color(), visuals.weak_text_color(), visuals.text_color()]
+        .map(|color| TextFormat { font_id: FontId::proportional(LETTERS), color, ..TextFormat::default() });
     let mut job = LayoutJob::default();
     job.wrap.max_width = room;
     let name = match part.layer.filter(|_| part.kind != PartKind::Film) {
         Some(number) => format!("{} · {}", number + 1, part.label),
         None => part.label.clone(),
     };
-    job.append(&name, 0.0, format(visuals.strong_text_color()));
+    job.append(&name, 0.0, strong);
     for number in &part.numbers {
-        job.append(&format!("\n{} ", number.name), 0.0, format(visuals.weak_text_color()));
-        job.append(&number.value, 0.0, format(visuals.text_color()));
+        job.append(&format!("\n{} ", number.name), 0.0, weak.clone());
+        job.append(&number.value, 0.0, plain.clone());
     }
     ui.painter().layout_job(job)
 }

@@ -74,9 +74,6 @@ fn edits(app: &mut App, ui: &mut Ui) {
     if ui.small_button("copy").on_hover_text("the material as TOML, as edited (Ctrl+Shift+C)").clicked() {
         app.copy();
     }
-    let button = |ui: &mut Ui, is_enabled, name, hint| {
-        ui.add_enabled(is_enabled, Button::new(name).small()).on_hover_text(hint).clicked()
-    };
     if button(ui, app.history.can_redo(), "redo", "Ctrl+Shift+Z or Ctrl+Y") {
         app.redo();
     }
@@ -89,6 +86,11 @@ fn edits(app: &mut App, ui: &mut Ui) {
         }
         ui.label(RichText::new("edited").color(ui.visuals().hyperlink_color).size(11.5));
     }
+}
+
+/// Adds a small button. Returns true when it is clicked.
+fn button(ui: &mut Ui, is_enabled: bool, name: &str, hint: &str) -> bool {
+    ui.add_enabled(is_enabled, Button::new(name).small()).on_hover_text(hint).clicked()
 }
 
 fn choices(app: &mut App, ui: &mut Ui) {
@@ -176,16 +178,18 @@ fn number(ui: &mut Ui, parameter: &Parameter, value: &mut f64) -> bool {
 
 fn light(app: &mut App, ui: &mut Ui) {
     section(ui, "light", "light", |ui| {
-        let slider = |ui: &mut Ui, label: &str, value: &mut f32, range, unit: &str| {
+        let look = &mut app.look;
+        let sliders = [
+            ("exposure", &mut look.exposure_stops, -8.0..=8.0, " EV"),
+            ("light", &mut look.strength, 0.0..=8.0, ""),
+            ("azimuth", &mut look.azimuth_deg, -180.0..=180.0, "°"),
+            ("elevation", &mut look.elevation_deg, -90.0..=90.0, "°"),
+        ];
+        for (label, value, range, unit) in sliders {
             ui.label(label);
             ui.add(Slider::new(value, range).suffix(unit).max_decimals(2).clamping(SliderClamping::Edits));
             ui.end_row();
-        };
-        let look = &mut app.look;
-        slider(ui, "exposure", &mut look.exposure_stops, -8.0..=8.0, " EV");
-        slider(ui, "light", &mut look.strength, 0.0..=8.0, "");
-        slider(ui, "azimuth", &mut look.azimuth_deg, -180.0..=180.0, "°");
-        slider(ui, "elevation", &mut look.elevation_deg, -90.0..=90.0, "°");
+        }
         ui.label("surroundings");
         let chosen = app.surroundings.names().nth(look.surroundings).unwrap_or_default();
         ComboBox::from_id_salt("surroundings").selected_text(chosen).show_ui(ui, |ui| {
@@ -218,7 +222,6 @@ fn light(app: &mut App, ui: &mut Ui) {
 
 /// The line below the picture.
 pub(crate) fn status(app: &App, ui: &mut Ui) {
-    let small = |text: &str| RichText::new(text).size(11.5);
     ui.horizontal(|ui| {
         ui.label(small(app.state()).strong());
         ui.label(small(&app.status).weak());
@@ -227,6 +230,10 @@ pub(crate) fn status(app: &App, ui: &mut Ui) {
             ui.label(small(&app.adapter).weak());
         });
     });
+}
+
+fn small(text: &str) -> RichText {
+    RichText::new(text).size(11.5)
 }
 
 /// Keys and mouse.

@@ -24,7 +24,7 @@ pub enum Handle {
     IorK(usize),
     /// Reflectance at normal incidence of an interface without an index: red, green or blue.
     F0(usize, usize),
-    /// Thickness of a slab in um: what absorbs.
+    /// Thickness of an absorbing slab in um.
     SlabThickness(usize),
     /// Absorption of a slab in 1/um: red, green or blue.
     Absorption(usize, usize),
@@ -155,7 +155,7 @@ fn layer(material: &Material, i: usize) -> Group {
         }
     }
     match &layer.base {
-        // What enters the last dielectric is lost: its slab is of no consequence.
+        // Light that enters the last dielectric is lost, so its slab has no effect.
         Base::Dielectric { .. } if i + 1 < material.stack.layers.len() => {
             parameters.push(logarithmic(Handle::SlabThickness(i), "thickness", " µm", 0.0..=1000.0));
             for (c, label) in ["absorption r", "absorption g", "absorption b"].into_iter().enumerate() {
@@ -231,7 +231,7 @@ impl Unit {
         if self == Self::Degrees { number.to_degrees() } else { number }
     }
 
-    /// The number of a material, as the reader of files makes it of this one.
+    /// The number that the reader of files makes of this one.
     fn held(self, shown: f64) -> f64 {
         if self == Self::Degrees { shown.to_radians() } else { shown }
     }
@@ -250,8 +250,8 @@ impl Handle {
         }
     }
 
-    /// Changes the number, as far as its range and its neighbours allow; and the class of the surface with it. Values that
-    /// are not finite change nothing.
+    /// Changes the number within its range and as its neighbours allow, and updates the class of the surface. Values that are not finite change
+    /// nothing.
     pub fn set(self, material: &mut Material, value: f64) {
         let known = groups(material).into_iter().flat_map(|group| group.parameters).find(|p| p.handle == self);
         let Some(parameter) = known.filter(|_| value.is_finite()) else { return };
@@ -268,7 +268,7 @@ impl Handle {
         material.class = SurfaceClass::of(&material.stack);
     }
 
-    /// Moves what may not stay where it is beside a new value.
+    /// Adjusts numbers that a new value no longer allows.
     fn agree(self, material: &mut Material) {
         match self {
             Self::Alpha(i) => {

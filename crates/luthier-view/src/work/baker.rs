@@ -12,7 +12,7 @@ use crate::error::ViewError;
 use crate::host::Host;
 use crate::work::latest::Latest;
 
-/// How a picture comes about.
+/// The way of making a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     /// By the shader of a model in this form.
@@ -62,40 +62,42 @@ impl Baker {
     pub(crate) fn start(host: Arc<dyn Host>, context: egui::Context) -> Result<Self, ViewError> {
         let (orders, results) = (Arc::new(Latest::<BakeOrder>::default()), Arc::new(Latest::default()));
         let (todo, done) = (Arc::clone(&orders), Arc::clone(&results));
-        let work = move || {
-            // A side that did not change keeps its package, and with it pipelines and samples.
-            let mut last: [Option<(Subject, Ready)>; 2] = [None, None];
-            while let Some(BakeOrder { version, subjects }) = todo.wait() {
-                let mut bake = |side: usize, subject: Option<Subject>| {
-                    let subject = subject?;
-                    if let Some((of, ready)) = &last[side]
-                        && *of == subject
-                    {
-                        return Some(Ok(ready.clone()));
-                    }
-                    let package = match subject.way {
-                        Way::Shader(form) => host.bake(&subject.material, form),
-                        Way::Simulation => host.simulated(&subject.material),
-                    };
-                    Some(package.map(|package| {
-                        let ready = Ready { package: Arc::new(package), way: subject.way };
-                        last[side] = Some((subject, ready.clone()));
-                        ready
-                    }))
-                };
-                let [first, second] = subjects;
-                let sides = [bake(0, first), bake(1, second)];
-                done.put(Baked { version, sides });
-                context.request_repaint();
-            }
-        };
-        thread::Builder::new().name("luthier baker".to_owned()).spawn(work).map_err(ViewError::Thread)?;
+        let builder = thread::Builder::new().name("luthier baker".to_owned());
+        builder.spawn(move || work(&*host, &todo, &done, &context)).map_err(ViewError::Thread)?;
         Ok(Self { orders, results })
     }
 }
 
+/// Bakes the latest order, until the orders end.
+fn work(host: &dyn Host, orders: &Latest<BakeOrder>, results: &Latest<Baked>, context: &egui::Context) {
+    // A side that did not change keeps its package, and with it pipelines and samples.
+    let mut last: [Option<(Subject, Ready)>; 2] = [None, None];
+    while let Some(BakeOrder { version, subjects }) = orders.wait() {
+        let [first, second] = subjects;
+        let first = first.map(|subject| bake(host, &mut last[0], subject));
+        let sides = [first, second.map(|subject| bake(host, &mut last[1], subject))];
+        results.put(Baked { version, sides });
+        context.request_repaint();
+    }
+}
+
+fn bake(host: &dyn Host, last: &mut Option<(Subject, Ready)>, subject: Subject) -> Result<Ready, String> {
+    if let Some((of, ready)) = last
+        && *of == subject
+    {
+        return Ok(ready.clone());
+    }
+    let package = match subject.way {
+        Way::Shader(form) => host.bake(&subject.material, form),
+        Way::Simulation => host.simulated(&subject.material),
+    };
+    let ready = Ready { package: Arc::new(package?), way: subject.way };
+    *last = Some((subject, ready.clone()));
+    Ok(ready)
+}
+
 impl Drop for Baker {
-    /// The thread ends after the bake that it is at; nobody waits for it.
+    /// Closes the orders. The thread ends after its present bake, and the window does not wait for it.
     fn drop(&mut self) {
         self.orders.close();
     }

@@ -39,7 +39,7 @@ impl<T> Latest<T> {
         if slot.closed { None } else { slot.value.take() }
     }
 
-    /// Whether someone who works on an older value should stop.
+    /// True where work on an older value should stop.
     pub(crate) fn is_outdated(&self) -> bool {
         let slot = self.lock();
         slot.closed || slot.value.is_some()

@@ -18,10 +18,10 @@ use crate::work::latest::Latest;
 use crate::work::stages::{Goal, MOVING_SECONDS, Stage, affordable};
 use crate::work::view::View;
 
-/// Longest side of a rendering that is compared: the paths of every pixel are followed, and their sums kept.
+/// Longest side of a rendering that is compared. Its time and memory grow with every pixel, because paths are traced and summed for each.
 const COMPARED_SIDE_MAX: u32 = 1024;
 
-/// Seconds per evaluation, and per path, before any was measured: those of a software adapter.
+/// Seconds per evaluation and per path until they are measured: those of a software adapter.
 const SECONDS_AT_FIRST: [f64; 2] = [5e-7, 5e-6];
 
 /// A picture to make, and one to make beside it.
@@ -41,9 +41,9 @@ pub(crate) struct PaintOrder {
 pub(crate) struct Painted {
     /// Version of the order.
     pub(crate) version: u64,
-    /// Whether nothing more of the order follows.
+    /// True where the order is finished.
     pub(crate) finished: bool,
-    /// Pictures so far: that of the material, and the one beside it; or why there is none.
+    /// Pictures so far, of the material and beside it, or the reason why there is none.
     pub(crate) pictures: [Option<Result<Picture, String>>; 2],
     /// Progress of a simulated picture.
     pub(crate) progress: Option<Progress>,
@@ -87,15 +87,14 @@ impl Painter {
             gathering: Gathering::default(),
             seconds: SECONDS_AT_FIRST,
         };
-        let work = move || worker.work();
-        let thread =
-            thread::Builder::new().name("luthier painter".to_owned()).spawn(work).map_err(ViewError::Thread)?;
+        let builder = thread::Builder::new().name("luthier painter".to_owned());
+        let thread = builder.spawn(move || worker.work()).map_err(ViewError::Thread)?;
         Ok(Self { orders, painted, thread: Some(thread) })
     }
 }
 
 impl Drop for Painter {
-    /// Waits for the end of the pass at hand: drivers do not like to be left at work.
+    /// Waits for the end of the present pass: a process should not end while a driver works.
     fn drop(&mut self) {
         self.orders.close();
         if let Some(thread) = self.thread.take() {
@@ -139,7 +138,7 @@ impl Worker {
         }
     }
 
-    /// Renders the stages of the material, each followed by that of the other side; then gathers paths.
+    /// Renders the stages of the material, each followed by the same stage of the other side. Then gathers paths.
     fn paint(&mut self, order: &PaintOrder, made: &mut Made) -> Result<(), GpuError> {
         self.prepare(0, &order.side)?;
         let view = &order.view;
@@ -286,8 +285,8 @@ impl Worker {
         };
     }
 
-    /// Directions of the environment at rest: blurred maps need the tables, and know no layer's own textures; and pictures that are compared
-    /// differ by nothing but what they are compared for.
+    /// Directions of the environment at rest. Blurred maps need tables and ignore textures of single layers. Compared pictures must differ only by
+    /// what is compared, so both sides take directions then.
     fn directions(&self, order: &PaintOrder) -> Result<u32, GpuError> {
         let asked = order.view.environment_samples;
         let Some((_, scene)) = &self.scenes[0] else { return Ok(asked) };
@@ -295,7 +294,7 @@ impl Worker {
         Ok(if reads_maps { asked } else { asked.max(SAMPLED_DIRECTIONS) })
     }
 
-    /// Makes the scene of a side: the one at hand where it serves, else with other materials, else compiled.
+    /// Makes the scene of a side: reuses the present one if possible, else gives it other materials, else compiles.
     fn prepare(&mut self, side: usize, ready: &Ready) -> Result<(), GpuError> {
         let form = match ready.way {
             Way::Shader(form) => form,
@@ -349,7 +348,7 @@ impl Worker {
 }
 
 impl Made {
-    /// Keeps a refusal in place of the other picture. Returns whether there was time, which a refusal takes none of.
+    /// Keeps a refusal in place of the other picture. Returns true, because a refusal takes no time.
     fn unless_refused(&mut self, is_in_time: Result<bool, GpuError>) -> bool {
         is_in_time.unwrap_or_else(|error| {
             self.pictures[1] = Some(Err(error.to_string()));
@@ -358,7 +357,7 @@ impl Made {
         })
     }
 
-    /// Whether nothing speaks against the other side.
+    /// True where the other side has no refusal.
     fn is_comparable(&self) -> bool {
         !matches!(self.pictures[1], Some(Err(_)))
     }

@@ -11,7 +11,7 @@ pub(crate) struct Stage {
     pub(crate) environment_samples: u32,
 }
 
-/// Quality that a view is to reach.
+/// Final quality of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Goal {
     /// Side of the square rendering, in pixels of the window.
@@ -20,7 +20,7 @@ pub(crate) struct Goal {
     pub(crate) samples: u32,
     /// Directions of the environment at the end; 0 where maps serve.
     pub(crate) environment_samples: u32,
-    /// Whether it will be outdated in a moment: then there is one coarse stage only.
+    /// True while the view moves. It then has one coarse stage only.
     pub(crate) moving: bool,
 }
 
@@ -36,7 +36,7 @@ const COARSEST: f64 = 96.0;
 /// Directions of the environment in a coarse and in the first full rendering.
 const FEW_DIRECTIONS: [u32; 2] = [3, 8];
 
-/// Side of a picture of so many pixels: none is smaller than the coarsest, and none larger than `side`.
+/// Side of a picture with `pixels` pixels, between the coarsest and `side`.
 pub(crate) fn affordable(side: f64, pixels: f64) -> f64 {
     pixels.sqrt().clamp(COARSEST.min(side), side)
 }
@@ -55,8 +55,9 @@ impl Goal {
         if self.moving {
             return vec![draft];
         }
-        let full = |samples, environment_samples| Stage { scale: 1.0, samples, environment_samples };
-        let mut stages = vec![full(1, first), full(self.samples, self.environment_samples)];
+        let full = [(1, first), (self.samples, self.environment_samples)];
+        let full = full.map(|(samples, environment_samples)| Stage { scale: 1.0, samples, environment_samples });
+        let mut stages = full.to_vec();
         stages.dedup();
         if side * side * seconds * f64::from(1 + first) > PATIENCE {
             stages.insert(0, draft);

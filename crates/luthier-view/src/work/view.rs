@@ -5,13 +5,13 @@ use luthier_gpu::Shape;
 use crate::look::Look;
 use crate::orbit::Orbit;
 
-/// View that is seen: the shape, its light, and the place of the eye.
+/// A view: the shape, its light, and the place of the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct View {
     pub(crate) shape: Shape,
     pub(crate) orbit: Orbit,
     pub(crate) look: Look,
-    /// Colour behind the shape where it is not the surroundings.
+    /// Colour behind the shape if the surroundings are not shown.
     pub(crate) backdrop: [f32; 3],
     /// Pixels across and down.
     pub(crate) size: [u32; 2],

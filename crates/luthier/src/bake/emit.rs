@@ -9,28 +9,31 @@ use rayon::prelude::*;
 
 use crate::Error;
 
-/// Emits and validates the shaders, and describes what they bind. The bindings are those of the first form.
+/// Emits and validates the shaders, and lists the bindings of the first form in the manifest.
 pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) -> Result<(), Error> {
     let manifest = &mut package.manifest;
     manifest.material_texture = MaterialTexture::of(material_buffer(&manifest.materials).len());
     let set = MaterialSet::from_manifest(manifest);
-    // A form declares alike in all languages.
+    // A form has one interface in all languages.
     let interfaces = forms.par_iter().map(|&form| Ok((form, luthier_shader::interface(&set, form)?)));
     let interfaces = interfaces.collect::<Result<Vec<_>, ShaderError>>()?;
     let wanted: Vec<_> = interfaces.iter().flat_map(|declared| targets.iter().map(move |&to| (declared, to))).collect();
-    let shader = |((form, interface), target): (&(Form, Interface), Target)| {
-        let bytes = match target {
-            Target::SpirV => luthier_shader::emit_spirv(&set, *form),
-            _ => luthier_shader::emit(&set, *form, target).map(String::into_bytes),
-        };
-        Ok(Shader { form: *form, target, bytes: bytes?, interface: interface.clone() })
-    };
-    package.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
+    let shaders = wanted.into_par_iter().map(|((form, interface), target)| shader(&set, *form, interface, target));
+    package.shaders = shaders.collect::<Result<_, ShaderError>>()?;
     manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
     Ok(())
 }
 
-/// The package of some of the materials of a package, by their numbers: with all tables, without surfaces, and with shaders for these materials alone.
+/// The text or the SPIR-V of a set of materials in a form, with the interface of the form.
+fn shader(set: &MaterialSet, form: Form, interface: &Interface, target: Target) -> Result<Shader, ShaderError> {
+    let bytes = match target {
+        Target::SpirV => luthier_shader::emit_spirv(set, form),
+        _ => luthier_shader::emit(set, form, target).map(String::into_bytes),
+    };
+    Ok(Shader { form, target, bytes: bytes?, interface: interface.clone() })
+}
+
+/// A package of some materials of another, by number: with all tables, without surfaces, and with shaders for these materials alone.
 ///
 /// # Errors
 /// [`Error::Shader`].
@@ -49,9 +52,8 @@ pub fn of_materials(all: &Package, numbers: Range<usize>) -> Result<Package, Err
             forms.push(*form);
         }
     }
-    // Forms that only others lack.
-    let is_new = |form: &Form| !all.manifest.has(*form) && package.manifest.has(*form);
-    forms.extend(Form::ALL.into_iter().filter(is_new));
+    // Forms that only the other materials lack.
+    forms.extend(Form::ALL.into_iter().filter(|&form| !all.manifest.has(form) && package.manifest.has(form)));
     emit(&mut package, &targets, &forms)?;
     Ok(package)
 }

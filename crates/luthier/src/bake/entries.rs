@@ -53,7 +53,7 @@ pub(super) fn material_entries(
     Ok((entries, maps))
 }
 
-/// The hash of a material file and of all that it names: of its text, followed by the hash of each file, if it names any.
+/// The hash of a material file and of the files that it names: of its text, followed by the hash of each file.
 ///
 /// # Errors
 /// [`Error::File`].

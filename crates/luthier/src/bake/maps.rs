@@ -4,31 +4,18 @@ use luthier_bake::{MapSource, MaterialMap, height_normals};
 use luthier_export::sha256;
 use luthier_lut::{Image, Picture, PictureSamples};
 use luthier_manifest::{FileEntry, MapEntry};
-use luthier_material::Material;
-use luthier_texture::{TextureError, png};
+use luthier_material::{Material, PictureRef};
+use luthier_texture::png;
 
 use crate::{Error, pictures};
 
 /// A map as it ships: a picture as its material reads it, noise as a grey PNG.
 pub(super) fn shipped(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Picture, Vec<u8>), Error> {
-    let unusable = |reason| Error::Map { material: material.source.clone(), map: map.source.label(), reason };
-    let sentence = |source: TextureError| unusable(source.to_string());
-    let (named, (picture, bytes)) = match &map.source {
-        MapSource::Picture(named, texels) => {
-            let read = pictures::read(&material.source, named, *texels).map_err(unusable)?;
-            (Some(named), pictures::file(read, named).map_err(unusable)?)
-        }
-        MapSource::Heights { picture: named, height } => {
-            let heights = pictures::read_image(&material.source, named).map_err(unusable)?;
-            let normals = height_normals(&heights, *height);
-            let bytes = png::encode_rgb(normals.width, normals.height, &codes(&normals)).map_err(sentence)?;
-            (Some(named), (bits8(&normals), bytes))
-        }
-        MapSource::Noise { .. } => {
-            let texels = map.source.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
-            (None, (bits8(&texels), png::encode_gray(&texels).map_err(sentence)?))
-        }
-    };
+    let (named, (picture, bytes)) = drawn(&material.source, &map.source).map_err(|reason| Error::Map {
+        material: material.source.clone(),
+        map: map.source.label(),
+        reason,
+    })?;
     let layer = map.layer.map_or_else(String::new, |layer| format!("-{layer}"));
     let path = format!("maps/{}-{}{layer}.png", material.name, map.slot.name());
     let entry = MapEntry {
@@ -43,6 +30,25 @@ pub(super) fn shipped(material: &Material, map: &MaterialMap) -> Result<(MapEntr
         transform: named.and_then(|named| named.transform).map(|transform| transform.matrix()),
     };
     Ok((entry, picture, bytes))
+}
+
+/// The picture that a map names, if it names one, and the texels of the map with their file.
+fn drawn<'m>(material: &str, map: &'m MapSource) -> Result<(Option<&'m PictureRef>, (Picture, Vec<u8>)), String> {
+    match map {
+        MapSource::Picture(named, texels) => {
+            let read = pictures::read(material, named, *texels)?;
+            Ok((Some(named), pictures::file(read, named)?))
+        }
+        MapSource::Heights { picture: named, height } => {
+            let normals = height_normals(&pictures::read_image(material, named)?, *height);
+            let bytes = png::encode_rgb(normals.width, normals.height, &codes(&normals));
+            Ok((Some(named), (bits8(&normals), bytes.map_err(|source| source.to_string())?)))
+        }
+        MapSource::Noise { .. } => {
+            let texels = map.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
+            Ok((None, (bits8(&texels), png::encode_gray(&texels).map_err(|source| source.to_string())?)))
+        }
+    }
 }
 
 /// Values from 0 to 1 as codes of 8 bits.

@@ -22,7 +22,7 @@ use crate::{Error, Shading, Sources, read_image};
 pub use emit::of_materials;
 pub use entries::source_hash;
 
-/// How a package is made, beside what its materials say. The default is all that `luthier bake` writes.
+/// The options of a bake. The default makes the package that `luthier bake` writes.
 ///
 /// ```
 /// use luthier::{Bake, Form, MemoryStore, Target};
@@ -38,7 +38,7 @@ pub use entries::source_hash;
 pub struct Bake<'a> {
     /// Models, and forms of the shaders.
     pub shading: Shading,
-    /// Limits, formats, whether tables are searched for.
+    /// Limits and formats of tables, and whether they are searched for.
     pub options: Options<'a>,
     /// Languages of the shaders.
     pub targets: Vec<Target>,
@@ -46,9 +46,9 @@ pub struct Bake<'a> {
     pub functions: Functions,
     /// Surfaces of the materials, by their numbers.
     pub surfaces: Vec<SurfaceEntry>,
-    /// Told what happens; may cancel the bake.
+    /// The observer of all jobs, which may cancel the bake.
     pub observer: &'a dyn Observer,
-    /// Whether materials outside the domain of their model are refused; tests at the limits of models take them.
+    /// True where materials outside the domain of their model are refused. Tests at the limits of models set it to false.
     pub refuses: bool,
 }
 
@@ -73,20 +73,20 @@ impl<'a> Bake<'a> {
         Self { shading, targets: vec![Target::Wgsl], ..Self::default() }
     }
 
-    /// A package for a renderer: all forms of the shader in WGSL, with functions that show an environment, blurred beforehand and in directions that
-    /// are drawn. [`lit`](crate::lit) gives its materials the tables that such a renderer reads.
+    /// A package for a renderer: all forms of the shader in WGSL, with functions for a blurred environment and for drawn directions.
+    /// [`lit`](crate::lit) gives its materials the tables that such a renderer reads.
     pub fn lit() -> Self {
         Self { functions: [FunctionGroup::Environment, FunctionGroup::Sample].into_iter().collect(), ..Self::wgsl(&[]) }
     }
 
-    /// With shaders of some forms alone.
+    /// Restricts the shaders to some forms.
     #[must_use]
     pub fn in_forms(mut self, forms: &[Form]) -> Self {
         self.shading.forms = forms.to_vec();
         self
     }
 
-    /// Bakes the materials and surfaces of sources, which were refused where that was called for ([`Sources::refuse`]).
+    /// Bakes the materials and surfaces of sources. Call [`Sources::refuse`] first: its diagnostics have places in the files.
     ///
     /// # Errors
     /// [`Error`]; [`Error::Refused`] where a source is unusable, or is a scene: luthier-scene chooses the models of its materials.
@@ -103,8 +103,9 @@ impl<'a> Bake<'a> {
         Self { surfaces, ..self.clone() }.package(&sources.materials(&Shading::default()), store)
     }
 
-    /// Bakes materials: tables as they need, then shaders that read them. What the store has is not computed again; what is computed goes
-    /// into it. Files that materials name are read beside the materials' own files.
+    /// Bakes materials: the tables that they need, then shaders that read these tables. Results that the store has are not computed again; new
+    /// results go into it. A file that a material names is found relative to the material's own file. The bytes of the package depend on the
+    /// arguments and the files only.
     ///
     /// ```
     /// use luthier::{Bake, Form, MemoryStore};
@@ -116,7 +117,7 @@ impl<'a> Bake<'a> {
     /// ```
     ///
     /// # Errors
-    /// [`Error`]. The bytes depend on nothing but the arguments and the files.
+    /// [`Error`].
     pub fn package(&self, materials: &[Material], store: &dyn Store) -> Result<Package, Error> {
         let (materials, forms) = &self.settled(materials)?;
         let read = &read_image as ImageReader<'_>;
@@ -133,7 +134,7 @@ impl<'a> Bake<'a> {
         Ok(package)
     }
 
-    /// Computes a share of the jobs of a bake into a store: the bake that follows finds the results there.
+    /// Computes a share of a bake's jobs into a store, where the bake that follows finds the results.
     ///
     /// # Errors
     /// [`Error`].
@@ -175,13 +176,12 @@ impl<'a> Bake<'a> {
         atlases: Vec<Atlas>,
     ) -> Result<Package, Error> {
         let (entries, maps) = material_entries(materials, baked)?;
-        let entry = |atlas: &Atlas| TableEntry {
+        let tables = atlases.iter().map(|atlas| TableEntry {
             tiles: atlas.tiles.clone(),
             ..table_entry(atlas.kind, &atlas.layout, atlas.format)
-        };
-        let tables = atlases.iter().map(entry).collect();
+        });
         let (functions, surfaces) = (self.functions.clone(), self.surfaces.clone());
-        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables) };
+        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables.collect()) };
         let table =
             |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
         let tables = atlases.into_iter().map(table).collect();
@@ -192,8 +192,8 @@ impl<'a> Bake<'a> {
     }
 }
 
-/// The manifest that a bake of these materials would have, without its files: materials, tables without tiles, searches. Takes little
-/// computing, unless a material has a budget or lobes, of which the store has what was computed before.
+/// The manifest of a bake that is not made: materials, tables without tiles, searches, no files. This takes little computing, unless a material has a
+/// budget or lobes; then it helps if the store has their results.
 ///
 /// # Errors
 /// [`Error`].
@@ -207,11 +207,11 @@ pub fn outline(materials: &[Material], options: &Options<'_>, store: &dyn Store)
 /// Tables that the environment of pictures reads beside the shader: reflectance and albedo of every interface.
 const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film];
 
-/// Texels of the energies of rough interfaces, over the view and the slope parameter, where pictures alone read them. A table of the size that a bake
-/// looks for takes three times as long, more than all the rest of a first picture.
+/// Texels of the table of energies, over the view and the slope parameter, if only pictures read it. A table of the size that a bake searches for
+/// takes three times as long, more than all the rest of a first picture.
 const ENERGY_SIZE: [u32; 2] = [32, 16];
 
-/// The materials, each asking for the tables that blurred environments read, too, as far as its distributions of slopes have them.
+/// Copies of materials that also ask for the tables that a blurred environment reads, as far as their slope distributions have such tables.
 pub fn lit(materials: &[Material]) -> Vec<Material> {
     let mut lit = materials.to_vec();
     let is_of_pictures =
@@ -219,7 +219,7 @@ pub fn lit(materials: &[Material]) -> Vec<Material> {
     let is_small = materials.iter().all(is_of_pictures);
     // Lobes have their own energies.
     for material in lit.iter_mut().filter(|material| !material.model().is_fitted()) {
-        // Of facets without walks there are no albedos: renderers draw directions.
+        // Facets without walks have no table of albedos: renderers draw directions instead.
         let has_walks = material.stack.layers.iter().all(|layer| layer.surface.distribution.has_walks());
         let tables = ENVIRONMENT_TABLES.into_iter().filter(|kind| has_walks || *kind != TableKind::Fgd);
         material.bake.tables.extend(tables);
@@ -243,15 +243,17 @@ fn refused(diagnostics: Vec<Diagnostic>) -> Error {
     Error::Refused { sentence, diagnostics }
 }
 
-/// The forms of the shaders of materials: those that are asked for, or all that the models of all materials have.
+/// The forms of the shaders: those asked for, or every form that the models of all materials have.
 fn forms(materials: &[Material], asked: &[Form]) -> Result<Vec<Form>, Error> {
     let lacking = |form: Form| materials.iter().find(|material| !material.model().has(form));
+    if asked.is_empty() {
+        return Ok(Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect());
+    }
     for &form in asked {
         if let Some(material) = lacking(form) {
             let (material, model) = (material.name.clone(), material.model());
             return Err(ShaderError::NoForm { material, model, form }.into());
         }
     }
-    let all = || Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect();
-    Ok(if asked.is_empty() { all() } else { asked.to_vec() })
+    Ok(asked.to_vec())
 }

@@ -1,4 +1,4 @@
-//! Errors of the numbers of the model `granier-heidrich`: of files whose model is another, and of parts that a material does not have.
+//! Errors about numbers of the model `granier-heidrich`: the material has another model, or lacks the part that a number describes.
 
 use luthier_manifest::ModelPart;
 use luthier_manifest::ShadingModel;
@@ -8,7 +8,7 @@ use luthier_optics::stack::Base;
 const TABLE: &str = "bake.granier-heidrich";
 const EXPONENTS: &str = "layer.0.exponents";
 
-/// The keys that give numbers of the model: exponents of the first layer, and the table of `[bake]`.
+/// The keys of the model's numbers that a material has: exponents of the first layer, and the table of `[bake]`.
 pub(crate) fn keys(material: &Material) -> impl Iterator<Item = &'static str> {
     let has_exponents = material.layers.first().is_some_and(|first| first.exponents.is_some());
     let given = [(EXPONENTS, has_exponents), (TABLE, material.bake.beams.is_some())];
@@ -17,21 +17,8 @@ pub(crate) fn keys(material: &Material) -> impl Iterator<Item = &'static str> {
 
 /// Errors for a material that `model` shades.
 pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnostic> {
-    let error = |key: &str, message: String, hint: &str| {
-        material.diagnostic(Severity::Error, key, message, Some(hint.to_owned()))
-    };
     if !model.takes(ModelPart::Beams) {
-        let refused = |key: &'static str| {
-            let name = key.rsplit_once('.').map_or(key, |(_, name)| name);
-            let (what, hint) = match key {
-                TABLE => ("numbers", "leave the table out, or write `[bake] model = \"granier-heidrich\"`"),
-                _ => ("lobes", "write `alpha` or `roughness`, or `[bake] model = \"granier-heidrich\"`"),
-            };
-            let message =
-                format!("`{name}` gives {what} of the model `granier-heidrich`, and this material has `{model}`");
-            error(key, message, hint)
-        };
-        return keys(material).map(refused).collect();
+        return keys(material).map(|key| of_other_model(material, model, key)).collect();
     }
     let mut errors = Vec::new();
     let Some(first) = material.stack.layers.first() else { return errors };
@@ -39,20 +26,35 @@ pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnost
     let tilt = format!("{TABLE}.inner_tilt_deg");
     if !has_inner && material.bake.beams.is_some_and(|beams| beams.inner_tilt != 0.0) {
         let message = "the first interface has neither film nor slab, so that no inner boundary could lean".to_owned();
-        errors.push(error(&tilt, message, "leave it out, or put a film or a dielectric on top"));
+        errors.push(error(material, &tilt, message, "leave it out, or put a film or a dielectric on top"));
     }
     if let (false, Some([outer, inner])) = (has_inner, material.layers.first().and_then(|first| first.exponents)) {
         let message = format!(
             "the first interface has neither film nor slab, so that no inner boundary has a lobe of exponent {inner}"
         );
         let hint = format!("write `alpha = {:.6}`, which is the exponent {outer}", (2.0 / (outer + 2.0)).sqrt());
-        errors.push(error(EXPONENTS, message, &hint));
+        errors.push(error(material, EXPONENTS, message, &hint));
     }
     let weight = format!("{TABLE}.diffuse_weight");
     let has_base = material.stack.layers.last().is_some_and(|last| matches!(last.base, Base::Diffuse(_)));
     if !has_base && material.places.has(&weight) {
         let message = "the material has no diffuse base, whose light this weight is a factor on".to_owned();
-        errors.push(error(&weight, message, "leave it out, or add a layer of type `diffuse`"));
+        errors.push(error(material, &weight, message, "leave it out, or add a layer of type `diffuse`"));
     }
     errors
+}
+
+/// The error for a key of beams in a material of a model without beams.
+fn of_other_model(material: &Material, model: ShadingModel, key: &str) -> Diagnostic {
+    let name = key.rsplit_once('.').map_or(key, |(_, name)| name);
+    let (what, hint) = match key {
+        TABLE => ("numbers", "leave the table out, or write `[bake] model = \"granier-heidrich\"`"),
+        _ => ("lobes", "write `alpha` or `roughness`, or `[bake] model = \"granier-heidrich\"`"),
+    };
+    let message = format!("`{name}` gives {what} of the model `granier-heidrich`, and this material has `{model}`");
+    error(material, key, message, hint)
+}
+
+fn error(material: &Material, key: &str, message: String, hint: &str) -> Diagnostic {
+    material.diagnostic(Severity::Error, key, message, Some(hint.to_owned()))
 }

@@ -1,9 +1,8 @@
-//! Doubts about energy: a model that returns more light than falls in, or other than a simulation of the layers.
+//! Doubts about energy: a model that returns more light than falls in, or an albedo that differs from a simulation of the layers.
 //!
-//! Both are measured here, in f64, at the numbers of the file: maps multiply them, so that they are those of white texels. Albedos of a model are
-//! sums over directions, those of the simulation ([`ColorPaths`]) means over paths. Three wavelengths stand for the colour. Effects are left out.
-//! A material takes some hundredths of a second, one with energies of rough interfaces some tenths; `lobes` takes nothing, because its albedos are
-//! those of the simulation.
+//! Both are measured here, in f64, with the numbers of the file, as at white texels of its maps. Albedos of a model are sums over directions; albedos
+//! of the simulation ([`ColorPaths`]) are means over paths. Three wavelengths stand for the colour. Effects are left out. A material takes some
+//! hundredths of a second, one with energies of rough interfaces some tenths. `lobes` is not measured, because it is fitted to the simulation.
 
 use std::borrow::Cow;
 
@@ -23,13 +22,13 @@ use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::parts::parts_of;
 
-/// More than this share of the light is told. Sums and interpolated tables are not that precise at 1.
+/// Returned share of the light above which there is a warning. Sums and interpolated tables are not precise enough for a limit of 1.
 const ALL: f64 = 1.02;
 
-/// Albedo by which a model that a file names for one interface may differ from the simulation without a word.
+/// Largest difference of albedo from the simulation that causes no warning, for one interface whose model the file names.
 const TOLERATED: f64 = 0.1;
 
-/// Angles of the eye from the normal, degrees: models gain the most between.
+/// Angles of the eye from the normal, degrees. Models gain the most between them.
 const ANGLES_DEG: [f64; 5] = [0.0, 30.0, 50.0, 70.0, 80.0];
 
 /// Points on either side of the mirror direction, in the angle from the normal and in azimuth: sums over lobes of all widths are within 0.003.
@@ -46,7 +45,7 @@ const SEED: u64 = 37;
 pub struct Returned {
     /// Share of the light that the model returns.
     pub model: f64,
-    /// Share that the simulation returns; none where it has not the facets.
+    /// Share that the simulation returns; `None` where it has no such facets.
     pub simulated: Option<f64>,
     /// Angle of the eye from the normal, degrees.
     pub angle_deg: f64,
@@ -56,17 +55,30 @@ impl Returned {
     fn error(&self) -> f64 {
         self.simulated.map_or(0.0, |simulated| (self.model - simulated).abs())
     }
+
+    /// The error, or what the model returns beyond all light, whichever is larger.
+    fn excess(&self) -> f64 {
+        self.error().max(self.model - ALL)
+    }
+
+    /// The simulation's albedo as the end of a sentence.
+    fn against(&self) -> String {
+        match self.simulated {
+            Some(simulated) => format!(" where a simulation of the layers returns {simulated:.2}"),
+            None => String::new(),
+        }
+    }
 }
 
-/// A warning where a model returns more light than falls in, or where its albedo is off: of one interface whose model the file or the command line
-/// names by more than a tenth, and of a model that stands in for `lobes` in any case. `asked` is the model of the command line.
+/// A warning if a model returns more light than falls in, or if its albedo is wrong. For one interface with a named model, an error above a tenth
+/// counts; for a model that stands in for `lobes`, any error. `asked` is the model of the command line.
 pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     if !is_questionable(material, model) {
         return None;
     }
     let stands_in = asked.is_none() && !material.unfit_for_lobes().is_empty();
-    // Stacks of named models are known to be off (`docs/pages/models.md`); a simulation says by how much where something is told.
+    // Named models of stacks are known to be inexact (`docs/pages/models.md`), so they are simulated only for the words of a warning.
     let is_compared = stands_in || material.stack.layers.len() == 1;
     let gains = !is_compared && albedos(material, model, false).iter().any(|found| found.model > ALL);
     if !is_compared && !gains {
@@ -76,16 +88,12 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
     let most = all.iter().copied().max_by(|a, b| a.model.total_cmp(&b.model))?;
     let worst = all.iter().copied().max_by(|a, b| a.error().total_cmp(&b.error()))?;
     let name = model.name();
-    let against = |found: &Returned| match found.simulated {
-        Some(simulated) => format!(" where a simulation of the layers returns {simulated:.2}"),
-        None => String::new(),
-    };
     let message = if most.model > ALL {
         format!(
             "the model `{name}` returns {:.2} times the light that falls in, seen at {} degrees,{}",
             most.model,
             most.angle_deg,
-            against(&most)
+            most.against()
         )
     } else if worst.error() > TOLERATED || stands_in {
         format!(
@@ -93,7 +101,7 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
             worst.error(),
             worst.model,
             worst.angle_deg,
-            against(&worst)
+            worst.against()
         )
     } else {
         return None;
@@ -109,19 +117,19 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
     Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 
-/// Whether albedos of a model may be wrong at all: those of `lobes` are simulated, and one bounce off a smooth interface or a base is exact.
+/// True where albedos of a model can be wrong. `lobes` is fitted to a simulation, and one bounce off a smooth interface or a base is exact.
 fn is_questionable(material: &Material, model: ShadingModel) -> bool {
     !model.is_fitted() && (material.has_further_bounces() || model.facts().family == Family::Coefficients)
 }
 
-/// Albedos of a material in a model, angle by angle: at white texels of its maps, and where textures make a metal of it, without metal, too.
+/// Albedos of a material in a model, angle by angle, at white texels of its maps. Where a texture decides what is metal, places without metal are
+/// measured, too.
 pub fn returned(material: &Material, model: ShadingModel) -> Vec<Returned> {
     albedos(material, model, true)
 }
 
-/// As [`returned`], with the simulation or without.
+/// Albedos as [`returned`] has them, with or without the simulation.
 fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<Returned> {
-    let has_walks = |layer: &Layer| matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks();
     let is_simulated = is_compared && material.stack.layers.iter().all(has_walks);
     let nm = material.bake.wavelengths_nm();
     let color = Color::ThreeWavelengths(nm);
@@ -137,12 +145,17 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
             let wo = DVec3::new(sin, 0.0, cos);
             let own = integral(&|wi: DVec3| shaded.eval(wi, wo), DVec3::new(-sin, 0.0, cos), POINTS);
             let simulated = paths.as_ref().map(|paths| simulated(paths, wo));
-            let of = |c: usize| Returned { model: own[c], simulated: simulated.map(|all| all[c]), angle_deg };
-            let wrong = |found: &Returned| found.error().max(found.model - ALL);
-            all.extend([0, 1, 2].map(of).into_iter().max_by(|a, b| wrong(a).total_cmp(&wrong(b))));
+            let channels =
+                [0, 1, 2].map(|c| Returned { model: own[c], simulated: simulated.map(|all| all[c]), angle_deg });
+            all.extend(channels.into_iter().max_by(|a, b| a.excess().total_cmp(&b.excess())));
         }
     }
     all
+}
+
+/// True where the simulation has the facets of a layer, or needs none.
+fn has_walks(layer: &Layer) -> bool {
+    matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks()
 }
 
 /// Mean albedo of paths.
@@ -156,13 +169,14 @@ fn simulated(paths: &ColorPaths, wo: DVec3) -> Rgb {
 fn places(material: &Material) -> Vec<Place> {
     let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
     let Some((number, Metallic { base_color, metallic })) = textured else { return vec![Place::NONE] };
-    let place = |metallic: f64| {
+    let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
+    let places = shares.into_iter().map(|metallic| {
         let (f0, albedo) = metallic_roughness(base_color, metallic);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
         Place { base_color: Some(albedo), layers, ..Place::NONE }
-    };
-    if metallic > 0.0 { vec![place(metallic), place(0.0)] } else { vec![place(0.0)] }
+    });
+    places.collect()
 }
 
 /// The stack at such a place.
@@ -170,7 +184,7 @@ fn at(stack: &Stack, place: &Place) -> Stack {
     let mut here = stack.clone();
     let metal = place.layers.last().and_then(|sample| sample.f0).filter(|_| place.base_color == Some([0.0; 3]));
     if let Some(f0) = metal {
-        // Metal is opaque, as where a file gives it without maps.
+        // Metal is opaque, as in a file without maps.
         here.layers.truncate(place.layers.len());
         if let Some(layer) = here.layers.last_mut() {
             layer.base = Base::Conductor { ior: Ior::vacuum().with_f0(f0) };

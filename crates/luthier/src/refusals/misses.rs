@@ -1,4 +1,4 @@
-//! Warnings of tables that miss what a bake aims at.
+//! Warnings about tables that miss the aim of a bake.
 
 use luthier_lut::TableKind;
 use luthier_manifest::Manifest;
@@ -6,7 +6,7 @@ use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::pictures::read_image;
 
-/// A warning for every layer of a bake that reads a tile which misses its aim, at its line of its file. Materials are found by their names.
+/// Warnings for layers of a bake whose tiles miss their aim, each at the line of its layer. Materials are found by name.
 pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
     for table in &manifest.tables {
@@ -23,9 +23,9 @@ pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A warning for every layer whose row would miss, as far as that can be said without a bake.
+/// Warnings for layers whose rows will miss their aim, as far as this is known without a bake.
 pub fn foreseen_misses(material: &Material) -> Vec<Diagnostic> {
-    // Why a material cannot be baked is told elsewhere.
+    // Other functions report why a material cannot be baked.
     let rows = luthier_bake::kinked_rows(material, &read_image).unwrap_or_default().into_iter();
     rows.map(|(layer, error)| diagnostic(material, layer, TableKind::Fresnel, error, luthier_bake::AIM)).collect()
 }

@@ -1,6 +1,6 @@
-//! All that is known of materials before any work begins: what `bake` refuses, and so does `check`, and what is doubtful.
+//! Refusals of materials and doubts about them that need no bake. `bake` and `check` share them.
 //!
-//! Each function looks at materials alone and returns diagnostics: errors refuse, warnings doubt.
+//! Each function looks at materials only and returns diagnostics: errors refuse, warnings doubt.
 
 mod beams;
 mod energy;

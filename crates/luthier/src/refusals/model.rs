@@ -8,7 +8,7 @@ use luthier_model::Quantity;
 
 use super::parts::of_parts;
 
-/// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
+/// Warnings about a material in its model, and errors where the result would be useless. `asked` is the model of the command line.
 ///
 /// ```
 /// use luthier::{ShadingModel, refusals};
@@ -46,7 +46,7 @@ pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagno
     found
 }
 
-/// Says that a stack has more layers than are fitted, at the first beyond these.
+/// A warning for a stack of more layers than are fitted, at the first layer that is too many.
 fn too_deep(material: &Material) -> Diagnostic {
     let (layers, most) = (material.stack.layers.len(), VARIED_LAYERS_MAX);
     let message = format!(
@@ -56,7 +56,7 @@ fn too_deep(material: &Material) -> Diagnostic {
     material.diagnostic(Severity::Error, &format!("layer.{most}"), message, Some(hint))
 }
 
-/// Says that the default is another model, and why.
+/// A warning where the default model is not `lobes`, with the reason.
 fn instead(material: &Material, part: &LeftOut) -> Diagnostic {
     let (model, feature) = (material.model().name(), part.feature.name());
     let message = format!("the default model, `lobes`, does not show {feature}: `{model}` takes its place");
@@ -71,10 +71,9 @@ fn instead(material: &Material, part: &LeftOut) -> Diagnostic {
 
 fn dropped_part(material: &Material, model: ShadingModel, part: &LeftOut) -> Diagnostic {
     let LeftOut { feature, key, forms } = part;
-    let shown_by = |other: &ShadingModel| forms.iter().all(|&form| other.honours(*feature, form));
-    let is_whole = |other: &ShadingModel| left_out(material, *other).is_empty();
-    let able: Vec<ShadingModel> = ShadingModel::ALL.into_iter().filter(shown_by).collect();
-    let whole: Vec<ShadingModel> = able.iter().copied().filter(is_whole).collect();
+    let able = ShadingModel::ALL.into_iter().filter(|other| forms.iter().all(|&form| other.honours(*feature, form)));
+    let able: Vec<ShadingModel> = able.collect();
+    let whole: Vec<ShadingModel> = able.iter().copied().filter(|other| left_out(material, *other).is_empty()).collect();
     let listed = if whole.is_empty() { able } else { whole };
     let names: Vec<String> = listed.iter().map(|other| format!("`{}`", other.name())).collect();
     let other_form = Form::ALL.into_iter().find(|form| !forms.contains(form));

@@ -1,5 +1,4 @@
-//! Doubts about the parts of a model that a material chooses: those that its model does not have, distributions among them, and errors of
-//! approximations.
+//! Doubts about the parts of a model that a material chooses: parts and distributions that its model lacks, and the errors of approximations.
 
 use luthier_layers::models::parts::Parts;
 use luthier_lut::TableKind;
@@ -11,12 +10,11 @@ use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_model::Reach;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
-use luthier_optics::stack::{Stack, Surface};
 
 use super::beams::{self, of_beams};
 
-/// Errors for parts that a model does not have, and for films of which a curve knows nothing; warnings of what the others do. `asked` is the
-/// model of the command line.
+/// Errors for parts that a model lacks, and for films where the chosen curve of a reflectance has none; warnings with the effect of other parts.
+/// `asked` is the model of the command line.
 pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut doubts = Vec::new();
@@ -32,7 +30,7 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts
 }
 
-/// The parts of a model that a material chooses, as f64 has them.
+/// The parts of a model that a material chooses, for the f64 twin.
 pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let bake = &material.bake;
     let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
@@ -57,12 +55,6 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("lower_reflectance", material.bake.lower_reflectance.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
-    let refusal = |place: String| {
-        let key = place.rsplit_once('.').map_or(place.as_str(), |(_, key)| key);
-        let message = format!("a scene chooses the models of its materials, and `{key}` is a part of some models");
-        let hint = "leave it out, or bake the material by itself".to_owned();
-        material.diagnostic(Severity::Error, &place, message, Some(hint))
-    };
     let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
         let distribution = material.stack.layers[layer].surface.distribution;
         let message = format!(
@@ -74,21 +66,29 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         material.diagnostic(Severity::Error, &key, message, Some(hint))
     });
     let beams = beams::keys(material).map(str::to_owned);
-    parts.chain(beams).map(refusal).chain(of_slopes).collect()
+    parts.chain(beams).map(|place| chosen_part(material, &place)).chain(of_slopes).collect()
 }
 
-/// The first of so many layers whose distribution has no walks in closed form.
+/// The error for a part that a material of a scene chooses.
+fn chosen_part(material: &Material, place: &str) -> Diagnostic {
+    let key = place.rsplit_once('.').map_or(place, |(_, key)| key);
+    let message = format!("a scene chooses the models of its materials, and `{key}` is a part of some models");
+    let hint = "leave it out, or bake the material by itself".to_owned();
+    material.diagnostic(Severity::Error, place, message, Some(hint))
+}
+
+/// The first of the upper `layers` layers whose distribution has no walks in closed form.
 fn first_free(material: &Material, layers: usize) -> Option<usize> {
-    let is_free = |surface: &Surface| !surface.is_smooth() && !surface.distribution.has_walks();
-    material.stack.layers.iter().take(layers).position(|layer| is_free(&layer.surface))
+    let mut surfaces = material.stack.layers.iter().take(layers).map(|layer| &layer.surface);
+    surfaces.position(|surface| !surface.is_smooth() && !surface.distribution.has_walks())
 }
 
 /// Beginnings of the names of functions in f64 that need no more of a distribution than D, or the names.
 const OF_ANY_SLOPES: [&str; 8] =
     ["microfacet-", "weidlich-wilkie", "elek", "heterogeneous-", "flakes", "patina", "lambert", "oren-nayar"];
 
-/// An error where a function in f64, by its name, has no use for the distribution of a layer: of a model with a shader where that has none, of others
-/// where they walk between facets, draw visible normals or follow statistics of lobes.
+/// An error where a function in f64, given by name, cannot use the distribution of a layer. A model with a shader cannot where its shader cannot;
+/// other functions cannot if they walk between facets, draw visible normals or follow statistics of lobes.
 pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
     if let Some(model) = ShadingModel::from_name(name) {
         return of_distribution(material, model);
@@ -100,7 +100,7 @@ pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
     Some(no_slopes(material, name, layer))
 }
 
-/// The error of a model that has no use for the distribution of a layer.
+/// The error for a model that cannot use the distribution of a layer.
 fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
     let distribution = material.stack.layers[layer].surface.distribution;
     let name = distribution.name();
@@ -111,10 +111,10 @@ fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
     material.diagnostic(Severity::Error, &key, message, Some(hint))
 }
 
-/// An error where a model, its masking or a table has no use for the distribution of a layer.
+/// An error where a model, its masking or a table cannot use the distribution of a layer.
 fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
-    let is_read = |layers: usize| if model.facts().reach == Reach::First { layers.min(1) } else { layers };
-    let layer = first_free(material, is_read(material.stack.layers.len()))?;
+    let read = if model.facts().reach == Reach::First { 1 } else { material.stack.layers.len() };
+    let layer = first_free(material, read)?;
     let distribution = material.stack.layers[layer].surface.distribution;
     let (name, key) = (distribution.name(), format!("layer.{layer}.{}", distribution_key(distribution)));
     if !model.honours(Feature::Distribution, Form::Baked) {
@@ -234,10 +234,11 @@ fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerRe
         return None;
     }
     let (color, in_air) = (material.color(), material.stack.with_lower_in_air());
-    let at_normal = |stack: &Stack, layer| Interface::of(stack, layer).map(|here| here.sampled(&color).rgb(1.0));
     let mut worst: Option<(usize, f64, f64)> = None;
     for layer in 1..material.stack.layers.len() {
-        let (Some(here), Some(air)) = (at_normal(&material.stack, layer), at_normal(&in_air, layer)) else { continue };
+        let interfaces = [&material.stack, &in_air].map(|stack| Interface::of(stack, layer));
+        let [Some(here), Some(air)] = interfaces else { continue };
+        let [here, air] = [here, air].map(|interface| interface.sampled(&color).rgb(1.0));
         for (here, air) in here.into_iter().zip(air) {
             if worst.is_none_or(|(_, a, b)| (air - here).abs() > (b - a).abs()) {
                 worst = Some((layer, here, air));

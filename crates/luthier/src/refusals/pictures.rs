@@ -1,4 +1,4 @@
-//! Pictures that cannot be used, and doubts about others: what a file may say, but rarely means.
+//! Errors for pictures that cannot be used, and doubts about pictures that are probably not meant so.
 
 use luthier_lut::Picture;
 use luthier_material::{Diagnostic, Material, NamedImage, PictureRef, Severity, TexelUse};
@@ -10,17 +10,16 @@ pub fn of_pictures(material: &Material) -> Vec<Diagnostic> {
     material.images().iter().flat_map(|image| told(material, image)).collect()
 }
 
-/// Diagnostics of a picture that a material names: why it cannot be used, or doubts about it.
+/// Diagnostics of a picture that a material names: an error if it cannot be used, else doubts.
 fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
     let NamedImage { key, picture, texels } = image;
     let path = &picture.path;
     match pictures::read(&material.source, picture, *texels) {
         Ok(read) => {
-            let doubts = doubts(&read, picture, *texels).into_iter();
-            let warning = |(sentence, hint)| {
+            let warnings = doubts(&read, picture, *texels).into_iter().map(|(sentence, hint)| {
                 material.diagnostic(Severity::Warning, key, format!("the map `{path}`: {sentence}"), Some(hint))
-            };
-            doubts.map(warning).collect()
+            });
+            warnings.collect()
         }
         Err(reason) => {
             let hint = "name a PNG, JPEG or WebP file by its path relative to the material file".to_owned();
@@ -30,16 +29,16 @@ fn told(material: &Material, image: &NamedImage<'_>) -> Vec<Diagnostic> {
     }
 }
 
-/// Texels that are looked at; of larger pictures every n-th row and column.
+/// Most texels that are examined. Of larger pictures, every n-th row and column is.
 const SEEN_MAX: usize = 1 << 20;
 
-/// Share of texels whose normal points into the surface, from where it is no accident.
+/// Share of normals pointing into the surface above which the map is doubted: a few may be accidents.
 const INWARD: f64 = 0.01;
 
-/// A mean of normals that leans more than this is that of no height field that repeats: cosine of 30 degrees.
+/// Cosine of the largest lean of the mean normal, 30 degrees. The mean normal of a height field that repeats does not lean.
 const UPRIGHT: f64 = 0.866;
 
-/// How much better a height field explains the normals with green turned over than as it is.
+/// Ratio of the errors of a height field, as it is to green turned over, above which the map is doubted.
 const FLIPPED: f64 = 4.0;
 
 /// A sentence and a hint for each doubt.
@@ -71,7 +70,7 @@ struct Normals {
     grey: f64,
     /// Sum of the unit normals.
     sum: [f64; 3],
-    /// Squares of what is left of the normals besides a height field, with green as it is and turned over.
+    /// Squared curl of the slopes, which is 0 for a height field: with green as it is, and turned over.
     curl: [f64; 2],
 }
 
@@ -79,23 +78,19 @@ impl Normals {
     fn of(picture: &Picture) -> Self {
         let [width, height] = picture.size();
         let step = (1..).find(|step| picture.texel_count() / (step * step) <= SEEN_MAX).unwrap_or(1) as u32;
-        let normal = |x: u32, y: u32| {
-            let [r, g, b, _] = picture.texel(x % width, y % height);
-            [r, g, b].map(|v| 2.0 * f64::from(v) - 1.0)
-        };
         let mut all = Self { count: 0.0, inward: 0.0, grey: 0.0, sum: [0.0; 3], curl: [0.0; 2] };
         for y in (0..height).step_by(step as usize) {
             for x in (0..width).step_by(step as usize) {
-                let here = normal(x, y);
+                let here = normal(picture, x, y);
                 let length = here.iter().map(|v| v * v).sum::<f64>().sqrt().max(1e-6);
                 all.count += 1.0;
                 all.inward += f64::from(here[2] <= 0.0);
                 all.grey += f64::from(here[0] == here[1] && here[1] == here[2]);
                 all.sum = [0, 1, 2].map(|c| all.sum[c] + here[c] / length);
                 // Heights rise by -x/z to the right, and by y/z downwards where green is up.
-                let slope = |[x, y, z]: [f64; 3]| [-x / z.max(0.1), y / z.max(0.1)];
-                let [[_, down], [right, _]] = [slope(normal(x + 1, y)), slope(normal(x, y + 1))];
-                let [here_right, here_down] = slope(here);
+                let slopes = [normal(picture, x + 1, y), normal(picture, x, y + 1), here];
+                let [[_, down], [right, _], [here_right, here_down]] =
+                    slopes.map(|[x, y, z]| [-x / z.max(0.1), y / z.max(0.1)]);
                 let (across, along) = (right - here_right, down - here_down);
                 let (up, down) = (across - along, across + along);
                 all.curl = [all.curl[0] + up * up, all.curl[1] + down * down];
@@ -105,7 +100,6 @@ impl Normals {
     }
 
     fn doubt(&self) -> Option<(String, String)> {
-        let share = |count: f64| format!("{} % of its normals", (100.0 * count / self.count).round());
         let length = self.sum.iter().map(|v| v * v).sum::<f64>().sqrt();
         let [a, b] = self.curl.map(|squares| (squares / self.count).sqrt());
         if self.grey > 0.99 * self.count && self.sum[2] < 0.999 * self.count {
@@ -115,7 +109,8 @@ impl Normals {
         if self.inward > INWARD * self.count {
             let hint =
                 "blue must be above 0.5; of maps with two channels (BC5) it has to be computed, as sqrt(1 - x^2 - y^2)";
-            return Some((format!("{} point into the surface", share(self.inward)), hint.to_owned()));
+            let percent = (100.0 * self.inward / self.count).round();
+            return Some((format!("{percent} % of its normals point into the surface"), hint.to_owned()));
         }
         if self.sum[2] < UPRIGHT * length {
             let lean = libm::acos(self.sum[2] / length).to_degrees().round();
@@ -128,6 +123,13 @@ impl Normals {
         }
         None
     }
+}
+
+/// The normal of a texel, not of unit length. The map repeats beyond its border.
+fn normal(picture: &Picture, x: u32, y: u32) -> [f64; 3] {
+    let [width, height] = picture.size();
+    let [r, g, b, _] = picture.texel(x % width, y % height);
+    [r, g, b].map(|v| 2.0 * f64::from(v) - 1.0)
 }
 
 #[cfg(test)]

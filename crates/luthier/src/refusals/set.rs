@@ -7,47 +7,47 @@ use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::pictures::read_image;
 
-/// Diagnostics of materials together, each with the number of the material that it is said of.
+/// Diagnostics of materials as a set, each with the number of its material.
 pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
     let mut found = Vec::new();
-    let mut tell = |number: usize, key: &str, message: String| {
-        found.extend(materials.get(number).map(|m| (number, m.diagnostic(Severity::Error, key, message, None))));
-    };
     for error in luthier_bake::check(materials, &luthier_bake::Options::default()).err().unwrap_or_default() {
         let (number, key) = error.place().unwrap_or((0, "name"));
-        tell(number, key, error.to_string());
+        found.push((number, key.to_owned(), error.to_string()));
     }
     let mut named: BTreeMap<String, &Material> = BTreeMap::new();
     for (number, material) in materials.iter().enumerate() {
         let identifier = match luthier_shader::identifier(&material.name) {
             Ok(identifier) => identifier,
             Err(error) => {
-                tell(number, "name", error.to_string());
+                found.push((number, "name".to_owned(), error.to_string()));
                 continue;
             }
         };
         match named.get(&identifier) {
-            // Equal names have been told.
+            // Equal names have an error already.
             Some(first) if first.name != material.name => {
                 let (name, other, place) = (&material.name, &first.name, first.place("name"));
-                tell(number, "name", format!("`{name}` and `{other}` of {place} are both `{identifier}` in a shader"));
+                let message = format!("`{name}` and `{other}` of {place} are both `{identifier}` in a shader");
+                found.push((number, "name".to_owned(), message));
             }
             Some(_) => {}
             None => drop(named.insert(identifier, material)),
         }
     }
-    found
+    let diagnostics = found.into_iter().filter_map(|(number, key, message)| {
+        Some((number, materials.get(number)?.diagnostic(Severity::Error, &key, message, None)))
+    });
+    diagnostics.collect()
 }
 
-/// An error of the first material where the material buffer or a texture cannot hold all of them, shaded as they are. A bake plans its tables, and
-/// says so itself.
+/// An error of the first material if the material buffer or a texture cannot hold all materials. A bake finds this itself when it plans its tables.
 pub fn too_many(materials: &[Material]) -> Option<Diagnostic> {
     let options = luthier_bake::Options { search: false, fits: false, ..luthier_bake::Options::default() };
     match luthier_bake::outline_with(materials, &options, &read_image, &MemoryStore::default()) {
         Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) => {
             Some(materials.first()?.diagnostic(Severity::Error, "name", error.to_string(), None))
         }
-        // Anything else has been told.
+        // Other errors have diagnostics already.
         _ => None,
     }
 }

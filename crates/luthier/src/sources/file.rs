@@ -35,7 +35,7 @@ impl TomlFile {
         Ok(Self { path: path.to_owned(), bytes })
     }
 
-    /// The file in messages and manifests.
+    /// The name of the file in messages and manifests.
     pub(crate) fn label(&self) -> String {
         label(&self.path)
     }
@@ -45,7 +45,7 @@ impl TomlFile {
         FileKind::of(&String::from_utf8_lossy(&self.bytes))
     }
 
-    /// The text; of other bytes, the text with replacement characters and an error at the first.
+    /// The text. Where bytes are not UTF-8, the error has the text with replacement characters, and a diagnostic at the first.
     pub(crate) fn text(self) -> Result<String, (String, Diagnostic)> {
         let label = self.label();
         String::from_utf8(self.bytes).map_err(|source| not_utf8(label, &source))

@@ -1,4 +1,4 @@
-//! The files of packages, told from each other by their keys.
+//! The files of packages, sorted into scenes, surfaces and materials by their keys.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::{Error, paths};
 /// A file that was found in a folder, and its bytes or why it cannot be read.
 type Found = (PathBuf, Result<TomlFile, Error>);
 
-/// The TOML files of one package, each read once. Surfaces are parsed: they name materials.
+/// The TOML files of one package, each read once. Surfaces are parsed at once, because they name materials.
 ///
 /// ```
 /// use luthier::{Bake, Files, MemoryStore, Shading, Sources};
@@ -37,7 +37,7 @@ pub struct Files {
     pub scenes: Vec<TomlFile>,
     /// Surface files.
     pub surfaces: Vec<SurfaceSource>,
-    /// Material files, and what is no scene and no surface: those that were given, then others that surfaces name.
+    /// Material files and any other TOML: the files given, then others that surfaces name.
     pub materials: Vec<TomlFile>,
 }
 
@@ -51,7 +51,8 @@ impl Files {
         Ok(Self::of(files))
     }
 
-    /// The package of some paths, whose name is empty, and those of the folders inside its folders, by name, each with its paths.
+    /// The packages of paths, each with its name and paths. The first has the files of `paths` and an empty name; the others are folders inside
+    /// folders of `paths`, by name.
     ///
     /// A folder inside is a package of its own if it has a material file that no surface of `paths` names. Scenes, surfaces and TOML files of other
     /// programs make no package, and nothing that lies deeper does. Folders of one name are one package.
@@ -84,7 +85,7 @@ impl Files {
         Ok(packages)
     }
 
-    /// Tells files from each other, and adds the materials that surfaces name.
+    /// Sorts files by kind, and adds the materials that surfaces name.
     pub fn of(files: Vec<TomlFile>) -> Self {
         let mut all = Self::default();
         for file in files {
@@ -98,7 +99,7 @@ impl Files {
         all
     }
 
-    /// Counts scenes among the materials, which have an error then.
+    /// Moves the scenes to the materials, where each has an error once it is parsed.
     #[must_use]
     pub fn without_scenes(mut self) -> Self {
         self.materials.append(&mut self.scenes);
@@ -145,7 +146,7 @@ impl Files {
     }
 }
 
-/// A file that a surface names; or why it is no material, and what to do.
+/// Reads a file that a surface names. The error says why it is no material, and what to do.
 fn material(path: &Path) -> Result<TomlFile, (String, &'static str)> {
     let read = luthier_export::input::bytes(path).map_err(|error| {
         (format!("cannot read {}: {error}", label(path)), "the path is relative to the surface file")

@@ -31,7 +31,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Errors or warnings, whichever there are.
+    /// The errors of an unusable file, or the warnings of a usable one.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match &self.parsed {
             Ok(parsed) => &parsed.warnings,
@@ -39,7 +39,7 @@ impl Source {
         }
     }
 
-    /// The material of a file that can be used.
+    /// The material; `None` where the file has errors.
     pub fn material(&self) -> Option<&Material> {
         self.parsed.as_ref().ok().map(|parsed| &parsed.material)
     }
@@ -85,12 +85,11 @@ impl Source {
         let is_usable = !diagnostics.iter().any(Diagnostic::is_error);
         let parsed = match material {
             Some(material) if is_usable => Ok(Parsed { material, warnings: diagnostics }),
-            // Who mends the file hears of its pictures in the same run.
+            // Faults of pictures are reported too, so that one run shows all there is to mend.
             Some(material) => {
-                // A map that is wrong for another reason is said once.
-                let is_new = |found: &Diagnostic| found.is_error() && diagnostics.iter().all(|d| d.span != found.span);
+                // A map that has an error already gets no second one.
                 let mut of_pictures = refusals::of_pictures(&material);
-                of_pictures.retain(is_new);
+                of_pictures.retain(|found| found.is_error() && diagnostics.iter().all(|d| d.span != found.span));
                 diagnostics.extend(of_pictures);
                 diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
                 Err(diagnostics)
@@ -101,7 +100,7 @@ impl Source {
     }
 }
 
-/// The material of a text that names no other files. `label` is its file in messages and in the manifest.
+/// The material of a text that names no other files. `label` is the name of the text in messages and in the manifest.
 ///
 /// ```
 /// let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
@@ -111,10 +110,9 @@ impl Source {
 /// ```
 ///
 /// # Errors
-/// [`Error::Refused`] with everything that is wrong.
+/// [`Error::Refused`] with all diagnostics.
 pub fn parse(label: &str, text: &str) -> Result<Material, Error> {
-    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-    match luthier_material::parse(label, text, &no_files) {
+    match luthier_material::parse(label, text, &|_| Err(std::io::ErrorKind::NotFound.into())) {
         Ok(parsed) => Ok(parsed.material),
         Err(diagnostics) => {
             let sentence = diagnostics.iter().map(|d| d.render(text)).collect::<Vec<_>>().join("\n");

@@ -1,4 +1,4 @@
-//! Files of a bake: each is read once, then parsed, then looked at for all that is wrong with it.
+//! Files of a bake. Each is read once, then parsed, then checked.
 
 mod file;
 mod files;
@@ -27,10 +27,21 @@ pub use refuse::refuse;
 pub use scene::SceneSource;
 pub use surface::{SurfaceSource, surface_map};
 
-/// Scenes, surfaces and materials that were read together, with all that is wrong with them.
+/// Scenes, surfaces and materials that were read together, with their diagnostics.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let text = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 80\n";
+/// std::fs::write(folder.path().join("chalk.toml"), text)?;
+///
+/// let sources = luthier::Sources::read([folder.path()])?;
+/// assert!(!sources.is_usable());
+/// assert_eq!(sources.diagnostics().next().map(|error| error.line), Some(5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// The scenes. Their materials are their own.
+    /// The scenes, each with its own materials.
     pub scenes: Vec<SceneSource>,
     /// The surfaces.
     pub surfaces: Vec<SurfaceSource>,
@@ -39,13 +50,8 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Reads files, and the `*.toml` of folders. The package of a folder is the one of its files, not those of folders inside: see
+    /// Reads files, and the `*.toml` of folders. Folders inside a folder are left out, because they are packages of their own: see
     /// [`Files::packages`].
-    ///
-    /// ```no_run
-    /// let sources = luthier::Sources::read(["materials"])?;
-    /// # Ok::<(), luthier::Error>(())
-    /// ```
     ///
     /// # Errors
     /// [`Error::File`], [`Error::NoFiles`]. Faults of texts are diagnostics of the sources.
@@ -64,7 +70,8 @@ impl Sources {
         }
     }
 
-    /// Makes unusable what cannot be baked, and adds warnings of what a model leaves out. Pictures are read; nothing is simulated.
+    /// Makes sources unusable that cannot be baked, and adds warnings about features that a model leaves out. Pictures are read; nothing is
+    /// simulated.
     pub fn refuse(&mut self, shading: &Shading) {
         refuse(&mut self.materials, |material| shading.doubts(material));
         self.refuse_surfaces();
@@ -75,14 +82,14 @@ impl Sources {
         refuse_surfaces(&mut self.surfaces, &self.materials);
     }
 
-    /// Adds warnings of models that return too much light, or other light than a simulation: some hundredths of a second for a material.
-    /// To be called after [`Sources::refuse`].
+    /// Adds warnings where a model returns too much light, or light that differs from a simulation. This takes some hundredths of a second for each
+    /// material. Call [`Sources::refuse`] first.
     pub fn doubt_energy(&mut self, shading: &Shading) {
         add(&mut self.materials, |material| shading.doubts_of_energy(material).into_iter().collect());
     }
 
-    /// All that can be known without a bake: [`Sources::refuse`], [`Sources::doubt_energy`], more tables than a texture holds, tables that will miss
-    /// their aim, and grains of surfaces that are nowhere to be seen.
+    /// Adds every diagnostic that needs no bake: those of [`Sources::refuse`] and [`Sources::doubt_energy`], more tables than a texture holds, tables
+    /// that will miss their aim, and grains of surfaces that no place shows.
     pub fn check(&mut self, shading: &Shading) {
         self.refuse(shading);
         self.doubt_energy(shading);
@@ -91,7 +98,7 @@ impl Sources {
         add(&mut self.materials, foreseen_misses);
     }
 
-    /// Whether all can be baked.
+    /// True where all sources can be baked.
     pub fn is_usable(&self) -> bool {
         self.materials.iter().all(|source| source.parsed.is_ok())
             && self.surfaces.iter().all(|source| source.parsed.is_ok())
@@ -105,17 +112,17 @@ impl Sources {
         of_scenes.chain(of_surfaces).chain(self.materials.iter().flat_map(Source::diagnostics))
     }
 
-    /// The materials of files that can be used, as `shading` has them shaded.
+    /// The materials of usable files, with the choices of `shading`.
     pub fn materials(&self, shading: &Shading) -> Vec<Material> {
         shading.shaded(self.materials.iter().filter_map(|source| source.material().cloned()).collect())
     }
 
-    /// The surfaces that can be used, as a manifest has them.
+    /// The usable surfaces, as entries of a manifest.
     pub fn surface_entries(&self) -> Vec<SurfaceEntry> {
         self.surfaces.iter().filter_map(SurfaceSource::entry).collect()
     }
 
-    /// All files that a bake of these reads, each once: theirs, and those that materials name.
+    /// The files that a bake of these sources reads, each once: their own files, and the files that materials name.
     pub fn files(&self) -> Vec<PathBuf> {
         let of_scenes = self.scenes.iter().flat_map(|scene| &scene.materials);
         let materials: Vec<&Source> = of_scenes.chain(&self.materials).collect();

@@ -1,4 +1,4 @@
-//! Diagnostics given to the files that they are about.
+//! Adds diagnostics to the files that they are about.
 
 use luthier_material::{Diagnostic, Material};
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use super::Source;
 use crate::Shading;
 use crate::refusals::{of_pictures, of_set, too_many};
 
-/// Adds `doubts`, and makes files unusable that cannot be baked: one by one, then, where each is usable, as a set.
+/// Adds `doubts`, and makes files unusable that cannot be baked. Files are checked one by one, then, if all are usable, as a set.
 pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic> + Sync) {
     add(sources, |material| [doubts(material), of_pictures(material)].concat());
     let Some(materials) = usable(sources) else { return };
@@ -16,7 +16,7 @@ pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnost
     }
 }
 
-/// Adds diagnostics of each usable file, side by side.
+/// Adds diagnostics of each usable file, in parallel.
 pub(super) fn add(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic> + Sync) {
     sources.par_iter_mut().for_each(|source| {
         if let Some(material) = source.material() {

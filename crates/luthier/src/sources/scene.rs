@@ -9,7 +9,16 @@ use super::{Source, TomlFile, refuse};
 use crate::paths;
 use crate::refusals::{of_domain, of_scene};
 
-/// A scene file that was read, with all that can be known before work begins.
+/// A scene file that was read, with its materials and all diagnostics.
+///
+/// ```
+/// use luthier::{SceneSource, TomlFile};
+///
+/// let file = TomlFile { path: "shelf.toml".into(), bytes: b"scene = 1\nname = \"shelf\"\n".to_vec() };
+/// let scene = SceneSource::of(file);
+/// assert!(!scene.is_usable(), "it names no materials");
+/// assert!(scene.diagnostics().all(|error| error.label == "shelf.toml"));
+/// ```
 #[derive(Debug, Clone)]
 pub struct SceneSource {
     /// The file.
@@ -20,7 +29,7 @@ pub struct SceneSource {
     pub text: String,
     /// The scene, or why it is none.
     pub parsed: Result<Scene, Vec<Diagnostic>>,
-    /// Its materials, in its order, with what is refused of them.
+    /// Its materials, in its order, with their refusals.
     pub materials: Vec<Source>,
 }
 
@@ -48,7 +57,7 @@ impl SceneSource {
         Self { path, label, text, parsed, materials }
     }
 
-    /// Whether it can be baked.
+    /// True where the scene and its materials can be baked.
     pub fn is_usable(&self) -> bool {
         self.parsed.is_ok() && self.materials.iter().all(|source| source.parsed.is_ok())
     }

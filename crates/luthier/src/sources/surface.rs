@@ -12,6 +12,15 @@ use super::TomlFile;
 use crate::sha256;
 
 /// A surface file that was read, and its surface or its errors. [`surface_map`] evaluates the entry of one.
+///
+/// ```
+/// use luthier::{Files, TomlFile};
+///
+/// let file = TomlFile { path: "stone.toml".into(), bytes: b"surface = 1\nname = \"stone\"\n".to_vec() };
+/// let stone = &Files::of(vec![file]).surfaces[0];
+/// assert!(stone.entry().is_none(), "it has no cells");
+/// assert!(stone.diagnostics()[0].is_error());
+/// ```
 #[derive(Debug, Clone)]
 pub struct SurfaceSource {
     /// The file.
@@ -22,7 +31,7 @@ pub struct SurfaceSource {
     pub text: String,
     /// The surface, or why it is none.
     pub parsed: Result<Surface, Vec<Diagnostic>>,
-    /// Doubts about a surface that can be used.
+    /// Warnings about a usable surface.
     pub warnings: Vec<Diagnostic>,
     /// The numbers of its materials among those of the package, in the order of [`Surface::materials`].
     pub(crate) numbers: Vec<usize>,
@@ -41,37 +50,38 @@ impl SurfaceSource {
         Self { path, label, text, parsed, warnings: Vec::new(), numbers: Vec::new() }
     }
 
-    /// Its errors; of a surface that can be used, its warnings.
+    /// The errors of an unusable surface, or the warnings of a usable one.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         self.parsed.as_ref().err().map_or(&self.warnings, Vec::as_slice)
     }
 
-    /// The surface as the manifest has it; `None` where it is unusable.
+    /// The entry of the surface in a manifest; `None` where it is unusable.
     pub fn entry(&self) -> Option<SurfaceEntry> {
         let surface = self.parsed.as_ref().ok()?;
         let mut numbers = self.numbers.iter().map(|&number| number as u32);
-        let mut cells = |cells: &SurfaceCells| CellsRecord {
-            seed: cells.seed,
-            frequency: cells.frequency,
-            materials: numbers.by_ref().take(cells.materials.len()).collect(),
-        };
         Some(SurfaceEntry {
             name: surface.name.clone(),
             source: self.label.clone(),
             source_hash: sha256(self.text.as_bytes()),
-            cells: cells(&surface.cells),
+            cells: cells_record(&surface.cells, &mut numbers),
             switches: surface
                 .switches
                 .iter()
-                .map(|switch| SwitchRecord { by: switch.by, cells: cells(&switch.cells) })
+                .map(|switch| SwitchRecord { by: switch.by, cells: cells_record(&switch.cells, &mut numbers) })
                 .collect(),
             glitter: surface.glitter.as_ref().map(|glitter| ParticlesRecord {
-                cells: cells(&glitter.cells),
+                cells: cells_record(&glitter.cells, &mut numbers),
                 filled: glitter.filled,
                 tilt: glitter.tilt,
             }),
         })
     }
+}
+
+/// A record of cells, which takes as many of the next material numbers as the cells name materials.
+fn cells_record(cells: &SurfaceCells, numbers: &mut impl Iterator<Item = u32>) -> CellsRecord {
+    let materials = numbers.take(cells.materials.len()).collect();
+    CellsRecord { seed: cells.seed, frequency: cells.frequency, materials }
 }
 
 /// The places of a switch.
@@ -96,9 +106,6 @@ pub(super) fn switch_of(by: &SwitchBy) -> Switch {
 /// assert!(matches!(luthier::surface_map(&surface), Map::Cells { stacks, .. } if stacks == [4, 2]));
 /// ```
 pub fn surface_map(surface: &SurfaceEntry) -> Map {
-    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
-    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&material| material as usize).collect();
-    let grains = |cells: &CellsRecord| Map::Cells { cells: voronoi(cells), stacks: stacks(cells) };
     // The first switch of the file is the outermost.
     let map = surface.switches.iter().rev().fold(grains(&surface.cells), |under, switch| Map::Switch {
         switch: switch_of(&switch.by),
@@ -107,12 +114,20 @@ pub fn surface_map(surface: &SurfaceEntry) -> Map {
     });
     match &surface.glitter {
         None => map,
-        Some(glitter) => Map::Glitter {
-            cells: voronoi(&glitter.cells),
-            stacks: stacks(&glitter.cells),
-            filled: glitter.filled,
-            tilt: glitter.tilt,
-            under: Box::new(map),
-        },
+        Some(glitter) => {
+            let (cells, stacks) = twin(&glitter.cells);
+            Map::Glitter { cells, stacks, filled: glitter.filled, tilt: glitter.tilt, under: Box::new(map) }
+        }
     }
+}
+
+/// The cells as the twin has them, and the material number of each stack.
+fn twin(record: &CellsRecord) -> (Voronoi, Vec<usize>) {
+    let stacks = record.materials.iter().map(|&material| material as usize).collect();
+    (Voronoi { seed: record.seed, frequency: record.frequency }, stacks)
+}
+
+fn grains(record: &CellsRecord) -> Map {
+    let (cells, stacks) = twin(record);
+    Map::Cells { cells, stacks }
 }

@@ -8,8 +8,8 @@ use luthier_material::{Diagnostic, Material, NamedMaterial, Surface, SurfaceSwit
 use super::surface::switch_of;
 use super::{Source, SurfaceSource};
 
-/// Makes surfaces unusable that cannot be baked with these materials, those of [`Sources::materials`](crate::Sources::materials): names that others have, and
-/// particles whose normal something else says.
+/// Makes surfaces unusable that cannot be baked with these materials, those of [`Sources::materials`](crate::Sources::materials): names that another
+/// surface or material has, and particles whose material has a normal of its own.
 pub(super) fn refuse_surfaces(surfaces: &mut [SurfaceSource], materials: &[Source]) {
     let parsed: Vec<Option<&Material>> = materials.iter().map(Source::material).collect();
     let mut names: BTreeMap<String, String> = BTreeMap::new();
@@ -53,8 +53,8 @@ fn turned(surface: &Surface, named: &NamedMaterial, material: &Material) -> Opti
 /// Share of a surface below which grains count as unseen.
 const UNSEEN: f64 = 1e-3;
 
-/// Warns of switches whose grains are on less than a thousandth of a surface: the noise hardly reaches their range, their share of the tiles is small,
-/// or switches before them in the file have their places.
+/// Warns about switches whose grains cover less than a thousandth of a surface: the noise hardly reaches their range, their share of the tiles is
+/// small, or earlier switches of the file take their places.
 pub(super) fn doubt_surfaces(surfaces: &mut [SurfaceSource]) {
     for source in surfaces {
         let Ok(surface) = &source.parsed else { continue };
@@ -67,18 +67,20 @@ fn unseen(surface: &Surface) -> Vec<Diagnostic> {
     let switches: Vec<Switch> = surface.switches.iter().map(|switch| switch_of(&switch.by)).collect();
     let shares = switch_shares(&switches);
     let unseen = surface.switches.iter().zip(&shares).filter(|(_, share)| share.seen < UNSEEN);
-    let warning = |(switch, share): (&SurfaceSwitch, &SwitchShare)| {
-        let message = format!("these grains are on less than {} % of the surface", 100.0 * UNSEEN);
-        let hint = match share.noise {
-            _ if share.own >= UNSEEN => "switches before it in the file have its places: put it before them".to_owned(),
-            Some([least, most]) => {
-                format!(
-                    "this noise is from {least:.2} to {most:.2} nearly everywhere: choose a range inside, or a wider one"
-                )
-            }
-            None => "give it a larger `share`".to_owned(),
-        };
-        surface.of_switch(switch, message, hint)
+    unseen.map(|(switch, share)| unseen_grains(surface, switch, share)).collect()
+}
+
+/// The warning for grains that a switch hardly shows.
+fn unseen_grains(surface: &Surface, switch: &SurfaceSwitch, share: &SwitchShare) -> Diagnostic {
+    let message = format!("these grains are on less than {} % of the surface", 100.0 * UNSEEN);
+    let hint = match share.noise {
+        _ if share.own >= UNSEEN => "switches before it in the file have its places: put it before them".to_owned(),
+        Some([least, most]) => {
+            format!(
+                "this noise is from {least:.2} to {most:.2} nearly everywhere: choose a range inside, or a wider one"
+            )
+        }
+        None => "give it a larger `share`".to_owned(),
     };
-    unseen.map(warning).collect()
+    surface.of_switch(switch, message, hint)
 }

@@ -78,16 +78,16 @@ fn read(options: &AuditOptions, bytes: &[u8]) -> Outcome<table::Table> {
 }
 
 fn cropped(image: &Image, crop: &[u32]) -> Outcome<Image> {
-    let wrong = || {
+    let part = <&[u32; 4]>::try_from(crop).ok().filter(|[x, y, width, height]| {
+        [(x, width, image.width), (y, height, image.height)]
+            .into_iter()
+            .all(|(start, length, size)| *length > 0 && start.checked_add(*length).is_some_and(|end| end <= size))
+    });
+    let Some(&[x, y, width, height]) = part else {
         let (width, height) = (image.width, image.height);
-        Failure::Usage(anyhow::anyhow!("--crop is X,Y,W,H inside the {width} x {height} texels of the file"))
+        let sentence = format!("--crop is X,Y,W,H inside the {width} x {height} texels of the file");
+        return Err(Failure::Usage(anyhow::anyhow!(sentence)));
     };
-    let &[x, y, width, height] = crop else { return Err(wrong()) };
-    let inside =
-        |start: u32, length: u32, size: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= size);
-    if !inside(x, width, image.width) || !inside(y, height, image.height) {
-        return Err(wrong());
-    }
     let mut part = Image::zeros(width, height, image.channels);
     for row in 0..height {
         for column in 0..width {

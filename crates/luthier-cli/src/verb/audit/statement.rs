@@ -1,4 +1,4 @@
-//! A foreign table as the command line states it.
+//! A statement about a foreign table, made from the command line.
 
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
@@ -14,16 +14,16 @@ use crate::verb::ior;
 
 /// Terms of the channels of a preset that hold a split sum: the first ones.
 fn preset_terms(preset: &Preset) -> Vec<Term> {
-    let term = |value: &Value| match value {
+    let terms = preset.values.iter().map_while(|value| match value {
         Value::Scale => Some(Term::Scale),
         Value::Bias => Some(Term::Bias),
         Value::Albedo => Some(Term::Albedo),
         _ => None,
-    };
-    preset.values.iter().map_while(term).collect()
+    });
+    terms.collect()
 }
 
-/// The statement that the options make about a file, and the same in words.
+/// The statement that the options make about a file, as data and in words.
 pub(super) fn statement(options: &AuditOptions, table: &Table) -> Outcome<(Statement, String)> {
     let preset = options.preset;
     let preset_model = preset.map(|preset| format!("ggx-{}", preset.masking.name()));
@@ -78,31 +78,33 @@ fn term(name: &str, model: &Model) -> Outcome<Term> {
 }
 
 fn model(name: &str, ior: Option<&str>) -> Outcome<Model> {
-    let known = || -> Vec<String> {
-        let kinds: Vec<&str> = Masking::ALL.iter().map(|m| m.name()).chain(["ndf", "all-bounces"]).collect();
-        let of = |d: &str| kinds.iter().map(|kind| format!("{d}-{kind}")).collect::<Vec<_>>();
-        ["ggx", "beckmann"].into_iter().flat_map(of).chain(["fresnel".to_owned()]).collect()
-    };
-    let unknown = || {
-        let known = known();
-        Failure::unknown("model", name, &known.iter().map(String::as_str).collect::<Vec<_>>())
-    };
     if name == "fresnel" {
         return Ok(Model::Reflectance { interface: interface(name, ior)? });
     }
     let (distribution, kind) = match name.split_once('-') {
         Some(("ggx", kind)) => (Distribution::Ggx, kind),
         Some(("beckmann", kind)) => (Distribution::Beckmann, kind),
-        _ => return Err(unknown()),
+        _ => return Err(unknown(name)),
     };
     match kind {
         "ndf" => Ok(Model::Density { distribution }),
         "all-bounces" => Ok(Model::Albedo { distribution, interface: interface(name, ior)? }),
         _ => {
-            let masking = Masking::ALL.into_iter().find(|m| m.name() == kind).ok_or_else(unknown)?;
+            let masking = Masking::ALL.into_iter().find(|m| m.name() == kind).ok_or_else(|| unknown(name))?;
             Ok(Model::SplitSum { distribution, masking })
         }
     }
+}
+
+/// The failure for a name that no model has, with all names.
+fn unknown(name: &str) -> Failure {
+    let mut known = Vec::new();
+    for distribution in ["ggx", "beckmann"] {
+        let kinds = Masking::ALL.iter().map(|masking| masking.name()).chain(["ndf", "all-bounces"]);
+        known.extend(kinds.map(|kind| format!("{distribution}-{kind}")));
+    }
+    known.push("fresnel".to_owned());
+    Failure::unknown("model", name, &known.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 /// The interface from vacuum to the index that is named.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
+use std::time::SystemTime;
 
 use luthier_export::{MANIFEST, label};
 use luthier_terminal::{Failure, Outcome, files};
@@ -31,17 +32,15 @@ impl Depfile {
         let written: BTreeSet<PathBuf> =
             outs.chain([path.parent().unwrap_or(Path::new(""))]).filter_map(real).collect();
         let folders = packages.iter().flat_map(|(_, options)| &options.sources.paths).filter(|path| path.is_dir());
-        // What a build writes into a folder gives it a date after the manifest's, and the build would never rest.
+        // A build that writes into a folder gives it a date after the manifest's, and would run again for ever.
         let folders = folders.filter(|folder| real(folder).is_some_and(|folder| !written.contains(&folder)));
         let (needed, text) = rule(&first.out.join(MANIFEST), files, folders.cloned().collect())?;
         Ok(Some(Self { path: path.clone(), out: first.out.clone(), needed, text }))
     }
 
-    /// Writes the rule. A manifest that stayed as it was gets a new date where something that it depends on is younger: Make would build it again
-    /// and again.
+    /// Writes the rule. A manifest that did not change gets a new date if a dependency is younger, because Make would build it again and again.
     pub(super) fn write(&self) -> Outcome {
         std::fs::write(&self.path, &self.text).map_err(files(&self.path, "write"))?;
-        let date = |path: &Path| std::fs::metadata(path).and_then(|file| file.modified()).ok();
         let manifest = self.out.join(MANIFEST);
         let made = date(&manifest);
         if self.needed.iter().any(|path| date(path) > made) {
@@ -61,7 +60,7 @@ fn real(folder: &Path) -> Option<PathBuf> {
 fn rule(manifest: &Path, files: Vec<PathBuf>, folders: Vec<PathBuf>) -> Outcome<(Vec<PathBuf>, String)> {
     let target = target(manifest)?;
     let mut names = files.iter().map(|path| dependency(path)).collect::<Outcome<Vec<_>>>()?;
-    // A name of its own: a target that is called like the folder is another one.
+    // A folder is named with `/.` at its end: under its own name it could be the target of another rule.
     names.extend(
         folders
             .iter()
@@ -94,14 +93,14 @@ fn target(path: &Path) -> Outcome<String> {
 fn dependency(path: &Path) -> Outcome<String> {
     let name = escaped(path)?;
     if name.starts_with('~') {
-        // A home folder is none where a path is absolute.
+        // Make expands `~` in relative names only.
         return escaped(&absolute(path).map_err(files(path, "find"))?);
     }
     // After a blank, Make takes these for an assignment.
     Ok(if name.starts_with(['=', '+', '?', '!']) { format!("./{name}") } else { name })
 }
 
-/// A path as both read it.
+/// A path in the spelling that Make and Ninja both read.
 fn escaped(path: &Path) -> Outcome<String> {
     let name = label(path);
     let refuse = |why: &str| Err(unreadable(&name, why));
@@ -114,9 +113,8 @@ fn escaped(path: &Path) -> Outcome<String> {
     if name.ends_with([':', ')']) {
         return refuse("Make and Ninja take a `:` or `)` at the end of a name for something else");
     }
-    // Both halve, keep or drop backslashes in front of these, each in its own way.
-    let is_plain = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || "._-+,@/\\".contains(c));
-    if name.char_indices().any(|(at, c)| c == '\\' && !is_plain(name[at + 1..].chars().next())) {
+    // Make and Ninja treat backslashes in front of other signs differently: each halves, keeps or drops them.
+    if name.char_indices().any(|(at, c)| c == '\\' && !name[at + 1..].starts_with(is_plain)) {
         return refuse("Make and Ninja read a backslash in front of another sign, or at the end, differently");
     }
     if let Some(other) = confused(path) {
@@ -128,6 +126,16 @@ fn escaped(path: &Path) -> Outcome<String> {
     Ok(format!("{drive}{rest}"))
 }
 
+/// True for signs in front of which Make and Ninja keep a backslash.
+fn is_plain(c: char) -> bool {
+    c.is_alphanumeric() || "._-+,@/\\".contains(c)
+}
+
+/// The time of the last change of a file.
+fn date(path: &Path) -> Option<SystemTime> {
+    std::fs::metadata(path).and_then(|file| file.modified()).ok()
+}
+
 /// Another file or folder that fits a part of the path, read as a pattern of Make. Where nothing fits, Make takes the path as it is.
 fn confused(path: &Path) -> Option<String> {
     path.ancestors().find_map(|path| {
@@ -135,15 +143,15 @@ fn confused(path: &Path) -> Option<String> {
         let start = name.find(['[', '?'])?;
         let end = name.rfind([']', '?']).filter(|&end| end >= start)? + 1;
         // A pair of brackets stands for one sign.
-        let count = |text: &str| text.chars().count();
+        let length = name.chars().count();
         let signs = name.matches(['[', ']', '?']).count();
         let is_pair = signs == 2 && !name.contains('?');
-        let most = if is_pair { count(name) - count(&name[start..end]) + 1 } else { count(name) };
+        let most = if is_pair { length - name[start..end].chars().count() + 1 } else { length };
         let others = real(path.parent()?)?.read_dir().ok()?.filter_map(Result::ok);
         let mut others = others.map(|other| other.file_name().to_string_lossy().into_owned());
         others.find(|other| {
             let fits = other.starts_with(&name[..start]) && other.ends_with(&name[end..]);
-            other != name && fits && count(other) <= most
+            other != name && fits && other.chars().count() <= most
         })
     })
 }

@@ -14,7 +14,7 @@ pub(super) struct LockFile {
     path: PathBuf,
     text: Option<String>,
     lock: Option<Lock>,
-    /// Whether the decisions are to be made anew.
+    /// True where the decisions are made anew.
     is_asked: bool,
 }
 
@@ -55,7 +55,7 @@ impl LockFile {
         self.lock.as_ref().map_or(&[], |lock| &lock.decisions)
     }
 
-    /// The file as a bake would leave it, where that is another one: a lock that is there or asked for, whose decisions a budget broke.
+    /// The lock that a bake would write: if a budget broke a decision of the lock, or if a lock was asked for and there is none.
     pub(super) fn next(&self, manifest: &Manifest) -> Option<Lock> {
         let next = Lock::of(manifest);
         match &self.lock {
@@ -69,7 +69,7 @@ impl LockFile {
         self.next(manifest).map(|_| self.path.display().to_string())
     }
 
-    /// Writes the decisions of a bake, where there is a lock that does not have them; a sentence that says so.
+    /// Writes the decisions of a bake into a lock that lacks them. Returns a sentence about it.
     ///
     /// # Errors
     /// [`Failure::Files`].

@@ -31,7 +31,7 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
     if options.pipeline.watch { watch::run(options) } else { once(options).map(drop) }
 }
 
-/// Bakes from what the shares of other processes left in the store, and says what it had to compute itself.
+/// Bakes from the results that shares of other processes left in the store, and reports the jobs that it had to run itself.
 pub(crate) fn merge(options: &BakeOptions) -> Outcome {
     let pipeline = &options.pipeline;
     if let Some(option) =
@@ -52,7 +52,7 @@ fn need_store(user: &str) -> Outcome {
     }
 }
 
-/// Bakes once; the files that the bake read.
+/// Bakes once. Returns the files that the bake read.
 fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
     let mut found = Files::packages(&options.sources.paths)?;
     let outer = &mut found[0].2;
@@ -75,7 +75,7 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
     }
     let (packages, files): (Vec<(String, BakeOptions)>, Vec<Files>) =
         found.into_iter().map(|(name, paths, files)| (package(options, name, paths), files)).unzip();
-    // Nothing is made before all can be, and nothing is written before all is made.
+    // No package is made before all are valid, and none is written before all are made.
     let begun = packages.iter().zip(files).map(|((_, options), files)| Begun::read(options, files));
     let begun = begun.collect::<Outcome<Vec<_>>>()?;
     let needed = begun.iter().flat_map(Begun::needed).collect();
@@ -90,13 +90,13 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
     Ok(done.into_iter().flat_map(|done| done.read).collect())
 }
 
-/// The bake of one package: that of the command's paths, or with its name that of folders inside.
+/// The name and the options of one package. A package of folders inside goes into a folder of its name.
 fn package(options: &BakeOptions, name: String, paths: Vec<PathBuf>) -> (String, BakeOptions) {
     let out = if name.is_empty() { options.out.clone() } else { options.out.join(&name) };
     (name, BakeOptions { sources: Sources { paths }, out, ..options.clone() })
 }
 
-/// Says what became of the packages. As JSON the others are in the object of the first, by their names.
+/// Prints the outcome of all packages. In JSON, the first package's object holds the others by name.
 fn say(options: &BakeOptions, packages: &[(String, BakeOptions)], done: &[Done]) -> Outcome {
     if options.json {
         let mut first = done[0].json.clone();
@@ -106,9 +106,12 @@ fn say(options: &BakeOptions, packages: &[(String, BakeOptions)], done: &[Done])
         }
         return print(&format!("{first:#}"));
     }
-    let heading = |name: &str| if name.is_empty() { String::new() } else { format!("{name}:\n") };
     let said = packages.iter().zip(done).filter(|(_, done)| !done.text.is_empty());
-    let texts: Vec<String> = said.map(|((name, _), done)| heading(name) + done.text.trim_end()).collect();
+    let texts = said.map(|((name, _), done)| {
+        let heading = if name.is_empty() { String::new() } else { format!("{name}:\n") };
+        heading + done.text.trim_end()
+    });
+    let texts: Vec<String> = texts.collect();
     if texts.is_empty() { Ok(()) } else { print(&texts.join("\n\n")) }
 }
 

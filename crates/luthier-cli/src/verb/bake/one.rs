@@ -1,4 +1,4 @@
-//! The bake of one package in three steps: its files are read, all of it is made, and it is published.
+//! The bake of one package in three steps: read its files, make all of it, publish it.
 
 use std::path::PathBuf;
 
@@ -21,10 +21,10 @@ use crate::progress::{BakeProgress, event, published};
 use crate::store::store;
 use crate::verb::check::diagnostics;
 
-/// A package whose files are read, and all right.
+/// A package whose files were read and are valid.
 pub(super) struct Begun<'a> {
     options: &'a BakeOptions,
-    /// The files that are found, before those that materials name.
+    /// The files that were found, without files that materials name.
     files: Vec<PathBuf>,
     stamp: Stamp,
     lock: LockFile,
@@ -34,9 +34,9 @@ pub(super) struct Begun<'a> {
 
 /// A package as its files and its stamp describe it.
 enum Found {
-    /// It is as it was baked before.
+    /// The folder is up to date.
     Current(Kept),
-    /// It is to be baked.
+    /// The package has to be baked.
     Set(Set),
 }
 
@@ -44,15 +44,15 @@ enum Found {
 struct Set {
     materials: Vec<Material>,
     surfaces: Vec<SurfaceEntry>,
-    /// Doubts that were told.
+    /// Warnings that were printed.
     told: Vec<Diagnostic>,
 }
 
-/// A package that is made, if it was to be.
+/// A package after its second step; made, unless the options ask for less.
 pub(super) struct Made<'a> {
     begun: Begun<'a>,
     encoded: Option<Encoded>,
-    /// The words of a step short of a package, as JSON and as text.
+    /// The outcome, as JSON and as text, of options that ask for less than a package.
     said: Option<(Value, String)>,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Done {
     pub(super) text: String,
     /// All files that the bake read.
     pub(super) read: Vec<PathBuf>,
-    /// Whether `--check` found that a bake would change the folder.
+    /// True where `--check` found that a bake would change the folder.
     pub(super) is_stale: bool,
 }
 
@@ -140,7 +140,7 @@ impl<'a> Begun<'a> {
         let store = store()?;
         let encoded = pool.install(|| {
             let mut package = bake.package(materials, store)?;
-            // A bake that writes a lock is the bake that the lock gives: the next one finds nothing to do.
+            // A bake that writes a lock is made again from it, so that the next bake changes nothing.
             if let Some(next) = lock.next(&package.manifest) {
                 let locked = luthier_bake::Options { locked: &next.decisions, ..bake.options };
                 package = Bake { options: locked, ..bake.clone() }.package(materials, store)?;
@@ -185,7 +185,7 @@ impl Made<'_> {
         let mut json = words::summary(options, manifest, &progress);
         json["diagnostics"] = diagnostics(&told);
         let text = if options.quiet { String::new() } else { words::text(options, manifest, &progress) };
-        // The lock may be another one now.
+        // This bake may have written the lock.
         let lock = LockFile::beside(&options.sources.paths, false)?;
         stamp.keep(lock.text(), &encoded, &set.materials, &json, told.len());
         Ok(Done { json, text, read, is_stale: false })

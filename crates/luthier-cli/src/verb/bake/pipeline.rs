@@ -1,4 +1,4 @@
-//! Questions of build pipelines about a bake: whether it is up to date, what it would do, what it depends on, a share of it.
+//! Answers for build pipelines: whether a bake is up to date, the jobs that it would run, its files, a share of it.
 
 use std::path::PathBuf;
 
@@ -15,12 +15,12 @@ use crate::progress::BakeProgress;
 use crate::watched::all_named;
 
 impl Pipeline {
-    /// Whether anything but events is asked for.
+    /// True where the options ask for anything but events.
     pub(super) fn is_any(&self) -> bool {
         self.check || self.dry_run || self.watch || self.relock || self.depfile.is_some() || self.shard.is_some()
     }
 
-    /// Whether a bake that was made before needs no second look.
+    /// True where a stamp may end the bake early.
     pub(super) fn takes_stamp(&self) -> bool {
         !self.relock && self.shard.is_none()
     }
@@ -36,13 +36,13 @@ pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<Strin
     let mut stale = encoded.stale(&options.out)?;
     stale.extend(lock);
     let before = Folder::open(&options.out).ok();
-    let source = |name: &str| before.as_ref()?.manifest().materials.iter().find(|m| m.name == name);
-    let changed = |name: &str, hash: &str| source(name).is_none_or(|material| material.source_hash != hash);
-    let materials = encoded.manifest.materials.iter().filter(|m| changed(&m.name, &m.source_hash));
-    let mut materials: Vec<&str> = materials.map(|m| m.name.as_str()).collect();
-    let is_gone = |name: &str| encoded.manifest.material_index(name).is_none();
-    let old = before.iter().flat_map(|folder| &folder.manifest().materials);
-    materials.extend(old.map(|m| m.name.as_str()).filter(|name| is_gone(name)));
+    let old = before.as_ref().map_or(&[][..], |folder| &folder.manifest().materials);
+    let changed = encoded.manifest.materials.iter().filter(|new| {
+        let old = old.iter().find(|old| old.name == new.name);
+        old.is_none_or(|old| old.source_hash != new.source_hash)
+    });
+    let gone = old.iter().filter(|old| encoded.manifest.material_index(&old.name).is_none());
+    let materials: Vec<&str> = changed.chain(gone).map(|material| material.name.as_str()).collect();
     let text = if !stale.is_empty() {
         let lines = stale.iter().map(|path| format!("stale: {path}"));
         let lines = lines.chain(materials.iter().map(|name| format!("changed: {name}")));
@@ -56,11 +56,11 @@ pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<Strin
     Ok(Done { json, text, is_stale: !stale.is_empty(), ..Done::default() })
 }
 
-/// Which jobs a bake would run, as JSON and in words.
+/// The jobs that a bake would run, as JSON and in words.
 pub(super) fn missing(missing: &Missing) -> (Value, String) {
-    let jobs = || missing.jobs.iter().map(|(kind, count)| (kind.name(), *count));
-    let counts: Value = jobs().map(|(kind, count)| (kind.to_owned(), json!(count))).collect();
-    let mut lines: Vec<String> = jobs().map(|(kind, count)| format!("{count:>6}  {kind}")).collect();
+    let jobs: Vec<_> = missing.jobs.iter().map(|(kind, count)| (kind.name(), *count)).collect();
+    let counts: Value = jobs.iter().map(|(kind, count)| ((*kind).to_owned(), json!(count))).collect();
+    let mut lines: Vec<String> = jobs.iter().map(|(kind, count)| format!("{count:>6}  {kind}")).collect();
     if lines.is_empty() {
         lines.push("no job would run: the store has all results".to_owned());
     }

@@ -1,4 +1,4 @@
-//! Stamps: what a bake read and wrote, so that the next one knows at once that nothing has changed.
+//! Stamps record the files that a bake read and wrote. By them the next bake knows at once that nothing has changed.
 
 use std::fmt::Display;
 use std::fs::File;
@@ -22,7 +22,7 @@ use crate::watched::{State, all_named, state};
 /// The kind of stamps in the store.
 const KIND: &str = "stamp";
 
-/// Folders that a bake leaves which was killed: the next one sweeps them.
+/// Folders that a killed bake leaves. The next bake sweeps them.
 const LEFT: [&str; 2] = [".luthier-new", ".luthier-ready"];
 
 /// The inputs of a bake, and the place of its stamp.
@@ -45,7 +45,7 @@ pub(super) struct Kept {
     summary: Value,
 }
 
-/// Dates the manifest in a folder now, in the stamp of the folder, too.
+/// Gives the manifest in a folder the present time, in the file system and in the stamp.
 pub(super) fn date(out: &Path) -> io::Result<()> {
     let _lock = shared(out);
     let manifest = out.join(MANIFEST);
@@ -77,12 +77,12 @@ impl Stamp {
         Self { out: options.out.clone(), inputs: format!("{decided} {}", hashes.concat()) }
     }
 
-    /// The inputs with a lock as it is, as stamps have them.
+    /// The inputs of a stamp, with the lock as it is now.
     fn inputs(&self, lock: &str) -> String {
         Key::of(format!("{} {lock}", self.inputs).as_bytes()).to_string()
     }
 
-    /// The stamp of the last bake into the folder, where it read the same and all that it wrote is as it was.
+    /// The stamp of the last bake into the folder, if its inputs were the same and its files have not changed since.
     pub(super) fn current(&self, lock: &str) -> Option<Kept> {
         let bytes = disk().ok()??.bytes(KIND, address(&self.out)?)?;
         let kept: Kept = serde_json::from_slice(&bytes).ok()?;
@@ -93,7 +93,7 @@ impl Stamp {
         is_same.then_some(kept)
     }
 
-    /// Keeps the stamp of a bake, if the folder still holds it and not one that another program has published since.
+    /// Keeps the stamp of a bake, unless another program has published into the folder since.
     pub(super) fn keep(&self, lock: &str, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
         let (Ok(Some(store)), Some(address)) = (disk(), address(&self.out)) else { return };
         let _lock = shared(&self.out);
@@ -122,7 +122,7 @@ impl Kept {
         files.iter().chain(&self.named).cloned().collect()
     }
 
-    /// The verdict that nothing had to be done, as JSON and in words. Warnings that were told before are counted on standard error.
+    /// The outcome of a bake that had nothing to do, as JSON and in words. Standard error gets the number of earlier warnings.
     pub(super) fn say(&self, options: &BakeOptions) -> (Value, String) {
         let mut summary = self.summary.clone();
         summary["up_to_date"] = json!(true);
@@ -139,14 +139,14 @@ impl Kept {
 
 /// A hash of the paths and bytes of some files.
 fn hash(files: &[PathBuf]) -> String {
-    let one = |path: &PathBuf| match input::image(path) {
+    let hashes = files.par_iter().map(|path| match input::image(path) {
         Ok(bytes) => hashed(path, Key::of(&bytes)),
         Err(error) => hashed(path, error),
-    };
-    Key::of(files.par_iter().map(one).collect::<Vec<_>>().concat().as_bytes()).to_string()
+    });
+    Key::of(hashes.collect::<Vec<_>>().concat().as_bytes()).to_string()
 }
 
-/// A line of a hash: a path, and the hash of its bytes or why there is none.
+/// A line to be hashed: a path, and the hash of its bytes or the reason why it cannot be read.
 fn hashed(path: &Path, hash: impl Display) -> String {
     format!("{} {hash}\n", path.display())
 }

@@ -21,13 +21,14 @@ type Files = BTreeMap<PathBuf, Option<watched::State>>;
 /// The files that matter.
 #[derive(PartialEq)]
 struct State {
-    /// Materials that are found now, and what could be others in folders inside.
+    /// Material files that are found now, and files of folders inside that may be materials.
     found: Files,
     /// Files that the last bake read.
     read: Files,
 }
 
-/// Bakes, and again whenever files have changed and then rested for a while, until the process is ended. Files that cannot be used are named, and waited for.
+/// Bakes, and bakes again whenever files have changed and then rested for a period, until the process is ended. Files that cannot be used are
+/// reported; the next change is awaited.
 pub(super) fn run(options: &BakeOptions) -> Outcome {
     let mut read = Vec::new();
     loop {
@@ -45,12 +46,12 @@ pub(super) fn run(options: &BakeOptions) -> Outcome {
     }
 }
 
-/// Waits until files are others than before, and stay so for a period.
+/// Waits until files have changed and then stayed the same for a period.
 fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
     let mut last = state(options, read);
-    // The bake may have taken so long that files changed meanwhile, or came.
-    let is_known = |(path, state): (&PathBuf, &Option<_>)| before.read.get(path).is_none_or(|then| then == state);
-    let mut is_changed = last.found != before.found || !last.read.iter().all(is_known);
+    // Files may have changed or been added during the bake.
+    let is_known = last.read.iter().all(|(path, state)| before.read.get(path).is_none_or(|then| then == state));
+    let mut is_changed = last.found != before.found || !is_known;
     loop {
         sleep(PERIOD);
         let now = state(options, read);

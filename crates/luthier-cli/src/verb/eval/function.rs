@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// The wavelengths and channels that the columns are sums of, and the weight of each in each; stacks that are equal are one.
+    /// The monochrome stacks whose sums are the columns, each with its weight in each column. Equal stacks are merged.
     pub(crate) fn parts(&self, stack: &Stack) -> Vec<(Monochrome, Rgb)> {
         let color = match self {
             Self::Wavelength(nm) | Self::Reradiated([_, nm]) => {
@@ -152,11 +152,12 @@ impl<'a> Function<'a> {
 
     fn summed(&self, parts: &[(Monochrome, Rgb)], f: impl Fn(&Monochrome) -> Estimate) -> Vec<Estimate> {
         let found: Vec<Estimate> = parts.iter().map(|(stack, _)| f(stack)).collect();
-        let column = |c: usize| Estimate::sum(parts.iter().zip(&found).map(|((_, weight), one)| (weight[c], *one)));
-        (0..self.columns).map(column).collect()
+        let columns = (0..self.columns)
+            .map(|c| Estimate::sum(parts.iter().zip(&found).map(|((_, weight), one)| (weight[c], *one))));
+        columns.collect()
     }
 
-    /// The values of a model that is a function; one alone is the first.
+    /// The values of a model that is a function. A single column takes the first channel.
     fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
         match &self.how {
             How::Shader(shaded, channel) if self.columns == 1 => [shaded.eval(wi, wo)[*channel], 0.0, 0.0],
@@ -174,7 +175,7 @@ impl<'a> Function<'a> {
     }
 }
 
-/// The parts of its shader's model that the file chooses, as far as the model that is evaluated has them.
+/// The parts that the file chooses, as far as the evaluated model has them.
 pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
     let Some(model) = subject.model.info().shading() else {
         return (Parts::PLAIN, Reflectance::default());
@@ -184,8 +185,8 @@ pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
     (parts_of(&subject.material, model), reflectance)
 }
 
-/// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
-/// energies take seconds in colour, and effects are none of theirs.
+/// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated without it: in colour their
+/// energies take seconds, and they show no effects.
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (model, place) = (subject.model.info().shading()?, &subject.place);
     let material = &subject.material;

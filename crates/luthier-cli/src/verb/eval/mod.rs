@@ -11,7 +11,6 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use luthier_bake::fitted;
-use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::model::{Estimate, Model, ModelInfo};
 use luthier_layers::models::lobes::{Fit, Fitted, Varied};
 use luthier_layers::monochrome::Monochrome;
@@ -37,21 +36,21 @@ use place::{add_layers, place};
 use sweep::{Sweep, sweep};
 use values::values;
 
-/// Wavelength of what is tabulated against the angle, unless another is given.
+/// Wavelength of tables against the angle, unless another is given.
 const WAVELENGTH_NM: f64 = 550.0;
 
-/// Subject of an evaluation: a model, with all that it takes, of a material.
+/// Subject of an evaluation: a model with its inputs, and a material.
 struct Subject {
     model: Box<dyn Model>,
     material: Material,
     /// Gives the model `lobes` its lobes.
     fit: Arc<Fit<'static>>,
     place: Place,
-    /// Name of the surface whose material at the place it is.
+    /// Name of the surface, if the material is the one at a place of a surface.
     surface: Option<String>,
     /// Whether effects of the file are in the place.
     has_effects: bool,
-    /// Wavelengths of the light and of what is seen, where these are two.
+    /// Wavelengths of the light and of the light seen, if these differ.
     bins_nm: Option<[f64; 2]>,
 }
 
@@ -69,15 +68,15 @@ impl Subject {
                 "patina": self.place.patina.map(|patina| patina.amount),
             });
             if !self.place.layers.is_empty() {
-                let layer = |own: &LayerSample| {
+                let layers = self.place.layers.iter().map(|own| {
                     json!({
                         "normal": own.normal.to_array(),
                         "alpha_factors": own.alpha_factors,
                         "tangent": own.tangent.to_array(),
                         "slab_factor": own.slab_factor,
                     })
-                };
-                head["place"]["layers"] = self.place.layers.iter().map(layer).collect();
+                });
+                head["place"]["layers"] = layers.collect();
             }
         }
         head
@@ -190,7 +189,8 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
 /// Name of a surface, and the normal at the place.
 type Picked = (String, DVec3);
 
-/// The material of the file, and that of `--other`; of a surface the material at the place, with the name of the surface and the normal there.
+/// The material of the file and the material of `--other`. For a surface file, it is the material at the place, with the name of the surface and its
+/// normal there.
 fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> {
     let inputs = &options.inputs;
     let file = TomlFile::read(&options.file)?;
@@ -212,8 +212,8 @@ fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> 
 
 /// The channel whose absorption and albedo are those at a wavelength.
 fn nearest_channel(wavelength_nm: f64) -> usize {
-    let distance = |channel: &usize| (GRANIER_WAVELENGTHS_NM[*channel] - wavelength_nm).abs();
-    (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
+    let distances = GRANIER_WAVELENGTHS_NM.map(|nm| (nm - wavelength_nm).abs());
+    (0..3).min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(1)
 }
 
 /// The stack at a wavelength, for the nearest channel.

@@ -1,4 +1,4 @@
-//! The place of a surface that is evaluated: what options say of it, and the effects of the material file there.
+//! The place of a surface where a model is evaluated, from the options and from the effects of the material file.
 
 use glam::{DVec2, DVec3};
 use luthier_bake::{MapSource, height_normals};
@@ -68,7 +68,7 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     Ok(place)
 }
 
-/// Has the place the textures of single layers, from the maps of the file that count, and of the albedo of its base.
+/// Gives the place the values of layer textures: those of `maps`, which include the albedo of the base.
 pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelInputs, maps: &[LayerMap]) -> Outcome {
     let uv = inputs.uv().unwrap_or(DVec2::ZERO);
     let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
@@ -133,8 +133,9 @@ fn moved(named: &PictureRef, uv: DVec2) -> DVec2 {
 
 /// The texel of a map of normals that repeats, unfiltered.
 fn texel(map: &Image, uv: DVec2) -> DVec3 {
-    let at = |x: f64, size: u32| (((x - x.floor()) * f64::from(size)) as u32).min(size - 1);
-    let texel = map.texel(at(uv.x, map.width), at(uv.y, map.height));
+    let [column, row] = [(uv.x, map.width), (uv.y, map.height)]
+        .map(|(x, size)| (((x - x.floor()) * f64::from(size)) as u32).min(size - 1));
+    let texel = map.texel(column, row);
     DVec3::from([0, 1, 2].map(|c| 2.0 * f64::from(texel[c]) - 1.0))
 }
 
@@ -143,21 +144,19 @@ fn filtered(map: &Image, uv: DVec2) -> f64 {
     filtered_channel(map, uv, 0)
 }
 
-/// A channel of a map, as [`filtered`] has the first.
+/// A channel of a map that repeats, filtered as samplers do; centres of texels are at (i + 1/2) / size.
 fn filtered_channel(map: &Image, uv: DVec2, channel: usize) -> f64 {
-    let axis = |x: f64, size: u32| {
+    let axes = [(uv.x, map.width), (uv.y, map.height)].map(|(x, size)| {
         let at = (x - x.floor()) * f64::from(size) - 0.5;
         let low = at.floor();
-        let index = |i: f64| i.rem_euclid(f64::from(size)) as u32;
-        ([index(low), index(low + 1.0)], at - low)
-    };
-    let ([left, right], s) = axis(uv.x, map.width);
-    let ([top, bottom], t) = axis(uv.y, map.height);
-    let row = |y: u32| {
-        let [a, b] = [left, right].map(|x| f64::from(map.texel(x, y)[channel]));
+        ([low, low + 1.0].map(|i| i.rem_euclid(f64::from(size)) as u32), at - low)
+    });
+    let [(columns, s), (rows, t)] = axes;
+    let [top, bottom] = rows.map(|y| {
+        let [a, b] = columns.map(|x| f64::from(map.texel(x, y)[channel]));
         a + (b - a) * s
-    };
-    row(top) + (row(bottom) - row(top)) * t
+    });
+    top + (bottom - top) * t
 }
 
 #[cfg(test)]

@@ -37,17 +37,19 @@ pub(crate) fn polarised(material: &Material, kind: &Kind, thetas_deg: &[f64], js
         })
         .collect();
     if json {
-        let row = |(theta_deg, [s, p]): &(f64, [Rgb; 2])| json!({"theta_i_deg": theta_deg, "refl_s": s[..columns], "refl_p": p[..columns]});
-        let rows: Value = rows.iter().map(row).collect();
+        let rows = rows.iter().map(
+            |(theta_deg, [s, p])| json!({"theta_i_deg": theta_deg, "refl_s": s[..columns], "refl_p": p[..columns]}),
+        );
+        let rows: Value = rows.collect();
         let head = json!({"material": material.name, "color": kind.describe(), "polarised": rows});
         return print(&format!("{head:#}"));
     }
-    let names = kind.columns("");
-    let named = |what: &str| {
-        let one = |name: &&str| if name.is_empty() { what.to_owned() } else { format!("{what}_{name}") };
-        names.iter().map(one).collect::<Vec<_>>().join(",")
-    };
-    let mut text = format!("theta_i,{},{}", named("refl_s"), named("refl_p"));
+    let [s, p] = ["refl_s", "refl_p"].map(|what| {
+        let names = kind.columns("").into_iter();
+        let names = names.map(|name| if name.is_empty() { what.to_owned() } else { format!("{what}_{name}") });
+        names.collect::<Vec<_>>().join(",")
+    });
+    let mut text = format!("theta_i,{s},{p}");
     for (theta_deg, sums) in &rows {
         let fields: Vec<String> =
             sums.iter().flat_map(|rgb| &rgb[..columns]).map(|value| significant(*value)).collect();
@@ -56,7 +58,7 @@ pub(crate) fn polarised(material: &Material, kind: &Kind, thetas_deg: &[f64], js
     print(&text)
 }
 
-/// Why the light that a stack sends back is no sum of amplitudes.
+/// Refuses a stack whose reflected light is not a sum of amplitudes, with the reason.
 fn coherent(stack: &Stack) -> Result<(), String> {
     let [only] = stack.layers.as_slice() else {
         return Err(format!("it has {} layers, and light is not coherent across a slab", stack.layers.len()));

@@ -23,18 +23,16 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
     drop(lock);
     let (material, model) = (&subject.material, subject.model.info().name);
     let number = manifest.materials.iter().position(|entry| entry.name == material.name);
-    let missing = |why: String| Failure::Input(anyhow::anyhow!("{}: {why}", folder.display()));
-    let number = number.ok_or_else(|| missing(format!("the bake has no material `{}`", material.name)))?;
+    let number = number.ok_or_else(|| missing(folder, &format!("the bake has no material `{}`", material.name)))?;
     let entry = &manifest.materials[number];
     if entry.model.name() != model {
         let text = format!("the bake shades `{}` by `{}`, not by `{model}`", material.name, entry.model.name());
-        return Err(missing(text));
+        return Err(missing(folder, &text));
     }
     if !is_baked_as(&mut material.clone(), entry)? {
-        return Err(missing(format!(
-            "{} has changed since it was baked, or a file that it names; bake again",
-            material.source
-        )));
+        let source = &material.source;
+        let text = format!("{source} has changed since it was baked, or a file that it names; bake again");
+        return Err(missing(folder, &text));
     }
     // Only this material is evaluated.
     let stacks = vec![material.reflecting_stack().into_owned(); manifest.materials.len()];
@@ -49,4 +47,8 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
         ColorMode::ThreeWavelengths => Color::ThreeWavelengths(entry.wavelengths_nm),
     };
     values::show(subject.head(), Kind::Color(color), false, pairs, &found, json)
+}
+
+fn missing(folder: &Path, why: &str) -> Failure {
+    Failure::Input(anyhow::anyhow!("{}: {why}", folder.display()))
 }

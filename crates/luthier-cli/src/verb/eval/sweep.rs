@@ -44,7 +44,7 @@ pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
     if options.angles.is_empty() { THETAS_DEG.to_vec() } else { options.angles.clone() }
 }
 
-/// The model with the parts that the file chooses, where it chooses some.
+/// The model with the parts that the file chooses; `None` if it chooses none.
 fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
     let (parts, reflectance) = parts(subject);
     let info = subject.model.info();
@@ -80,10 +80,6 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
     let own = if what == Sweep::Furnace { of_file(subject)? } else { None };
     let model = own.as_deref().unwrap_or(subject.model.as_ref());
     let function = (what == Sweep::Albedo).then(|| Function::new(subject, kind));
-    let single = |row: DirectionalAlbedo| Albedo {
-        values: vec![if row.is_estimate { Estimate::known(row.value, row.error) } else { Estimate::exact(row.value) }],
-        changes: (!row.is_estimate).then(|| vec![row.error]),
-    };
     let rows: Vec<(f64, Albedo)> = thetas_deg(options)
         .par_iter()
         .map(|&theta_deg| {
@@ -127,15 +123,13 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
     let mut text = names.join(",");
     for (theta_deg, Albedo { values, changes }) in &rows {
         let means = values.iter().map(|value| significant(value.mean));
-        let errors = || -> Vec<String> {
-            match changes {
-                Some(changes) => changes.iter().map(|change| significant(*change)).collect(),
-                None => values.iter().map(error).collect(),
-            }
+        let errors: Vec<String> = match changes {
+            Some(changes) => changes.iter().map(|change| significant(*change)).collect(),
+            None => values.iter().map(error).collect(),
         };
         let fields: Vec<String> = match what {
-            Sweep::Albedo => means.chain(errors()).collect(),
-            Sweep::Furnace => means.chain(values.iter().map(|v| significant(v.mean - 1.0))).chain(errors()).collect(),
+            Sweep::Albedo => means.chain(errors).collect(),
+            Sweep::Furnace => means.chain(values.iter().map(|v| significant(v.mean - 1.0))).chain(errors).collect(),
             Sweep::Environment => means.collect(),
         };
         text.push_str(&format!("\n{theta_deg},{}", fields.join(",")));
@@ -144,11 +138,6 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
 }
 
 fn entry(what: Sweep, theta_deg: f64, Albedo { values, changes }: &Albedo) -> Value {
-    // One number is no list.
-    let listed = |numbers: Vec<Value>| match <[Value; 1]>::try_from(numbers) {
-        Ok([only]) => only,
-        Err(all) => Value::Array(all),
-    };
     let means = listed(values.iter().map(|value| json!(value.mean)).collect());
     let errors = listed(match changes {
         Some(changes) => changes.iter().map(|change| json!(change)).collect(),
@@ -169,4 +158,20 @@ fn entry(what: Sweep, theta_deg: f64, Albedo { values, changes }: &Albedo) -> Va
     }
     (row["error"], row["method"]) = (errors, json!(method));
     row
+}
+
+/// Numbers as a JSON array; a single number as itself.
+fn listed(numbers: Vec<Value>) -> Value {
+    match <[Value; 1]>::try_from(numbers) {
+        Ok([only]) => only,
+        Err(all) => Value::Array(all),
+    }
+}
+
+/// A row with a single value.
+fn single(row: DirectionalAlbedo) -> Albedo {
+    Albedo {
+        values: vec![if row.is_estimate { Estimate::known(row.value, row.error) } else { Estimate::exact(row.value) }],
+        changes: (!row.is_estimate).then(|| vec![row.error]),
+    }
 }

@@ -28,8 +28,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     if options.simulated.is_none() && options.sheet.look.adapter.is_some() {
         return Err(Failure::Usage(anyhow::anyhow!("a page is drawn by a browser: --adapter is for --simulated")));
     }
-    let is_bake = |path: &&PathBuf| path.join(MANIFEST).is_file();
-    let (bakes, rest): (Vec<&PathBuf>, Vec<&PathBuf>) = options.sources.paths.iter().partition(is_bake);
+    let (bakes, rest): (Vec<_>, Vec<_>) = options.sources.paths.iter().partition(|path| path.join(MANIFEST).is_file());
     if let Some(bake) = bakes.first() {
         refuse_for_bakes(options, bake)?;
     }
@@ -38,7 +37,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     for folder in bakes {
         let mut package = Package::read(folder)?;
         for (number, entry) in (0..).zip(&mut package.manifest.materials) {
-            // Pages name files as they are found from here.
+            // Pages name files by their paths from the current folder.
             entry.source = label(&origin(folder, &entry.source));
             let mut exhibit = Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]);
             exhibit.section = Some(CrossSection::recorded(entry));
@@ -56,7 +55,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     deliver(&page, Some(html))
 }
 
-/// Refuses options that decide how materials are baked, or what of: they have no effect on a bake.
+/// Refuses options that decide how materials are baked, or which: they have no effect on a bake that is read.
 fn refuse_for_bakes(options: &GalleryOptions, bake: &Path) -> Outcome {
     let shading = &options.shading;
     let asked = [
@@ -82,15 +81,14 @@ fn refuse_for_bakes(options: &GalleryOptions, bake: &Path) -> Outcome {
 
 /// Title of the page: the name of the only file or folder.
 fn title(options: &GalleryOptions) -> String {
-    let name = |path: &PathBuf| path.file_stem().map(|name| name.to_string_lossy().into_owned());
     match options.sources.paths.as_slice() {
-        [one] => name(one).filter(|name| name != "materials"),
+        [one] => one.file_stem().map(|name| name.to_string_lossy().into_owned()).filter(|name| name != "materials"),
         _ => None,
     }
     .unwrap_or_else(|| "Materials".to_owned())
 }
 
-/// Says which parts of materials the page does not show.
+/// Warns about parts of materials that the page does not show.
 fn left_out(gallery: &Gallery) {
     for manifest in gallery.packages.iter().map(|package| &package.manifest) {
         for surface in &manifest.surfaces {
@@ -111,7 +109,7 @@ fn left_out(gallery: &Gallery) {
     }
 }
 
-/// Adds materials by their own models, and by those to compare.
+/// Adds materials with their own models, and with the models to compare.
 fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) -> Outcome {
     let costs = CostTable::shipped();
     let first = gallery.exhibits.len();
@@ -125,15 +123,9 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
     }
     gallery.packages.push(own);
     for model in ShadingModel::ALL {
-        let is_wanted = |material: &Material| {
-            let other =
-                if material.model() == ShadingModel::Belcour { ShadingModel::Elek } else { ShadingModel::Belcour };
-            let asked = if options.compare.is_empty() { &[other] } else { options.compare.as_slice() };
-            material.model() != model && asked.contains(&model)
-        };
         let (mut numbers, mut shaded) = (Vec::new(), Vec::new());
-        for (number, material) in materials.iter().enumerate().filter(|(_, material)| is_wanted(material)) {
-            if !is_shaded_by(material, model, &options.compare) {
+        for (number, material) in materials.iter().enumerate() {
+            if !is_wanted(material, model, &options.compare) || !is_shaded_by(material, model, &options.compare) {
                 continue;
             }
             let mut material = material.clone();
@@ -162,7 +154,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
     Ok(())
 }
 
-/// A bake for the page, which emits its own shaders: with the tables of blurred surroundings.
+/// A bake for the page, with the tables of blurred surroundings and without shaders, which the page emits itself.
 fn package(materials: &[Material]) -> Outcome<Package> {
     let bake = Bake { targets: Vec::new(), ..Bake::default() };
     Ok(bake.package(&lit(materials), store()?)?)
@@ -171,12 +163,19 @@ fn package(materials: &[Material]) -> Outcome<Package> {
 /// A look of a material of the next package, with the cycles of its shaders.
 fn look(gallery: &Gallery, number: u32, material: &Material, costs: &CostTable) -> Look {
     let shape = luthier_scene::shape(&material.stack);
-    let cycles = |form: Form| {
+    let cycles = Form::ALL.into_iter().filter_map(|form| {
         let (cycles, is_of_similar) = costs.cost(material.model(), form, &shape)?;
         let about = if is_of_similar { "about " } else { "" };
         Some((form, format!("{about}{cycles:.0}")))
-    };
-    Look { cycles: Form::ALL.into_iter().filter_map(cycles).collect(), ..Look::new(gallery.packages.len(), number) }
+    });
+    Look { cycles: cycles.collect(), ..Look::new(gallery.packages.len(), number) }
+}
+
+/// True where a model is to be compared with the material's own. If none is asked for, that is `belcour`, or `elek` for a material of `belcour`.
+fn is_wanted(material: &Material, model: ShadingModel, asked: &[ShadingModel]) -> bool {
+    let other = if material.model() == ShadingModel::Belcour { ShadingModel::Elek } else { ShadingModel::Belcour };
+    let asked = if asked.is_empty() { &[other] } else { asked };
+    material.model() != model && asked.contains(&model)
 }
 
 /// Adds pictures by simulation to the exhibits of materials.

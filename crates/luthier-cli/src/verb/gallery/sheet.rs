@@ -23,7 +23,7 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
         )));
     }
     let (titles, sources) = sources(options)?;
-    // The warnings of a grid would be those of one file many times.
+    // A grid would repeat the warnings of its one file many times.
     let materials = bakeable(sources, &options.shading.in_forms(&[]), !sheet.grid.is_empty())?;
     let package = Bake::lit().package(&lit(&materials), store()?)?;
     let look = &sheet.look;

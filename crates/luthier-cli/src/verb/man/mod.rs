@@ -26,7 +26,7 @@ pub(crate) fn run(options: &ManOptions) -> Outcome {
     print(&format!("{} pages into {}", pages.len(), folder.display()))
 }
 
-/// Prints the reference. It is about all verbs: a build without some of them has none.
+/// Prints the reference of all verbs. A build that lacks some of them cannot.
 fn reference() -> Outcome {
     let command = with_all_verbs();
     let mut missing: Vec<&str> = OF_FEATURES

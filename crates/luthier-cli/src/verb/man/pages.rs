@@ -49,7 +49,8 @@ fn page(command: &Command, above: Option<&str>, source: &str) -> Vec<u8> {
     }
 
     let man = Man::new(command.clone());
-    // The title is written here: without a date, which would differ from day to day, the crate's own has its fields in the wrong places.
+    // The title is written here, because clap_mangen puts the fields in the wrong places if there is no date, and a date would differ from day to
+    // day.
     let mut page = format!(".TH {name} 1 \"\" \"{source}\" \"luthier manual\"\n").into_bytes();
     let mut write = || -> std::io::Result<()> {
         man.render_name_section(&mut page)?;

@@ -1,4 +1,5 @@
-//! The reference: a page in Markdown with every verb, argument and option. It follows the definition, and no width of a terminal.
+//! The reference: a page in Markdown with every verb, argument and option. It follows the definition of the command line, not the width of a
+//! terminal.
 
 use clap::builder::StyledStr;
 use clap::{Arg, ArgAction, Command};
@@ -15,7 +16,7 @@ All verbs of the command `luthier`, with their arguments and options. The defini
 
 ";
 
-/// The page of a command, some of whose verbs are of a cargo feature.
+/// The page of a command. `of_features` lists verbs of cargo features.
 pub(super) fn page(command: Command, of_features: &[(&str, &str)]) -> String {
     let mut command = command.disable_help_subcommand(true);
     command.build();
@@ -27,7 +28,7 @@ pub(super) fn page(command: Command, of_features: &[(&str, &str)]) -> String {
     page
 }
 
-/// Verbs by name: their order does not tell which of them are of a feature.
+/// Verbs sorted by name, so that their order does not depend on features.
 fn verbs(command: &Command) -> Vec<&Command> {
     let mut verbs: Vec<&Command> = command.get_subcommands().filter(|verb| !verb.is_hide_set()).collect();
     verbs.sort_by_key(|verb| verb.get_name());
@@ -58,9 +59,9 @@ fn section(command: &Command, of_features: &[(&str, &str)], page: &mut String) {
     }
     let usage = command.clone().render_usage().to_string();
     page.push_str(&format!("\n\n    {}\n", usage.trim_start_matches("Usage: ").trim()));
-    let shown = |arg: &&Arg| !arg.is_hide_set() && (arg.get_id() != "help" || command.get_version().is_some());
-    let args: Vec<&Arg> = command.get_arguments().filter(shown).collect();
-    let (positional, options): (Vec<&Arg>, Vec<&Arg>) = args.iter().partition(|arg| arg.is_positional());
+    let has_help = command.get_version().is_some();
+    let shown = command.get_arguments().filter(|arg| !arg.is_hide_set() && (arg.get_id() != "help" || has_help));
+    let (positional, options): (Vec<&Arg>, Vec<&Arg>) = shown.partition(|arg| arg.is_positional());
     let mut headings: Vec<Option<&str>> = options.iter().map(|arg| arg.get_help_heading()).collect();
     headings.sort_by_key(Option::is_some);
     headings.dedup();
@@ -111,7 +112,7 @@ fn list(title: &str, args: &[&Arg], command: &Command, page: &mut String) {
     }
 }
 
-/// Whether some of the values that an argument takes have a text of their own.
+/// True where values of an argument have texts of their own.
 fn has_explained_values(arg: &Arg) -> bool {
     arg.get_possible_values().iter().any(|value| value.get_help().is_some())
 }
@@ -138,9 +139,8 @@ fn signature(arg: &Arg) -> String {
     format!("`{short}{long}{value}{again}`")
 }
 
-/// All that is known of an argument, in sentences.
+/// The help and the facts of an argument, in sentences.
 fn facts(arg: &Arg, command: &Command) -> String {
-    let quoted = |names: Vec<String>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let help = arg.get_long_help().or(arg.get_help()).map(StyledStr::to_string).unwrap_or_default();
     let mut facts = vec![prose(&sentence(&help))];
     if arg.is_required_set() && !arg.is_positional() {
@@ -165,7 +165,11 @@ fn facts(arg: &Arg, command: &Command) -> String {
     facts.join(" ")
 }
 
-/// Arguments that exclude another, on whichever of the two the definition says so.
+fn quoted(names: Vec<String>) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Arguments that exclude an argument, whichever of the two states it.
 fn conflicts<'c>(arg: &Arg, command: &'c Command) -> Vec<&'c Arg> {
     let excluded =
         |by: &Arg, other: &Arg| command.get_arg_conflicts_with(by).iter().any(|c| c.get_id() == other.get_id());
@@ -177,7 +181,7 @@ fn label(arg: &Arg) -> String {
     arg.get_long().map_or_else(|| arg.get_value_names().unwrap_or_default().join(" "), |long| format!("--{long}"))
 }
 
-/// Sentences on sets of arguments of which one is to be given.
+/// Sentences on groups of arguments that require one of their members.
 fn groups(command: &Command) -> Vec<String> {
     let required = command.get_groups().filter(|group| group.is_required_set());
     let sentences = required.map(|group| {

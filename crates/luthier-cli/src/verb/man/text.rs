@@ -16,7 +16,6 @@ const TITLE_WORDS: usize = 3;
 
 /// The parts of a text whose examples and lists are indented.
 pub(super) fn blocks(text: &str) -> Vec<Block<'_>> {
-    let is_indented = |line: &str| line.starts_with("  ");
     let mut blocks = Vec::new();
     let mut is_open = false;
     let mut lines = text.lines().peekable();
@@ -25,11 +24,12 @@ pub(super) fn blocks(text: &str) -> Vec<Block<'_>> {
         if line.trim().is_empty() {
             continue;
         }
-        let title = line.strip_suffix(':').filter(|_| lines.peek().is_some_and(|next| is_indented(next)));
+        let indented = line.starts_with("  ");
+        let title = line.strip_suffix(':').filter(|_| lines.peek().is_some_and(|next| next.starts_with("  ")));
         let title = title.filter(|title| title.split_whitespace().count() <= TITLE_WORDS);
         match (blocks.last_mut(), title) {
-            (Some(Block::Lines(kept)), _) if was_open && is_indented(line) => kept.push(&line[2..]),
-            (_, _) if is_indented(line) => blocks.push(Block::Lines(vec![&line[2..]])),
+            (Some(Block::Lines(kept)), _) if was_open && indented => kept.push(&line[2..]),
+            (_, _) if indented => blocks.push(Block::Lines(vec![&line[2..]])),
             (_, Some(title)) => blocks.push(Block::Title(title)),
             (Some(Block::Paragraph(prose)), None) if was_open => {
                 prose.push(' ');

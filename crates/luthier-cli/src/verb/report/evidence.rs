@@ -1,4 +1,4 @@
-//! Evidence that a report shows beside the judgement: searches of materials alone, models against paths, costs, stability, choices.
+//! Evidence that a report shows in addition to the judgement: searches for single materials, models against paths, costs, stability, choices.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ use crate::store::store;
 /// First family of random numbers of the paths.
 const SEED: u64 = 1;
 
-/// The errors of models. The revision changes whenever a model, the paths, or what is measured of them gives other errors than before.
+/// The errors of models. Raise the revision when models, paths or measurements give other errors than before.
 const REFERENCE: Function = Function { kind: "reference", revision: 2 };
 
 /// Contents of the files that the command line names.
@@ -81,7 +81,7 @@ pub(super) fn add(
         judged.shape_cost = shape_cost(&costs, judged.model, material);
     }
     report.stability = given.stability.as_ref().map(StabilitySummary::of);
-    // Fixed defaults were not searched for, whatever a search would find.
+    // Fixed sizes were not searched for, so a search has nothing to add.
     if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
         let (options, store) = (Options { fits: false, ..Options::default() }, store()?);
         let alone: Vec<_> = materials
@@ -110,7 +110,7 @@ pub(super) fn add(
     Ok(())
 }
 
-/// The errors of all models of a material, from the store where they were found before.
+/// The errors of all models of a material; from the store if an earlier report has them.
 fn against_reference(subject: &ModelSubject, settings: ModelSettings, store: &dyn Store) -> Vec<AgainstReference> {
     let ModelSubject { stack, wavelengths_nm, .. } = subject;
     let inputs = json!({

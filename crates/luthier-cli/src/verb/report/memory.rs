@@ -1,11 +1,11 @@
-//! Judgements of earlier reports, in the store. The judge computes them: the store only has them again, by the content of what was judged.
+//! Judgements of earlier reports, which the store keeps by the content of the judged files. The judge computed all of them.
 
 use luthier::Store;
 use luthier_bake::Function;
 use luthier_report::Memory;
 use serde_json::Value;
 
-/// Changes whenever the judge finds other figures than before for the same tables, records, stacks and shaders.
+/// Raise this when the judge finds other figures than before for the same tables, records, stacks and shaders.
 const REVISION: u32 = 1;
 
 /// The store as the judge sees it.

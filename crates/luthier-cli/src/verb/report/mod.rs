@@ -48,7 +48,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let mut report = judge(&subject, judging, &settings).map_err(Failure::input)?;
     drop(bar);
     for material in &mut report.materials {
-        // Reports name files as they are found from here.
+        // Reports name files by their paths from the current folder.
         material.source = label(&origin(&options.out, &material.source));
     }
 
@@ -94,22 +94,20 @@ fn provenance(folder: &Folder, options: &ReportOptions, given: &evidence::Given)
 /// The command line that makes the report.
 fn command(options: &ReportOptions) -> String {
     let mut words = vec![format!("luthier report --out {} --pairs {}", options.out.display(), options.pairs)];
-    let limit = |name: &str, limit: Option<String>| limit.map(|l| format!("--{name} {l}"));
-    let float = |value: Option<f64>| value.map(|v| format!("{v:e}"));
-    words.extend(limit("max-error", float(options.max_error)));
-    words.extend(limit("max-abs", float(options.max_abs)));
-    words.extend(limit("max-delta-e", float(options.max_delta_e)));
-    words.extend(limit("max-bytes", options.max_bytes.map(|b| b.to_string())));
-    words.extend(limit("max-lobe", float(options.max_lobe)));
+    words.extend(options.max_error.map(|limit| format!("--max-error {limit:e}")));
+    words.extend(options.max_abs.map(|limit| format!("--max-abs {limit:e}")));
+    words.extend(options.max_delta_e.map(|limit| format!("--max-delta-e {limit:e}")));
+    words.extend(options.max_bytes.map(|limit| format!("--max-bytes {limit}")));
+    words.extend(options.max_lobe.map(|limit| format!("--max-lobe {limit:e}")));
     words.extend(options.reference.map(|paths| format!("--reference={paths}")));
-    words.extend(limit("cost", options.cost.as_ref().map(|p| p.display().to_string())));
-    words.extend(limit("stability", options.stability.as_ref().map(|p| p.display().to_string())));
-    words.extend(limit("gallery", options.gallery.clone()));
+    words.extend(options.cost.as_ref().map(|path| format!("--cost {}", path.display())));
+    words.extend(options.stability.as_ref().map(|path| format!("--stability {}", path.display())));
+    words.extend(options.gallery.as_ref().map(|gallery| format!("--gallery {gallery}")));
     words.extend(options.no_device.then(|| "--no-device".to_owned()));
     #[cfg(feature = "gpu")]
     {
-        words.extend(limit("max-flip", float(options.max_flip)));
-        words.extend(limit("adapter", options.adapter.clone()));
+        words.extend(options.max_flip.map(|limit| format!("--max-flip {limit:e}")));
+        words.extend(options.adapter.as_ref().map(|adapter| format!("--adapter {adapter}")));
         words.push(format!("--picture-size {}", options.picture_size));
     }
     words.join(" ")
@@ -128,7 +126,7 @@ fn asked(options: &ReportOptions) -> Asked {
     }
 }
 
-/// The materials of a bake, read again from their files: the judge takes nothing on trust.
+/// The materials of a bake, read again from their files, so that the judge does not rely on the baker.
 fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
     manifest
         .materials
@@ -149,7 +147,7 @@ fn materials(manifest: &Manifest, folder: &Path) -> Outcome<Vec<Material>> {
             if !is_baked_as(&mut material, entry)? {
                 return Err(changed(&file));
             }
-            // A scene may have left out parts of a material: the tables are of what is left.
+            // The choice of a scene may leave out parts of a material; its tables then describe the rest.
             let choice = manifest.choice.as_ref().and_then(|choice| choice.materials.get(number));
             let left_out =
                 choice.and_then(|c| c.tried.get(c.chosen)).map(|c| c.left_out.as_slice()).unwrap_or_default();
@@ -168,7 +166,7 @@ fn changed(file: &Path) -> Failure {
 #[cfg(feature = "gpu")]
 type Runner = luthier_terminal::Shaders;
 
-/// The runner of a build that runs no shaders.
+/// Stands in for a device in a build without the feature `gpu`.
 #[cfg(not(feature = "gpu"))]
 type Runner = NoShaders;
 

@@ -1,10 +1,10 @@
 //! Pictures of every material with both shaders.
 
 use luthier_bake::Function;
-use luthier_gpu::{RenderSettings, Scene, Shape, ToneMapping};
+use luthier_gpu::{RenderSettings, Shape, ToneMapping};
 use luthier_lut::Image;
 use luthier_report::{
-    Exhibit, Form, MaterialReport, PictureErrors, Report, Subject, brightened_difference, compare_pictures, contents,
+    Exhibit, Form, PictureErrors, Report, Subject, brightened_difference, compare_pictures, contents,
     picture_color_difference,
 };
 use luthier_terminal::{Bar, Failure, Outcome, Shaders};
@@ -14,13 +14,13 @@ use serde_json::json;
 use crate::cli::ReportOptions;
 use crate::store::store;
 
-/// The pictures of a material, kept. The revision changes whenever the renderer draws other ones.
+/// The pictures of a material in the store. Raise the revision when the renderer draws other ones.
 const PICTURES: Function = Function { kind: "picture", revision: 1 };
 
 /// The errors of the pictures, and the pictures with their captions.
 type Drawn = (Option<PictureErrors>, Vec<(String, Vec<u8>)>);
 
-/// Directions of the environment for each lobe and sample: the form without tables has no albedo to weigh blurred maps with.
+/// Directions of the environment for each lobe and sample. Blurred maps are no choice, because the form `full` has no tables of albedos.
 const ENVIRONMENT_SAMPLES: u32 = 16;
 
 /// Samples along each side of a pixel.
@@ -57,38 +57,34 @@ pub(super) fn pictures(
             out.push(pngs.into_iter().map(|(caption, png)| Exhibit { caption, png }).collect());
             continue;
         }
-        let mut keep = |material: &MaterialReport, exhibits: Vec<Exhibit>| {
-            let pngs = exhibits.iter().map(|exhibit| (exhibit.caption.clone(), exhibit.png.clone())).collect();
-            PICTURES.keep::<Drawn>(&inputs, store, (material.picture.clone(), pngs));
-            out.push(exhibits);
+        let baked = baked.render(&[number], &settings)?;
+        let exhibits = if let Some(full) = full {
+            let full = full.render(&[number], &settings)?;
+            let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
+            let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));
+            let (apart, gain) = brightened_difference(&baked, &full, |v| tone.value(v));
+            material.picture = Some(PictureErrors {
+                size: settings.size,
+                rms_err: compared.rms_err,
+                max_abs_err: compared.max_abs_err,
+                flip_mean: compared.flip_mean,
+                flip_max: compared.flip_max,
+                delta_e_mean,
+                delta_e_max,
+                gain,
+            });
+            vec![
+                exhibit("full", full, tone)?,
+                exhibit("baked", baked, tone)?,
+                exhibit(&format!("difference × {gain}"), apart, ToneMapping::None)?,
+                exhibit(&format!("FLIP, mean {:.4}", compared.flip_mean), compared.flip, ToneMapping::None)?,
+            ]
+        } else {
+            vec![exhibit("baked", baked, tone)?]
         };
-        let render = |scene: &Scene| scene.render(&[number], &settings);
-        let baked = render(baked)?;
-        let Some(full) = full else {
-            keep(material, vec![exhibit("baked", baked, tone)?]);
-            continue;
-        };
-        let full = render(full)?;
-        let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
-        let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));
-        let (apart, gain) = brightened_difference(&baked, &full, |v| tone.value(v));
-        material.picture = Some(PictureErrors {
-            size: settings.size,
-            rms_err: compared.rms_err,
-            max_abs_err: compared.max_abs_err,
-            flip_mean: compared.flip_mean,
-            flip_max: compared.flip_max,
-            delta_e_mean,
-            delta_e_max,
-            gain,
-        });
-        let exhibits = vec![
-            exhibit("full", full, tone)?,
-            exhibit("baked", baked, tone)?,
-            exhibit(&format!("difference × {gain}"), apart, ToneMapping::None)?,
-            exhibit(&format!("FLIP, mean {:.4}", compared.flip_mean), compared.flip, ToneMapping::None)?,
-        ];
-        keep(material, exhibits);
+        let pngs = exhibits.iter().map(|exhibit| (exhibit.caption.clone(), exhibit.png.clone())).collect();
+        PICTURES.keep::<Drawn>(&inputs, store, (material.picture.clone(), pngs));
+        out.push(exhibits);
     }
     Ok(out)
 }

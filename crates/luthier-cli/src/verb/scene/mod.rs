@@ -8,7 +8,7 @@ use luthier_manifest::{MaterialChoice, SceneChoice};
 use luthier_material::{Material, Scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
 use luthier_terminal::{Broken, Failure, Outcome, bytes, print, print_diagnostics, valid};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::cli::BakeOptions;
 use crate::interrupt::whole;
@@ -36,7 +36,7 @@ fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Materia
     Ok(if options.shading.no_fit { director.without_fits() } else { director })
 }
 
-/// Bakes a scene, or prints what budgets would choose for some.
+/// Bakes a scene, or prints the choices of several budgets for scenes.
 pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     let limits = options.limits.options();
     if !options.emission.form.is_empty() {
@@ -87,7 +87,7 @@ pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     }
 }
 
-/// A scene without models is an input that is not usable; what its materials say is theirs.
+/// The failure of a choice: a scene without models is an unusable input, and other errors keep their kind.
 fn failure(error: SceneFailure) -> Failure {
     match error {
         SceneFailure::Export(error) => error.into(),
@@ -104,19 +104,22 @@ fn tighten(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     for file in scenes {
         let (scene, materials) = read(file, options.quiet)?;
         let mut director = director(options, &scene, &materials)?;
-        let mut step = |&limit: &f64| director.step(Some(limit), options.allow_miss).map_err(failure);
-        let steps: Vec<Made> = budgets.iter().map(&mut step).collect::<Outcome<_>>()?;
+        let steps = budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss).map_err(failure));
+        let steps = steps.collect::<Outcome<Vec<Made>>>()?;
         tightened.push((scene, steps));
     }
     if options.json {
-        let step = |made: &Made| json!({ "texel_bytes": made.bytes(), "cycles": made.cycles(), "choice": made.choice });
-        let scenes: Vec<_> = tightened.iter().map(|(_, steps)| steps.iter().map(step).collect::<Vec<_>>()).collect();
+        let scenes: Value = tightened.iter().map(|(_, steps)| steps.iter().map(summary).collect::<Value>()).collect();
         return print(&format!("{:#}", json!({ "budgets": budgets, "scenes": scenes })));
     }
     print(&page::markdown(&command(options), &budgets, &tightened))
 }
 
-/// A scene and its materials; or all diagnostics and a failure.
+fn summary(made: &Made) -> Value {
+    json!({ "texel_bytes": made.bytes(), "cycles": made.cycles(), "choice": made.choice })
+}
+
+/// A scene and its materials. If they cannot be used, all diagnostics are printed and the result is a failure.
 fn read(file: TomlFile, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
     let SceneSource { label, text, parsed, materials, .. } = SceneSource::of(file);
     print_diagnostics(parsed.as_ref().err().into_iter().flatten(), &text);

@@ -70,8 +70,7 @@ fn section(scene: &Scene, budgets: &[f64], steps: &[Made]) -> String {
 /// Lines on the budgets that a material does not hold, and the direction of the largest error.
 fn misses(budgets: &[f64], steps: &[Made], number: usize) -> String {
     let choices = budgets.iter().zip(steps).map(|(budget, made)| (budget, &made.choice.materials[number]));
-    let missed = choices.filter(|(_, choice)| !choice.holds());
-    let line = |(budget, choice): (&f64, &MaterialChoice)| {
+    let lines = choices.filter(|(_, choice)| !choice.holds()).map(|(budget, choice)| {
         let own = choice.candidate();
         let place = own.error.at.map_or_else(String::new, |at| format!(": {at}"));
         format!(
@@ -80,11 +79,11 @@ fn misses(budgets: &[f64], steps: &[Made], number: usize) -> String {
             label(own),
             own.error.max_rel
         )
-    };
-    missed.map(line).collect()
+    });
+    lines.collect()
 }
 
-/// The models in use and how many materials have each.
+/// The models in use, each with its number of materials.
 fn models(made: &Made) -> String {
     let mut counts: Vec<(String, usize)> = Vec::new();
     for choice in &made.choice.materials {
@@ -101,10 +100,6 @@ fn models(made: &Made) -> String {
 
 fn row(budget: f64, choice: &MaterialChoice) -> String {
     let own = choice.candidate();
-    let cycles = |candidate: &luthier_manifest::SceneCandidate| {
-        let mark = if candidate.cost_is_of_similar { "~" } else { "" };
-        format!("{mark}{:.0}", candidate.cost)
-    };
     let chosen = if choice.holds() { label(own) } else { format!("({})", label(own)) };
     let cheaper = choice.next_cheaper.map(|i| &choice.tried[i]).map_or_else(
         || "– | – | –".to_owned(),
@@ -121,4 +116,9 @@ fn row(budget: f64, choice: &MaterialChoice) -> String {
         error.max_rel,
         2.0 * error.std_err_rel
     )
+}
+
+fn cycles(candidate: &luthier_manifest::SceneCandidate) -> String {
+    let mark = if candidate.cost_is_of_similar { "~" } else { "" };
+    format!("{mark}{:.0}", candidate.cost)
 }

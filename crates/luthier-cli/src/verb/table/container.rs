@@ -8,7 +8,7 @@ use luthier_terminal::{Failure, Outcome};
 use luthier_texture::ktx2::{Levels, encode_levels};
 use luthier_texture::{Metadata, Texture, exr, png};
 
-/// Container and texels of a file by its ending, where no engine decides: KTX2 and raw texels are half floats, EXR is floats.
+/// Container and texel type of a file by its ending, if no engine decides: half floats for KTX2 and raw texels, floats for EXR.
 pub(super) fn by_ending(path: &Path) -> Outcome<(Container, Stored)> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("ktx2") => Ok((Container::Ktx2, Stored::Half)),
@@ -21,7 +21,7 @@ pub(super) fn by_ending(path: &Path) -> Outcome<(Container, Stored)> {
     }
 }
 
-/// Refuses a file whose ending is not that of the container that the engine of a preset reads.
+/// Refuses a file whose ending does not fit the container that the engine of a preset reads.
 pub(super) fn ending_of(preset: &Preset, path: &Path) -> Outcome {
     let Preset { name, container, .. } = preset;
     let (ending, what) = match container {
@@ -93,7 +93,7 @@ fn raw(texels: &Image, stored: Stored) -> Outcome<Vec<u8>> {
     })
 }
 
-/// The image with four channels; those that it has not are 0.
+/// The image with four channels; missing ones are 0.
 fn rgba(texels: &Image) -> Image {
     let data = texels.texels().flat_map(|texel| (0..4).map(move |c| texel.get(c).copied().unwrap_or(0.0))).collect();
     Image { channels: 4, data, ..texels.clone() }
@@ -101,12 +101,12 @@ fn rgba(texels: &Image) -> Image {
 
 /// The module of three.js: the words of half floats, row by row, and the function that the renderer imports.
 fn javascript(texels: &Image, words: &str) -> String {
-    let row = |row: &[f32]| {
+    let Image { width, height, channels, .. } = *texels;
+    let rows = texels.data.chunks_exact((width * channels) as usize).map(|row| {
         let words: Vec<String> = row.iter().map(|v| format!("0x{:04x}", half::f16::from_f32(*v).to_bits())).collect();
         format!("\t{}", words.join(", "))
-    };
-    let Image { width, height, channels, .. } = *texels;
-    let rows: Vec<String> = texels.data.chunks_exact((width * channels) as usize).map(row).collect();
+    });
+    let rows: Vec<String> = rows.collect();
     format!(
         "// {words}\nimport {{ DataTexture }} from '../../textures/DataTexture.js';\nimport {{ ClampToEdgeWrapping, HalfFloatType, LinearFilter, \
          RGFormat }} from '../../constants.js';\n\nexport const DFG_LUT_DATA = new Uint16Array( [\n{}\n] );\n\nlet texture = \

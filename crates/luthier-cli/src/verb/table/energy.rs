@@ -166,8 +166,9 @@ fn searched(options: &EnergyOptions, max_abs: f64) -> Outcome<Product> {
         let reason = "--max-abs searches tables of half floats of the surface reflector";
         return Err(Failure::Usage(anyhow::anyhow!("{reason}; state --axes and --size of others")));
     }
-    let value = |name: &String| find(&[Value::Albedo, Value::Loss], Value::name, "value of a search", name);
-    let values = options.values.iter().map(value).collect::<Outcome<Vec<_>>>()?;
+    let values = options.values.iter();
+    let values = values.map(|name| find(&[Value::Albedo, Value::Loss], Value::name, "value of a search", name));
+    let values = values.collect::<Outcome<Vec<_>>>()?;
     let known = [Masking::SmithCorrelated, Masking::SmithSeparable];
     let masking = find(&known, Masking::name, "masking term", &options.masking)?;
     let from = [options.domain.min_cos, options.domain.min_alpha];

@@ -28,12 +28,11 @@ pub(super) fn product(options: &FresnelOptions) -> Outcome<Product> {
     });
     let mut maps = Vec::new();
     if options.delivery.report.is_some() {
-        let ends = |quantity: Quantity| {
+        let ranges = [Quantity::IorN, Quantity::IorK].map(|quantity| {
             let axis = layout.axes().iter().find(|axis| axis.quantity == quantity);
-            axis.map_or([0.0; 2], |axis| [axis.min, axis.max])
-        };
+            axis.map_or([0.0; 2], |axis| [axis.min.max(1e-3 * axis.max), axis.max])
+        });
         let [cos, n, k] = [0, 1, 2].map(|i: usize| error.worst.at[i]);
-        let ranges = [ends(Quantity::IorN), ends(Quantity::IorK)].map(|[least, most]| [least.max(1e-3 * most), most]);
         let exact = FresnelTable::exact;
         let title = format!("this table, at cos_theta {cos:.3}");
         maps.push(ErrorMap::sample(&title, ["ior_n", "ior_k"], ranges, (error.max_abs_err, [n, k]), |[n, k]| {

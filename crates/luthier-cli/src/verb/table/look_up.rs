@@ -20,8 +20,7 @@ pub(super) fn beside(output: &Path, languages: &[Target], wgsl: &str) -> Outcome
     let stem =
         ending.map_or(output.with_extension(""), |ending| output.with_file_name(&name[..name.len() - ending.len()]));
     let stem = stem.to_string_lossy();
-    let file = |target: &Target| Ok((PathBuf::from(format!("{stem}.{}", target.extension())), text(wgsl, *target)?));
-    languages.iter().map(file).collect()
+    languages.iter().map(|to| Ok((PathBuf::from(format!("{stem}.{}", to.extension())), text(wgsl, *to)?))).collect()
 }
 
 /// The function in a language.

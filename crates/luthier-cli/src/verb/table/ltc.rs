@@ -10,7 +10,7 @@ use super::container::encode;
 use super::product::{Product, distribution, fact};
 use crate::cli::LtcOptions;
 
-/// Lowest cosine and alpha that count: below, a bilinear read of engines' axes finds no lobe as narrow as the reflection.
+/// Lowest cosine and alpha that count. Below these, a bilinear read on engines' axes yields no lobe as narrow as the reflection.
 const FROM: [f64; 2] = [0.02, 0.002];
 
 /// Fits the tables.

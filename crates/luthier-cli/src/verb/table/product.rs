@@ -12,9 +12,9 @@ use serde_json::{Value as Json, json};
 use super::container::encode;
 use crate::cli::{Delivery, DistributionName, NodesName};
 
-/// Files of a table, and all that is said of them.
+/// Files of a table, with a page and the outcome in words.
 pub(super) struct Product {
-    /// The table first, then what belongs to it.
+    /// The table first, then its shaders.
     pub(super) files: Vec<(PathBuf, Vec<u8>)>,
     /// The page.
     pub(super) certificate: Certificate,
@@ -24,7 +24,7 @@ pub(super) struct Product {
     pub(super) text: String,
 }
 
-/// Writes the files and the page, and says what they are.
+/// Writes the files and the page, and prints the outcome.
 pub(super) fn deliver(product: Product, delivery: &Delivery) -> Outcome {
     let Product { files: mut written, certificate, mut json, text } = product;
     if let Some(path) = &delivery.report {
@@ -60,7 +60,7 @@ pub(super) struct Sampled<'a> {
     pub(super) file: (Container, Stored),
     /// Error of reads, the names of the quantities of its worst place, and where it counts.
     pub(super) error: (ErrorStats, &'a [&'a str], String),
-    /// Most that errors may be, where that is asked for.
+    /// Limit of the errors, if one is asked for.
     pub(super) max_abs: Option<f64>,
     /// Rows of the page before those of the error.
     pub(super) facts: Vec<(String, String)>,
@@ -90,8 +90,7 @@ pub(super) fn sampled(table: Sampled<'_>, delivery: &Delivery) -> Outcome<Produc
     Ok(Product { files: vec![(delivery.output.clone(), bytes)], certificate, json, text })
 }
 
-/// A row of the page.
-/// The verdict on what holds a limit, if there is one.
+/// The largest error in the words of a certificate, and whether it holds the limit, if there is one.
 pub(super) fn verdict(max_abs: Option<f64>, largest: String) -> (String, Option<bool>) {
     match max_abs {
         Some(limit) => (format!("holds {limit}: {largest}"), Some(true)),
@@ -99,6 +98,7 @@ pub(super) fn verdict(max_abs: Option<f64>, largest: String) -> (String, Option<
     }
 }
 
+/// A row of the page.
 pub(super) fn fact(name: &str, value: impl Into<String>) -> (String, String) {
     (name.to_owned(), value.into())
 }
@@ -141,12 +141,12 @@ pub(super) fn domain(min_cos: f64, min_alpha: f64) -> String {
     format!("cos_theta >= {min_cos}, alpha >= {min_alpha}")
 }
 
-/// Where nodes are, in the words of `luthier audit --nodes`.
+/// The position of nodes in texels, in the words of `luthier audit --nodes`.
 pub(super) fn nodes_name(nodes: Nodes) -> &'static str {
     if nodes == Nodes::Ends { "ends" } else { "centres" }
 }
 
-/// Where nodes are, of the command line.
+/// The position of nodes that the command line asks for.
 pub(super) fn nodes(name: NodesName) -> Nodes {
     match name {
         NodesName::Centres => Nodes::CENTRES,

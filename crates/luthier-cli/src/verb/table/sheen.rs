@@ -10,7 +10,7 @@ use super::ltc::{error_json, in_words};
 use super::product::{Product, fact};
 use crate::cli::SheenOptions;
 
-/// Least albedo that counts: a lobe that reflects next to nothing may have any shape.
+/// Least albedo that counts. A lobe that reflects less may have any shape.
 const MIN_ALBEDO: f64 = 1e-3;
 
 /// Bakes the table.

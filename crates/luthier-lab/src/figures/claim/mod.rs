@@ -13,7 +13,7 @@ pub(crate) struct Claim {
     pub(crate) checks: &'static [Check],
 }
 
-/// A comparison of numbers, which it names as the table of the figure does.
+/// A comparison of numbers of the figure, by their names in its table.
 #[derive(Clone, Copy)]
 pub(crate) enum Check {
     /// Each number is larger than the next.
@@ -22,10 +22,10 @@ pub(crate) enum Check {
     Within(&'static str, f64, f64),
 }
 
-/// Whether a claim holds, and the comparisons that say so, with their numbers.
+/// The outcome of a claim, and the comparisons that decide it, with their numbers.
 pub(crate) struct Verdict {
     pub(crate) holds: bool,
-    /// All comparisons of a claim that holds; of another those that fail.
+    /// All comparisons if the claim holds, else those that fail.
     pub(crate) because: Vec<String>,
 }
 
@@ -42,29 +42,30 @@ impl Claim {
 impl Check {
     /// Whether a comparison holds, and its text with the numbers.
     fn outcome(&self, figure: &str, measured: &[Measured]) -> Outcome<(bool, String)> {
-        let value = |name: &str| {
-            measured.iter().find(|m| m.what == name).map(|m| m.value).ok_or_else(|| {
-                Failure::Input(anyhow::anyhow!(
-                    "{figure}: the claim is about `{name}`, which was not measured; make the figure anew"
-                ))
-            })
-        };
         match *self {
             Self::Falls(names) => {
-                let values = names.iter().map(|name| value(name)).collect::<Outcome<Vec<f64>>>()?;
+                let values = names.iter().map(|name| value(figure, measured, name)).collect::<Outcome<Vec<f64>>>()?;
                 let holds = values.is_sorted_by(|a, b| a > b);
                 let texts: Vec<String> =
                     names.iter().zip(values).map(|(name, value)| format!("{name} {}", number(value))).collect();
                 Ok((holds, texts.join(if holds { " > " } else { ", then " })))
             }
             Self::Within(name, from, to) => {
-                let value = value(name)?;
+                let value = value(figure, measured, name)?;
                 let holds = (from..=to).contains(&value);
                 let [value, from, to] = [value, from, to].map(number);
                 Ok((holds, format!("{name} {value}, {} {from} to {to}", if holds { "within" } else { "not within" })))
             }
         }
     }
+}
+
+fn value(figure: &str, measured: &[Measured], name: &str) -> Outcome<f64> {
+    measured.iter().find(|m| m.what == name).map(|m| m.value).ok_or_else(|| {
+        Failure::Input(anyhow::anyhow!(
+            "{figure}: the claim is about `{name}`, which was not measured; make the figure anew"
+        ))
+    })
 }
 
 #[cfg(test)]

@@ -17,9 +17,8 @@ const BLOWN: f32 = 0.95;
 
 /// Mean over the middle of a picture, a share of its side wide.
 pub(crate) fn middle(image: &Image, share: f64) -> [f64; 3] {
-    let texels = || texels(image, share);
-    let count = texels().count().max(1) as f64;
-    [0, 1, 2].map(|c: usize| texels().map(|texel| f64::from(texel[c])).sum::<f64>() / count)
+    let count = texels(image, share).count().max(1) as f64;
+    [0, 1, 2].map(|c: usize| texels(image, share).map(|texel| f64::from(texel[c])).sum::<f64>() / count)
 }
 
 /// Mean luminance of a picture.
@@ -27,7 +26,7 @@ pub(crate) fn brightness(image: &Image) -> f64 {
     luminance(middle(image, 1.0))
 }
 
-/// Mean of a channel over that of the red one, in the middle half of a picture.
+/// Mean of a channel over the mean of red, in the middle half of a picture.
 pub(crate) fn over_red(image: &Image, channel: usize) -> f64 {
     let mean = middle(image, 0.5);
     mean[channel] / mean[0].max(1e-9)

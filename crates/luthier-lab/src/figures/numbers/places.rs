@@ -13,17 +13,16 @@ pub(crate) fn sparkles(image: &Image) -> f64 {
     share(points(image).into_iter())
 }
 
-/// Share of the sparkles of a picture that another has in the same pixels.
+/// Share of a picture's sparkles that are in the same pixels of another.
 pub(crate) fn sparkles_that_stay(image: &Image, other: &Image) -> f64 {
     let (here, there) = (points(image), points(other));
     share(here.into_iter().zip(there).filter(|(is_here, _)| *is_here).map(|(_, is_there)| is_there))
 }
 
-/// Of each pixel of the middle half whether it sparkles: the median is that of nine by nine places around it.
+/// True for each pixel of the middle half that sparkles. Its median is over nine by nine places around it.
 fn points(image: &Image) -> Vec<bool> {
     let reach = (f64::from(image.width) / 16.0).max(4.0);
     let offsets: Vec<i64> = (-4..=4).map(|i| (f64::from(i) * reach / 4.0).round() as i64).collect();
-    let clamped = |at: u32, offset: i64, side: u32| (i64::from(at) + offset).clamp(0, i64::from(side) - 1) as u32;
     let mut around = Vec::with_capacity(81);
     let mut is_point = Vec::new();
     for y in middle_of(image.height, 0.5) {
@@ -31,7 +30,9 @@ fn points(image: &Image) -> Vec<bool> {
             around.clear();
             for dy in &offsets {
                 for dx in &offsets {
-                    around.push(value(image, clamped(x, *dx, image.width), clamped(y, *dy, image.height)));
+                    let [x, y] = [(x, dx, image.width), (y, dy, image.height)]
+                        .map(|(at, offset, side)| (i64::from(at) + offset).clamp(0, i64::from(side) - 1) as u32);
+                    around.push(value(image, x, y));
                 }
             }
             let (_, median, _) = around.select_nth_unstable_by(40, f64::total_cmp);
@@ -41,8 +42,8 @@ fn points(image: &Image) -> Vec<bool> {
     is_point
 }
 
-/// Standard deviation of the noise that a picture has and the mean of many of the same surface has not, over the mean of that
-/// one, in the middle half. A broad change is no noise: each pixel is compared with the mean of its eight neighbours.
+/// Standard deviation of a picture's noise in the middle half, against a smooth picture of the same surface and over its mean. Broad changes are no
+/// noise: each pixel is compared with the mean of its eight neighbours.
 pub(crate) fn noise(image: &Image, smooth: &Image) -> f64 {
     let apart = |x: u32, y: u32| value(image, x, y) - value(smooth, x, y);
     let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
@@ -114,16 +115,18 @@ pub(crate) fn middle_values(image: &Image) -> Vec<f64> {
 
 /// Colour at a place from -1 to 1, +x right and +y up.
 pub(crate) fn color_at(image: &Image, [x, y]: [f64; 2]) -> [f64; 3] {
-    let at = |v: f64, side: u32| (((0.5 + 0.5 * v) * f64::from(side)) as u32).min(side - 1);
-    rgb(image.texel(at(x, image.width), at(-y, image.height)))
+    let [column, row] = [(x, image.width), (-y, image.height)]
+        .map(|(v, side)| (((0.5 + 0.5 * v) * f64::from(side)) as u32).min(side - 1));
+    rgb(image.texel(column, row))
 }
 
 /// Texture coordinates of the middle half of a picture of a level square that fills it, row by row. The square ends at 0.97
 /// of the picture's half side, and is seen from so far that its places lie evenly.
 pub(crate) fn places_of_square(image: &Image) -> impl Iterator<Item = [f64; 2]> + use<> {
     let (width, height) = (image.width, image.height);
-    let at = |i: u32, side: u32| 0.5 + 0.97 * ((f64::from(i) + 0.5) / f64::from(side) - 0.5);
-    middle_of(height, 0.5).flat_map(move |y| middle_of(width, 0.5).map(move |x| [at(x, width), at(y, height)]))
+    let texels =
+        middle_of(height, 0.5).flat_map(move |y| middle_of(width, 0.5).map(move |x| [(x, width), (y, height)]));
+    texels.map(|texel| texel.map(|(i, side)| 0.5 + 0.97 * ((f64::from(i) + 0.5) / f64::from(side) - 0.5)))
 }
 
 /// Places of the pixels of a ball that face the eye, and their texture coordinates. The camera is that of all balls.
@@ -155,8 +158,9 @@ pub(crate) fn ball_normal([x, y]: [f64; 2]) -> Option<[f64; 3]> {
 
 /// Texel of a map at texture coordinates.
 pub(crate) fn nearest(map: &Image, [u, v]: [f64; 2]) -> &[f32] {
-    let at = |u: f64, side: u32| ((u.rem_euclid(1.0) * f64::from(side)) as u32).min(side - 1);
-    map.texel(at(u, map.width), at(v, map.height))
+    let [column, row] = [(u, map.width), (v, map.height)]
+        .map(|(at, side)| ((at.rem_euclid(1.0) * f64::from(side)) as u32).min(side - 1));
+    map.texel(column, row)
 }
 
 fn value(image: &Image, x: u32, y: u32) -> f64 {

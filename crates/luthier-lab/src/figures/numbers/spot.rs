@@ -45,7 +45,7 @@ pub(crate) fn spot(image: &Image) -> Spot {
     spot_of(image, luminance)
 }
 
-/// A picture of which each pixel is the mean of itself and its neighbours, so that noise does not make its brightest one.
+/// A picture with each pixel averaged with its neighbours, so that its brightest pixel is not made by noise.
 pub(crate) fn softened(image: &Image) -> Image {
     let mut soft = image.clone();
     for (x, y) in pixels(image) {

@@ -52,8 +52,8 @@ pub(crate) fn hues(image: &Image) -> f64 {
 pub(crate) fn tint_grain(image: &Image) -> f64 {
     let colours = planes(image);
     let side = colours.len().isqrt().max(1);
-    let apart = |pair: &[[f64; 2]]| libm::hypot(pair[0][0] - pair[1][0], pair[0][1] - pair[1][1]);
-    average(colours.chunks(side).flat_map(|row| row.windows(2)).map(apart))
+    let pairs = colours.chunks(side).flat_map(|row| row.windows(2));
+    average(pairs.map(|pair| libm::hypot(pair[0][0] - pair[1][0], pair[0][1] - pair[1][1])))
 }
 
 /// Difference of the mean colours of two pictures in their middle half without lightness, in units of CIELAB.
@@ -75,8 +75,8 @@ pub(crate) fn tint_deviation(image: &Image) -> f64 {
 
 /// Mean difference of lightness of what a display shows of two pictures, in their middle half.
 pub(crate) fn lightness_apart(a: &Image, b: &Image) -> f64 {
-    let lightness = |texel: &[f32]| lightness_chroma_hue(shown(texel))[0];
-    average(texels(a, 0.5).zip(texels(b, 0.5)).map(|(a, b)| (lightness(a) - lightness(b)).abs()))
+    let [a, b] = [a, b].map(|image| texels(image, 0.5).map(|texel| lightness_chroma_hue(shown(texel))[0]));
+    average(a.zip(b).map(|(a, b)| (a - b).abs()))
 }
 
 /// Difference of two colours as a display shows them, CIELAB of 1976.

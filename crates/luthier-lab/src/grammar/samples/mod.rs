@@ -14,11 +14,11 @@ pub(crate) use unseen::UNSEEN;
 pub(crate) struct Sample {
     /// The key, as `table.key`.
     pub(crate) key: &'static str,
-    /// Key of the file by which a model that leaves the feature out is found, as in `luthier_material::LeftOut`; or several, with bars.
+    /// Key of the file that `luthier_material::LeftOut` states if a model leaves the feature out; or several, with bars.
     pub(crate) at: &'static str,
     /// The file without `schema` and `name`; `@` is the place of the value, `%` of the root of the repository.
     pub(crate) text: &'static str,
-    /// Three values, or all that there are. Before a bar stands what the page calls the value, if that is not its text.
+    /// Three values, or all if there are fewer. The name on the page stands before a bar, if it differs from the text.
     pub(crate) values: &'static [&'static str],
 }
 
@@ -28,7 +28,7 @@ impl Sample {
         self.values.iter().map(|value| value.split_once('|').map_or(*value, |(label, _)| label))
     }
 
-    /// All that decides the picture.
+    /// Everything that decides the picture.
     pub(crate) fn hashed(&self) -> String {
         format!("{}\n{}", self.text, self.values.join("\n"))
     }
@@ -36,10 +36,13 @@ impl Sample {
     /// The texts of the files, one for each value.
     pub(crate) fn texts(&self) -> Vec<String> {
         let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-        let value = |value: &'static str| value.split_once('|').map_or(value, |(_, text)| text);
         let kind = if self.is_surface() { "surface" } else { "schema" };
-        let text = |v: &&'static str| self.text.replace('@', value(v)).replace('%', root);
-        self.values.iter().map(|v| format!("{kind} = 1\nname = \"sample\"\n{}\n", text(v))).collect()
+        let texts = self.values.iter().map(|value| {
+            let value = value.split_once('|').map_or(*value, |(_, text)| text);
+            let text = self.text.replace('@', value).replace('%', root);
+            format!("{kind} = 1\nname = \"sample\"\n{text}\n")
+        });
+        texts.collect()
     }
 
     /// Whether the file is one of a surface.
