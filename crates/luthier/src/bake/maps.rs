@@ -4,14 +4,18 @@ use luthier_bake::{MapSource, MaterialMap, height_normals};
 use luthier_export::sha256;
 use luthier_lut::{Image, Picture, PictureSamples};
 use luthier_manifest::{FileEntry, MapEntry};
-use luthier_material::{Material, PictureRef};
+use luthier_material::Material;
 use luthier_texture::png;
 
 use crate::{Error, pictures};
 
 /// A map as it ships: a picture as its material reads it, noise as a grey PNG.
 pub(super) fn shipped(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Picture, Vec<u8>), Error> {
-    let (named, (picture, bytes)) = drawn(&material.source, &map.source).map_err(|reason| Error::Map {
+    let named = match &map.source {
+        MapSource::Picture(named, _) | MapSource::Heights { picture: named, .. } => Some(named),
+        MapSource::Noise { .. } => None,
+    };
+    let (picture, bytes) = drawn(&material.source, &map.source).map_err(|reason| Error::Map {
         material: material.source.clone(),
         map: map.source.label(),
         reason,
@@ -32,21 +36,18 @@ pub(super) fn shipped(material: &Material, map: &MaterialMap) -> Result<(MapEntr
     Ok((entry, picture, bytes))
 }
 
-/// The picture that a map names, if it names one, and the texels of the map with their file.
-fn drawn<'m>(material: &str, map: &'m MapSource) -> Result<(Option<&'m PictureRef>, (Picture, Vec<u8>)), String> {
+/// The texels of a map, and their file.
+fn drawn(material: &str, map: &MapSource) -> Result<(Picture, Vec<u8>), String> {
     match map {
-        MapSource::Picture(named, texels) => {
-            let read = pictures::read(material, named, *texels)?;
-            Ok((Some(named), pictures::file(read, named)?))
-        }
+        MapSource::Picture(named, texels) => pictures::file(pictures::read(material, named, *texels)?, named),
         MapSource::Heights { picture: named, height } => {
             let normals = height_normals(&pictures::read_image(material, named)?, *height);
             let bytes = png::encode_rgb(normals.width, normals.height, &codes(&normals));
-            Ok((Some(named), (bits8(&normals), bytes.map_err(|source| source.to_string())?)))
+            Ok((bits8(&normals), bytes.map_err(|source| source.to_string())?))
         }
         MapSource::Noise { .. } => {
             let texels = map.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
-            Ok((None, (bits8(&texels), png::encode_gray(&texels).map_err(|source| source.to_string())?)))
+            Ok((bits8(&texels), png::encode_gray(&texels).map_err(|source| source.to_string())?))
         }
     }
 }
