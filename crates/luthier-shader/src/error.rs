@@ -119,6 +119,10 @@ pub enum ShaderError {
 }
 
 impl ShaderError {
+    pub(crate) fn layout(table: TableKind, reason: impl Into<String>) -> Self {
+        Self::Layout { table, reason: reason.into() }
+    }
+
     pub(crate) fn untranslatable(target: Target, reason: impl ToString) -> Self {
         Self::Untranslatable { target, reason: reason.to_string() }
     }

@@ -13,13 +13,17 @@ pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>
     out
 }
 
+/// Whether a character may stand in a word.
+pub(crate) fn is_of_word(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
 /// A text cut into words (identifiers and numbers) and what lies between them; nothing is dropped.
 pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut rest = text;
     std::iter::from_fn(move || {
         let first = rest.chars().next()?;
-        let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
+        let end = rest.find(|c| is_of_word(c) != is_of_word(first)).unwrap_or(rest.len());
         let (word, tail) = rest.split_at(end);
         rest = tail;
         Some(word)

@@ -20,12 +20,12 @@ use crate::{ShaderError, Target};
 /// for SPIR-V, which [`library_spirv`](crate::library_spirv) writes.
 pub fn library(wgsl: &str, target: Target) -> Result<String, ShaderError> {
     let (module, _) = module(wgsl)?;
-    let refused = |reason: &str| ShaderError::untranslatable(target, reason);
-    let (bindings, group) = bindings(&module).map_err(refused)?;
+    let (bindings, group) = bindings(&module).map_err(|reason| ShaderError::untranslatable(target, reason))?;
     match target {
         Target::Wgsl => Ok(wgsl.to_owned()),
         Target::Glsl450 | Target::GlslEs300 => {
-            glsl::from_wgsl(wgsl, &bindings, group, &calls(&module).map_err(refused)?, target)
+            let calls = calls(&module).map_err(|reason| ShaderError::untranslatable(target, reason))?;
+            glsl::from_wgsl(wgsl, &bindings, group, &calls, target)
         }
         Target::Hlsl => hlsl::from_wgsl(wgsl, &bindings, group),
         Target::Msl => msl::from_wgsl(wgsl, &bindings),
@@ -70,16 +70,20 @@ fn calls(module: &Module) -> Result<String, &'static str> {
 
 /// The zero of a scalar or a vector.
 fn zero(module: &Module, ty: Handle<Type>) -> Option<String> {
-    let scalar = |scalar: Scalar| match scalar {
+    match module.types[ty].inner {
+        TypeInner::Scalar(scalar) => Some(format!("{}()", name(scalar)?)),
+        TypeInner::Vector { size, scalar } => Some(format!("vec{}<{}>()", size as u8, name(scalar)?)),
+        _ => None,
+    }
+}
+
+/// The type of a scalar.
+fn name(scalar: Scalar) -> Option<&'static str> {
+    match scalar {
         Scalar::F32 => Some("f32"),
         Scalar::U32 => Some("u32"),
         Scalar::I32 => Some("i32"),
         Scalar::BOOL => Some("bool"),
-        _ => None,
-    };
-    match module.types[ty].inner {
-        TypeInner::Scalar(of) => Some(format!("{}()", scalar(of)?)),
-        TypeInner::Vector { size, scalar: of } => Some(format!("vec{}<{}>()", size as u8, scalar(of)?)),
         _ => None,
     }
 }

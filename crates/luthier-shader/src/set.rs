@@ -8,6 +8,7 @@ use luthier_manifest::{
     Manifest, MaterialEntry, ShadingModel, SurfaceEntry, reads,
 };
 
+use crate::identifiers::is_of_word;
 use crate::{Form, ShaderError};
 
 /// Binding numbers that luthier keeps for itself. What a caller puts into the same group, where an engine leaves him no other, goes
@@ -71,13 +72,12 @@ impl<'a> MaterialSet<'a> {
 
     /// All materials, tables and groups of functions of a bake.
     pub fn from_manifest(manifest: &'a Manifest) -> Self {
-        let face =
-            |t: &luthier_manifest::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
-        let tables = manifest.tables.iter().map(face).collect();
+        let tables = manifest.tables.iter();
+        let faces = tables.map(|t| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format });
         Self {
             materials: &manifest.materials,
             surfaces: &manifest.surfaces,
-            tables,
+            tables: faces.collect(),
             functions: manifest.functions.clone(),
         }
     }
@@ -94,9 +94,10 @@ impl<'a> MaterialSet<'a> {
 
     /// Whether shaders of a form show the environment: where they were asked to, and some material has lobes.
     pub(crate) fn shows_environment(&self, form: Form) -> bool {
-        let has_lobes =
-            |m: &MaterialEntry| m.model.is_fitted() && m.layers.iter().any(|layer| layer.kind != LayerKind::Diffuse);
-        form == Form::Baked && self.functions.has(FunctionGroup::Environment) && self.materials.iter().any(has_lobes)
+        let mut fitted = self.materials.iter().filter(|material| material.model.is_fitted()).flat_map(|m| &m.layers);
+        form == Form::Baked
+            && self.functions.has(FunctionGroup::Environment)
+            && fitted.any(|layer| layer.kind != LayerKind::Diffuse)
     }
 
     /// Words of the material buffer.
@@ -183,13 +184,21 @@ impl<'a> MaterialSet<'a> {
             }
             if let Some(bare) = material.records().nth(material.layers.len()) {
                 // Tiles of the whole material are at its first layer.
-                let reads = |kind: TableKind| {
+                self.check_layer(form, material, material.layers.len(), bare, |kind| {
                     kind.facts().slot.is_some() && reads(material.model, kind, std::slice::from_ref(bare), 0)
-                };
-                self.check_layer(form, material, material.layers.len(), bare, reads)?;
+                })?;
             }
         }
         Ok(())
+    }
+
+    /// Whether layers that read a table need a tile of it.
+    fn needs(&self, table: TableKind) -> bool {
+        match table {
+            // Films have their phases computed where no layer has a tile of them.
+            TableKind::Phase => self.layers().any(|layer| layer.tiles[TableKind::Phase].is_some()),
+            _ => !table.facts().is_optional && table.facts().values != Values::Picture,
+        }
     }
 
     fn check_layer(
@@ -203,24 +212,18 @@ impl<'a> MaterialSet<'a> {
         if form == Form::Full {
             return Ok(());
         }
-        let has_phases = || self.layers().any(|layer| layer.tiles[TableKind::Phase].is_some());
-        // Films have their phases computed where no layer has a tile of them.
-        let is_needed = |table: TableKind| match table {
-            TableKind::Phase => has_phases(),
-            _ => !table.facts().is_optional && table.facts().values != Values::Picture,
-        };
         for table in TableKind::ALL {
             if matches!(table, TableKind::Distribution | TableKind::Phase) && !self.has(table) {
                 continue;
             }
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
-            let material = || material.name.clone();
             match layer.tiles[table] {
-                None if reads(table) && is_needed(table) => {
-                    return Err(ShaderError::NoTile { material: material(), layer: i, table });
+                None if reads(table) && self.needs(table) => {
+                    return Err(ShaderError::NoTile { material: material.name.clone(), layer: i, table });
                 }
                 Some(tile) if tile >= tiles => {
-                    return Err(ShaderError::TileOutOfRange { material: material(), layer: i, table, tile, tiles });
+                    let material = material.name.clone();
+                    return Err(ShaderError::TileOutOfRange { material, layer: i, table, tile, tiles });
                 }
                 _ => {}
             }
@@ -232,22 +235,24 @@ impl<'a> MaterialSet<'a> {
 /// Resources to bind in group 0 for a form of the shader: textures that are read, the sampler if any of them is filtered, the material
 /// buffer.
 pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
-    let entry = |binding, name: String, resource: &str| BindingEntry { binding, name, resource: resource.to_owned() };
     let mut bindings = Vec::new();
     let mut is_sampled = false;
     for table in set.tables_read(form) {
         is_sampled |= table.format.is_filterable();
-        bindings.push(entry(table.kind.binding(), format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
+        bindings.push(entry(table.kind.binding(), &format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
     }
     if is_sampled {
-        bindings.push(entry(SAMPLER_BINDING, "luthier_sampler".to_owned(), "sampler"));
+        bindings.push(entry(SAMPLER_BINDING, "luthier_sampler", "sampler"));
     }
-    bindings.push(entry(MATERIALS_BINDING, "luthier_materials".to_owned(), "buffer"));
+    bindings.push(entry(MATERIALS_BINDING, "luthier_materials", "buffer"));
     if set.shows_environment(form) {
-        bindings
-            .extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name.to_owned(), resource)));
+        bindings.extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name, resource)));
     }
     bindings
+}
+
+fn entry(binding: u32, name: &str, resource: &str) -> BindingEntry {
+    BindingEntry { binding, name: name.to_owned(), resource: resource.to_owned() }
 }
 
 /// Constants of the shaders themselves that a name would make.
@@ -272,9 +277,8 @@ pub fn surface_identifier(name: &str) -> Result<String, ShaderError> {
 }
 
 fn constant(kind: &str, name: &str) -> Result<String, ShaderError> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let words: Vec<&str> = name.split(['-', '_']).filter(|word| !word.is_empty()).collect();
-    if words.is_empty() || !name.chars().all(is_plain) {
+    if words.is_empty() || !name.chars().all(|c| is_of_word(c) || c == '-') {
         return Err(ShaderError::Name(name.to_owned()));
     }
     let mut constant = format!("LUTHIER_{kind}_{}", words.join("_").to_ascii_uppercase());

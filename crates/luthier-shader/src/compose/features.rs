@@ -11,6 +11,7 @@ use luthier_model::{Family, Reach};
 
 use crate::compose::feature::Feature;
 use crate::compose::masking;
+use crate::compose::stacks::{depths, diffuse_at, is_diffuse, stacks};
 use crate::{Form, MaterialSet};
 
 /// Distributions beside those of Beckmann and of GGX.
@@ -88,9 +89,8 @@ impl Features {
         if names.contains(&Feature::GranierTransparent) && names.contains(&Feature::Place) {
             names.insert(Feature::GranierTilted);
         }
-        let has = |name| names.contains(&name);
-        if has(Feature::LobesTilted) || has(Feature::Below) && has(Feature::Statistics) || has(Feature::GranierSchlick)
-        {
+        let is_bent_below = names.contains(&Feature::Below) && names.contains(&Feature::Statistics);
+        if is_bent_below || [Feature::LobesTilted, Feature::GranierSchlick].iter().any(|name| names.contains(name)) {
             names.insert(Feature::Bent);
         }
         for table in set.tables_read(form) {
@@ -132,11 +132,12 @@ impl Features {
         if set.shows_environment(form) {
             names.insert(Feature::Environment);
         }
-        names.extend(of_parts(set, form, &names));
+        let mut features = Self(names);
+        features.0.extend(of_parts(set, form, &features));
         if !set.functions.is_eval_alone() {
-            names.extend(of_face(set, &names));
+            features.0.extend(of_face(set, &features));
         }
-        Self(names)
+        features
     }
 
     pub(crate) fn has(&self, name: Feature) -> bool {
@@ -154,28 +155,29 @@ impl Features {
 }
 
 /// Words for the parts that materials choose: the maskings of lobes, and where reflectances come from, of which each layer has one.
-fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<Feature>) -> Vec<Feature> {
-    let has = |name| names.contains(&name);
-    let is_read = has(Feature::Tabled) && (has(Feature::Fresnel) || has(Feature::FilmTable));
-    let is_computed = has(Feature::Exact) || form == Form::Full && has(Feature::Tabled);
-    let sources = [is_read, is_computed, has(Feature::Fitted)].iter().filter(|holds| **holds).count();
+fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Feature> {
+    let is_tabled = features.has(Feature::Tabled);
+    let is_read = is_tabled && (features.has(Feature::Fresnel) || features.has(Feature::FilmTable));
+    let is_computed = features.has(Feature::Exact) || form == Form::Full && is_tabled;
+    let sources = [is_read, is_computed, features.has(Feature::Fitted)].iter().filter(|holds| **holds).count();
     let maskings = masking::used(set);
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
-    let records = || set.materials.iter().flat_map(MaterialEntry::records);
-    let is_packed =
-        |record: &LayerRecord| (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
-    let is_whole = |record: &LayerRecord| record.internal_reflection != InternalReflection::default();
-    let is_own = |record: &LayerRecord| record.internal_reflection == InternalReflection::Directions;
-    let has_whole = records().any(is_whole);
+    let is_chain_over = features.has(Feature::Chain) && features.has(Feature::Below);
+    let (mut is_packed, mut is_whole, mut is_own) = (false, false, false);
+    for record in set.materials.iter().flat_map(MaterialEntry::records) {
+        is_packed |= (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
+        is_whole |= record.internal_reflection != InternalReflection::default();
+        is_own |= record.internal_reflection == InternalReflection::Directions;
+    }
     let words = [
         (Feature::Rows, is_read),
         (Feature::Computed, is_computed),
         (Feature::SeveralReflectances, sources > 1),
         (Feature::Masked, is_masked),
         (Feature::SeveralMaskings, maskings.len() > 1),
-        (Feature::Packed, has_whole || records().any(is_packed)),
-        (Feature::Internal, has_whole && has(Feature::Chain) && has(Feature::Below)),
-        (Feature::OwnAngles, records().any(is_own) && has(Feature::Chain) && has(Feature::Below)),
+        (Feature::Packed, is_whole || is_packed),
+        (Feature::Internal, is_whole && is_chain_over),
+        (Feature::OwnAngles, is_own && is_chain_over),
     ];
     let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
@@ -183,21 +185,24 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<Feature>) -> Vec
 
 /// Words for functions beside `luthier_eval`: lobes of visible normals, those of V-cavities, and of powers of a cosine; whether some are below boundaries, and
 /// tilted there; whether draws that do not leave are folded back; whether a material has to say which model it is of.
-fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<Feature>) -> Vec<Feature> {
-    let has = |name| names.contains(&name);
-    let visible = has(Feature::Chain) || has(Feature::Smith) || has(Feature::Statistics);
-    let powers = has(Feature::Phong) || has(Feature::Granier) && has(Feature::Interface);
-    let tilted = has(Feature::Flakes) || has(Feature::OwnNormals) || has(Feature::GranierTilted);
+fn of_face(set: &MaterialSet<'_>, features: &Features) -> Vec<Feature> {
+    let is_faceted = features.has(Feature::Chain) || features.has(Feature::Smith);
+    let visible = is_faceted || features.has(Feature::Statistics);
+    let powers = features.has(Feature::Phong) || features.has(Feature::Granier) && features.has(Feature::Interface);
+    let tilts = [Feature::Flakes, Feature::OwnNormals, Feature::GranierTilted];
+    let tilted = tilts.into_iter().any(|name| features.has(name));
+    let media = features.has(Feature::Chain) && features.has(Feature::Below);
+    let several = features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse);
     let words = [
         (Feature::Face, true),
         (Feature::Visible, visible),
-        (Feature::Cavities, visible && has(Feature::Blinn) && (has(Feature::Chain) || has(Feature::Smith))),
+        (Feature::Cavities, is_faceted && features.has(Feature::Blinn)),
         (Feature::Powers, powers),
-        (Feature::Media, has(Feature::Chain) && has(Feature::Below) || has(Feature::GranierTransparent)),
+        (Feature::Media, media || features.has(Feature::GranierTransparent)),
         (Feature::Tilted, tilted),
         // Tilted boundaries have no cone about one normal through which all light leaves.
         (Feature::Folded, set.functions.has(FunctionGroup::Sample) && (visible || powers) && !tilted),
-        (Feature::Several, set.models().count() > 1 || has(Feature::Lobes) && has(Feature::LobesDiffuse)),
+        (Feature::Several, several || set.models().count() > 1),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name).collect()
 }
@@ -221,7 +226,6 @@ fn slopes(distribution: Distribution) -> Feature {
 /// The features of the layers that a material's model reads.
 fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     let mut names = BTreeSet::new();
-    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
     let facts = material.model.facts();
     let layers = match facts.reach {
         Reach::None => {
@@ -386,7 +390,7 @@ fn painted(material: &MaterialEntry) -> Option<PaintedRecord> {
 
 /// Whether what lies below patina is a diffuse base alone.
 fn is_bare_base(material: &MaterialEntry) -> bool {
-    material.constants.patina.as_ref().is_some_and(|patina| patina.bare.kind == LayerKind::Diffuse)
+    material.constants.patina.as_ref().is_some_and(|patina| is_diffuse(&patina.bare))
 }
 
 /// Whether lobes come from below a slab, in which what is there may be tilted.
@@ -396,37 +400,34 @@ fn has_coat(material: &MaterialEntry) -> bool {
 
 /// Whether an interface is smoother than one above it.
 fn gets_smoother(layers: &[LayerRecord]) -> bool {
-    let interfaces = || layers.iter().filter(|layer| layer.kind != LayerKind::Diffuse);
-    interfaces().zip(interfaces().skip(1)).any(|(above, below)| below.alpha < above.alpha)
+    let interfaces = layers.iter().filter(|layer| !is_diffuse(layer));
+    interfaces.clone().zip(interfaces.skip(1)).any(|(above, below)| below.alpha < above.alpha)
 }
 
 /// Whether a conductor of a chain lies where another stack goes on: elsewhere what would follow it is not there.
 fn ends_early(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
-    let materials = || set.materials.iter().filter(|m| m.model == model);
-    let depth = materials().map(|m| m.layers.len()).max().unwrap_or(0);
-    let is_conductor = |layer: &LayerRecord| layer.kind == LayerKind::Conductor;
-    materials().any(|m| m.layers.iter().take(depth.saturating_sub(1)).any(is_conductor))
+    let stacks = stacks(set, model);
+    let (_, depth) = depths(&stacks);
+    let mut above = stacks.iter().flat_map(|layers| layers.iter().take(depth.saturating_sub(1)));
+    above.any(|layer| layer.kind == LayerKind::Conductor)
 }
 
 /// Whether a model of statistics meets diffuse bases, those of materials without an interface too, in a set that has interfaces.
 fn has_base(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
-    let layers = || set.materials.iter().filter(|m| m.model == model).flat_map(|m| &m.layers);
-    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
-    layers().any(is_diffuse) && !layers().all(is_diffuse)
+    let mut layers = stacks(set, model).into_iter().flatten();
+    layers.clone().any(is_diffuse) && !layers.all(is_diffuse)
 }
 
 /// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.
 fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
-    let layers = || set.materials.iter().filter(|m| m.model == model).map(|m| &m.layers);
+    let stacks = stacks(set, model);
     let depth = match model.facts().reach {
         Reach::None => 0,
         Reach::First => 1,
-        Reach::FirstAndBase | Reach::All => layers().map(Vec::len).max().unwrap_or(0),
+        Reach::FirstAndBase | Reach::All => depths(&stacks).1,
     };
-    (0..depth).any(|i| {
-        let kinds = || layers().filter_map(|layers| layers.get(i)).map(|layer| layer.kind == LayerKind::Diffuse);
-        kinds().any(|diffuse| diffuse) && kinds().any(|diffuse| !diffuse)
-    }) || set.materials.iter().filter(|m| m.model == model && is_under_patina(m)).any(is_bare_base)
+    (0..depth).any(|i| diffuse_at(&stacks, i) == (true, false))
+        || set.materials.iter().filter(|m| m.model == model && is_under_patina(m)).any(is_bare_base)
 }
 
 #[cfg(test)]

@@ -52,28 +52,27 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     let kind = table.kind;
     let facts = kind.facts();
     let layout = &table.layout;
-    let fail = |reason: String| ShaderError::Layout { table: kind, reason };
     if layout.columns == 0 || layout.tiles == 0 {
-        return Err(fail("it has no tiles".to_owned()));
+        return Err(ShaderError::layout(kind, "it has no tiles"));
     }
     if layout.y.is_some() != facts.y.is_some() {
         let expected = if facts.y.is_some() { "two axes are" } else { "one axis is" };
-        return Err(fail(format!("{expected} expected")));
+        return Err(ShaderError::layout(kind, format!("{expected} expected")));
     }
     check_axis(&layout.x, facts.x, kind)?;
     if let (Some(y), Some(quantity)) = (&layout.y, facts.y) {
         check_axis(y, &[quantity], kind)?;
     }
-    let is_periodic = |axis: &Axis| axis.mapping == Mapping::Periodic;
-    if layout.apron == 0 && (is_periodic(&layout.x) || layout.y.as_ref().is_some_and(is_periodic)) {
-        return Err(fail("a periodic axis needs an apron".to_owned()));
+    if layout.apron == 0 && layout.y.iter().chain([&layout.x]).any(|axis| axis.mapping == Mapping::Periodic) {
+        return Err(ShaderError::layout(kind, "a periodic axis needs an apron"));
     }
 
     let has_base = layout.base == RowBase::Schlick;
     if has_base
         && (kind != TableKind::Fresnel || layout.x.quantity != "cos_theta" || table.format.unorm_max().is_none())
     {
-        return Err(fail("only unorm rows of reflectance over cos_theta are added to Schlick's form".to_owned()));
+        let reason = "only unorm rows of reflectance over cos_theta are added to Schlick's form";
+        return Err(ShaderError::layout(kind, reason));
     }
 
     let has_angle = layout.x.quantity.starts_with("theta");
@@ -104,9 +103,9 @@ fn place<'l>(line: &'l str, opening: &str) -> Option<&'l str> {
 }
 
 fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), ShaderError> {
-    let fail = |reason: String| Err(ShaderError::Layout { table, reason });
     if !names.contains(&axis.quantity.as_str()) {
-        return fail(format!("its axis is `{}`, known here: {}", axis.quantity, names.join(", ")));
+        let reason = format!("its axis is `{}`, known here: {}", axis.quantity, names.join(", "));
+        return Err(ShaderError::layout(table, reason));
     }
     let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
     let is_mapped = match axis.mapping {
@@ -116,7 +115,8 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
         Mapping::Logarithmic => axis.min > 0.0,
     };
     if axis.size < 2 || !is_range || !is_mapped {
-        return fail(format!("its axis `{}` has no valid range, size or mapping", axis.quantity));
+        let reason = format!("its axis `{}` has no valid range, size or mapping", axis.quantity);
+        return Err(ShaderError::layout(table, reason));
     }
     Ok(())
 }

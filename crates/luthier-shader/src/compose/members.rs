@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identifiers::words;
+use crate::identifiers::{is_of_word, words};
 
 /// Structures of a text and types of what its functions return.
 pub(crate) struct Kinds<'t> {
@@ -69,7 +69,7 @@ impl<'t> Kinds<'t> {
         let mut kind: Option<&str> = None;
         let mut is_first = true;
         while let Some(next) = rest.chars().next() {
-            let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+            let end = rest.find(|c| !is_of_word(c)).unwrap_or(rest.len());
             let (word, after) = rest.split_at(end);
             match next {
                 _ if end == 0 => {
@@ -145,8 +145,7 @@ pub(crate) fn signature(line: &str) -> Option<(&str, (&str, &str))> {
 pub(crate) fn assigned(code: &str) -> Option<(&str, &str)> {
     let (target, _) = code.split_once("= ")?;
     let (name, member) = target.trim_end_matches([' ', '+', '*']).split_once('.')?;
-    let is_name = |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    (is_name(name) && is_name(member)).then_some((name, member))
+    name.chars().chain(member.chars()).all(is_of_word).then_some((name, member))
 }
 
 /// Removes every `let` that no other line of a function mentions.

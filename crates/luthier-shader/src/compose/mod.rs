@@ -11,6 +11,7 @@ mod members;
 mod pick;
 mod reached;
 mod slopes;
+mod stacks;
 mod statistics;
 mod words;
 
@@ -49,35 +50,34 @@ pub(crate) enum Buffer {
 pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Result<String, ShaderError> {
     set.check(form)?;
     let features = Features::of(set, form);
-    let has = |feature| features.has(feature);
     let mut parts = vec![constants(set)?, declarations(set, form, buffer)];
     parts.extend([include_str!("../wgsl/pi.wgsl"), include_str!("../wgsl/interface/choose.wgsl")].map(str::to_owned));
     for table in set.tables_read(form) {
         parts.push(lookup(table, &features)?);
     }
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
-    let facets = has(Feature::Chain) || has(Feature::Smith) || has(Feature::Coat);
+    let facets = features.has(Feature::Chain) || features.has(Feature::Smith) || features.has(Feature::Coat);
     let masking = masking::module(set, &features);
     let place = place(set, form);
     // Functions that nothing calls are removed in the end. Conditions are for functions that programs around a shader call, and for names that several modules give.
     let modules = [
         (true, include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
-        (has(Feature::Place), place.as_str()),
+        (features.has(Feature::Place), place.as_str()),
         (true, include_str!("../wgsl/surface/local.wgsl")),
         (true, include_str!("../wgsl/surface/hash.wgsl")),
-        (has(Feature::Flakes), include_str!("../wgsl/surface/flakes.wgsl")),
-        (has(Feature::Patina), include_str!("../wgsl/surface/patina.wgsl")),
+        (features.has(Feature::Flakes), include_str!("../wgsl/surface/flakes.wgsl")),
+        (features.has(Feature::Patina), include_str!("../wgsl/surface/patina.wgsl")),
         (true, include_str!("../wgsl/surface/glitter.wgsl")),
         (true, include_str!("../wgsl/surface/perlin.wgsl")),
         (true, include_str!("../wgsl/surface/pick.wgsl")),
         (true, include_str!("../wgsl/interface/power_lobe.wgsl")),
-        (has(Feature::OrenNayar), include_str!("../wgsl/base/oren_nayar.wgsl")),
-        (!has(Feature::OrenNayar), include_str!("../wgsl/base/lambert.wgsl")),
+        (features.has(Feature::OrenNayar), include_str!("../wgsl/base/oren_nayar.wgsl")),
+        (!features.has(Feature::OrenNayar), include_str!("../wgsl/base/lambert.wgsl")),
         (true, include_str!("../wgsl/base/reradiated.wgsl")),
         (true, include_str!("../wgsl/interface/complex.wgsl")),
-        (has(Feature::Computed), include_str!("../wgsl/interface/fresnel.wgsl")),
-        (has(Feature::Computed), include_str!("../wgsl/interface/film.wgsl")),
+        (features.has(Feature::Computed), include_str!("../wgsl/interface/fresnel.wgsl")),
+        (features.has(Feature::Computed), include_str!("../wgsl/interface/film.wgsl")),
         (true, include_str!("../wgsl/interface/schlick.wgsl")),
         (true, include_str!("../wgsl/interface/beckmann.wgsl")),
         (true, include_str!("../wgsl/interface/ggx.wgsl")),
@@ -85,16 +85,16 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (true, include_str!("../wgsl/interface/blinn.wgsl")),
         (true, include_str!("../wgsl/interface/abc.wgsl")),
         (true, include_str!("../wgsl/interface/sgd.wgsl")),
-        (has(Feature::Computed), include_str!("../wgsl/interface/full_terms.wgsl")),
-        (has(Feature::Closed) && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
-        (!has(Feature::Full), include_str!("../wgsl/interface/baked_terms.wgsl")),
+        (features.has(Feature::Computed), include_str!("../wgsl/interface/full_terms.wgsl")),
+        (features.has(Feature::Closed) && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
+        (!features.has(Feature::Full), include_str!("../wgsl/interface/baked_terms.wgsl")),
         (true, include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
-        (has(Feature::OwnF0), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
+        (features.has(Feature::OwnF0), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
         (true, include_str!("../wgsl/interface/slopes.wgsl")),
         (true, masking.as_str()),
         (true, include_str!("../wgsl/interface/smith.wgsl")),
-        (has(Feature::Chain), path::EVAL),
-        (has(Feature::Statistics), luthier_layers::models::statistics::SPREAD),
+        (features.has(Feature::Chain), path::EVAL),
+        (features.has(Feature::Statistics), luthier_layers::models::statistics::SPREAD),
     ];
     parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
     for model in set.models() {
@@ -106,7 +106,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
     parts.retain(|part| !part.trim().is_empty());
     // Programs around a shader read these of a layer.
-    let kept: &[&str] = if has(Feature::Interface) { &["kind", "alpha"] } else { &["kind"] };
+    let kept: &[&str] = if features.has(Feature::Interface) { &["kind", "alpha"] } else { &["kind"] };
     let wgsl = parts.join("\n");
     let wgsl = match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
@@ -180,12 +180,12 @@ fn tiles() -> String {
 
 /// The statements that read all tiles of a layer from its words in the buffer; those of members that are left out go with these.
 fn assign_tiles() -> String {
-    let assignment = |kind: TableKind| {
+    let assignments = TableKind::ALL.into_iter().filter_map(|kind| {
         let [word, component] = kind.facts().slot?;
         let read = words::layer(word);
         Some(format!("    layer.{}_tile = {read}.{};\n", kind.name(), ["x", "y", "z", "w"][component]))
-    };
-    TableKind::ALL.into_iter().filter_map(assignment).collect()
+    });
+    assignments.collect()
 }
 
 /// The modules of a model: kernels of its room, and for families that write them for each stack, steps and a function of these.
@@ -285,26 +285,19 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
         );
         body.push_str(&guard.replace("wi.z", "wi_here.z").replace("wo.z", "wo_here.z"));
     }
-    let call = |model: ShadingModel| {
+    let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
+    let (first, others) = by_model(set, "model", |model| {
         let name = function(model);
-        let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
         match (features.has(Feature::Fluorescent), model.is_path()) {
             (false, _) => format!("{name}({arguments})"),
             (true, true) => format!("{name}_lit({arguments}, light)"),
             (true, false) => format!("light * {name}({arguments})"),
         }
-    };
-    let models: Vec<ShadingModel> = set.models().collect();
-    if let [first, others @ ..] = models.as_slice() {
-        if !others.is_empty() {
-            body.push_str("    let model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
-        }
-        for &other in others {
-            let (number, call) = (other.number(), call(other));
-            let _ = writeln!(body, "    if model == {number}u {{\n        return {call};\n    }}");
-        }
-        let _ = writeln!(body, "    return {};", call(*first));
+    });
+    if !others.is_empty() {
+        body.push_str("    let model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
     }
+    let _ = writeln!(body, "{others}    return {first};");
     let parameters = "material: u32, wi: vec3<f32>, wo: vec3<f32>";
     if features.has(Feature::Fluorescent) {
         return lit(&body, turned, parameters, SUMMARY);
@@ -347,4 +340,16 @@ fn lit(body: &str, turned: bool, parameters: &str, summary: &str) -> String {
 /// The function of a model.
 pub(crate) fn function(model: ShadingModel) -> String {
     format!("luthier_eval_{}", model.name().replace('-', "_"))
+}
+
+/// The call for the first model of a set, and statements that return the calls for the others where `number` is theirs.
+fn by_model(set: &MaterialSet<'_>, number: &str, call: impl Fn(ShadingModel) -> String) -> (String, String) {
+    let mut models = set.models();
+    let first = models.next().map(&call).unwrap_or_default();
+    (first, models.map(|other| case(number, &format!("{}u", other.number()), &call(other))).collect())
+}
+
+/// A statement that returns a call where a number has a value.
+fn case(number: &str, value: &str, call: &str) -> String {
+    format!("    if {number} == {value} {{\n        return {call};\n    }}\n")
 }

@@ -119,8 +119,8 @@ fn unread<'t>(wgsl: &'t str, kept: &[&str]) -> BTreeSet<(&'t str, &'t str)> {
     let mut dead = BTreeSet::new();
     // What is made with all its members in their order stays whole.
     for (name, members) in kinds.structures.iter().filter(|(name, _)| !HOSTS.contains(name) && !made.contains(*name)) {
-        let is_kept = |member: &&&str| *name == "LuthierLayer" && kept.contains(*member);
-        dead.extend(members.keys().filter(|member| !is_kept(member)).map(|member| (*name, *member)));
+        let kept = if *name == "LuthierLayer" { kept } else { &[] };
+        dead.extend(members.keys().filter(|member| !kept.contains(*member)).map(|member| (*name, *member)));
     }
     // What fills a member reads others only where that member is read.
     let mut assignments = Vec::new();

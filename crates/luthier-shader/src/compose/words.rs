@@ -2,6 +2,8 @@
 
 use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS};
 
+use crate::identifiers::is_of_word;
+
 /// Header words of a material, as `MaterialConstants::words` lays them out behind the first.
 const MATERIAL: [&str; MATERIAL_WORDS] = [
     "layers",
@@ -48,7 +50,7 @@ pub(crate) fn numbered(text: &str) -> String {
     let mut parts = text.split("$word_");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        let end = part.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(part.len());
+        let end = part.find(|c| !is_of_word(c)).unwrap_or(part.len());
         let (name, rest) = part.split_at(end);
         let number = [&MATERIAL[..], &LAYER].iter().find_map(|words| words.iter().position(|word| *word == name));
         let number = number.unwrap_or_else(|| panic!("no word of the material buffer is `{name}`"));

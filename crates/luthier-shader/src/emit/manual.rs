@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
 use luthier_manifest::{
-    BindingEntry, InternalReflection, LowerReflectance, Masking, MaterialTexture, Reflectance, ShadingModel,
+    BindingEntry, InternalReflection, LowerReflectance, Masking, MaterialEntry, MaterialTexture, Reflectance,
+    ShadingModel,
 };
 
 use super::Part;
@@ -83,11 +84,11 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
     let titles: Vec<&str> = set.models().map(ShadingModel::title).collect();
     let plural = if titles.len() == 1 { "" } else { "s" };
     let mut texts = vec![format!("Model{plural}: {}.", titles.join("; "))];
-    let reads = |kind| set.tables_read(form).any(|table| table.kind == kind);
+    let read: Vec<TableKind> = set.tables_read(form).map(|table| table.kind).collect();
     let terms = match form {
         Form::Full => "No tables: Fresnel equations at three wavelengths, closed forms of D.",
-        Form::Baked if !reads(TableKind::Fresnel) => "",
-        Form::Baked if reads(TableKind::Distribution) => {
+        Form::Baked if !read.contains(&TableKind::Fresnel) => "",
+        Form::Baked if read.contains(&TableKind::Distribution) => {
             "Fresnel reflectance and slope distribution are read from tables."
         }
         Form::Baked => "Fresnel reflectance is read from tables; closed forms of D.",
@@ -109,40 +110,38 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
 
 /// Parts that materials choose in place of the defaults, each once, with the first of these materials.
 fn parts(set: &MaterialSet<'_>) -> Vec<String> {
-    let chosen = || set.materials.iter().map(|material| (material.name.as_str(), material.parts()));
-    let line = |what: &str, title: &str, names: Vec<&str>| match names.as_slice() {
-        [first, others @ ..] => {
-            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
-            Some(format!("{what} of {first}{more}: {title}."))
-        }
-        [] => None,
+    let mut texts = Vec::new();
+    for masking in Masking::ALL.into_iter().filter(|masking| *masking != Masking::default()) {
+        texts.extend(part(set, "Masking", masking.title(), |m| m.parts().0 == masking));
+    }
+    for reflectance in Reflectance::ALL.into_iter().filter(|reflectance| *reflectance != Reflectance::default()) {
+        texts.extend(part(set, "Reflectance", reflectance.title(), |m| m.parts().1 == reflectance));
+    }
+    for internal in InternalReflection::ALL.into_iter().filter(|internal| *internal != InternalReflection::default()) {
+        texts.extend(part(set, "Internal reflection", internal.title(), |m| m.internal_reflection() == internal));
+    }
+    let in_air = LowerReflectance::InAir;
+    texts.extend(part(set, "Reflectance of lower interfaces", in_air.title(), |m| m.lower_reflectance() == in_air));
+    let own = "its own, in words 1 and 2 of its header";
+    texts.extend(part(set, "Exponents, weights and inner boundary", own, |m| m.constants.beams.is_some()));
+    texts
+}
+
+/// The line of a part with its title, if materials choose it.
+fn part(set: &MaterialSet<'_>, part: &str, title: &str, is_chosen: impl Fn(&MaterialEntry) -> bool) -> Option<String> {
+    let mut chosen = set.materials.iter().filter(|material| is_chosen(material));
+    let first = &chosen.next()?.name;
+    let more = match chosen.count() {
+        0 => String::new(),
+        others => format!(" and {others} more"),
     };
-    let maskings = Masking::ALL.into_iter().filter(|masking| *masking != Masking::default()).filter_map(|masking| {
-        let names = chosen().filter(|(_, parts)| parts.0 == masking).map(|(name, _)| name);
-        line("Masking", masking.title(), names.collect())
-    });
-    let is_other = |reflectance: &Reflectance| *reflectance != Reflectance::default();
-    let reflectances = Reflectance::ALL.into_iter().filter(is_other).filter_map(|reflectance| {
-        let names = chosen().filter(|(_, parts)| parts.1 == reflectance).map(|(name, _)| name);
-        line("Reflectance", reflectance.title(), names.collect())
-    });
-    let is_other = |internal: &InternalReflection| *internal != InternalReflection::default();
-    let internals = InternalReflection::ALL.into_iter().filter(is_other).filter_map(|internal| {
-        let chosen = set.materials.iter().filter(|material| material.internal_reflection() == internal);
-        line("Internal reflection", internal.title(), chosen.map(|material| material.name.as_str()).collect())
-    });
-    let in_air = set.materials.iter().filter(|material| material.lower_reflectance() == LowerReflectance::InAir);
-    let names = in_air.map(|material| material.name.as_str()).collect();
-    let lower = line("Reflectance of lower interfaces", LowerReflectance::InAir.title(), names);
-    let beams = set.materials.iter().filter(|material| material.constants.beams.is_some());
-    let names = beams.map(|material| material.name.as_str()).collect();
-    let beams = line("Exponents, weights and inner boundary", "its own, in words 1 and 2 of its header", names);
-    maskings.chain(reflectances).chain(internals).chain(lower).chain(beams).collect()
+    Some(format!("{part} of {first}{more}: {title}."))
 }
 
 fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl: &str) -> Vec<String> {
-    let is_there = |call: &str| call.split('(').next().is_some_and(|name| wgsl.contains(&format!("fn {name}(")));
-    let there = FUNCTIONS.iter().filter(|(call, _)| is_there(call));
+    let there = FUNCTIONS
+        .iter()
+        .filter(|(call, _)| call.split('(').next().is_some_and(|name| wgsl.contains(&format!("fn {name}("))));
     let mut texts = vec!["Functions:".to_owned()];
     texts.extend(there.map(|(call, gives)| format!("  {call}: {gives}")));
     let tables: Vec<&str> = set.tables_read(form).map(|table| table.kind.name()).collect();

@@ -14,6 +14,8 @@ mod shape;
 mod tokens;
 mod vocabulary;
 
+use std::ops::Range;
+
 use self::shape::{Names, Shape};
 use self::tokens::{Token, tokens};
 use self::vocabulary::Vocabulary;
@@ -326,30 +328,8 @@ impl<'a> Lint<'a> {
     fn repeats(&mut self, at: usize) {
         let head_end = self.behind(at + 1);
         let end = if self.text(head_end) == "{" { self.behind(head_end) } else { head_end };
-        let stepped = |name: &str| {
-            (at..end).any(|i| {
-                if self.text(i) != name {
-                    return false;
-                }
-                let statement_end = (i..end).find(|&j| self.text(j) == ";").unwrap_or(end);
-                // A number, in casts or not: `1u`, `asuint(int(1))`, `as_type<uint>(1)`.
-                let is_number = |j: usize| {
-                    let is_of_cast = |token: &&Token<'_>| token.is_word() || ["(", "<", ">"].contains(&token.text);
-                    self.tokens[j..].iter().find(|token| !is_of_cast(token)).is_some_and(Token::is_number)
-                };
-                match self.text(i + 1) {
-                    "++" | "--" => true,
-                    "+=" | "-=" => is_number(i + 2),
-                    "=" => (i..statement_end).any(|j| ["+", "-"].contains(&self.text(j)) && is_number(j + 1)),
-                    _ => false,
-                }
-            })
-        };
-        let compares = |start: usize, end: usize| {
-            let is_comparison = (start..end).any(|i| ["<", "<=", ">", ">=", "!="].contains(&self.text(i)));
-            is_comparison && (start..end).any(|i| self.tokens[i].is_word() && stepped(self.text(i)))
-        };
-        let has_bound = compares(at + 2, head_end - 1)
+        let loops = at..end;
+        let has_bound = self.compares(at + 2..head_end - 1, &loops)
             || (head_end..end).any(|i| {
                 if self.text(i) != "if" {
                     return false;
@@ -357,11 +337,38 @@ impl<'a> Lint<'a> {
                 let behind = self.behind(i + 1);
                 let then = self.behind(behind);
                 let last = if self.text(then) == "else" { self.behind(then + 1) } else { then };
-                (behind..last).any(|j| self.text(j) == "break") && compares(i + 2, behind - 1)
+                (behind..last).any(|j| self.text(j) == "break") && self.compares(i + 2..behind - 1, &loops)
             });
         if !has_bound {
             self.find(at, "a loop without a bound".to_owned());
         }
+    }
+
+    /// Whether a condition compares a name that the loop around it steps.
+    fn compares(&self, mut condition: Range<usize>, loops: &Range<usize>) -> bool {
+        condition.clone().any(|i| ["<", "<=", ">", ">=", "!="].contains(&self.text(i)))
+            && condition.any(|i| self.tokens[i].is_word() && self.steps(loops.clone(), self.text(i)))
+    }
+
+    /// Whether a loop adds a number to a name, or subtracts it.
+    fn steps(&self, mut loops: Range<usize>, name: &str) -> bool {
+        let end = loops.end;
+        loops.any(|i| match self.text(i + 1) {
+            _ if self.text(i) != name => false,
+            "++" | "--" => true,
+            "+=" | "-=" => self.is_number(i + 2),
+            "=" => {
+                let statement_end = (i..end).find(|&j| self.text(j) == ";").unwrap_or(end);
+                (i..statement_end).any(|j| ["+", "-"].contains(&self.text(j)) && self.is_number(j + 1))
+            }
+            _ => false,
+        })
+    }
+
+    /// Whether a number begins here, in casts or not: `1u`, `asuint(int(1))`, `as_type<uint>(1)`.
+    fn is_number(&self, at: usize) -> bool {
+        let mut inside = self.tokens[at..].iter().skip_while(|t| t.is_word() || ["(", "<", ">"].contains(&t.text));
+        inside.next().is_some_and(Token::is_number)
     }
 }
 

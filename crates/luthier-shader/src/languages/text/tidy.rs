@@ -78,14 +78,18 @@ fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {
         let Some((name, value)) = temporary(&lines[i]).map(|(name, value)| (name.to_owned(), value.to_owned())) else {
             continue;
         };
-        let uses = |line: &String| words(line).filter(|word| *word == name).count();
-        if uses(&lines[i + 1]) == 1 && lines.iter().map(uses).sum::<usize>() == 2 {
+        if uses(&lines[i + 1], &name) == 1 && lines.iter().map(|line| uses(line, &name)).sum::<usize>() == 2 {
             let value = if is_compound(&value) { format!("({value})") } else { value };
             lines[i + 1] = rename(&lines[i + 1], |word| (word == name).then_some(value.as_str()));
             lines.remove(i);
         }
     }
     lines
+}
+
+/// How often a line mentions a name.
+fn uses(line: &str, name: &str) -> usize {
+    words(line).filter(|word| *word == name).count()
 }
 
 /// Name and value of a line that declares a temporary of naga's.
@@ -128,10 +132,9 @@ fn declared_late(mut lines: Vec<String>) -> Vec<String> {
 fn late_declaration(lines: &[String], i: usize) -> Option<(usize, String)> {
     let (declared, _) = lines[i].strip_suffix(';')?.split_once(" = ")?;
     let (kind, name) = declared.trim_start().split_once(' ')?;
-    let mentions = |line: &str| words(line).any(|word| word == name);
-    let first = (i + 1..lines.len()).find(|&j| mentions(&lines[j]))?;
+    let first = (i + 1..lines.len()).find(|&j| uses(&lines[j], name) > 0)?;
     let value = lines[first].strip_prefix("    ")?.strip_prefix(name)?.strip_prefix(" = ")?;
-    (!mentions(value)).then(|| (first, format!("    {kind} {name} = {value}")))
+    (uses(value, name) == 0).then(|| (first, format!("    {kind} {name} = {value}")))
 }
 
 /// A line without brackets that enclose a whole argument, index, condition or value.
