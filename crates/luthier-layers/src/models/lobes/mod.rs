@@ -145,7 +145,6 @@ impl FirstInterface {
     /// cosines whose roots are even.
     fn energy(&self, wo: DVec3) -> Rgb {
         let intervals = self.intervals();
-        let cos_theta = |i: usize| (i as f64 / intervals as f64) * (i as f64 / intervals as f64);
         let mut weights = vec![0.0; intervals + 1];
         for i in 0..NORMALS {
             // Hammersley's points.
@@ -155,14 +154,14 @@ impl FirstInterface {
             let Some(lobe) = self.facets.lobe(Masking::Smith, wi, wo) else { continue };
             let weight = lobe.value / self.facets.pdf_solid_angle(wi, wo) / f64::from(NORMALS);
             let first = ((lobe.cos_theta_d.max(0.0).sqrt() * intervals as f64) as usize).min(intervals - 1);
-            let [from, to] = [first, first + 1].map(cos_theta);
+            let [from, to] = [first, first + 1].map(|i| cos_theta(i, intervals));
             let share = (lobe.cos_theta_d - from) / (to - from);
             weights[first] += weight * (1.0 - share);
             weights[first + 1] += weight * share;
         }
         let mut sum = [0.0; 3];
         for (i, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
-            let reflected = self.reflectance.rgb(cos_theta(i));
+            let reflected = self.reflectance.rgb(cos_theta(i, intervals));
             (0..3).for_each(|c| sum[c] += weight * reflected[c]);
         }
         sum
@@ -174,6 +173,11 @@ impl FirstInterface {
         let waves = interfaces.map(|at| at.films.iter().map(|film| film.waves).sum()).fold(0.0, f64::max);
         (f64::from(INTERVALS) * (1.0 + 4.0 * waves)).min(f64::from(NORMALS)) as usize
     }
+}
+
+/// Cosine at the end of an interval: they gather at grazing angles, where reflectances are steep.
+fn cos_theta(i: usize, intervals: usize) -> f64 {
+    (i as f64 / intervals as f64) * (i as f64 / intervals as f64)
 }
 
 /// Visible normals over which the first interface's energy is a mean.
@@ -268,9 +272,10 @@ pub fn shown(stack: &Stack) -> Stack {
     let mut stack = stack.clone();
     for layer in &mut stack.layers {
         if let Base::Conductor { ior } = &mut layer.base {
-            let bounded = |s: &IorSample| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s };
+            let samples = ior.samples().iter();
+            let bounded = samples.map(|s| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s });
             // Smaller numbers in the same order: an index still.
-            *ior = ior.with_samples(ior.samples().iter().map(bounded).collect()).unwrap_or_else(|_| ior.clone());
+            *ior = ior.with_samples(bounded.collect()).unwrap_or_else(|_| ior.clone());
         }
     }
     stack

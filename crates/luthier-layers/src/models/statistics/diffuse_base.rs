@@ -98,12 +98,6 @@ impl<const C: usize> DiffuseBase<C> {
     /// R goes with Ti0. Both T are T0i, and their means over diffuse light bring the difference in as one factor, so that the base
     /// never returns more than enters, and all of it if it is white and nothing absorbs. Reciprocal.
     pub fn brdf<S>(&self, wi: (DVec3, &Transport<S, C>), wo: (DVec3, &Transport<S, C>)) -> [f64; C] {
-        let inside = |(w, transport): (DVec3, &Transport<S, C>)| {
-            let cos = transport.cos_theta;
-            let across = libm::hypot(w.x, w.y);
-            let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
-            DVec3::new(w.x * scale, w.y * scale, cos)
-        };
         from_fn(|c| {
             let transmitted = wi.1.transmitted[c] * wo.1.transmitted[c] * self.veil.upward[c];
             // A white base below layers that return everything: nothing is transmitted to it either.
@@ -120,6 +114,14 @@ impl<const C: usize> DiffuseBase<C> {
     pub fn veil(&self) -> Veil<C> {
         self.veil
     }
+}
+
+/// The mean direction of light above the base, at the azimuth of its direction outside.
+fn inside<S, const C: usize>((w, transport): (DVec3, &Transport<S, C>)) -> DVec3 {
+    let cos = transport.cos_theta;
+    let across = libm::hypot(w.x, w.y);
+    let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
+    DVec3::new(w.x * scale, w.y * scale, cos)
 }
 
 #[cfg(test)]

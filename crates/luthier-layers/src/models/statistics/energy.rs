@@ -123,20 +123,20 @@ impl ColorEnergy {
     pub fn new(stack: &Stack, color: Color) -> Self {
         let mut facets = FacetCache { detail: FINE, surfaces: Vec::new() };
         let shader = Layers::rgb(stack);
-        let layer = |i: usize| {
+        let layers = (0..stack.layers.len()).map(|i| {
             let interface = Interface::of(stack, i)?.sampled(&color);
             let transparent = matches!(stack.layers[i].base, Base::Dielectric { .. });
             Some(ColorLayer::new(interface, transparent, &shader.layers[i].surface, &mut facets))
-        };
-        Self { layers: (0..stack.layers.len()).map(layer).collect() }
+        });
+        Self { layers: layers.collect() }
     }
 }
 
 impl ColorLayer {
     fn new(interface: Sampled, transparent: bool, surface: &Surface, facets: &mut FacetCache) -> Self {
         let curves = ReflectanceCurves::new(interface.nodes.len(), |k, cos| interface.nodes[k].1.reflectance(cos));
-        let eta = |one: &interface::Monochrome| transparent.then(|| one.below.re / one.above.re);
-        let etas: Vec<Option<f64>> = interface.nodes.iter().map(|(_, one)| eta(one)).collect();
+        let ones = interface.nodes.iter().map(|(_, one)| one);
+        let etas: Vec<Option<f64>> = ones.map(|one| transparent.then(|| one.below.re / one.above.re)).collect();
         let nearly_smooth = surface.alpha_isotropic() < NEARLY_SMOOTH;
         let nodes = albedo_nodes(surface, &curves, &etas, facets)
             .map(|(cos, albedos)| {
@@ -174,9 +174,9 @@ pub struct FresnelEnergy {
 impl FresnelEnergy {
     /// The energies of a stack at three wavelengths.
     pub fn new(stack: &Stack, wavelengths_nm: [f64; 3]) -> Self {
-        let at =
-            |i| Interface::of(stack, i).map(|interface| [0, 1, 2].map(|c: usize| interface.at(wavelengths_nm[c], c)));
-        Self { interfaces: (0..stack.layers.len()).map(at).collect() }
+        let interfaces = (0..stack.layers.len()).map(|i| Interface::of(stack, i));
+        let at = interfaces.map(|one| one.map(|one| [0, 1, 2].map(|c: usize| one.at(wavelengths_nm[c], c))));
+        Self { interfaces: at.collect() }
     }
 }
 
@@ -283,14 +283,16 @@ struct FacetNodes {
 
 impl FacetCache {
     fn nodes(&mut self, distribution: Distribution, alpha: f64, kinked: bool) -> Arc<[FacetStatistics]> {
-        let same = |s: &&FacetNodes| s.distribution == distribution && s.alpha == alpha && s.kinked == kinked;
-        if let Some(known) = self.surfaces.iter().find(same) {
+        let mut surfaces = self.surfaces.iter();
+        if let Some(known) = surfaces.find(|s| s.distribution == distribution && s.alpha == alpha && s.kinked == kinked)
+        {
             return Arc::clone(&known.nodes);
         }
         let Detail { effort, intervals, .. } = self.detail;
         let (effort, intervals) = (effort[usize::from(kinked)], intervals[usize::from(kinked)]);
-        let at = |i| FacetStatistics::new(distribution, alpha, node(i, intervals + 1), effort, 0);
-        let nodes: Arc<[FacetStatistics]> = (0..=intervals).map(at).collect();
+        let cosines = (0..=intervals).map(|i| node(i, intervals + 1));
+        let nodes: Arc<[FacetStatistics]> =
+            cosines.map(|cos| FacetStatistics::new(distribution, alpha, cos, effort, 0)).collect();
         self.surfaces.push(FacetNodes { distribution, alpha, kinked, nodes: Arc::clone(&nodes) });
         nodes
     }

@@ -68,7 +68,6 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
     let (mut jacobian_0i, mut jacobian_i0) = (1.0, 1.0);
     let mut cos_i = cos_theta.clamp(COS_THETA_MIN, 1.0);
     let mut slab = [1.0; C];
-    let mean = |x: [f64; C]| x.iter().sum::<f64>() / C as f64;
 
     for (i, layer) in stack.layers.iter().enumerate() {
         if matches!(layer.below, Below::Diffuse { .. }) {
@@ -90,10 +89,8 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
         }
 
         let q: [f64; C] = from_fn(|c| 1.0 - ri0[c] * r12[c]);
-        // Ti0/q and T12/q are at most 1, because Ri0 + Ti0 <= 1 and R12 + T12 <= 1; 1 is their limit without absorption.
-        let over_q = |t: f64, c: usize| if q[c] > 0.0 { (t / q[c]).min(1.0) } else { 1.0 };
-        let bounces = mean(from_fn(|c| (ri0[c] * r12[c] / q[c].max(1.0 / BOUNCES_MAX)).min(BOUNCES_MAX)));
-        let upward: [f64; C] = from_fn(|c| over_q(ti0[c], c));
+        let bounces = mean::<C>(from_fn(|c| (ri0[c] * r12[c] / q[c].max(1.0 / BOUNCES_MAX)).min(BOUNCES_MAX)));
+        let upward: [f64; C] = from_fn(|c| over(ti0[c], q[c]));
         let between = (spread_r12 + spread_ri0) * bounces;
         let spread = spread_ti0 + (spread_t0i + spread_r12 + between) * jacobian_0i;
         lobes.push(Lobe { energy: from_fn(|c| t0i[c] * r12[c] * upward[c]), spread: spread.limited() });
@@ -114,7 +111,7 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
         let spread_t12 = S::of(&layer.surface, 0.5 * (1.0 - 1.0 / j12).abs());
         let spread_t21 = S::of(&layer.surface, 0.5 * (1.0 - j12).abs());
 
-        let downward: [f64; C] = from_fn(|c| over_q(1.0 - r12[c], c));
+        let downward: [f64; C] = from_fn(|c| over(1.0 - r12[c], q[c]));
         let back: [f64; C] = from_fn(|c| (1.0 - r21[c]) * ri0[c] * downward[c]);
         let reflected: [f64; C] = from_fn(|c| r21[c] + back[c]);
         let deep = spread_t12 + (spread_t21 + spread_ri0 + between) * j12;
@@ -138,6 +135,16 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
         }
     }
     Transport { lobes, transmitted: t0i, emerging: ti0, from_below: ri0, cos_theta: cos_i }
+}
+
+/// Ti0/q or T12/q: at most 1, because Ri0 + Ti0 <= 1 and R12 + T12 <= 1. Where q is 0, the limit without absorption.
+fn over(t: f64, q: f64) -> f64 {
+    if q > 0.0 { (t / q).min(1.0) } else { 1.0 }
+}
+
+/// Mean over the channels.
+fn mean<const C: usize>(x: [f64; C]) -> f64 {
+    x.iter().sum::<f64>() / C as f64
 }
 
 #[cfg(test)]
