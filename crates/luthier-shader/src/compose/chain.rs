@@ -1,4 +1,4 @@
-//! Models that go through the layers one by one, written out: one step for every layer that a material of the set may have.
+//! Models that walk through the layers one by one, written out: one step for each depth of the deepest material.
 
 use std::fmt::Write as _;
 
@@ -19,8 +19,8 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
     vec![text(steps, features), text(&eval(set, model, features), features)]
 }
 
-/// Whether a model clamps slope parameters, and some are to be. A model of one slope parameter does; where no interface is smoother than
-/// one above it, it is the same path as that of a model of two.
+/// Whether a model clamps slope parameters in this set. Models with one slope parameter do, if some interface is smoother than one above it.
+/// Otherwise their path is that of models with two.
 fn is_clamped(model: ShadingModel, features: &Features) -> bool {
     model.facts().is_isotropic && features.has(Feature::Clamped)
 }
@@ -86,12 +86,12 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
              var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below});"
     );
     for i in 0..depth {
-        // What lies below patina has a record of its own for where it is bare.
+        // The layer below patina has a second record, for bare places.
         let index = if has_patina && i == 1 { "select(1u, count, is_bare)".to_owned() } else { format!("{i}u") };
         let diffuse = diffuse_at(&layers, i);
         let (mut lines, mut layer) = (Vec::new(), format!("$layer(material, {index})"));
         if diffuse == (true, false) {
-            // Its kind is looked at before it is added.
+            // Materials differ here: the record is read once, for the kind and for the step.
             lines.push(format!("let layer_{i} = {layer};"));
             layer = format!("layer_{i}");
         }
@@ -110,7 +110,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
     out + &patina(model, features) + &white(model, features)
 }
 
-/// The function of a model for white light, where one of the set takes light of a colour and other functions than `luthier_eval` call it.
+/// The function of a model for white light. Functions beside `luthier_eval` call it if that of the set takes light of a colour.
 fn white(model: ShadingModel, features: &Features) -> String {
     if !(features.has(Feature::Fluorescent) && features.has(Feature::Face)) {
         return String::new();
@@ -124,7 +124,7 @@ fn white(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// The function of a model where a material of the set has patina: with and without the first layer, blended.
+/// The function of a model in a set with patina: light with and without the first layer, blended.
 fn patina(model: ShadingModel, features: &Features) -> String {
     if !features.has(Feature::ChainPatina) {
         return String::new();
@@ -152,16 +152,16 @@ fn patina(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// Number of interfaces down to the last one of a model's materials; with patina those of the bare stacks come behind.
+/// Number of interfaces down to the lowest one of a model's materials. With patina, those of the bare stacks follow.
 pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel, has_patina: bool) -> usize {
     let stacks = stacks(set, model);
     let lowest = stacks.iter().filter_map(|layers| layers.iter().rposition(|layer| !is_diffuse(layer)));
     let depth = lowest.map(|last| last + 1).max().unwrap_or(0);
-    // What is bare begins one layer below the top.
+    // Bare stacks begin one layer below the top.
     if has_patina { (2 * depth).saturating_sub(1) } else { depth }
 }
 
-/// `luthier_parts_<model>`: the interfaces as light in the mirrored direction meets them, and what a base reflects of light at a mean cosine.
+/// `luthier_parts_<model>`: the interfaces as light from the mirror direction meets them, and the light of a base for light at a mean cosine.
 pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
     let mut out = format!(
         "/// The parts of the model `{}`.\n\
@@ -207,15 +207,15 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
 
 /// A way down the layers.
 struct Walk<'w> {
-    /// Share of the surface where it is gone.
+    /// Share of the surface on which light takes it.
     share: &'w str,
-    /// Whether the first layer is not there.
+    /// Whether the first layer is missing.
     is_bare: bool,
     /// Number of the part of its first interface.
     first_part: usize,
 }
 
-/// A statement on `layer` and `next` with their numbers: values of one name in one function would lose it in languages that naga writes.
+/// A statement with numbers behind `layer` and `next`. naga renames all but the first of several values with one name in a function.
 pub(super) fn of_layer(statement: &str, i: usize) -> String {
     let numbered = rename(statement, |word| matches!(word, "layer" | "next").then(|| format!("{word}_{i}")));
     numbered.replace(&format!("$layer_{i}("), "$layer(")
@@ -256,7 +256,7 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
         let index = if walk.is_bare && i == 1 { "count".to_owned() } else { format!("{i}u") };
         let has_own = features.has(Feature::OwnNormals);
         let media = match (i == first, has_flakes) {
-            // Above it, layers count as level.
+            // Nothing lies above the first layer: index 1, and a level normal unless a map turns it.
             (true, _) if has_own => "1.0, layer.normal, 1.0".to_owned(),
             (false, false) if has_own => "eta, layer.normal, 1.0".to_owned(),
             (true, _) => format!("1.0, {LEVEL}, 1.0"),

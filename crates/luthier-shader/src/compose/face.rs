@@ -1,4 +1,4 @@
-//! Functions for renderers beside `luthier_eval`: a material prepared for a view, its light, drawn directions, its albedo.
+//! Further functions for renderers: a material prepared for a view, its light, drawn directions, its albedo.
 
 use std::fmt::Write as _;
 
@@ -13,10 +13,10 @@ use crate::compose::features::Features;
 use crate::compose::stacks::{are_bases, is_diffuse, stacks};
 use crate::compose::{by_model, case, chain, function, statistics, text};
 
-/// Number in place of a model's for a base alone of the model `lobes`, which has no rows.
+/// Number in place of a model's for a bare base of the model `lobes`, which has no rows.
 const BASE: &str = "255u";
 
-/// The function that fills the parts of a material, by its model.
+/// Name of the function that fills the parts of a material of a model.
 pub(crate) fn parts_function(model: ShadingModel) -> String {
     function(model).replace("luthier_eval", "luthier_parts")
 }
@@ -99,7 +99,7 @@ fn number(model: ShadingModel) -> String {
     format!("{}u", model.number())
 }
 
-/// `luthier_prepare`, and `luthier_prepare_at` where surfaces vary.
+/// `luthier_prepare`, and `luthier_prepare_at` if a surface varies.
 fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     const SUMMARY: &str = "A material for light seen from wo: unit, in the local frame, away from the surface.";
     let has_place = features.has(Feature::Place);
@@ -116,7 +116,7 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     } else {
         out.push_str("    prepared.open = eye.z > 0.0;\n");
     }
-    // What comes of an eye below the horizon is not shown.
+    // Results for an eye below the horizon are not shown; the limit keeps them finite.
     out.push_str("    prepared.wo = vec3<f32>(eye.xy, max(eye.z, 1e-16));\n");
     for i in 0..parts {
         let _ = writeln!(out, "    prepared.parts[{i}] = luthier_no_part();");
@@ -137,7 +137,7 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     out
 }
 
-/// `luthier_light`: what a view decides is not computed again where a model has such.
+/// `luthier_light`. Models that keep values of the view (lobes, statistics) use them for every light; others evaluate anew.
 fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     let mut out = String::from(
         "/// f cos_theta_i, RGB, of a prepared material for light from wi: that of `luthier_eval`.\n\
@@ -173,7 +173,7 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     if lit.is_empty() { out } else { format!("{out}\n{lit}") }
 }
 
-/// `luthier_light_lit`; `light` is the beginning of `luthier_light`.
+/// `luthier_light_lit`. Its checks are those at the beginning of `luthier_light`, the text `light`.
 fn light_of_a_colour(set: &MaterialSet<'_>, light: &str, place: &str, wi: &str) -> String {
     let mut out = String::from(
         "/// Light that a prepared material sends from wi to the eye, RGB, of light of a colour: that of `luthier_eval_lit`.\n\
@@ -216,7 +216,7 @@ fn albedo(features: &Features, parts: usize) -> String {
     out
 }
 
-/// Statements with one for each part, by the words for which modules of drawn directions have them.
+/// Words in the modules of drawn directions, each with statements for every part in its place.
 fn unrolled(parts: usize, features: &Features) -> [(&'static str, String); 7] {
     let spilled = if features.has(Feature::Visible) { parts } else { 0 };
     let spill = each(spilled, |i| format!("    chance += luthier_spill(prepared.parts[{i}]);\n"));
@@ -241,7 +241,7 @@ fn unrolled(parts: usize, features: &Features) -> [(&'static str, String); 7] {
     });
     let part =
         each(parts, |i| format!("        if part == {i}u {{\n            lobe = prepared.parts[{i}];\n        }}\n"));
-    // Of `lobes` alone the draw of the whole is the only proposal.
+    // The model `lobes` draws from all its lobes at once: a set of it alone has one proposal.
     let is_whole = features.has(Feature::Lobes) && !features.has(Feature::Several);
     let proposals = if is_whole { 1 } else { parts + 1 };
     let end = format!("    if choice >= below {{\n        drawn.part = {parts}u;\n    }}\n");

@@ -10,7 +10,7 @@ use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 use crate::compose::stacks::is_diffuse;
 
-/// The word for a masking that a set uses.
+/// The word for a masking.
 pub(crate) fn word(masking: Masking) -> Feature {
     match masking {
         Masking::Smith => Feature::MaskSmith,
@@ -42,7 +42,7 @@ fn expression(masking: Masking) -> &'static str {
     }
 }
 
-/// `luthier_masking`, and what it calls; nothing where all lobes of a set have the default.
+/// `luthier_masking` and its functions; nothing if all lobes of a set have the default.
 pub(crate) fn module(set: &MaterialSet<'_>, features: &Features) -> String {
     let used = used(set);
     let Some(last) = used.last().filter(|_| features.has(Feature::Masked)) else { return String::new() };

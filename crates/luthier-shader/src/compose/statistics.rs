@@ -1,5 +1,5 @@
-//! Models that follow statistics of light, which differ in the type of a spread only: written out, one step for every layer that a
-//! material of the set may have.
+//! Models that follow statistics of light, written out: one step for each depth of the deepest material. The models differ in the type of a
+//! spread only.
 
 use std::fmt::Write as _;
 
@@ -26,7 +26,7 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
     ]
 }
 
-/// The adding of layers with the types and functions of a model in place of `$Path`, `$spread` and `$add(`.
+/// The module that adds layers, with the types and functions of a model in place of `$Path`, `$spread` and `$add(`.
 fn named(module: String, model: ShadingModel) -> String {
     let name = model.name();
     let path = format!("Luthier{}{}", name[..1].to_uppercase(), &name[1..]);
@@ -81,7 +81,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel) -> String {
     out
 }
 
-/// `luthier_parts_<model>` and `luthier_light_<model>`: the lobes of the eye's direction are kept for all lights.
+/// `luthier_parts_<model>`, which keeps the lobes of the eye's direction for all lights, and `luthier_light_<model>`.
 pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel) -> String {
     let prefix = format!("luthier_{}", model.name());
     let mut out = format!(

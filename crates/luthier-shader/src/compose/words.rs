@@ -1,4 +1,4 @@
-//! Words of the material buffer, by the names that modules have for them.
+//! Words of the material buffer, by their names in modules.
 
 use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS};
 
@@ -34,7 +34,7 @@ const LAYER: [&str; 11] = [
     "numbers",
 ];
 
-/// The expression of a word of a layer in `luthier_layer`: words of numbers and tiles are there by name.
+/// The expression for a word of a layer in `luthier_layer`, which has variables for two of them.
 pub(crate) fn layer(word: usize) -> String {
     match LAYER.get(word) {
         Some(&name @ ("tiles" | "slab")) => name.to_owned(),
@@ -42,10 +42,10 @@ pub(crate) fn layer(word: usize) -> String {
     }
 }
 
-/// The text with the number of each word in place of `$word_NAME`, and how many there are in place of `$words_material` and `$words_layer`.
+/// The text with the number of each word in place of `$word_NAME`, and counts in place of `$words_material` and `$words_layer`.
 ///
 /// # Panics
-/// On a word that has no such name.
+/// On an unknown name.
 pub(crate) fn numbered(text: &str) -> String {
     let mut parts = text.split("$word_");
     let mut out = parts.next().unwrap_or_default().to_owned();

@@ -1,4 +1,4 @@
-//! The comment at the top of a text: its manual, for a reader who has no other page.
+//! The comment at the top of a text: a manual for readers without any other page.
 
 use std::fmt::Write as _;
 
@@ -12,12 +12,12 @@ use super::Part;
 use crate::functions::FUNCTIONS;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
 
-/// Longest line of prose.
+/// Longest line of the comment.
 const WIDTH: usize = 140;
-/// Materials that are listed one by one; of more, the first and the last are named.
+/// The most materials that are listed one by one. A longer list is cut to its first and its last.
 const LISTED: usize = 6;
 
-/// The manual of a text, which was made of this WGSL.
+/// The manual of a text that was made from this WGSL.
 pub(super) fn manual(
     set: &MaterialSet<'_>,
     form: Form,
@@ -42,7 +42,7 @@ pub(super) fn manual(
     Ok(out)
 }
 
-/// A text as lines of a comment; entries of lists begin with two spaces, and go on below with four.
+/// Writes a text as lines of a comment. Entries of lists begin with two spaces, and their further lines with four.
 fn comment(out: &mut String, text: &str) {
     let indent = if text.starts_with("  ") { "  " } else { "" };
     let mut line = format!("//{indent}");
@@ -108,7 +108,7 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
     texts
 }
 
-/// Parts that materials choose in place of the defaults, each once, with the first of these materials.
+/// Lines for parts that materials choose in place of the defaults: one for each part, with the first of its materials.
 fn parts(set: &MaterialSet<'_>) -> Vec<String> {
     let mut texts = Vec::new();
     for masking in Masking::ALL.into_iter().filter(|masking| *masking != Masking::default()) {
@@ -127,7 +127,7 @@ fn parts(set: &MaterialSet<'_>) -> Vec<String> {
     texts
 }
 
-/// The line of a part with its title, if materials choose it.
+/// The line of a part, if a material chooses it.
 fn part(set: &MaterialSet<'_>, part: &str, title: &str, is_chosen: impl Fn(&MaterialEntry) -> bool) -> Option<String> {
     let mut chosen = set.materials.iter().filter(|material| is_chosen(material));
     let first = &chosen.next()?.name;
@@ -163,7 +163,7 @@ fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl
     texts
 }
 
-/// Each binding with its number, name, kind, format and filter, and how to fill them.
+/// Each binding with its number, name, kind, format and filter, and instructions to fill them.
 fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Vec<String> {
     let has_buffer = part != Part::Constant;
     let is_numbered = target != Target::GlslEs300;
@@ -259,7 +259,7 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
     text
 }
 
-/// Requirements of a language, and the checks that a text in it has not had; `None` where there is nothing to say.
+/// Requirements of a language, and checks that its texts lack; `None` if there are none of both.
 fn note(target: Target, part: Part) -> Option<String> {
     let note = match target {
         Target::GlslEs300 if part != Part::Complete => {

@@ -1,4 +1,4 @@
-//! GLSL of a composed module: naga's output, with our names, comments and no entry point.
+//! GLSL of a module: naga's output with luthier's names and comments, without an entry point.
 
 use std::collections::BTreeMap;
 
@@ -12,14 +12,14 @@ use crate::languages::text::layout;
 use crate::validate::module;
 use crate::{ShaderError, Target};
 
-/// naga writes GLSL for an entry point only; this one is cut off again.
+/// naga writes GLSL for an entry point only. This one is cut off afterwards.
 const ENTRY: &str = "luthier_entry";
 /// Name of the block of the material buffer.
 const BLOCK: &str = "LuthierMaterials";
 
 /// Functions, blocks and uniforms in GLSL, without `#version`, precision and `main`.
 ///
-/// `calls` are statements that together use every binding.
+/// `calls` are statements that use every binding: naga reports its names only for bindings that the entry point uses.
 pub(crate) fn from_wgsl(
     wgsl: &str,
     bindings: &[BindingEntry],
@@ -51,7 +51,7 @@ pub(crate) fn from_wgsl(
     Ok(layout(&body, &module, wgsl))
 }
 
-/// Map from naga's names of bindings and blocks to ours.
+/// Names in the WGSL by naga's names of bindings and blocks.
 fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, String> {
     let mut names = BTreeMap::new();
     for (name, mapping) in &reflection.texture_mapping {
@@ -66,7 +66,7 @@ fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, Strin
     names
 }
 
-/// Our name for a binding.
+/// Name of a binding in the WGSL.
 fn global(module: &Module, handle: Handle<GlobalVariable>) -> String {
     module.global_variables[handle].name.clone().unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! HLSL of a composed module: naga's output, with our names and comments and a plain sampler.
+//! HLSL of a module: naga's output with luthier's names and comments, and with plain samplers.
 
 use luthier_manifest::BindingEntry;
 use naga::back::hlsl::{Options, PipelineOptions, ShaderModel, Writer};
@@ -33,7 +33,7 @@ fn refused(reason: impl ToString) -> ShaderError {
     ShaderError::untranslatable(Target::Hlsl, reason)
 }
 
-/// The sampler as a declaration of its own instead of an index into naga's heap of samplers.
+/// The text with each sampler as a declaration, instead of an index into naga's heap of samplers.
 fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
     let space = if group == 0 { String::new() } else { format!(", space{group}") };
     let mut out = String::with_capacity(text.len());
@@ -41,7 +41,7 @@ fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
         let declared =
             line.strip_prefix("static const SamplerState ").and_then(|rest| rest.split_once(" = nagaSamplerHeap["));
         if let Some((name, _)) = declared {
-            // A name that HLSL keeps for itself has an underscore more.
+            // naga appends an underscore to a reserved word of HLSL.
             let names = [Some(name), name.strip_suffix('_')];
             for entry in bindings.iter().filter(|entry| names.contains(&Some(entry.name.as_str()))) {
                 out.push_str(&format!("SamplerState {name} : register(s{}{space});\n", entry.binding));
@@ -57,8 +57,8 @@ fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
     out
 }
 
-/// The text without the padding of structures that no buffer holds, `const` before temporaries, and names for values that are returned at
-/// once.
+/// The text without padding of structures (no buffer holds them), without `const` before temporaries, and without names for values that are
+/// returned at once.
 fn without_ceremony(text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for line in text.lines().filter(|line| !is_padding(line)) {

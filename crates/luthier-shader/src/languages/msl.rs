@@ -1,6 +1,6 @@
-//! Metal Shading Language of a composed module: naga's output, with our names and comments.
+//! Metal Shading Language of a module: naga's output with luthier's names and comments.
 //!
-//! Nothing here can compile it; a lint reads it.
+//! No compiler for it runs on Linux; a lint reads it instead.
 
 use luthier_manifest::BindingEntry;
 use naga::ResourceBinding;
@@ -14,7 +14,7 @@ use crate::{ShaderError, Target};
 
 /// Name of the type of the material buffer.
 const BUFFER: &str = "LuthierMaterials";
-/// Longest line that a list of parameters is joined into.
+/// Longest line of a joined list of parameters.
 const WIDTH: usize = 120;
 
 /// The module in MSL 2.0. Argument indices of entry points are binding numbers.
@@ -47,7 +47,7 @@ fn refused(reason: impl ToString) -> ShaderError {
     ShaderError::untranslatable(Target::Msl, reason)
 }
 
-/// Where an entry point finds a binding.
+/// Argument index of a binding in an entry point.
 fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
@@ -68,7 +68,7 @@ fn without_end_padding(text: &str) -> String {
         .collect()
 }
 
-/// Heads of functions on one line where it is not too long.
+/// The text with the head of each function on one line, unless that is too long.
 fn joined(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;

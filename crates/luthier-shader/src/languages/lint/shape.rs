@@ -1,4 +1,4 @@
-//! Shapes of expressions: how many numbers a value has.
+//! Shapes of expressions: numbers of components.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(super) enum Shape {
     Struct(String),
     /// A texture, a sampler or a buffer of bytes.
     Resource(String),
-    /// Something that the lint does not know.
+    /// Not known to the lint.
     Unknown,
 }
 
@@ -87,7 +87,7 @@ impl Names {
     }
 }
 
-/// The shape of the expression that some tokens are.
+/// The shape of an expression.
 pub(super) fn of(tokens: &[Token<'_>], names: &Names, vocabulary: Vocabulary) -> Shape {
     let mut reader = Reader { tokens, at: 0, names, vocabulary };
     let shape = reader.expression();
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
         is_there
     }
 
-    /// Operands and operators: what binds more tightly does not matter to the shape.
+    /// Reads operands and operators. Precedence does not matter: it does not change the shape.
     fn expression(&mut self) -> Shape {
         let mut shape = self.unary();
         while is_operator(self.peek(0)) {
