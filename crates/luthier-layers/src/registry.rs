@@ -38,7 +38,7 @@ pub fn models() -> Vec<Box<dyn Model>> {
     models
 }
 
-/// The model of a name.
+/// The model with a name; `None` for an unknown name.
 pub fn model(name: &str) -> Option<Box<dyn Model>> {
     models().into_iter().find(|model| model.info().name == name)
 }

@@ -1,4 +1,4 @@
-//! The ways in which no shader comes out.
+//! Errors of this crate.
 
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
@@ -6,23 +6,23 @@ use thiserror::Error;
 
 use crate::{Form, Target};
 
-/// Why no shader came out.
+/// Reason why a set or a module has no shader.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ShaderError {
     /// The set has no materials.
     #[error("no materials: a shader needs at least one")]
     NoMaterials,
-    /// Constants are those of one material.
+    /// A shader of constants was asked for, and the set has not exactly one material.
     #[error("{0} materials: only one can be made of constants")]
     NotOne(usize),
     /// A material has no layers.
     #[error("material `{0}` has no layers")]
     NoLayers(String),
-    /// A name that makes no identifier.
+    /// No identifier can be made of a name.
     #[error("`{0}` makes no shader identifier: names are letters, digits and hyphens")]
     Name(String),
-    /// Two names that make the same identifier.
+    /// Two names make the same identifier.
     #[error("`{first}` and `{second}` are both `{constant}` in a shader; rename one")]
     NameClash {
         /// The earlier material.
@@ -32,7 +32,7 @@ pub enum ShaderError {
         /// The identifier.
         constant: String,
     },
-    /// Cells of a surface that choose among no material, or among too many.
+    /// Cells of a surface choose among no material, or among too many.
     #[error("cells of the surface `{surface}` take 1 to {limit} materials")]
     Choices {
         /// The surface.
@@ -40,7 +40,7 @@ pub enum ShaderError {
         /// The most.
         limit: usize,
     },
-    /// A surface names a material that the set does not have.
+    /// A surface names a material that the set lacks.
     #[error("the surface `{surface}` has material {material}, and there are {count}")]
     NoMaterial {
         /// The surface.
@@ -50,7 +50,7 @@ pub enum ShaderError {
         /// Materials of the set.
         count: u32,
     },
-    /// A form that the model of a material does not have.
+    /// The model of a material lacks the form.
     #[error(
         "`{material}` has no `{form}` shader: its model `{model}` is read from tables; ask for the `baked` form, or for another model"
     )]
@@ -62,7 +62,7 @@ pub enum ShaderError {
         /// The form.
         form: Form,
     },
-    /// The baked form needs a tile that the layer does not have.
+    /// The baked form needs a tile that the layer lacks.
     #[error("layer {layer} of `{material}` has no tile of the {} table, which the baked form reads", table.name())]
     NoTile {
         /// The material.
@@ -72,7 +72,7 @@ pub enum ShaderError {
         /// The table.
         table: TableKind,
     },
-    /// A layer points at a table or tile that the set does not have.
+    /// A layer points at a table or tile that the set lacks.
     #[error("layer {layer} of `{material}` reads tile {tile} of the {} table, which has {tiles} tiles", table.name())]
     TileOutOfRange {
         /// The material.
@@ -83,10 +83,10 @@ pub enum ShaderError {
         table: TableKind,
         /// The tile wanted.
         tile: u32,
-        /// The tiles there are; 0 without the table.
+        /// Tiles of the table; 0 without it.
         tiles: u32,
     },
-    /// A table whose layout no look-up is written for.
+    /// No look-up can be written for the layout of a table.
     #[error("the {} table cannot be read by the shader: {reason}", table.name())]
     Layout {
         /// The table.
@@ -94,7 +94,7 @@ pub enum ShaderError {
         /// Fault of the layout.
         reason: String,
     },
-    /// More material data than shaders can count.
+    /// The material buffer would be longer than shaders can count.
     #[error("the materials take {words} vec4 words of the material buffer, which holds {limit}; emit fewer materials")]
     BufferTooLarge {
         /// Words needed.
@@ -102,10 +102,10 @@ pub enum ShaderError {
         /// [`luthier_manifest::BUFFER_WORDS_MAX`].
         limit: usize,
     },
-    /// The text is not valid WGSL. The message shows the place.
+    /// A text is not valid WGSL. The message shows the place.
     #[error("not valid WGSL:\n{0}")]
     Invalid(String),
-    /// naga has no such form of the module, or gave text of an unexpected shape.
+    /// naga cannot translate the module, or gave text of an unexpected shape.
     #[error("no {target} for this shader: {reason}")]
     Untranslatable {
         /// The language.
@@ -119,6 +119,10 @@ pub enum ShaderError {
 }
 
 impl ShaderError {
+    pub(crate) fn layout(table: TableKind, reason: impl Into<String>) -> Self {
+        Self::Layout { table, reason: reason.into() }
+    }
+
     pub(crate) fn untranslatable(target: Target, reason: impl ToString) -> Self {
         Self::Untranslatable { target, reason: reason.to_string() }
     }

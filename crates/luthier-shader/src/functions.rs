@@ -1,6 +1,6 @@
-//! Functions and structures of shaders that are for programs around them.
+//! Functions and structures of shaders that programs around them use.
 
-/// Functions of the face, by their calls, and what they give.
+/// Public functions of shaders: calls, and a description of each for the manual.
 pub(crate) const FUNCTIONS: [(&str, &str); 24] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
@@ -53,7 +53,7 @@ pub(crate) const FUNCTIONS: [(&str, &str); 24] = [
 /// Structures that a program fills.
 pub(crate) const STRUCTURES: [&str; 2] = ["LuthierPlace", "LuthierLayerPlace"];
 
-/// Whether a program around a shader may call a function: the manual names it, or it is a look-up.
+/// Whether programs around a shader may call a function: the manual names it, or it is a look-up.
 pub(crate) fn is_public(function: &str) -> bool {
     let mut named =
         FUNCTIONS.iter().flat_map(|(calls, _)| calls.split("), ")).filter_map(|call| call.split('(').next());

@@ -1,6 +1,6 @@
 //! Identifiers of a text: cut out, renamed.
 
-/// The text with some of its words replaced; members (after a dot) are left alone.
+/// The text with some of its words replaced. Words after a dot are members, and stay.
 pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>) -> String {
     let mut out = String::with_capacity(text.len());
     for word in words(text) {
@@ -13,13 +13,17 @@ pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>
     out
 }
 
-/// A text cut into words (identifiers and numbers) and what lies between them; nothing is dropped.
+/// Whether a character may stand in a word.
+pub(crate) fn is_of_word(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+/// The words of a text (identifiers and numbers) and the pieces between them. Joined, they are the text again.
 pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut rest = text;
     std::iter::from_fn(move || {
         let first = rest.chars().next()?;
-        let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
+        let end = rest.find(|c| is_of_word(c) != is_of_word(first)).unwrap_or(rest.len());
         let (word, tail) = rest.split_at(end);
         rest = tail;
         Some(word)

@@ -1,4 +1,4 @@
-//! Functions of any WGSL module in every language.
+//! Translation of any WGSL module of functions.
 
 use std::fmt::Write as _;
 
@@ -11,21 +11,31 @@ use crate::{ShaderError, Target};
 
 /// A WGSL module of functions, textures and samplers in a language, to be pasted: validated, with its names and `///` comments.
 ///
-/// All bindings are in one group. GLSL 4.50 has their numbers as `binding`, HLSL as registers in the space of the group; GLSL ES has names alone. GLSL
-/// has no samplers apart from textures: the settings of the sampler are those that the texture is bound with. In MSL textures and samplers are
-/// arguments of the functions. Textures must not have names that GLSL keeps for itself. Functions must not loop or write, and have parameters of numbers and vectors: what [`crate::emit`] relies on.
+/// All bindings are in one group. Their numbers become `binding` in GLSL 4.50, and registers in the space of the group in HLSL; GLSL ES has names
+/// alone. GLSL joins textures and samplers: the program sets filters when it binds the texture. In MSL textures and samplers are arguments of the
+/// functions. Names of textures must not be reserved words of GLSL. Functions must not loop or write, and their parameters are numbers and
+/// vectors: the code that tidies naga's text relies on this.
+///
+/// ```
+/// use luthier_shader::{Target, library};
+///
+/// let wgsl = "/// Twice x.\nfn twice(x: f32) -> f32 {\n    return 2.0 * x;\n}\n";
+/// let glsl = library(wgsl, Target::GlslEs300)?;
+/// assert!(glsl.contains("// Twice x.\nfloat twice(float x) {"), "{glsl}");
+/// # Ok::<(), luthier_shader::ShaderError>(())
+/// ```
 ///
 /// # Errors
-/// [`ShaderError::Invalid`] for text that is no valid WGSL, [`ShaderError::Untranslatable`] for modules of other contents, [`ShaderError::NotText`]
-/// for SPIR-V, which [`library_spirv`](crate::library_spirv) writes.
+/// [`ShaderError::Invalid`] for invalid WGSL, [`ShaderError::Untranslatable`] for modules with other contents, [`ShaderError::NotText`] for
+/// SPIR-V, which [`library_spirv`](crate::library_spirv) writes.
 pub fn library(wgsl: &str, target: Target) -> Result<String, ShaderError> {
     let (module, _) = module(wgsl)?;
-    let refused = |reason: &str| ShaderError::untranslatable(target, reason);
-    let (bindings, group) = bindings(&module).map_err(refused)?;
+    let (bindings, group) = bindings(&module).map_err(|reason| ShaderError::untranslatable(target, reason))?;
     match target {
         Target::Wgsl => Ok(wgsl.to_owned()),
         Target::Glsl450 | Target::GlslEs300 => {
-            glsl::from_wgsl(wgsl, &bindings, group, &calls(&module).map_err(refused)?, target)
+            let calls = calls(&module).map_err(|reason| ShaderError::untranslatable(target, reason))?;
+            glsl::from_wgsl(wgsl, &bindings, group, &calls, target)
         }
         Target::Hlsl => hlsl::from_wgsl(wgsl, &bindings, group),
         Target::Msl => msl::from_wgsl(wgsl, &bindings),
@@ -33,7 +43,7 @@ pub fn library(wgsl: &str, target: Target) -> Result<String, ShaderError> {
     }
 }
 
-/// The resources of a module and the group that all are in.
+/// The resources of a module, and their group.
 fn bindings(module: &Module) -> Result<(Vec<BindingEntry>, u32), &'static str> {
     let mut entries = Vec::new();
     let mut group = None;
@@ -70,16 +80,20 @@ fn calls(module: &Module) -> Result<String, &'static str> {
 
 /// The zero of a scalar or a vector.
 fn zero(module: &Module, ty: Handle<Type>) -> Option<String> {
-    let scalar = |scalar: Scalar| match scalar {
+    match module.types[ty].inner {
+        TypeInner::Scalar(scalar) => Some(format!("{}()", name(scalar)?)),
+        TypeInner::Vector { size, scalar } => Some(format!("vec{}<{}>()", size as u8, name(scalar)?)),
+        _ => None,
+    }
+}
+
+/// The type of a scalar.
+fn name(scalar: Scalar) -> Option<&'static str> {
+    match scalar {
         Scalar::F32 => Some("f32"),
         Scalar::U32 => Some("u32"),
         Scalar::I32 => Some("i32"),
         Scalar::BOOL => Some("bool"),
-        _ => None,
-    };
-    match module.types[ty].inner {
-        TypeInner::Scalar(of) => Some(format!("{}()", scalar(of)?)),
-        TypeInner::Vector { size, scalar: of } => Some(format!("vec{}<{}>()", size as u8, scalar(of)?)),
         _ => None,
     }
 }

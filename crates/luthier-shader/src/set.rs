@@ -1,4 +1,4 @@
-//! The set that a shader serves: materials and descriptions of tables; what it binds.
+//! The set that a shader serves: materials and descriptions of tables. Its bindings.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +8,15 @@ use luthier_manifest::{
     Manifest, MaterialEntry, ShadingModel, SurfaceEntry, reads,
 };
 
+use crate::identifiers::is_of_word;
 use crate::{Form, ShaderError};
 
-/// Binding numbers that luthier keeps for itself. What a caller puts into the same group, where an engine leaves him no other, goes
-/// to this number and above.
+/// First binding number that is free for callers. Engines may leave a caller no other group than luthier's: bindings of theirs get this number
+/// or a higher one.
 pub const RESERVED_BINDINGS: u32 = 16;
 
-/// Materials of one kind of cells; numbers of cells have 24 bits, which such a count takes to 32.
+/// The most materials of one kind of cells. Shaders multiply a random number of 24 bits by their count: above 256 the product would overflow
+/// 32 bits.
 const CHOICES_MAX: usize = 256;
 
 /// Binding of the sampler.
@@ -36,12 +38,12 @@ const _: () = {
     }
 };
 
-/// Description of a table for the emitter: not its texels.
+/// Kind, layout and format of a table, without its texels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableFace {
     /// Kind of the table.
     pub kind: TableKind,
-    /// Where its texels lie.
+    /// Places of its texels.
     pub layout: AtlasLayout,
     /// Format of its texels.
     pub format: TexelFormat,
@@ -49,17 +51,30 @@ pub struct TableFace {
 
 /// The materials that one shader serves, in the order of their numbers, and the tables they point into.
 ///
-/// Tables that no layer has a tile of are ignored: they are neither bound nor mentioned.
+/// Tables without a tile of any layer are ignored: they are neither bound nor mentioned.
+///
+/// ```
+/// use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry};
+/// use luthier_shader::{Form, MaterialSet, Target, emit};
+///
+/// let layer = LayerRecord { kind: LayerKind::Diffuse, albedo: [0.8; 3], ..LayerRecord::default() };
+/// let materials = [MaterialEntry { name: "chalk".to_owned(), layers: vec![layer], ..MaterialEntry::default() }];
+/// let mut set = MaterialSet::new(&materials, Vec::new());
+/// assert!(!emit(&set, Form::Full, Target::Wgsl)?.contains("fn luthier_albedo("));
+/// set.functions = [FunctionGroup::Albedo].into_iter().collect();
+/// assert!(emit(&set, Form::Full, Target::Wgsl)?.contains("fn luthier_albedo("));
+/// # Ok::<(), luthier_shader::ShaderError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialSet<'a> {
     /// The materials.
     pub materials: &'a [MaterialEntry],
     /// Surfaces of these materials, in the order of their numbers.
     pub surfaces: &'a [SurfaceEntry],
-    /// The tables, at most one of a kind; of several the first counts. The `baked` form evaluates D in closed form for layers without a
-    /// tile of a distribution table.
+    /// The tables. Of several of one kind the first counts. The `baked` form evaluates D in closed form for layers without a tile of a
+    /// distribution table.
     pub tables: Vec<TableFace>,
-    /// The groups of functions that its shaders have.
+    /// Groups of functions in its shaders.
     pub functions: Functions,
 }
 
@@ -71,13 +86,12 @@ impl<'a> MaterialSet<'a> {
 
     /// All materials, tables and groups of functions of a bake.
     pub fn from_manifest(manifest: &'a Manifest) -> Self {
-        let face =
-            |t: &luthier_manifest::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
-        let tables = manifest.tables.iter().map(face).collect();
+        let tables = manifest.tables.iter();
+        let faces = tables.map(|t| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format });
         Self {
             materials: &manifest.materials,
             surfaces: &manifest.surfaces,
-            tables,
+            tables: faces.collect(),
             functions: manifest.functions.clone(),
         }
     }
@@ -92,11 +106,12 @@ impl<'a> MaterialSet<'a> {
         ShadingModel::ALL.into_iter().filter(|&model| self.materials.iter().any(|m| m.model == model))
     }
 
-    /// Whether shaders of a form show the environment: where they were asked to, and some material has lobes.
+    /// Whether shaders of a form show the environment: they were asked to, and some material has lobes.
     pub(crate) fn shows_environment(&self, form: Form) -> bool {
-        let has_lobes =
-            |m: &MaterialEntry| m.model.is_fitted() && m.layers.iter().any(|layer| layer.kind != LayerKind::Diffuse);
-        form == Form::Baked && self.functions.has(FunctionGroup::Environment) && self.materials.iter().any(has_lobes)
+        let mut fitted = self.materials.iter().filter(|material| material.model.is_fitted()).flat_map(|m| &m.layers);
+        form == Form::Baked
+            && self.functions.has(FunctionGroup::Environment)
+            && fitted.any(|layer| layer.kind != LayerKind::Diffuse)
     }
 
     /// Words of the material buffer.
@@ -146,7 +161,7 @@ impl<'a> MaterialSet<'a> {
         Ok(constants)
     }
 
-    /// Whether surfaces have materials of the set.
+    /// Refuses surfaces with cells of no material, of too many, or of one that the set lacks.
     fn check_surfaces(&self) -> Result<(), ShaderError> {
         let count = self.materials.len() as u32;
         for surface in self.surfaces {
@@ -161,7 +176,7 @@ impl<'a> MaterialSet<'a> {
         Ok(())
     }
 
-    /// Whether every layer is one that the emitted functions can evaluate.
+    /// Refuses a set whose layers the emitted functions cannot all evaluate.
     pub(crate) fn check(&self, form: Form) -> Result<(), ShaderError> {
         if self.materials.is_empty() {
             return Err(ShaderError::NoMaterials);
@@ -182,14 +197,22 @@ impl<'a> MaterialSet<'a> {
                 self.check_layer(form, material, i, layer, |kind| reads(material.model, kind, &material.layers, i))?;
             }
             if let Some(bare) = material.records().nth(material.layers.len()) {
-                // Tiles of the whole material are at its first layer.
-                let reads = |kind: TableKind| {
+                // Kinds without a slot have one tile for the whole material, which its first layer names.
+                self.check_layer(form, material, material.layers.len(), bare, |kind| {
                     kind.facts().slot.is_some() && reads(material.model, kind, std::slice::from_ref(bare), 0)
-                };
-                self.check_layer(form, material, material.layers.len(), bare, reads)?;
+                })?;
             }
         }
         Ok(())
+    }
+
+    /// Whether layers that read a table need a tile of it.
+    fn needs(&self, table: TableKind) -> bool {
+        match table {
+            // Without any tile of phases, shaders compute the phases of films.
+            TableKind::Phase => self.layers().any(|layer| layer.tiles[TableKind::Phase].is_some()),
+            _ => !table.facts().is_optional && table.facts().values != Values::Picture,
+        }
     }
 
     fn check_layer(
@@ -203,24 +226,18 @@ impl<'a> MaterialSet<'a> {
         if form == Form::Full {
             return Ok(());
         }
-        let has_phases = || self.layers().any(|layer| layer.tiles[TableKind::Phase].is_some());
-        // Films have their phases computed where no layer has a tile of them.
-        let is_needed = |table: TableKind| match table {
-            TableKind::Phase => has_phases(),
-            _ => !table.facts().is_optional && table.facts().values != Values::Picture,
-        };
         for table in TableKind::ALL {
             if matches!(table, TableKind::Distribution | TableKind::Phase) && !self.has(table) {
                 continue;
             }
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
-            let material = || material.name.clone();
             match layer.tiles[table] {
-                None if reads(table) && is_needed(table) => {
-                    return Err(ShaderError::NoTile { material: material(), layer: i, table });
+                None if reads(table) && self.needs(table) => {
+                    return Err(ShaderError::NoTile { material: material.name.clone(), layer: i, table });
                 }
                 Some(tile) if tile >= tiles => {
-                    return Err(ShaderError::TileOutOfRange { material: material(), layer: i, table, tile, tiles });
+                    let material = material.name.clone();
+                    return Err(ShaderError::TileOutOfRange { material, layer: i, table, tile, tiles });
                 }
                 _ => {}
             }
@@ -230,51 +247,70 @@ impl<'a> MaterialSet<'a> {
 }
 
 /// Resources to bind in group 0 for a form of the shader: textures that are read, the sampler if any of them is filtered, the material
-/// buffer.
+/// buffer, and the environment's.
+///
+/// ```
+/// use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry};
+/// use luthier_shader::{Form, MaterialSet, bindings};
+///
+/// let layer = LayerRecord { kind: LayerKind::Diffuse, ..LayerRecord::default() };
+/// let materials = [MaterialEntry { layers: vec![layer], ..MaterialEntry::default() }];
+/// let entries = bindings(&MaterialSet::new(&materials, Vec::new()), Form::Full);
+/// // The full form computes everything: it reads the material buffer and no table.
+/// assert_eq!(entries.iter().map(|entry| entry.name.as_str()).collect::<Vec<_>>(), ["luthier_materials"]);
+/// ```
 pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
-    let entry = |binding, name: String, resource: &str| BindingEntry { binding, name, resource: resource.to_owned() };
     let mut bindings = Vec::new();
     let mut is_sampled = false;
     for table in set.tables_read(form) {
         is_sampled |= table.format.is_filterable();
-        bindings.push(entry(table.kind.binding(), format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
+        bindings.push(entry(table.kind.binding(), &format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
     }
     if is_sampled {
-        bindings.push(entry(SAMPLER_BINDING, "luthier_sampler".to_owned(), "sampler"));
+        bindings.push(entry(SAMPLER_BINDING, "luthier_sampler", "sampler"));
     }
-    bindings.push(entry(MATERIALS_BINDING, "luthier_materials".to_owned(), "buffer"));
+    bindings.push(entry(MATERIALS_BINDING, "luthier_materials", "buffer"));
     if set.shows_environment(form) {
-        bindings
-            .extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name.to_owned(), resource)));
+        bindings.extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name, resource)));
     }
     bindings
 }
 
-/// Constants of the shaders themselves that a name would make.
+fn entry(binding: u32, name: &str, resource: &str) -> BindingEntry {
+    BindingEntry { binding, name: name.to_owned(), resource: resource.to_owned() }
+}
+
+/// Constants of the shaders themselves, which no material may get.
 const TAKEN: [&str; 1] = ["LUTHIER_MATERIAL_WORDS"];
 
-/// The constant that shaders have for a material of this name: for `red-lacquer` it is `LUTHIER_MATERIAL_RED_LACQUER`. A last digit is
-/// followed by `_ID`, because names end in a letter; so is `WORDS`, which shaders have for themselves.
+/// The constant of a material in shaders. `_ID` follows a last digit, because naga adds an underscore to names that end in one. It also
+/// follows `WORDS`, because shaders have a constant of that name.
+///
+/// ```
+/// use luthier_shader::identifier;
+///
+/// assert_eq!(identifier("red-lacquer").unwrap(), "LUTHIER_MATERIAL_RED_LACQUER");
+/// assert_eq!(identifier("film-2").unwrap(), "LUTHIER_MATERIAL_FILM_2_ID");
+/// assert!(identifier("red lacquer").is_err());
+/// ```
 ///
 /// # Errors
-/// [`ShaderError::Name`] for a name of other characters than letters, digits and hyphens.
+/// [`ShaderError::Name`] for a name with other characters than letters, digits, hyphens and underscores, or with neither letter nor digit.
 pub fn identifier(name: &str) -> Result<String, ShaderError> {
     constant("MATERIAL", name)
 }
 
-/// The constant that shaders have for a surface of this name: for `lepidolite` it is `LUTHIER_SURFACE_LEPIDOLITE`, otherwise as
-/// [`identifier`].
+/// The constant of a surface in shaders: `LUTHIER_SURFACE_LEPIDOLITE` for `lepidolite`, otherwise as [`identifier`].
 ///
 /// # Errors
-/// [`ShaderError::Name`] for a name of other characters than letters, digits and hyphens.
+/// As [`identifier`].
 pub fn surface_identifier(name: &str) -> Result<String, ShaderError> {
     constant("SURFACE", name)
 }
 
 fn constant(kind: &str, name: &str) -> Result<String, ShaderError> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let words: Vec<&str> = name.split(['-', '_']).filter(|word| !word.is_empty()).collect();
-    if words.is_empty() || !name.chars().all(is_plain) {
+    if words.is_empty() || !name.chars().all(|c| is_of_word(c) || c == '-') {
         return Err(ShaderError::Name(name.to_owned()));
     }
     let mut constant = format!("LUTHIER_{kind}_{}", words.join("_").to_ascii_uppercase());

@@ -1,4 +1,4 @@
-//! Styles of the shader of a model: whether D is read or computed, whether numbers are read or written into the code.
+//! Styles of the shader of a model: D read or computed, numbers read or written into the code.
 
 use luthier_lut::TableKind;
 use luthier_manifest::{Form, ShadingModel};
@@ -6,7 +6,7 @@ use luthier_manifest::{Form, ShadingModel};
 use crate::MaterialSet;
 
 impl MaterialSet<'_> {
-    /// The set without a table of D: its shader has D in closed form.
+    /// The set without its table of D: shaders then compute D in closed form.
     #[must_use]
     pub fn with_closed_distribution(mut self) -> Self {
         self.tables.retain(|table| table.kind != TableKind::Distribution);

@@ -7,13 +7,21 @@ use crate::ShaderError;
 
 /// Parses WGSL and validates it for core WebGPU.
 ///
+/// ```
+/// use luthier_shader::validate;
+///
+/// assert!(validate("fn one() -> f32 {\n    return 1.0;\n}\n").is_ok());
+/// let error = validate("fn one() -> f32 {\n    return 1u;\n}\n").unwrap_err();
+/// assert!(error.to_string().contains("1u"));
+/// ```
+///
 /// # Errors
 /// [`ShaderError::Invalid`] with the place in the source.
 pub fn validate(wgsl: &str) -> Result<(), ShaderError> {
     module(wgsl).map(|_| ())
 }
 
-/// Parses WGSL, validates it for core WebGPU and gives the module.
+/// The module of a WGSL text, validated for core WebGPU.
 pub(crate) fn module(wgsl: &str) -> Result<(Module, ModuleInfo), ShaderError> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| ShaderError::Invalid(e.emit_to_string(wgsl)))?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());

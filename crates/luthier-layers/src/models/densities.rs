@@ -1,8 +1,7 @@
 //! Sampling densities by name, by which a Monte Carlo renderer divides `f cos_theta_i`.
 //!
-//! The value is the density in solid angle of `wi`, for the direction `wo` of the eye. Its integral over `wi` (the albedo of the
-//! listing) is the share of draws that are not lost below the horizon: 1 for the local method, and for the global method the number
-//! of its layers.
+//! The value is the density in solid angle of `wi`, for the direction `wo` of the eye. Its integral over `wi` (the albedo of the listing) is the
+//! share of draws above the horizon: 1 for the local method. For the global method it is the number of layers, because each proposes a direction.
 
 use glam::DVec3;
 use luthier_optics::microfacet::{Anisotropic, to_layer};
@@ -19,13 +18,13 @@ use crate::monochrome::Monochrome;
 pub enum Density {
     /// Cosine over pi.
     Cosine,
-    /// Facets of the first interface that the eye sees.
+    /// Reflection at a facet of the first interface that the eye sees.
     VisibleNormals,
     /// Half of either, the densities added (balance heuristic).
     Mixture,
     /// The local method of Weidlich and Wilkie: one direction for all layers.
     LocalLayers,
-    /// The global method of Weidlich and Wilkie: one proposal for each layer; the sum of the layers' densities.
+    /// The global method of Weidlich and Wilkie: one proposal for each layer, and the sum of their densities.
     GlobalLayers,
 }
 
@@ -74,7 +73,7 @@ impl Model for Density {
     }
 }
 
-/// The density of a method built on a surface's visible normals, in the surface's own frame.
+/// The density of a method built on the visible normals of a surface, evaluated in the frame of its tangent.
 fn turned<S: DirectionSampler>(surface: &Surface, wi: DVec3, wo: DVec3, method: impl Fn(VisibleNormals) -> S) -> f64 {
     let [alpha_x, alpha_y] = [surface.alpha_x, surface.alpha_y].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0));
     let [wi, wo] = [wi, wo].map(|w| to_layer(surface.rotation, w));

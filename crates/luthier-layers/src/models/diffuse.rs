@@ -65,7 +65,7 @@ fn base(stack: &Monochrome, wi: DVec3, wo: DVec3, brdf: impl Fn(f64, f64) -> f64
     }
 }
 
-/// The base alone, white; nothing where there is none.
+/// The base alone, white; no layers if there is none.
 fn white_base(stack: &Monochrome) -> Monochrome {
     let mut layers: Vec<MonochromeLayer> = stack.layers.last().cloned().into_iter().collect();
     layers.retain_mut(|layer| match &mut layer.below {

@@ -1,7 +1,7 @@
 //! Reflectance models, each under its own name.
 //!
-//! A model that has a shader has a room, [`room::Room`]: the folder with its formula, its kernels in WGSL, and `eval.rs`, which is
-//! the f64 twin of `eval.wgsl`.
+//! Each model with a shader has a room, [`room::Room`]: a folder with its formula, its kernels in WGSL, and `eval.rs`, the f64 twin of
+//! `eval.wgsl`.
 
 pub mod belcour;
 pub mod densities;

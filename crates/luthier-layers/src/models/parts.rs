@@ -1,5 +1,5 @@
-//! Parts of the model that a material chooses: the masking of `microfacet`, how interfaces come by their reflectances, and the term of internal
-//! reflection, and the numbers of `granier-heidrich`.
+//! Parts of a model that a material chooses: the masking of `microfacet`, the source of reflectances, the term of internal reflection, and the
+//! numbers of `granier-heidrich`.
 
 use glam::DVec3;
 use luthier_model::{InternalReflection, Masking, Reflectance};
@@ -18,7 +18,7 @@ use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::Energy;
 use crate::terms::Terms;
 
-/// Parts of the model of a shader; each is ignored by models that have no choice of it.
+/// Parts of the model of a shader. Models ignore parts that they have no choice of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
     /// Masking of `microfacet`.
@@ -40,8 +40,8 @@ impl Parts {
         beams: GranierHeidrich::PLAIN,
     };
 
-    /// The parts with numbers of `granier-heidrich`: the slope parameter of the inner boundary over that of the outer one, the weights of the
-    /// specular and the diffuse part, and the normal of the inner boundary.
+    /// The parts with numbers of `granier-heidrich`: the ratio of the slope parameters of inner and outer boundary, the weights of the specular and
+    /// the diffuse part, and the normal of the inner boundary.
     #[must_use]
     pub fn with_beams(self, inner_alpha_ratio: f64, weights: [f64; 2], inner_normal: [f64; 3]) -> Self {
         let [specular_weight, diffuse_weight] = weights;
@@ -62,7 +62,7 @@ impl Parts {
     }
 }
 
-/// Reflectance of an interface that stands in place of that of the terms.
+/// Reflectance of an interface, in place of the one in the terms.
 #[derive(Debug, Clone)]
 enum Own {
     /// Fresnel's equations at three wavelengths.
@@ -83,13 +83,13 @@ impl Own {
     }
 }
 
-/// Reflectances of the interfaces of a stack in place of those of terms.
+/// Reflectances of the interfaces of a stack, in place of those in the terms.
 #[derive(Debug, Clone, Default)]
 pub struct Reflectances(Vec<Option<Own>>);
 
 impl Reflectances {
-    /// The reflectances of a model that chooses them; curves leave films out. `color` is the colour of curves, `wavelengths_nm` those of
-    /// Fresnel's equations.
+    /// The reflectances of a stack by a source. Curves leave films out, and have the colour `color`. Fresnel's equations are evaluated at
+    /// `wavelengths_nm`.
     pub fn of(stack: &Stack, wavelengths_nm: [f64; 3], color: Color, reflectance: Reflectance) -> Self {
         let own = (0..stack.layers.len()).map(|layer| {
             let interface = Interface::of(stack, layer)?;
@@ -110,7 +110,7 @@ impl Reflectances {
     }
 }
 
-/// Terms with reflectances of their own.
+/// Terms with chosen reflectances.
 #[derive(Clone, Copy)]
 pub struct Chosen<'a> {
     terms: &'a dyn ShaderTerms,

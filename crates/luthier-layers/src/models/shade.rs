@@ -1,4 +1,4 @@
-//! Twins of kernels: a model as its shader evaluates it, in three channels with optical terms from elsewhere.
+//! Twins of kernels: models as shaders evaluate them, in three channels, with optical terms from outside.
 
 use std::fmt::Debug;
 
@@ -14,42 +14,42 @@ use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::Energy;
 use crate::terms::Terms;
 
-/// All that the shaders of any model are given: what [`Terms`] are; for `belcour` and `yamaguchi` energies, and what layers do to the light
-/// of a diffuse base; for `lobes` the light from below the first interface.
+/// Values that shaders get from tables or compute: [`Terms`] for all models, energies and veils for `belcour` and `yamaguchi`, and light from below
+/// the first interface for `lobes`.
 pub trait ShaderTerms: Terms + Energy<3> {
-    /// Effect of the layers above a diffuse base on its light; anything where there is no such base.
+    /// Effect of the layers above a diffuse base on its light. Without such a base the value is not used.
     fn veil(&self) -> Veil<3>;
 
-    /// Light from below the first interface as seen from `wo`; `None` below the horizon, and where the terms have none.
+    /// Light from below the first interface as seen from `wo`; `None` below the horizon, or if the terms have no lobes.
     fn below(&self, wo: DVec3) -> Option<Below>;
 }
 
-/// Normals below the first interface of a surface, each unit, and the variance of its own: those of `LuthierPlace`.
+/// Values at a place that act below the first interface, as in `LuthierPlace`. Normals are unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Under {
-    /// Normal of the flakes, which all that lies below is turned by; for `elek`, `weidlich-wilkie` and `lobes`.
+    /// Normal of a flake, which turns everything below it; for `elek`, `weidlich-wilkie` and `lobes`.
     pub flake_normal: DVec3,
     /// Normal of the lower boundary of the film; for `granier-heidrich`.
     pub inner_normal: DVec3,
-    /// Variance of the slopes of normals in a pixel, which widens what comes from below; for `lobes`. Others have it in their slope parameters.
+    /// Variance of the slopes of normals in a pixel, which widens light from below; for `lobes`. Other models have it in their slope parameters.
     pub slope_variance: f64,
-    /// Albedo of the diffuse base, where it is not that of the stack; for `lobes`. Others have it in their layers.
+    /// Albedo of the diffuse base, if it differs from that of the stack; for `lobes`. Other models have it in their layers.
     pub base_color: Option<Rgb>,
 }
 
 impl Under {
-    /// Normals of the surface itself.
+    /// No effect: level normals, no variance, the base of the stack.
     pub const NONE: Self =
         Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z, slope_variance: 0.0, base_color: None };
 }
 
-/// A surface whose shader a twin computes.
+/// A surface for a twin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Given<'a> {
     pub(crate) stack: &'a Stack,
     /// Wavelengths of the three channels.
     pub(crate) wavelengths_nm: [f64; 3],
-    /// Colour of what the material buffer holds in place of terms.
+    /// Colour of values that shaders read from the material buffer, and not from terms.
     pub(crate) color: Color,
     /// Parts that the material chooses.
     pub(crate) parts: Parts,
@@ -60,7 +60,7 @@ pub(crate) trait Shade: Debug + Send + Sync {
     /// `f cos_theta_i`, RGB, for light from `wi` seen from `wo`. Zero when either is at or below the horizon.
     fn eval(&self, terms: &dyn ShaderTerms, under: &Under, tilts: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb;
 
-    /// The way of the light down to a diffuse base and back, for a model that tells it apart: a fluorescent base changes channels there.
+    /// The path of the light with its diffuse base apart, because a fluorescent base changes channels; `None` for models that leave fluorescence out.
     fn walked(&self, _terms: &dyn ShaderTerms, _tilts: Tilts<'_>, _wi: DVec3, _wo: DVec3) -> Option<Walked<3>> {
         None
     }

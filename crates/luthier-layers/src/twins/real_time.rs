@@ -1,10 +1,12 @@
 //! Twins in f64 of the emitted shaders: models in three colour channels, with optical terms computed or read from tables.
 //!
-//! No model is written here: a twin evaluates the model of its room, channel by channel, with what is particular to shaders: one
-//! set of slope parameters, at least [`ALPHA_MIN`](crate::layers::ALPHA_MIN); one index at
-//! [`REFRACTION_WAVELENGTH_NM`](crate::formulas::refraction::REFRACTION_WAVELENGTH_NM) that bends the directions of all channels, except in
-//! Granier and Heidrich's model, which bends each by the index of its own wavelength unless the first interface is Schlick's; reflectances
-//! from [`Terms`](crate::terms::Terms). Belcour's and Yamaguchi's models have one spread for all three channels, too.
+//! This module contains no model: a twin evaluates the model of its room, channel by channel, under the rules of shaders:
+//!
+//! - Slope parameters are at least [`ALPHA_MIN`](crate::layers::ALPHA_MIN), and channels share them.
+//! - One index at [`REFRACTION_WAVELENGTH_NM`](crate::formulas::refraction::REFRACTION_WAVELENGTH_NM) bends the directions of all channels. Granier and
+//!   Heidrich's model bends each channel by the index of its own wavelength, unless the first interface is Schlick's.
+//! - Reflectances come from [`Terms`](crate::terms::Terms).
+//! - Channels share the spreads of Belcour's and Yamaguchi's models.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -24,7 +26,7 @@ use crate::models::shade::{Given, Shade, ShaderTerms, Under};
 pub struct Twin {
     model: ShadingModel,
     shade: Box<dyn Shade>,
-    /// Reflectances in place of those of terms, where a material chooses them.
+    /// Reflectances in place of those in the terms, if a material chooses them.
     reflectances: Option<Reflectances>,
     /// Rows of the matrix from light to light of a fluorescent base.
     reradiation: Option<[Rgb; 3]>,
@@ -33,13 +35,13 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// The twin of the shader of a model. `wavelengths_nm` are those of the three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
-    /// material; the colour of everything else is that of the [`Terms`].
+    /// The twin of the shader of a model. `wavelengths_nm` are those of the three channels. `color` is the colour of Phong's coefficients, which both
+    /// forms of the shader read from the material. Everything else has the colour of the [`Terms`].
     pub fn new(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Self {
         Self::with(model, stack, wavelengths_nm, color, Parts::PLAIN)
     }
 
-    /// [`Twin::new`] with parts that a material chooses. `color` is that of curves that stand for reflectances, too.
+    /// [`Twin::new`] with parts that a material chooses. Curves in place of reflectances have the colour `color`, too.
     pub fn with(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Self {
         let is_chosen = model.takes(ModelPart::Reflectance) && parts.reflectance != Reflectance::Table;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
@@ -47,34 +49,33 @@ impl Twin {
         Self { model, shade, reflectances, reradiation: None, normals: Vec::new() }
     }
 
-    /// The twin over a base that is fluorescent, if there are rows of a matrix from light to light (linear Rec.709,
-    /// [`luthier_optics::reradiation::rgb`]), which take the place of its albedo in `elek` and `weidlich-wilkie`.
+    /// The twin over a fluorescent base, given rows of a matrix from light to light (linear Rec.709, [`luthier_optics::reradiation::rgb`]). They replace
+    /// the albedo in `elek` and `weidlich-wilkie`; other models ignore them.
     #[must_use]
     pub fn reradiating(self, rows: Option<[Rgb; 3]>) -> Self {
         Self { reradiation: rows.filter(|_| self.model.is_path()), ..self }
     }
 
-    /// The twin with normals of single interfaces, from the top down, unit, in the frame of the surface; for `elek` and `weidlich-wilkie`.
+    /// The twin with normals of single interfaces, from the top down: unit, in the frame of the surface. `elek` and `weidlich-wilkie` show them.
     #[must_use]
     pub fn tilting(self, normals: Vec<DVec3>) -> Self {
         Self { normals, ..self }
     }
 
-    /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
-    /// channels need it.
+    /// `f cos_theta_i`, RGB; zero if either direction is at or below the horizon. Each term is asked for once, for all channels.
     pub fn eval(&self, terms: &dyn ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
         self.eval_over(terms, &Under::NONE, wi, wo)
     }
 
-    /// [`Twin::eval`] times light of a colour, linear Rec.709: what comes to the eye from light of that irradiance on a plane across `wi`. Where
-    /// the base is fluorescent, light of one channel comes out in others: with the rows M of [`Twin::reradiating`], and the shares
-    /// `down` and `up` that come down to the base and out again,
+    /// Radiance to the eye, linear Rec.709, under light whose irradiance on a plane across `wi` is `light`. This is [`Twin::eval`] times the light, unless
+    /// the base is fluorescent: light of one channel then leaves in others. With the rows M of [`Twin::reradiating`], the share `down` of light that
+    /// reaches the base, and the share `up` of its light that leaves,
     ///
     /// ```text
     /// L_i = f_i cos_theta_i light_i + cos_theta_i / pi up_i sum over j of M_ij down_j light_j
     /// ```
     ///
-    /// f being that of the interfaces. It is linear in the light; [`Twin::eval_over`] is that for white light.
+    /// with f of the interfaces. The result is linear in the light; [`Twin::eval_over`] is that for white light.
     pub fn eval_lit(&self, terms: &dyn ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
         match &self.reflectances {
             Some(reflectances) => self.lit_on(&reflectances.over(terms), under, light, wi, wo),

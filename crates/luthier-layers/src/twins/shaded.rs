@@ -32,15 +32,14 @@ pub struct Place {
     pub sample: TextureSample,
     /// Normals below the first interface.
     pub under: Under,
-    /// Patina; `None` where all layers are there, without its diffuse term and tarnish.
+    /// Patina; `None` for all layers, without the patina's diffuse term and tarnish.
     pub patina: Option<Growth>,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
-    /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]; of no effect beside a base color, and under
-    /// patina.
+    /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
-    /// Textures of single layers, from the top down; layers that are missing have none. Models show those that they read: no model has them
-    /// beside patina, and `lobes` and `phong` have none.
+    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` and `phong` show
+    /// none, and no model shows them beside patina.
     pub layers: Vec<LayerSample>,
 }
 
@@ -59,39 +58,39 @@ impl Place {
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Growth {
-    /// Amount of it, 0..=1: see [`Patina::amount`](crate::effects::patina::Patina::amount).
+    /// Amount of patina, 0..=1, see [`Patina::amount`](crate::effects::patina::Patina::amount).
     pub amount: f64,
-    /// Diffuse reflectance that stands for scattering in it.
+    /// Diffuse reflectance that stands for scattering in the patina.
     pub diffuse_albedo: Rgb,
-    /// Slope parameter of the layer below where it has grown; `None` leaves that layer as it is.
+    /// Slope parameter of the layer below grown patina; `None` leaves that layer unchanged.
     pub base_alpha: Option<f64>,
-    /// Factor on the reflection of the layers below where it has grown.
+    /// Factor on the reflection of the layers below grown patina.
     pub tarnish: Rgb,
 }
 
-/// A model with a shader at one place, with exact terms or those of tables.
+/// A model with a shader, at one place, with exact terms or those of tables.
 #[derive(Debug)]
 pub struct Shaded<T = Exact> {
     place: Place,
     layers: PartTwin<T>,
-    /// The layers below the first, where patina leaves them bare.
+    /// The layers below the first, for the part that patina leaves bare.
     bare: Option<PartTwin<T>>,
     /// Whether the model is `lobes`, whose light is linear in the amount of patina.
     has_lobes: bool,
 }
 
-/// The layers of a stack that are at a place.
+/// Part of a stack that covers a place, wholly or in part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// All of them, where there is no patina.
+    /// All layers, without patina.
     All,
-    /// All of them, where patina has grown whole.
+    /// All layers, with the patina fully grown.
     Grown,
-    /// Those below the patina.
+    /// The layers below the patina.
     Bare,
 }
 
-/// The twin of a part, with its terms and the reflectances that take the place of theirs.
+/// The twin of a part, with its terms, and reflectances in place of those in the terms.
 #[derive(Debug)]
 struct PartTwin<T> {
     twin: Twin,
@@ -106,13 +105,12 @@ impl<T: ShaderTerms> PartTwin<T> {
 }
 
 impl Shaded {
-    /// The model at a place; `None` for a model without a shader. `color` is that of the terms: spectral as in the tables of the baked
-    /// form, or three wavelengths as in the form without tables. Belcour's and Yamaguchi's models have the energies of rough
-    /// interfaces, as in the baked form, and over a diffuse base the light that layers of nominal thickness and slope return to it: a material's
-    /// record has no other.
+    /// The model at a place; `None` for a model without a shader. `color` is that of the terms: spectral as in the tables of the baked form, or three
+    /// wavelengths as in the form without tables. Belcour's and Yamaguchi's models have the energies of rough interfaces, as in the baked form. Over a
+    /// diffuse base they have the veil of layers of nominal thickness and slope, because a material's record has no other.
     ///
-    /// Effects are those of the model's shader: flakes and patina in `elek`, `weidlich-wilkie` and `lobes`, deviated films in `granier-heidrich`. `lobes` has
-    /// patina where its rows are over nothing else: no film varies, and no interface is anisotropic.
+    /// Effects are those of the model's shader: flakes and patina in `elek`, `weidlich-wilkie` and `lobes`, deviated films in `granier-heidrich`. `lobes`
+    /// shows patina unless its rows are over something else: a film that varies, or the azimuth of an anisotropic stack.
     pub fn new(
         model: ShadingModel,
         stack: &Stack,
@@ -123,7 +121,7 @@ impl Shaded {
         Self::fitted_by(&Varied::of, model, stack, wavelengths_nm, color, place)
     }
 
-    /// [`Self::new`] with parts that a material chooses; curves that stand for reflectances are in `color`.
+    /// [`Self::new`] with parts that a material chooses. Curves in place of reflectances have the colour `color`.
     pub fn with(
         model: ShadingModel,
         stack: &Stack,
@@ -135,7 +133,7 @@ impl Shaded {
         Self::exact(&Varied::of, model, stack, wavelengths_nm, color, place, parts)
     }
 
-    /// [`Self::new`] with the lobes of a function that fits them, where the model has some.
+    /// [`Self::new`] with lobes from a function that fits them, for a model with lobes.
     pub fn fitted_by(
         fit: &Fit<'_>,
         model: ShadingModel,
@@ -178,8 +176,7 @@ impl Shaded {
 }
 
 impl<T: ShaderTerms> Shaded<T> {
-    /// The model at a place with terms of any source, [`Shaded::with`] otherwise. `terms` is given which layers there are, the stack of these at the place,
-    /// and that of all.
+    /// [`Shaded::with`] with terms of any source. `terms` gets a part, the stack of this part at the place, and the stack of all layers there.
     pub fn of_terms(
         terms: impl Fn(Part, &Stack, &Stack) -> Option<T>,
         model: ShadingModel,
@@ -194,12 +191,12 @@ impl<T: ShaderTerms> Shaded<T> {
         let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
         let whole = at(stack, model, place, patina);
         let layers = |part: Part, here: &Stack| {
-            // Lobes are widened one by one, and the first interface beside them.
+            // The variance of normals widens fitted lobes one by one; the first interface, which is beside them, is widened here.
             let mut first = here.clone();
             if model.is_fitted() {
                 first.layers.iter_mut().for_each(|layer| widen(&mut layer.surface, &place.sample));
             }
-            // Tarnish dims reflectances that are chosen, too: the twin takes them from its terms.
+            // The twin takes chosen reflectances from its terms, because tarnish dims these, too.
             let facets = Parts { reflectance: Reflectance::Table, ..parts };
             let normals = place.layers.iter().map(|layer| layer.normal).collect();
             let twin =
@@ -217,7 +214,7 @@ impl<T: ShaderTerms> Shaded<T> {
         Some(Self { place, layers: all, bare, has_lobes: model.is_fitted() })
     }
 
-    /// [`Shaded::eval`] times light of a colour, see [`Twin::eval_lit`]; a place with patina has no fluorescent base.
+    /// Radiance under light of a colour, see [`Twin::eval_lit`]. Places with patina have no fluorescent base.
     pub fn eval_lit(&self, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
         let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
         if self.bare.is_some() || [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
@@ -227,8 +224,8 @@ impl<T: ShaderTerms> Shaded<T> {
         self.layers.twin.eval_lit(&self.layers.terms(), &self.place.under, light, wi_here, wo_here)
     }
 
-    /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the
-    /// surface or of the place.
+    /// `f cos_theta_i`, RGB, with the cosine against the place's normal. It is zero if either direction is at or below the horizon of the surface or of
+    /// the place.
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
         let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
         if [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
@@ -241,7 +238,7 @@ impl<T: ShaderTerms> Shaded<T> {
         };
         let amount = patina.amount;
         if let Some(variance) = self.has_lobes.then_some(under.slope_variance) {
-            // Scattering and tarnish are in the lobes of the grown end.
+            // The lobes of grown patina include scattering and tarnish.
             let covered = twin.eval_over(terms, under, wi, wo);
             let bare = bare.twin.eval_over(&bare.terms, &Under { slope_variance: variance, ..Under::NONE }, wi, wo);
             return [0, 1, 2].map(|c: usize| amount * covered[c] + (1.0 - amount) * bare[c]);
@@ -260,8 +257,8 @@ impl<T: ShaderTerms> Shaded<T> {
 }
 
 impl Place {
-    /// The stack that a material file means at the place, without patina: factors on slope parameters, slab and film, and the albedo of a diffuse base. The
-    /// simulation of it is what rows of lobes stand for.
+    /// The stack of a material file at the place, without patina: with factors on slope parameters, slab and film, and with the albedo of a diffuse base.
+    /// Rows of lobes stand for the simulation of this stack.
     pub fn stack(&self, stack: &Stack) -> Stack {
         let mut here = at(stack, ShadingModel::Lobes, self, None);
         let base = here.layers.last_mut().map(|layer| &mut layer.base);
@@ -272,13 +269,13 @@ impl Place {
     }
 }
 
-/// Whether rows of lobes are over something beside patina.
+/// Whether rows of lobes are over something else than patina: an azimuth, or the thickness of a film.
 fn is_over_another(stack: &Stack) -> bool {
     let film = stack.layers.first().and_then(|layer| layer.films.first());
     stack.layers.iter().any(Layer::is_anisotropic) || film.is_some_and(Film::varies)
 }
 
-/// The surface with the variance of the normals of a pixel.
+/// Widens a surface by the variance of the normals in a pixel.
 fn widen(surface: &mut Surface, sample: &TextureSample) {
     if sample.slope_variance > 0.0 {
         for alpha in [&mut surface.alpha_x, &mut surface.alpha_y] {
@@ -287,12 +284,12 @@ fn widen(surface: &mut Surface, sample: &TextureSample) {
     }
 }
 
-/// The stack as a model's shader has it at a place.
+/// The stack of a model's shader at a place.
 fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>) -> Stack {
     let factors = &place.sample;
     if model.is_fitted() {
         let mut here = Varying::Alpha.apply(&lobes::shown(stack), factors.alpha_factor);
-        // A base alone has a closed form; below interfaces it is in the lobes.
+        // A bare base has a closed form. A base below interfaces is in the lobes, which `Under` recolours.
         if let ([Layer { base: Base::Diffuse(base), .. }], Some(color)) = (here.layers.as_mut_slice(), place.base_color)
         {
             base.albedo = color;
@@ -300,7 +297,7 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
     }
-    // Coefficients are those of the nominal stack.
+    // The material buffer has Phong's coefficients for the nominal stack.
     let shows_place = model.facts().family != Family::Coefficients;
     let mut here = stack.clone();
     if let (Some(color), Some(Base::Diffuse(base))) =
@@ -325,7 +322,7 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
         let one = own.alpha_factor();
         let both = if is_isotropic(model, &layer.surface) { [one; 2] } else { own.alpha_factors };
         for (alpha, own) in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y].into_iter().zip(both) {
-            // Records are clamped before anything acts on them.
+            // As in shaders: records hold clamped slope parameters, and factors act on these.
             *alpha = factors.widened(alpha.clamp(ALPHA_MIN, 1.0) * (factors.alpha_factor * own)).clamp(ALPHA_MIN, 1.0);
             if let Some((base_alpha, amount)) = base_alpha {
                 *alpha += (base_alpha - *alpha) * amount;
@@ -344,13 +341,13 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
     here
 }
 
-/// Whether a model takes one slope parameter of a surface.
+/// Whether a model reads one slope parameter of a surface.
 fn is_isotropic(model: ShadingModel, surface: &Surface) -> bool {
     model.facts().is_isotropic && surface.alpha_x == surface.alpha_y
 }
 
-/// The stack with the indices that it has at one wavelength, at all of them: its shaders bend directions by those, and not by the common
-/// one.
+/// The stack with its indices at one wavelength held for all. Its shaders then bend directions by these indices, not by those of the common
+/// wavelength.
 pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
     let mut here = stack.clone();
     hold(&mut here.exterior, wavelength_nm);
@@ -366,13 +363,13 @@ pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
 /// Holds an index at its value at one wavelength.
 fn hold(ior: &mut Ior, wavelength_nm: f64) {
     let here = ior.at(wavelength_nm);
-    // The index was valid in its file, and is at every wavelength.
+    // A valid index is valid at every single wavelength.
     if let Ok(still) = ior.with_samples(vec![IorSample { wavelength_nm, n: here.re, k: here.im }]) {
         *ior = still;
     }
 }
 
-/// Terms whose reflectances are dimmed, those of the first layer and those of the layers below.
+/// Terms with dimmed reflectances, by one factor for the first layer and another for the layers below.
 struct Tarnished<'a> {
     terms: Chosen<'a>,
     first: Rgb,

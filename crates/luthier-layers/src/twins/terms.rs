@@ -1,4 +1,4 @@
-//! Exact values of the terms that shaders are given.
+//! Exact values of the terms of shaders.
 
 use std::sync::OnceLock;
 
@@ -15,8 +15,8 @@ use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::{ColorEnergy, Energy};
 use crate::terms::Terms;
 
-/// Exact terms. Fresnel and distribution terms are evaluated at every call. Energies are prepared at the first, see [`ColorEnergy`]; so are
-/// lobes, which are simulated then ([`Varied::of`]).
+/// Exact terms. Fresnel and distribution terms are evaluated at every call. Energies ([`ColorEnergy`]) are computed at their first use, and lobes are
+/// simulated at theirs ([`Varied::of`]).
 #[derive(Debug, Clone)]
 pub struct Exact {
     stack: Stack,
@@ -25,7 +25,7 @@ pub struct Exact {
     energies: Energies,
     varying: Option<Varying>,
     lobes: OnceLock<Lobes>,
-    /// The stack whose layers veil a diffuse base, where it is another one.
+    /// The stack whose layers veil a diffuse base, if it is another one.
     nominal: Option<Box<Exact>>,
 }
 
@@ -41,20 +41,19 @@ impl Exact {
         Self::with(stack, color, Energies::Facets(OnceLock::new()))
     }
 
-    /// The terms of a stack with the energies of shaders without tables: facets count as level, and nothing of a lobe is totally reflected.
-    /// `veil` is what those shaders are told of the layers above a diffuse base.
+    /// The terms of a stack with the energies of shaders without tables: facets count as level, and nothing of a lobe is totally reflected. `veil` is the
+    /// effect of layers on a diffuse base in the material's record.
     pub fn level(stack: &Stack, color: Color, veil: Veil<3>) -> Self {
         Self::with(stack, color, Energies::Level(veil))
     }
 
-    /// The terms of a stack whose lobes are fitted together with those that it has where something varies.
+    /// The terms of a stack whose lobes are fitted together with those at other factors of what varies.
     pub fn varying(stack: &Stack, color: Color, varying: Option<Varying>) -> Self {
         Self { varying, ..Self::new(stack, color) }
     }
 
-    /// The terms of a stack whose diffuse base is veiled as by the layers of another, as shaders have it: the record of a material has what
-    /// layers return to a base at their nominal thickness and slope. Energies are those of the other's F0, in whose tables they are: of what is not
-    /// reflected, another F0 leaves a constant factor.
+    /// The terms with the tables and the record of a nominal stack, as in shaders. The record has the veil of a diffuse base for layers of nominal
+    /// thickness and slope. Tables have energies for the nominal F0. For another F0, the light that is not reflected is scaled by a constant factor.
     #[must_use]
     pub(crate) fn veiled_by(mut self, nominal: &Stack) -> Self {
         let is_other = self.stack != *nominal;
@@ -62,7 +61,7 @@ impl Exact {
         self
     }
 
-    /// The terms of a stack whose lobes are given.
+    /// The terms of a stack with given lobes.
     pub fn with_lobes(stack: &Stack, color: Color, lobes: Lobes) -> Self {
         Self { lobes: OnceLock::from(lobes), ..Self::new(stack, color) }
     }
@@ -79,23 +78,23 @@ impl Exact {
         self.lobes.get_or_init(|| Varied::of(&self.stack, &self.color, self.varying).nominal())
     }
 
-    /// Gives the stack the lobes that it would be fitted, unless it has some already.
+    /// Takes lobes from a function, in place of a fit, unless the terms have some already.
     pub fn take_lobes(&self, lobes: &dyn Fn() -> Lobes) {
         self.lobes.get_or_init(lobes);
     }
 
-    /// The stack, its colour, and what its lobes are over: all that decides their fit.
+    /// The inputs of the fit of lobes: the stack, its colour, and what varies.
     pub fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
         (&self.stack, &self.color, &self.varying)
     }
 
-    /// F0 of an interface of Schlick's, and the one whose energies are in tables.
+    /// F0 of a Schlick interface here and in the nominal stack, whose energies are in tables.
     fn f0(&self, layer: usize) -> Option<[Rgb; 2]> {
         let nominal = &self.nominal.as_ref()?.stack;
         Some([Interface::of(&self.stack, layer)?.below.f0()?, Interface::of(nominal, layer)?.below.f0()?])
     }
 
-    /// The stack whose energies are in tables: this one with every F0 of the nominal one.
+    /// The stack whose energies are in tables: this one, with the F0 of the nominal stack.
     fn tabulated(&self) -> Stack {
         let mut stack = self.stack.clone();
         for (number, layer) in stack.layers.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Modules of WGSL: the blocks that a set keeps of one.
+//! Conditions in modules of WGSL: a set keeps the blocks whose conditions hold.
 
 use crate::compose::feature::Feature;
 use crate::compose::features::Features;
@@ -8,9 +8,9 @@ const MARK: &str = "//?";
 
 /// The lines of a module whose conditions hold, without the marks.
 ///
-/// A line `//? a, b|c, !d` says when what follows it is kept: the set has `a`, has `b` or `c`, and lacks `d`. That is a declaration, a member, a
-/// statement, or a block whose braces stand on lines of their own and go. `//? else` behind it says the same of what follows where the
-/// condition fails. Marks within are taken alike.
+/// A mark `//? a, b|c, !d` keeps what follows if the set has `a`, has `b` or `c`, and lacks `d`. It governs a declaration, a member, a statement,
+/// or a block whose braces stand on lines of their own; these braces are removed. A mark `//? else` behind it governs what follows if the
+/// condition fails. Marks may be nested.
 ///
 /// # Panics
 /// On marks that follow code on their line, or that nothing follows.
@@ -26,7 +26,7 @@ pub(crate) fn prune(module: &str, features: &Features) -> String {
     out
 }
 
-/// A module that is gone through line by line.
+/// A module, read line by line.
 struct Module<'m> {
     lines: &'m [&'m str],
     /// The line that comes next.
@@ -49,7 +49,7 @@ impl<'m> Module<'m> {
         Some(mark.trim())
     }
 
-    /// A line, or a mark and what it governs.
+    /// Reads a line, or a mark with the lines that it governs.
     fn step(&mut self, is_kept: bool, depth: usize) {
         let Some(condition) = self.mark() else {
             let line = self.next();
@@ -65,7 +65,7 @@ impl<'m> Module<'m> {
         }
     }
 
-    /// One declaration, member, statement or block, with the comments above it.
+    /// Reads one declaration, member, statement or block, with the comments above it.
     fn governed(&mut self, is_kept: bool, depth: usize) {
         while self.mark().is_none() && self.lines.get(self.at).is_some_and(|line| line.trim().starts_with("//")) {
             let line = self.next();
@@ -99,9 +99,9 @@ impl<'m> Module<'m> {
         }
     }
 
-    /// A line of this many blocks.
+    /// Writes a line that lies in this many blocks, less their indentation.
     fn push(&mut self, line: &str, is_kept: bool, depth: usize) {
-        // What was left out may leave two blank lines behind.
+        // Left-out lines may leave two blank lines behind.
         let is_doubled = line.is_empty() && (self.out.is_empty() || self.out.ends_with("\n\n"));
         if is_kept && !is_doubled {
             self.out.push_str(line.get(4 * depth..).unwrap_or_default());

@@ -1,14 +1,15 @@
-//! Models that go through the layers one by one, written out: one step for every layer that a material of the set may have.
+//! Models that walk through the layers one by one, written out: one step for each depth of the deepest material.
 
 use std::fmt::Write as _;
 
 use luthier_layers::models::room;
-use luthier_manifest::{LayerKind, ShadingModel};
+use luthier_manifest::{LayerRecord, ShadingModel};
 
 use crate::MaterialSet;
 use crate::compose::face::parts_function;
 use crate::compose::feature::Feature;
 use crate::compose::features::Features;
+use crate::compose::stacks::{are_bases, depths, diffuse_at, is_diffuse, stacks, step};
 use crate::compose::{function, text};
 use crate::identifiers::rename;
 
@@ -18,8 +19,8 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
     vec![text(steps, features), text(&eval(set, model, features), features)]
 }
 
-/// Whether a model clamps slope parameters, and some are to be. A model of one slope parameter does; where no interface is smoother than
-/// one above it, it is the same path as that of a model of two.
+/// Whether a model clamps slope parameters in this set. Models with one slope parameter do, if some interface is smoother than one above it.
+/// Otherwise their path is that of models with two.
 fn is_clamped(model: ShadingModel, features: &Features) -> bool {
     model.facts().is_isotropic && features.has(Feature::Clamped)
 }
@@ -34,7 +35,7 @@ fn interface(model: ShadingModel, features: &Features) -> String {
 fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
     let interface = &interface(model, features);
     let name = function(model);
-    let layers: Vec<_> = set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect();
+    let layers = stacks(set, model);
     let has_patina = features.has(Feature::ChainPatina);
     let (name, bare) =
         if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
@@ -49,8 +50,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
          fn {name}{lit}($place_parameter material: u32,{bare} wi: vec3<f32>, wo: vec3<f32>{given}) -> vec3<f32> {{\n",
         model.name()
     );
-    let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
-    if layers.iter().all(|layers| layers.first().is_some_and(is_diffuse)) {
+    if are_bases(&layers) {
         let here = if features.has(Feature::OwnNormals) { "_here" } else { "" };
         let base = match is_lit {
             true => format!("luthier_reradiated(layer, wi{here}, wo{here}, light)"),
@@ -67,8 +67,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         let _ = write!(out, "    return wi{here}.z * {base};\n}}\n");
         return out + &patina(model, features) + &white(model, features);
     }
-    let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
-    let least = layers.iter().map(|layers| layers.len()).min().unwrap_or(0);
+    let (least, depth) = depths(&layers);
     if least < depth || depth > 1 && has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
@@ -87,24 +86,19 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
              var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below});"
     );
     for i in 0..depth {
-        let here = || layers.iter().filter_map(|layers| layers.get(i));
-        // What lies below patina has a record of its own for where it is bare.
+        // The layer below patina has a second record, for bare places.
         let index = if has_patina && i == 1 { "select(1u, count, is_bare)".to_owned() } else { format!("{i}u") };
-        let add = |function: &str| format!("path = {function}(path, $layer(material, {index}));");
-        let step = match (here().any(is_diffuse), here().all(is_diffuse)) {
-            (false, _) => vec![add(interface)],
-            (true, true) => vec![add("luthier_add_diffuse")],
-            (true, false) => vec![
-                format!("let layer_{i} = $layer(material, {index});"),
-                format!("if layer_{i}.kind == LUTHIER_DIFFUSE {{"),
-                format!("    path = luthier_add_diffuse(path, layer_{i});"),
-                "} else {".to_owned(),
-                format!("    path = {interface}(path, layer_{i});"),
-                "}".to_owned(),
-            ],
-        };
+        let diffuse = diffuse_at(&layers, i);
+        let (mut lines, mut layer) = (Vec::new(), format!("$layer(material, {index})"));
+        if diffuse == (true, false) {
+            // Materials differ here: the record is read once, for the kind and for the step.
+            lines.push(format!("let layer_{i} = {layer};"));
+            layer = format!("layer_{i}");
+        }
+        let base = [format!("path = luthier_add_diffuse(path, {layer});")];
+        lines.extend(step(diffuse, &layer, base, [format!("path = {interface}(path, {layer});")]));
         let indent = if i == 0 && !has_patina { "    " } else { "        " };
-        let step: String = step.iter().map(|line| format!("{indent}{line}\n")).collect();
+        let step: String = lines.iter().map(|line| format!("{indent}{line}\n")).collect();
         let _ = match i {
             0 if has_patina => write!(out, "    if !is_bare {{\n{step}    }}\n"),
             0 => write!(out, "{step}"),
@@ -116,7 +110,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
     out + &patina(model, features) + &white(model, features)
 }
 
-/// The function of a model for white light, where one of the set takes light of a colour and other functions than `luthier_eval` call it.
+/// The function of a model for white light. Functions beside `luthier_eval` call it if that of the set takes light of a colour.
 fn white(model: ShadingModel, features: &Features) -> String {
     if !(features.has(Feature::Fluorescent) && features.has(Feature::Face)) {
         return String::new();
@@ -130,7 +124,7 @@ fn white(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// The function of a model where a material of the set has patina: with and without the first layer, blended.
+/// The function of a model in a set with patina: light with and without the first layer, blended.
 fn patina(model: ShadingModel, features: &Features) -> String {
     if !features.has(Feature::ChainPatina) {
         return String::new();
@@ -158,23 +152,16 @@ fn patina(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// Number of interfaces down to the last one of a model's materials; with patina those of the bare stacks come behind.
+/// Number of interfaces down to the lowest one of a model's materials. With patina, those of the bare stacks follow.
 pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel, has_patina: bool) -> usize {
-    let depth = layers(set, model)
-        .iter()
-        .filter_map(|layers| layers.iter().rposition(|layer| layer.kind != LayerKind::Diffuse))
-        .map(|last| last + 1)
-        .max()
-        .unwrap_or(0);
-    // What is bare begins one layer below the top.
+    let stacks = stacks(set, model);
+    let lowest = stacks.iter().filter_map(|layers| layers.iter().rposition(|layer| !is_diffuse(layer)));
+    let depth = lowest.map(|last| last + 1).max().unwrap_or(0);
+    // Bare stacks begin one layer below the top.
     if has_patina { (2 * depth).saturating_sub(1) } else { depth }
 }
 
-fn layers<'a>(set: &MaterialSet<'a>, model: ShadingModel) -> Vec<&'a [luthier_manifest::LayerRecord]> {
-    set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect()
-}
-
-/// `luthier_parts_<model>`: the interfaces as light in the mirrored direction meets them, and what a base reflects of light at a mean cosine.
+/// `luthier_parts_<model>`: the interfaces as light from the mirror direction meets them, and the light of a base for light at a mean cosine.
 pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
     let mut out = format!(
         "/// The parts of the model `{}`.\n\
@@ -183,7 +170,7 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
         model.name(),
         parts_function(model)
     );
-    let layers = layers(set, model);
+    let layers = stacks(set, model);
     let count = parts_count(set, model, false);
     if count == 0 {
         let diffuse = match features.has(Feature::Fluorescent) {
@@ -194,8 +181,8 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
         return format!("{out}    {base}\n    return prepared;\n}}\n");
     }
     let has_patina = features.has(Feature::ChainPatina);
-    let depths = || layers.iter().map(|layers| layers.len());
-    if depths().min() < depths().max() || has_patina {
+    let (least, depth) = depths(&layers);
+    if least < depth || has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
     if has_patina {
@@ -220,28 +207,22 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
 
 /// A way down the layers.
 struct Walk<'w> {
-    /// Share of the surface where it is gone.
+    /// Share of the surface on which light takes it.
     share: &'w str,
-    /// Whether the first layer is not there.
+    /// Whether the first layer is missing.
     is_bare: bool,
     /// Number of the part of its first interface.
     first_part: usize,
 }
 
-/// A statement on `layer` and `next` with their numbers: values of one name in one function would lose it in languages that naga writes.
+/// A statement with numbers behind `layer` and `next`. naga renames all but the first of several values with one name in a function.
 pub(super) fn of_layer(statement: &str, i: usize) -> String {
     let numbered = rename(statement, |word| matches!(word, "layer" | "next").then(|| format!("{word}_{i}")));
     numbered.replace(&format!("$layer_{i}("), "$layer(")
 }
 
-fn walk(
-    layers: &[&[luthier_manifest::LayerRecord]],
-    model: ShadingModel,
-    features: &Features,
-    walk: &Walk<'_>,
-) -> String {
+fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, walk: &Walk<'_>) -> String {
     const LEVEL: &str = "vec3<f32>(0.0, 0.0, 1.0)";
-    let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     let (has_flakes, is_clamped) = (features.has(Feature::Flakes), features.has(Feature::Clamped));
     let is_folded = features.has(Feature::Folded) && features.has(Feature::Media);
     let interface = interface(model, features);
@@ -255,18 +236,12 @@ fn walk(
     let below = if has_flakes { format!(", {normal}") } else { String::new() };
     let clamp = if is_clamped { "0.0, " } else { "" };
     let lit = if features.has(Feature::Fluorescent) { ", vec3<f32>(1.0)" } else { "" };
-    let start = |light: &str, across: &str| {
-        format!(
-            "LuthierPath({light}, wo, {across}, vec3<f32>({}){lit}, vec3<f32>(0.0), {clamp}true{below})",
-            walk.share
-        )
-    };
+    let rest = format!("vec3<f32>({}){lit}, vec3<f32>(0.0), {clamp}true{below}", walk.share);
     let mut lines = vec![
-        format!("var path = {};", start("vec3<f32>(-wo.xy, wo.z)", "vec2<f32>(0.0)")),
-        format!("var mean = {};", start("light", "light.xy + wo.xy")),
+        format!("var path = LuthierPath(vec3<f32>(-wo.xy, wo.z), wo, vec2<f32>(0.0), {rest});"),
+        format!("var mean = LuthierPath(light, wo, light.xy + wo.xy, {rest});"),
     ];
-    let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
-    let least = layers.iter().map(|layers| layers.len()).min().unwrap_or(0);
+    let (least, depth) = depths(layers);
     let first = usize::from(walk.is_bare);
     if depth > first + 1 {
         lines.push("var eta = 1.0;".to_owned());
@@ -278,11 +253,10 @@ fn walk(
         }
     }
     for i in first..depth {
-        let here = || layers.iter().filter_map(|layers| layers.get(i));
         let index = if walk.is_bare && i == 1 { "count".to_owned() } else { format!("{i}u") };
         let has_own = features.has(Feature::OwnNormals);
         let media = match (i == first, has_flakes) {
-            // Above it, layers count as level.
+            // Nothing lies above the first layer: index 1, and a level normal unless a map turns it.
             (true, _) if has_own => "1.0, layer.normal, 1.0".to_owned(),
             (false, false) if has_own => "eta, layer.normal, 1.0".to_owned(),
             (true, _) => format!("1.0, {LEVEL}, 1.0"),
@@ -321,24 +295,14 @@ fn walk(
             "path.open = false;",
         ]
         .map(str::to_owned);
-        let mut step = vec![format!("let layer = $layer(material, {index});")];
-        match (here().any(&is_diffuse), here().all(&is_diffuse)) {
-            (false, _) => step.extend(add),
-            (true, true) => step.extend(base),
-            (true, false) => {
-                step.push("if layer.kind == LUTHIER_DIFFUSE {".to_owned());
-                step.extend(base.iter().map(|line| format!("    {line}")));
-                step.push("} else {".to_owned());
-                step.extend(add.iter().map(|line| format!("    {line}")));
-                step.push("}".to_owned());
-            }
-        }
         lines.push(match i {
             _ if i == first && first < least => "{".to_owned(),
             _ if i < least => "if path.open {".to_owned(),
             _ => format!("if path.open & (count > {i}u) {{"),
         });
-        lines.extend(step.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
+        let mut steps = vec![format!("let layer = $layer(material, {index});")];
+        steps.extend(step(diffuse_at(layers, i), "layer", base, add));
+        lines.extend(steps.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
         lines.push("}".to_owned());
     }
     let indent = if features.has(Feature::ChainPatina) { "        " } else { "    " };

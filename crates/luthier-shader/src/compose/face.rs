@@ -1,21 +1,22 @@
-//! Functions for renderers beside `luthier_eval`: a material prepared for a view, its light, drawn directions, its albedo.
+//! Further functions for renderers: a material prepared for a view, its light, drawn directions, its albedo.
 
 use std::fmt::Write as _;
 
 use luthier_layers::models::path;
 use luthier_layers::models::room;
-use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+use luthier_manifest::{FunctionGroup, MaterialEntry, ShadingModel};
 use luthier_model::Family;
 
 use crate::MaterialSet;
 use crate::compose::feature::Feature;
 use crate::compose::features::Features;
-use crate::compose::{chain, function, statistics, text};
+use crate::compose::stacks::{are_bases, is_diffuse, stacks};
+use crate::compose::{by_model, case, chain, function, statistics, text};
 
-/// Number in place of a model's for a base alone of the model `lobes`, which has no rows.
+/// Number in place of a model's for a bare base of the model `lobes`, which has no rows.
 const BASE: &str = "255u";
 
-/// The function that fills the parts of a material, by its model.
+/// Name of the function that fills the parts of a material of a model.
 pub(crate) fn parts_function(model: ShadingModel) -> String {
     function(model).replace("luthier_eval", "luthier_parts")
 }
@@ -26,74 +27,79 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         return Vec::new();
     }
     let parts = count(set, features);
-    let least = if features.has(Feature::Folded) && features.has(Feature::Media) { ", least: f32" } else { "" };
-    let module = |wgsl: &str| {
-        let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE).replace("$least", least);
-        let fitted = set.models().find(|model| model.is_fitted()).map(number).unwrap_or_default();
-        text(&wgsl.replace("$model_lobes", &fitted), features)
-    };
-    let mut modules = vec![module(include_str!("../wgsl/face/prepared.wgsl"))];
+    let mut modules = vec![include_str!("../wgsl/face/prepared.wgsl").to_owned()];
     if features.has(Feature::Chain) {
-        modules.push(module(path::PARTS));
+        modules.push(path::PARTS.to_owned());
     }
-    for model in set.models() {
-        modules.push(match model.facts().family {
-            Family::Path => module(&chain::parts(set, model, features)),
-            Family::Statistics => module(&statistics::parts(set, model)),
-            Family::Beams | Family::Coefficients | Family::Facets | Family::Lobes => module(room(model).kernels.parts),
-        });
-    }
-    modules.extend([module(&prepare(set, features, parts)), module(&light(set, features))]);
+    modules.extend(set.models().map(|model| match model.facts().family {
+        Family::Path => chain::parts(set, model, features),
+        Family::Statistics => statistics::parts(set, model),
+        Family::Beams | Family::Coefficients | Family::Facets | Family::Lobes => room(model).kernels.parts.to_owned(),
+    }));
+    modules.extend([prepare(set, features, parts), light(set, features)]);
     if set.functions.has(FunctionGroup::Sample) {
         if features.has(Feature::Visible) || features.has(Feature::Coat) {
-            modules.push(module(include_str!("../wgsl/face/visible.wgsl")));
+            modules.push(include_str!("../wgsl/face/visible.wgsl").to_owned());
         }
         if features.has(Feature::Lobes) {
-            modules.extend(set.models().map(|model| module(room(model).kernels.sample)));
+            modules.extend(set.models().map(|model| room(model).kernels.sample.to_owned()));
         }
-        modules.push(unrolled(&module(include_str!("../wgsl/face/sample.wgsl")), parts, features));
+        modules.push(include_str!("../wgsl/face/sample.wgsl").to_owned());
         if set.functions.has(FunctionGroup::Propose) {
-            modules.push(unrolled(&module(include_str!("../wgsl/face/propose.wgsl")), parts, features));
+            modules.push(include_str!("../wgsl/face/propose.wgsl").to_owned());
         }
     }
     if features.has(Feature::Environment) {
-        modules.push(module(include_str!("../wgsl/face/environment.wgsl")));
+        modules.push(include_str!("../wgsl/face/environment.wgsl").to_owned());
     }
     if set.functions.has(FunctionGroup::Albedo) {
-        modules.push(module(include_str!("../wgsl/face/albedo.wgsl")));
-        modules.push(module(&albedo(features, parts)));
+        modules.push(include_str!("../wgsl/face/albedo.wgsl").to_owned());
+        modules.push(albedo(features, parts));
     }
-    modules
+    let least = if features.has(Feature::Folded) && features.has(Feature::Media) { ", least: f32" } else { "" };
+    let words = [
+        ("$parts", format!("{parts}u")),
+        ("$model_base", BASE.to_owned()),
+        ("$least", least.to_owned()),
+        ("$model_lobes", set.models().find(|model| model.is_fitted()).map(number).unwrap_or_default()),
+    ];
+    // A condition governs one statement: what stands for several comes after conditions.
+    let unrolled = unrolled(parts, features);
+    modules.into_iter().map(|module| replaced(text(&replaced(module, &words), features), &unrolled)).collect()
+}
+
+/// A text with values in place of words.
+fn replaced(text: String, values: &[(&str, String)]) -> String {
+    values.iter().fold(text, |text, (word, value)| text.replace(word, value))
 }
 
 /// Greatest number of lobes, outside of the model `lobes`, of a material of the set.
 fn count(set: &MaterialSet<'_>, features: &Features) -> usize {
-    let is_interface = |layer: &LayerRecord| layer.kind != LayerKind::Diffuse;
-    let of = |material: &MaterialEntry| {
-        let first = material.layers.first();
-        match material.model.facts().family {
-            Family::Lobes => 0,
-            Family::Coefficients => 1,
-            Family::Facets => usize::from(first.is_some_and(is_interface)),
-            Family::Beams => match first {
-                Some(layer) if layer.kind == LayerKind::Diffuse => 0,
-                Some(_) if !features.has(Feature::GranierTransparent) => 1,
-                // With a tilted inner boundary the beams of the channels part.
-                _ if features.has(Feature::GranierTilted) => 4,
-                _ => 2,
-            },
-            Family::Path => chain::parts_count(set, material.model, features.has(Feature::ChainPatina)),
-            Family::Statistics => material.layers.iter().rposition(is_interface).map_or(0, |i| i + 1),
-        }
-    };
-    set.materials.iter().map(of).max().unwrap_or(0)
+    set.materials.iter().map(|material| count_of(set, material, features)).max().unwrap_or(0)
+}
+
+/// Number of lobes of a material, none of the model `lobes`.
+fn count_of(set: &MaterialSet<'_>, material: &MaterialEntry, features: &Features) -> usize {
+    let is_base = material.layers.first().is_none_or(is_diffuse);
+    match material.model.facts().family {
+        Family::Lobes => 0,
+        Family::Coefficients => 1,
+        Family::Facets | Family::Beams if is_base => 0,
+        Family::Facets => 1,
+        Family::Beams if !features.has(Feature::GranierTransparent) => 1,
+        // With a tilted inner boundary the beams of the channels part.
+        Family::Beams if features.has(Feature::GranierTilted) => 4,
+        Family::Beams => 2,
+        Family::Path => chain::parts_count(set, material.model, features.has(Feature::ChainPatina)),
+        Family::Statistics => material.layers.iter().rposition(|layer| !is_diffuse(layer)).map_or(0, |i| i + 1),
+    }
 }
 
 fn number(model: ShadingModel) -> String {
     format!("{}u", model.number())
 }
 
-/// `luthier_prepare`, and `luthier_prepare_at` where surfaces vary.
+/// `luthier_prepare`, and `luthier_prepare_at` if a surface varies.
 fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     const SUMMARY: &str = "A material for light seen from wo: unit, in the local frame, away from the surface.";
     let has_place = features.has(Feature::Place);
@@ -110,7 +116,7 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     } else {
         out.push_str("    prepared.open = eye.z > 0.0;\n");
     }
-    // What comes of an eye below the horizon is not shown.
+    // Results for an eye below the horizon are not shown; the limit keeps them finite.
     out.push_str("    prepared.wo = vec3<f32>(eye.xy, max(eye.z, 1e-16));\n");
     for i in 0..parts {
         let _ = writeln!(out, "    prepared.parts[{i}] = luthier_no_part();");
@@ -118,14 +124,10 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     if features.has(Feature::Several) {
         out.push_str("    prepared.model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
     }
-    let models: Vec<ShadingModel> = set.models().collect();
-    let call = |model| format!("return {}(prepared, $place_argument material, prepared.wo);", parts_function(model));
-    if let [first, others @ ..] = models.as_slice() {
-        for &other in others {
-            let _ = writeln!(out, "    if prepared.model == {} {{\n        {}\n    }}", number(other), call(other));
-        }
-        let _ = writeln!(out, "    {}\n}}", call(*first));
-    }
+    let (first, others) = by_model(set, "prepared.model", |model| {
+        format!("{}(prepared, $place_argument material, prepared.wo)", parts_function(model))
+    });
+    let _ = writeln!(out, "{others}    return {first};\n}}");
     if has_place {
         out.push_str(
             "\n/// `luthier_prepare_at` at a place without textures.\nfn luthier_prepare(material: u32, wo: vec3<f32>) -> LuthierPrepared {\n    \
@@ -135,7 +137,7 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     out
 }
 
-/// `luthier_light`: what a view decides is not computed again where a model has such.
+/// `luthier_light`. Models that keep values of the view (lobes, statistics) use them for every light; others evaluate anew.
 fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     let mut out = String::from(
         "/// f cos_theta_i, RGB, of a prepared material for light from wi: that of `luthier_eval`.\n\
@@ -153,31 +155,25 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     };
     let place = if features.has(Feature::Place) { "prepared.place, " } else { "" };
     let lit = if features.has(Feature::Fluorescent) { light_of_a_colour(set, &out, place, wi) } else { String::new() };
-    let eval = |model| format!("return {}({place}prepared.material, {wi}, prepared.wo);", function(model));
-    let call = |model: ShadingModel| match model.facts().family {
-        Family::Lobes if features.has(Feature::Lobes) => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
-        Family::Statistics if !statistics::is_bare(set, model) => {
+    let (first, others) = by_model(set, "prepared.model", |model| match model.facts().family {
+        Family::Lobes if features.has(Feature::Lobes) => format!("luthier_light_lobes(prepared.lobes, {wi})"),
+        Family::Statistics if !are_bases(&stacks(set, model)) => {
             let light = function(model).replace("luthier_eval", "luthier_light");
-            format!("return {light}(prepared, {place}prepared.material, {wi}, prepared.wo);")
+            format!("{light}(prepared, {place}prepared.material, {wi}, prepared.wo)")
         }
-        _ => eval(model),
-    };
-    let models: Vec<ShadingModel> = set.models().collect();
-    if let [first, others @ ..] = models.as_slice() {
-        let case = |number: &str, call: &str| format!("    if prepared.model == {number} {{\n        {call}\n    }}\n");
-        for &other in others {
-            out.push_str(&case(&number(other), &call(other)));
-        }
-        let fitted = models.iter().copied().find(|model| model.is_fitted());
-        if let Some(model) = fitted.filter(|_| features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse)) {
-            out.push_str(&case(BASE, &eval(model)));
-        }
-        let _ = writeln!(out, "    {}\n}}", call(*first));
+        _ => format!("{}({place}prepared.material, {wi}, prepared.wo)", function(model)),
+    });
+    out.push_str(&others);
+    let fitted = set.models().find(|model| model.is_fitted());
+    if let Some(model) = fitted.filter(|_| features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse)) {
+        let call = format!("{}({place}prepared.material, {wi}, prepared.wo)", function(model));
+        out.push_str(&case("prepared.model", BASE, &call));
     }
+    let _ = writeln!(out, "    return {first};\n}}");
     if lit.is_empty() { out } else { format!("{out}\n{lit}") }
 }
 
-/// `luthier_light_lit`; `light` is the beginning of `luthier_light`.
+/// `luthier_light_lit`. Its checks are those at the beginning of `luthier_light`, the text `light`.
 fn light_of_a_colour(set: &MaterialSet<'_>, light: &str, place: &str, wi: &str) -> String {
     let mut out = String::from(
         "/// Light that a prepared material sends from wi to the eye, RGB, of light of a colour: that of `luthier_eval_lit`.\n\
@@ -187,11 +183,11 @@ fn light_of_a_colour(set: &MaterialSet<'_>, light: &str, place: &str, wi: &str) 
     let models: Vec<ShadingModel> = set.models().collect();
     let is_alone = models.len() == 1;
     for model in models.into_iter().filter(|model| model.is_path()) {
-        let call = format!("return {}_lit({place}prepared.material, {wi}, prepared.wo, light);", function(model));
+        let call = format!("{}_lit({place}prepared.material, {wi}, prepared.wo, light)", function(model));
         if is_alone {
-            return format!("{out}    {call}\n}}\n");
+            return format!("{out}    return {call};\n}}\n");
         }
-        let _ = write!(out, "    if prepared.model == {} {{\n        {call}\n    }}\n", number(model));
+        out.push_str(&case("prepared.model", &number(model), &call));
     }
     out + "    return light * luthier_light(prepared, wi);\n}\n"
 }
@@ -207,12 +203,12 @@ fn albedo(features: &Features, parts: usize) -> String {
         "/// Directional albedo of a prepared material, RGB: of `lobes` that of its rows, of other models an estimate from their parts.\n\
          fn luthier_albedo(prepared: LuthierPrepared) -> vec3<f32> {\n    if !prepared.open {\n        return vec3<f32>(0.0);\n    }\n",
     );
-    let lobes = "return luthier_albedo_lobes(prepared.lobes);";
+    let lobes = "luthier_albedo_lobes(prepared.lobes)";
     match (features.has(Feature::Lobes), features.has(Feature::Several)) {
-        (true, false) => out.push_str(&format!("    {lobes}\n}}\n")),
+        (true, false) => out.push_str(&format!("    return {lobes};\n}}\n")),
         (has_lobes, _) => {
             if has_lobes {
-                out.push_str(&format!("    if prepared.model == $model_lobes {{\n        {lobes}\n    }}\n"));
+                out.push_str(&case("prepared.model", "$model_lobes", lobes));
             }
             out.push_str(&format!("    return {sum};\n}}\n"));
         }
@@ -220,44 +216,47 @@ fn albedo(features: &Features, parts: usize) -> String {
     out
 }
 
-/// The module of drawn directions with a statement for each part.
-fn unrolled(module: &str, parts: usize, features: &Features) -> String {
-    let each = |line: &dyn Fn(usize) -> String| (0..parts).map(line).collect::<String>();
-    let spill = if features.has(Feature::Visible) {
-        each(&|i| format!("    chance += luthier_spill(prepared.parts[{i}]);\n"))
-    } else {
-        String::new()
-    };
-    let density = each(&|i| {
+/// Words in the modules of drawn directions, each with statements for every part in its place.
+fn unrolled(parts: usize, features: &Features) -> [(&'static str, String); 7] {
+    let spilled = if features.has(Feature::Visible) { parts } else { 0 };
+    let spill = each(spilled, |i| format!("    chance += luthier_spill(prepared.parts[{i}]);\n"));
+    let density = each(parts, |i| {
         format!(
             "    let chance_{i} = luthier_chance(prepared.parts[{i}]);\n    \
              density += chance_{i} * luthier_part_density(prepared.parts[{i}], prepared.wo, wi);\n    total += chance_{i};\n"
         )
     });
-    let total = each(&|i| format!("    total += luthier_chance(prepared.parts[{i}]);\n"));
-    let choice = each(&|i| {
+    let total = each(parts, |i| format!("    total += luthier_chance(prepared.parts[{i}]);\n"));
+    let choice = each(parts, |i| {
         format!(
             "    if choice >= below {{\n        part = prepared.parts[{i}];\n        drawn.part = {i}u;\n    }}\n    \
              below += luthier_chance(prepared.parts[{i}]);\n"
         )
     });
-    let proposed = each(&|i| {
+    let proposed = each(parts, |i| {
         format!(
             "    if luthier_chance(prepared.parts[{i}]) > 0.0 {{\n        \
              density += luthier_part_density(prepared.parts[{i}], prepared.wo, wi);\n    }}\n"
         )
     });
-    let part = each(&|i| format!("        if part == {i}u {{\n            lobe = prepared.parts[{i}];\n        }}\n"));
-    // Of `lobes` alone the draw of the whole is the only proposal.
+    let part =
+        each(parts, |i| format!("        if part == {i}u {{\n            lobe = prepared.parts[{i}];\n        }}\n"));
+    // The model `lobes` draws from all its lobes at once: a set of it alone has one proposal.
     let is_whole = features.has(Feature::Lobes) && !features.has(Feature::Several);
     let proposals = if is_whole { 1 } else { parts + 1 };
     let end = format!("    if choice >= below {{\n        drawn.part = {parts}u;\n    }}\n");
-    module
-        .replace("    $each_spill\n", &spill)
-        .replace("    $each_density\n", &density)
-        .replace("    $each_total\n", &total)
-        .replace("    $each_proposed\n", &proposed)
-        .replace("        $each_part\n", &part)
-        .replace("$proposals", &format!("{proposals}u"))
-        .replace("    $each_choice\n", &format!("{choice}{end}"))
+    [
+        ("    $each_spill\n", spill),
+        ("    $each_density\n", density),
+        ("    $each_total\n", total),
+        ("    $each_proposed\n", proposed),
+        ("        $each_part\n", part),
+        ("$proposals", format!("{proposals}u")),
+        ("    $each_choice\n", choice + &end),
+    ]
+}
+
+/// Statements of every part.
+fn each(parts: usize, statements: impl Fn(usize) -> String) -> String {
+    (0..parts).map(statements).collect()
 }

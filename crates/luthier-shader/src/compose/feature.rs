@@ -9,9 +9,9 @@ luthier_lut::named! {
         Diffuse = "diffuse",
         /// A dielectric lies above another layer that the model reads.
         Below = "below",
-        /// Such a dielectric absorbs.
+        /// A dielectric above another layer absorbs.
         Absorption = "absorption",
-        /// A conductor needs code of its own.
+        /// Conductors need code of their own.
         Conductor = "conductor",
         /// An interface has no film.
         Bare = "bare",
@@ -55,7 +55,7 @@ luthier_lut::named! {
         Exact = "exact",
         /// A layer takes its reflectance from a curve.
         Fitted = "fitted",
-        /// Such a curve has a correction.
+        /// The curve of some reflectance has a correction.
         Lazanyi = "lazanyi",
         /// Some reflectance is read.
         Rows = "rows",
@@ -103,7 +103,7 @@ luthier_lut::named! {
         Phase = "phase",
         /// The shader reads thicknesses of films.
         Thickness = "thickness",
-        /// The shader reads shares that escape.
+        /// The shader reads shares of lobes that escape total reflection.
         Escape = "escape",
         /// The shader reads rows of lobes.
         Lobes = "lobes",
@@ -111,15 +111,15 @@ luthier_lut::named! {
         FilmTable = "film_table",
         /// A path of `elek` or `weidlich-wilkie` meets an interface.
         Chain = "chain",
-        /// Such a path meets a base.
+        /// A path of `elek` or `weidlich-wilkie` meets a base.
         ChainDiffuse = "chain_diffuse",
-        /// Such a path meets patina.
+        /// A path of `elek` or `weidlich-wilkie` meets patina.
         ChainPatina = "chain_patina",
         /// Elek's clamp of slope parameters can act.
         Clamped = "clamped",
         /// A material of `belcour` or `yamaguchi` has an interface.
         Statistics = "statistics",
-        /// Such a material has a base.
+        /// A set with interfaces of `belcour` or `yamaguchi` has a base of the same model.
         StatisticsBase = "statistics_base",
         /// A material of `microfacet` has an interface.
         Smith = "smith",
@@ -129,19 +129,19 @@ luthier_lut::named! {
         Phong = "phong",
         /// A material has the model `granier-heidrich`.
         Granier = "granier",
-        /// Such a material has a film.
+        /// A material of `granier-heidrich` has a film.
         GranierFilm = "granier_film",
-        /// Such a material is transparent.
+        /// A material of `granier-heidrich` is transparent.
         GranierTransparent = "granier_transparent",
-        /// Such a material is a bare metal.
+        /// A material of `granier-heidrich` is a bare metal.
         GranierBare = "granier_bare",
-        /// Such a material has an F0.
+        /// A material of `granier-heidrich` has an F0.
         GranierSchlick = "granier_schlick",
-        /// Such a material has a base.
+        /// A material of `granier-heidrich` has a base.
         GranierBase = "granier_base",
-        /// Such a material has numbers of its file.
+        /// A material of `granier-heidrich` states its own numbers.
         GranierOwn = "granier_own",
-        /// The inner boundary of such a material leans.
+        /// The inner boundary of a material of `granier-heidrich` leans.
         GranierTilted = "granier_tilted",
         /// A material of `lobes` has an interface.
         Coat = "coat",
@@ -157,7 +157,7 @@ luthier_lut::named! {
         LobesFilm = "lobes_film",
         /// Rows of lobes are over patina.
         LobesPatina = "lobes_patina",
-        /// The base below such patina is bare in places.
+        /// Rows of lobes are over patina, and bare places show a base.
         LobesBareBase = "lobes_bare_base",
         /// Lobes have the light of a base as a part.
         LobesBase = "lobes_base",
@@ -193,7 +193,7 @@ luthier_lut::named! {
         Patina = "patina",
         /// A material has glitter.
         Glitter = "glitter",
-        /// The shader was asked for `surface`.
+        /// The function group `surface` was asked for.
         Surface = "surface",
         /// The shader has functions beside `luthier_eval`.
         Face = "face",
@@ -211,7 +211,7 @@ luthier_lut::named! {
         Folded = "folded",
         /// The set has more than one model.
         Several = "several",
-        /// The shader was asked for `environment`.
+        /// The function group `environment` was asked for.
         Environment = "environment",
     }
 }

@@ -1,4 +1,4 @@
-//! Features of a set.
+//! Features of a set, found in its materials.
 
 use std::collections::BTreeSet;
 
@@ -11,12 +11,13 @@ use luthier_model::{Family, Reach};
 
 use crate::compose::feature::Feature;
 use crate::compose::masking;
+use crate::compose::stacks::{depths, diffuse_at, is_diffuse, stacks};
 use crate::{Form, MaterialSet};
 
 /// Distributions beside those of Beckmann and of GGX.
 const FREE: [Feature; 3] = [Feature::Blinn, Feature::Abc, Feature::Sgd];
 
-/// Features that the materials of a set use: the words that conditions in the modules may name.
+/// Features of a set: the words that hold in conditions of modules.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Features(BTreeSet<Feature>);
 
@@ -39,7 +40,7 @@ impl Features {
                     _ => &[Feature::Layered, Feature::OwnAlphas],
                 });
             }
-            // Rows over a factor have the shape of the remainder beside the light of the base.
+            // Rows over a factor store the shape of the remainder with the light of the base.
             if painted(material).is_some_and(|base| base.moments.is_some()) {
                 names.insert(Feature::LobesBase);
             }
@@ -84,19 +85,18 @@ impl Features {
         if form == Form::Full {
             names.insert(Feature::Full);
         }
-        // The inner boundary of a film leans where a material says so, and where a place does.
+        // The inner boundary of a film may lean in a material, and at a place.
         if names.contains(&Feature::GranierTransparent) && names.contains(&Feature::Place) {
             names.insert(Feature::GranierTilted);
         }
-        let has = |name| names.contains(&name);
-        if has(Feature::LobesTilted) || has(Feature::Below) && has(Feature::Statistics) || has(Feature::GranierSchlick)
-        {
+        let is_bent_below = names.contains(&Feature::Below) && names.contains(&Feature::Statistics);
+        if is_bent_below || [Feature::LobesTilted, Feature::GranierSchlick].iter().any(|name| names.contains(name)) {
             names.insert(Feature::Bent);
         }
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // The last part is the albedo, and each lobe has two between it and part 0.
+                // Part 0 is the remainder, the last part the albedo. Each lobe has two parts in between.
                 names.extend(match parts.max as u32 {
                     3 => Some(Feature::OneLobe),
                     5 => Some(Feature::TwoLobes),
@@ -107,14 +107,14 @@ impl Features {
                 names.insert(Feature::Bilinear);
             }
         }
-        // Without a table, D is computed; so it is for layers without a tile.
+        // D is computed without a table, and (as `of_model` finds) for layers without a tile.
         let has_facets = names.contains(&Feature::Smith)
             || names.contains(&Feature::Coat)
             || names.contains(&Feature::Chain) && names.contains(&Feature::Interface);
         if form == Form::Full || has_facets && !names.contains(&Feature::Distribution) {
             names.insert(Feature::Closed);
         }
-        // Slope parameters that vary may come in any order; those along two axes are one for models that take one.
+        // Models with one slope parameter clamp it if slope parameters vary, and so may come in any order, or if they differ by axis.
         let has_one_slope = set.models().any(|model| model.is_path() && model.facts().is_isotropic);
         if has_one_slope
             && names.contains(&Feature::Chain)
@@ -132,18 +132,19 @@ impl Features {
         if set.shows_environment(form) {
             names.insert(Feature::Environment);
         }
-        names.extend(of_parts(set, form, &names));
+        let mut features = Self(names);
+        features.0.extend(of_parts(set, form, &features));
         if !set.functions.is_eval_alone() {
-            names.extend(of_face(set, &names));
+            features.0.extend(of_face(set, &features));
         }
-        Self(names)
+        features
     }
 
     pub(crate) fn has(&self, name: Feature) -> bool {
         self.0.contains(&name)
     }
 
-    /// The features, and a word that holds for one module only.
+    /// The features, and a word that may hold for one module only.
     pub(crate) fn with(&self, name: Feature, holds: bool) -> Self {
         let mut names = self.0.clone();
         if holds {
@@ -153,56 +154,60 @@ impl Features {
     }
 }
 
-/// Words for the parts that materials choose: the maskings of lobes, and where reflectances come from, of which each layer has one.
-fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<Feature>) -> Vec<Feature> {
-    let has = |name| names.contains(&name);
-    let is_read = has(Feature::Tabled) && (has(Feature::Fresnel) || has(Feature::FilmTable));
-    let is_computed = has(Feature::Exact) || form == Form::Full && has(Feature::Tabled);
-    let sources = [is_read, is_computed, has(Feature::Fitted)].iter().filter(|holds| **holds).count();
+/// Words for the parts that materials choose: maskings, sources of reflectances, internal reflections.
+fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Feature> {
+    let is_tabled = features.has(Feature::Tabled);
+    let is_read = is_tabled && (features.has(Feature::Fresnel) || features.has(Feature::FilmTable));
+    let is_computed = features.has(Feature::Exact) || form == Form::Full && is_tabled;
+    let sources = [is_read, is_computed, features.has(Feature::Fitted)].iter().filter(|holds| **holds).count();
     let maskings = masking::used(set);
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
-    let records = || set.materials.iter().flat_map(MaterialEntry::records);
-    let is_packed =
-        |record: &LayerRecord| (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
-    let is_whole = |record: &LayerRecord| record.internal_reflection != InternalReflection::default();
-    let is_own = |record: &LayerRecord| record.internal_reflection == InternalReflection::Directions;
-    let has_whole = records().any(is_whole);
+    let is_chain_over = features.has(Feature::Chain) && features.has(Feature::Below);
+    let (mut is_packed, mut is_whole, mut is_own) = (false, false, false);
+    for record in set.materials.iter().flat_map(MaterialEntry::records) {
+        is_packed |= (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
+        is_whole |= record.internal_reflection != InternalReflection::default();
+        is_own |= record.internal_reflection == InternalReflection::Directions;
+    }
     let words = [
         (Feature::Rows, is_read),
         (Feature::Computed, is_computed),
         (Feature::SeveralReflectances, sources > 1),
         (Feature::Masked, is_masked),
         (Feature::SeveralMaskings, maskings.len() > 1),
-        (Feature::Packed, has_whole || records().any(is_packed)),
-        (Feature::Internal, has_whole && has(Feature::Chain) && has(Feature::Below)),
-        (Feature::OwnAngles, records().any(is_own) && has(Feature::Chain) && has(Feature::Below)),
+        (Feature::Packed, is_whole || is_packed),
+        (Feature::Internal, is_whole && is_chain_over),
+        (Feature::OwnAngles, is_own && is_chain_over),
     ];
     let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
 }
 
-/// Words for functions beside `luthier_eval`: lobes of visible normals, those of V-cavities, and of powers of a cosine; whether some are below boundaries, and
-/// tilted there; whether draws that do not leave are folded back; whether a material has to say which model it is of.
-fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<Feature>) -> Vec<Feature> {
-    let has = |name| names.contains(&name);
-    let visible = has(Feature::Chain) || has(Feature::Smith) || has(Feature::Statistics);
-    let powers = has(Feature::Phong) || has(Feature::Granier) && has(Feature::Interface);
-    let tilted = has(Feature::Flakes) || has(Feature::OwnNormals) || has(Feature::GranierTilted);
+/// Words for functions beside `luthier_eval`: the kinds of lobes to draw from, their place below level or tilted boundaries, and the number of
+/// models.
+fn of_face(set: &MaterialSet<'_>, features: &Features) -> Vec<Feature> {
+    let is_faceted = features.has(Feature::Chain) || features.has(Feature::Smith);
+    let visible = is_faceted || features.has(Feature::Statistics);
+    let powers = features.has(Feature::Phong) || features.has(Feature::Granier) && features.has(Feature::Interface);
+    let tilts = [Feature::Flakes, Feature::OwnNormals, Feature::GranierTilted];
+    let tilted = tilts.into_iter().any(|name| features.has(name));
+    let media = features.has(Feature::Chain) && features.has(Feature::Below);
+    let several = features.has(Feature::Lobes) && features.has(Feature::LobesDiffuse);
     let words = [
         (Feature::Face, true),
         (Feature::Visible, visible),
-        (Feature::Cavities, visible && has(Feature::Blinn) && (has(Feature::Chain) || has(Feature::Smith))),
+        (Feature::Cavities, is_faceted && features.has(Feature::Blinn)),
         (Feature::Powers, powers),
-        (Feature::Media, has(Feature::Chain) && has(Feature::Below) || has(Feature::GranierTransparent)),
+        (Feature::Media, media || features.has(Feature::GranierTransparent)),
         (Feature::Tilted, tilted),
         // Tilted boundaries have no cone about one normal through which all light leaves.
         (Feature::Folded, set.functions.has(FunctionGroup::Sample) && (visible || powers) && !tilted),
-        (Feature::Several, set.models().count() > 1 || has(Feature::Lobes) && has(Feature::LobesDiffuse)),
+        (Feature::Several, several || set.models().count() > 1),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name).collect()
 }
 
-/// The word for a table that is read; `film` is whether any layer has one.
+/// The word for a table that is read. That for the table of films is not its name: `film` says that an interface has a film.
 fn table_read(table: TableKind) -> Option<Feature> {
     if table == TableKind::Film { Some(Feature::FilmTable) } else { Feature::from_name(table.name()) }
 }
@@ -221,7 +226,6 @@ fn slopes(distribution: Distribution) -> Feature {
 /// The features of the layers that a material's model reads.
 fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     let mut names = BTreeSet::new();
-    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
     let facts = material.model.facts();
     let layers = match facts.reach {
         Reach::None => {
@@ -312,7 +316,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         }
         Family::Lobes => names.insert(Feature::LobesDiffuse),
         Family::Facets => names.insert(Feature::MicrofacetDiffuse),
-        // Beside a coat it is a step of the chain; alone in its set it needs none.
+        // A base in a chain is a step of it. A set of bare bases has no chain.
         Family::Path if !has_interface => names.insert(Feature::ChainDiffuse),
         Family::Path => {
             if has_diffuse {
@@ -321,7 +325,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             if facts.is_isotropic && gets_smoother(layers) {
                 names.insert(Feature::Clamped);
             }
-            // Beside these and `lobes`, models have no layer below the first interface that flakes could tilt or patina cover.
+            // These models and `lobes` alone have layers below the first interface that flakes tilt and patina covers.
             if material.constants.flakes.is_some() && names.contains(&Feature::Below) {
                 names.insert(Feature::Flakes);
             }
@@ -362,7 +366,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     names
 }
 
-/// Whether rows are over the amount of patina, so that the layer below it is seen bare.
+/// Whether rows are over the amount of patina, so that bare places show the layer below it.
 fn is_under_patina(material: &MaterialEntry) -> bool {
     let lobes = material.constants.lobes.filter(|_| material.model.is_fitted());
     lobes.and_then(|lobes| lobes.varying).is_some_and(|varying| varying.factor == VaryingFactor::Patina)
@@ -374,59 +378,56 @@ fn is_over_film(lobes: &LobesRecord) -> bool {
     lobes.varying.is_some_and(|varying| varying.factor == VaryingFactor::FilmFactor)
 }
 
-/// Whether the base below lobes may have another colour.
+/// Whether places may recolour the base below lobes.
 fn has_base_light(material: &MaterialEntry) -> bool {
     painted(material).is_some()
 }
 
-/// The base below lobes that may have another colour.
+/// The base below lobes that places may recolour.
 fn painted(material: &MaterialEntry) -> Option<PaintedRecord> {
     material.constants.lobes.filter(|_| material.constants.patina.is_none())?.painted
 }
 
-/// Whether what lies below patina is a diffuse base alone.
+/// Whether patina covers a diffuse base alone.
 fn is_bare_base(material: &MaterialEntry) -> bool {
-    material.constants.patina.as_ref().is_some_and(|patina| patina.bare.kind == LayerKind::Diffuse)
+    material.constants.patina.as_ref().is_some_and(|patina| is_diffuse(&patina.bare))
 }
 
-/// Whether lobes come from below a slab, in which what is there may be tilted.
+/// Whether lobes come from below a slab, in which flakes may tilt them.
 fn has_coat(material: &MaterialEntry) -> bool {
     material.model.is_fitted() && material.layers.first().is_some_and(|first| first.kind == LayerKind::Dielectric)
 }
 
 /// Whether an interface is smoother than one above it.
 fn gets_smoother(layers: &[LayerRecord]) -> bool {
-    let interfaces = || layers.iter().filter(|layer| layer.kind != LayerKind::Diffuse);
-    interfaces().zip(interfaces().skip(1)).any(|(above, below)| below.alpha < above.alpha)
+    let interfaces = layers.iter().filter(|layer| !is_diffuse(layer));
+    interfaces.clone().zip(interfaces.skip(1)).any(|(above, below)| below.alpha < above.alpha)
 }
 
-/// Whether a conductor of a chain lies where another stack goes on: elsewhere what would follow it is not there.
+/// Whether a conductor of a chain lies above the depth of the deepest stack. Only there do steps follow that it has to end.
 fn ends_early(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
-    let materials = || set.materials.iter().filter(|m| m.model == model);
-    let depth = materials().map(|m| m.layers.len()).max().unwrap_or(0);
-    let is_conductor = |layer: &LayerRecord| layer.kind == LayerKind::Conductor;
-    materials().any(|m| m.layers.iter().take(depth.saturating_sub(1)).any(is_conductor))
+    let stacks = stacks(set, model);
+    let (_, depth) = depths(&stacks);
+    let mut above = stacks.iter().flat_map(|layers| layers.iter().take(depth.saturating_sub(1)));
+    above.any(|layer| layer.kind == LayerKind::Conductor)
 }
 
-/// Whether a model of statistics meets diffuse bases, those of materials without an interface too, in a set that has interfaces.
+/// Whether the materials of a model have both diffuse bases and interfaces, in one material or in several.
 fn has_base(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
-    let layers = || set.materials.iter().filter(|m| m.model == model).flat_map(|m| &m.layers);
-    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
-    layers().any(is_diffuse) && !layers().all(is_diffuse)
+    let mut layers = stacks(set, model).into_iter().flatten();
+    layers.clone().any(is_diffuse) && !layers.all(is_diffuse)
 }
 
-/// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.
+/// Whether some materials of a model have a diffuse base at a depth where others have an interface.
 fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
-    let layers = || set.materials.iter().filter(|m| m.model == model).map(|m| &m.layers);
+    let stacks = stacks(set, model);
     let depth = match model.facts().reach {
         Reach::None => 0,
         Reach::First => 1,
-        Reach::FirstAndBase | Reach::All => layers().map(Vec::len).max().unwrap_or(0),
+        Reach::FirstAndBase | Reach::All => depths(&stacks).1,
     };
-    (0..depth).any(|i| {
-        let kinds = || layers().filter_map(|layers| layers.get(i)).map(|layer| layer.kind == LayerKind::Diffuse);
-        kinds().any(|diffuse| diffuse) && kinds().any(|diffuse| !diffuse)
-    }) || set.materials.iter().filter(|m| m.model == model && is_under_patina(m)).any(is_bare_base)
+    (0..depth).any(|i| diffuse_at(&stacks, i) == (true, false))
+        || set.materials.iter().filter(|m| m.model == model && is_under_patina(m)).any(is_bare_base)
 }
 
 #[cfg(test)]

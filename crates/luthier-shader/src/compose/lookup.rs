@@ -1,4 +1,4 @@
-//! Look-ups: the texel position of a value, as WGSL for one layout.
+//! Look-ups: WGSL that finds the texel position of a value in one layout.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::{Form, MaterialSet, ShaderError, TableFace};
 
 macro_rules! module {
     ($($kind:ident $name:literal),+) => {
-        /// The module of the look-up of a kind, before it is laid out for one table.
+        /// The module of the look-up of a kind, with words in place of the layout of a table.
         pub(crate) fn module(kind: TableKind) -> &'static str {
             match kind {
                 $(TableKind::$kind => include_str!(concat!("../wgsl/tables/", $name, ".wgsl")),)+
@@ -22,7 +22,7 @@ macro_rules! module {
 
 luthier_lut::for_table_kinds!(module);
 
-/// Types of a look-up function `luthier_lookup_NAME` in WGSL: of its parameters, the tile first, and of its value.
+/// Types of the parameters of `luthier_lookup_NAME` in WGSL, the tile first, and of its value.
 ///
 /// # Panics
 /// Never for the look-ups that this crate has.
@@ -47,33 +47,32 @@ pub(crate) fn calls(set: &MaterialSet<'_>, form: Form) -> String {
     out
 }
 
-/// WGSL of a table: its texture, its sizes, its look-up.
+/// The look-up of a table in WGSL.
 pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, ShaderError> {
     let kind = table.kind;
     let facts = kind.facts();
     let layout = &table.layout;
-    let fail = |reason: String| ShaderError::Layout { table: kind, reason };
     if layout.columns == 0 || layout.tiles == 0 {
-        return Err(fail("it has no tiles".to_owned()));
+        return Err(ShaderError::layout(kind, "it has no tiles"));
     }
     if layout.y.is_some() != facts.y.is_some() {
         let expected = if facts.y.is_some() { "two axes are" } else { "one axis is" };
-        return Err(fail(format!("{expected} expected")));
+        return Err(ShaderError::layout(kind, format!("{expected} expected")));
     }
     check_axis(&layout.x, facts.x, kind)?;
     if let (Some(y), Some(quantity)) = (&layout.y, facts.y) {
         check_axis(y, &[quantity], kind)?;
     }
-    let is_periodic = |axis: &Axis| axis.mapping == Mapping::Periodic;
-    if layout.apron == 0 && (is_periodic(&layout.x) || layout.y.as_ref().is_some_and(is_periodic)) {
-        return Err(fail("a periodic axis needs an apron".to_owned()));
+    if layout.apron == 0 && layout.y.iter().chain([&layout.x]).any(|axis| axis.mapping == Mapping::Periodic) {
+        return Err(ShaderError::layout(kind, "a periodic axis needs an apron"));
     }
 
     let has_base = layout.base == RowBase::Schlick;
     if has_base
         && (kind != TableKind::Fresnel || layout.x.quantity != "cos_theta" || table.format.unorm_max().is_none())
     {
-        return Err(fail("only unorm rows of reflectance over cos_theta are added to Schlick's form".to_owned()));
+        let reason = "only unorm rows of reflectance over cos_theta are added to Schlick's form";
+        return Err(ShaderError::layout(kind, reason));
     }
 
     let has_angle = layout.x.quantity.starts_with("theta");
@@ -98,15 +97,15 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     Ok(out)
 }
 
-/// The argument of a place that stands alone on its line.
+/// The argument of a word with brackets that stands alone on its line.
 fn place<'l>(line: &'l str, opening: &str) -> Option<&'l str> {
     line.trim().strip_prefix(opening)?.strip_suffix(");")
 }
 
 fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), ShaderError> {
-    let fail = |reason: String| Err(ShaderError::Layout { table, reason });
     if !names.contains(&axis.quantity.as_str()) {
-        return fail(format!("its axis is `{}`, known here: {}", axis.quantity, names.join(", ")));
+        let reason = format!("its axis is `{}`, known here: {}", axis.quantity, names.join(", "));
+        return Err(ShaderError::layout(table, reason));
     }
     let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
     let is_mapped = match axis.mapping {
@@ -116,27 +115,29 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
         Mapping::Logarithmic => axis.min > 0.0,
     };
     if axis.size < 2 || !is_range || !is_mapped {
-        return fail(format!("its axis `{}` has no valid range, size or mapping", axis.quantity));
+        let reason = format!("its axis `{}` has no valid range, size or mapping", axis.quantity);
+        return Err(ShaderError::layout(table, reason));
     }
     Ok(())
 }
 
-/// Whether positions of a table are parts of the atlas, as samplers want them, from the start: one product and one sum across. Down the
-/// atlas they are quotients all the same, and across where it has columns: a quotient times its divisor is mostly exact, and
-/// tiles of unlike content do not bleed into each other by a rounding error. Other positions are texels: nodes are also read one
-/// by one.
+/// Whether positions across a table are fractions of the atlas from the start, as samplers take them: one product and one sum.
+///
+/// Down the atlas, and across one with columns, positions are counted in texels and divided in the end. Such a quotient times its divisor is
+/// mostly exact, so that unlike tiles do not bleed into each other by a rounding error. Tables that are not filtered, or whose rows are added to
+/// Schlick's form, are read node by node: their positions stay in texels.
 fn is_whole(table: &TableFace) -> bool {
     table.format.is_filterable() && table.layout.base == RowBase::Zero && table.layout.columns == 1
 }
 
-/// `let position = ...;`: where node (x, y) of a tile is in the atlas; x counts as [`is_whole`] says.
+/// Writes `let position = ...;`: the place of node (x, y) of a tile in the atlas. [`is_whole`] decides the unit of x.
 fn position(out: &mut String, table: &TableFace) {
     let layout = &table.layout;
     let half = f64::from(layout.apron) + 0.5;
     let [[width, height], [tile_width, tile_height]] = [layout.size(), layout.tile_size()];
     let unit = if is_whole(table) { 1.0 / f64::from(width) } else { 1.0 };
-    // Rows side by side, or one below the other. Of those side by side the place of a row is one sum and one quotient of whole numbers and halves, which
-    // are exact: far from the edge of the atlas each rounding is some millionths of a texel.
+    // Rows lie side by side, or one below the other. The place of a row side by side is one sum of whole numbers and halves, which is exact, and one
+    // quotient: far from the edge of the atlas, each further rounding would cost some millionths of a texel.
     let (across, y) = match (layout.abreast(), &layout.y) {
         (Some(_), _) => {
             let first = format!("y * {}.0 + {}", layout.row_size(), float(half));
@@ -178,7 +179,7 @@ fn read(table: &TableFace) -> String {
     }
 }
 
-/// `let NAME = ...;`: the fractional node index of a value, the WGSL of [`Axis::index`], times `unit`.
+/// Writes `let NAME = ...;`: the fractional node index of a value, times `unit`. It is [`Axis::index`] in WGSL.
 fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str, unit: f64) {
     let steps = f64::from(axis.intervals()) * unit;
     let range = axis.max - axis.min;
@@ -219,7 +220,7 @@ fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str, unit: f64)
     let _ = writeln!(out, "    let {name} = {index} * {};", float(steps));
 }
 
-/// How often a power of two above 1 (up to 2^8) is halved to give 1.
+/// The n of an exponent 2^n, from 2 to 2^8. Such powers are roots or squares in a row, which cost less than `pow`.
 fn halvings(exponent: f64) -> Option<usize> {
     (1..=8).find(|&n| exponent == f64::from(1u32 << n))
 }

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use luthier_manifest::{LayerKind, Masking, ModelPart};
+use luthier_manifest::{Masking, ModelPart};
 
 use crate::MaterialSet;
 use crate::compose::feature::Feature;
 use crate::compose::features::Features;
+use crate::compose::stacks::is_diffuse;
 
-/// The word for a masking that a set uses.
+/// The word for a masking.
 pub(crate) fn word(masking: Masking) -> Feature {
     match masking {
         Masking::Smith => Feature::MaskSmith,
@@ -25,7 +26,7 @@ pub(crate) fn word(masking: Masking) -> Feature {
 pub(crate) fn used(set: &MaterialSet<'_>) -> BTreeSet<Masking> {
     let materials = set.materials.iter().filter(|material| material.model.takes(ModelPart::Masking));
     let first = materials.filter_map(|material| material.layers.first());
-    first.filter(|layer| layer.kind != LayerKind::Diffuse).map(|layer| layer.masking).collect()
+    first.filter(|layer| !is_diffuse(layer)).map(|layer| layer.masking).collect()
 }
 
 /// G of two directions. `bisector` is their sum, whose squared length is four times the squared cosine of theta_d; half its height over that
@@ -41,7 +42,7 @@ fn expression(masking: Masking) -> &'static str {
     }
 }
 
-/// `luthier_masking`, and what it calls; nothing where all lobes of a set have the default.
+/// `luthier_masking` and its functions; nothing if all lobes of a set have the default.
 pub(crate) fn module(set: &MaterialSet<'_>, features: &Features) -> String {
     let used = used(set);
     let Some(last) = used.last().filter(|_| features.has(Feature::Masked)) else { return String::new() };
@@ -60,7 +61,7 @@ pub(crate) fn module(set: &MaterialSet<'_>, features: &Features) -> String {
 
 #[cfg(test)]
 mod tests {
-    use luthier_manifest::{LayerRecord, Manifest, MaterialEntry, Reflectance, ReflectanceCurve};
+    use luthier_manifest::{LayerKind, LayerRecord, Manifest, MaterialEntry, Reflectance, ReflectanceCurve};
 
     use crate::{Form, MaterialSet, Target, emit};
 

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::identifiers::words;
+use crate::identifiers::{is_of_word, words};
 
-/// Structures of a text and types of what its functions return.
+/// Structures of a text, and types of the values of its functions.
 pub(crate) struct Kinds<'t> {
     /// Members of structures, and their types.
     pub(crate) structures: BTreeMap<&'t str, BTreeMap<&'t str, &'t str>>,
-    /// Structures that have a member.
+    /// Structures by their members.
     having: BTreeMap<&'t str, Vec<&'t str>>,
     returned: BTreeMap<&'t str, &'t str>,
 }
@@ -39,7 +39,7 @@ impl<'t> Kinds<'t> {
         parameters.split(", ").filter_map(|parameter| parameter.split_once(": ")).collect()
     }
 
-    /// Adds the variable that a line declares, where its type is known: `NAME: KIND;`, `NAME = VARIABLE;` or `NAME = FUNCTION(...`.
+    /// Adds the variable of a declaration with a known type: `NAME: KIND;`, `NAME = VARIABLE;` or `NAME = FUNCTION(...`.
     pub(crate) fn declare(&self, code: &'t str, variables: &mut BTreeMap<&'t str, &'t str>) {
         let Some(declared) = code.strip_prefix("var ").or_else(|| code.strip_prefix("let ")) else { return };
         let Some((name, value)) = declared.split_once(" = ") else {
@@ -61,15 +61,15 @@ impl<'t> Kinds<'t> {
         };
     }
 
-    /// Members of structures that a line reads: where the structure is not known, those of all that have the member.
+    /// Members of structures that a line reads. If the structure is unknown, every structure with such a member counts.
     pub(crate) fn read(&self, code: &'t str, variables: &BTreeMap<&'t str, &'t str>) -> Vec<(&'t str, &'t str)> {
         let mut found = Vec::new();
         let mut rest = code;
-        // The type of what stands before a dot; `None` where it is not known.
+        // The type of the value before a dot; `None` if it is unknown.
         let mut kind: Option<&str> = None;
         let mut is_first = true;
         while let Some(next) = rest.chars().next() {
-            let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+            let end = rest.find(|c| !is_of_word(c)).unwrap_or(rest.len());
             let (word, after) = rest.split_at(end);
             match next {
                 _ if end == 0 => {
@@ -107,7 +107,7 @@ impl<'t> Kinds<'t> {
     }
 }
 
-/// A text whose functions assign no member that a structure lacks, nor have a `let` that nothing reads for that.
+/// The text without assignments to members that structures lack, and without each `let` that is unread for that.
 pub(crate) fn without_missing(wgsl: &str) -> String {
     let kinds = Kinds::of(wgsl);
     let mut out = String::with_capacity(wgsl.len());
@@ -145,8 +145,7 @@ pub(crate) fn signature(line: &str) -> Option<(&str, (&str, &str))> {
 pub(crate) fn assigned(code: &str) -> Option<(&str, &str)> {
     let (target, _) = code.split_once("= ")?;
     let (name, member) = target.trim_end_matches([' ', '+', '*']).split_once('.')?;
-    let is_name = |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    (is_name(name) && is_name(member)).then_some((name, member))
+    name.chars().chain(member.chars()).all(is_of_word).then_some((name, member))
 }
 
 /// Removes every `let` that no other line of a function mentions.
@@ -155,7 +154,7 @@ fn without_unread_lets<'t>(function: &mut Vec<&'t str>) {
     for word in function.iter().filter(|line| !line.trim().starts_with("//")).flat_map(|line| words(line)) {
         *counts.entry(word).or_default() += 1;
     }
-    // From the last line up, so that what a removed line alone read is removed with it.
+    // From the last line up: a `let` that only a removed line read is removed, too.
     for i in (0..function.len()).rev() {
         let line: &'t str = function[i];
         let declared = line.trim().strip_prefix("let ").filter(|_| line.ends_with(';'));

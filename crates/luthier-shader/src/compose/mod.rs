@@ -11,6 +11,7 @@ mod members;
 mod pick;
 mod reached;
 mod slopes;
+mod stacks;
 mod statistics;
 mod words;
 
@@ -32,12 +33,12 @@ use self::reached::reached;
 use self::words::numbered;
 use crate::{Form, MaterialSet, ShaderError, bindings};
 
-/// Where the material buffer lives.
+/// Place of the material buffer in a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Buffer {
     /// Storage, of any length.
     Storage,
-    /// Storage of the length of the set, for a language that wants it stated.
+    /// Storage with the length of the set, for a language that has to state it.
     Sized,
     /// A texture of whole words, for a language without storage.
     Texture,
@@ -49,35 +50,34 @@ pub(crate) enum Buffer {
 pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Result<String, ShaderError> {
     set.check(form)?;
     let features = Features::of(set, form);
-    let has = |feature| features.has(feature);
     let mut parts = vec![constants(set)?, declarations(set, form, buffer)];
     parts.extend([include_str!("../wgsl/pi.wgsl"), include_str!("../wgsl/interface/choose.wgsl")].map(str::to_owned));
     for table in set.tables_read(form) {
         parts.push(lookup(table, &features)?);
     }
-    // D is a function of the layers' own slope parameters; the statistics have lobes of others.
-    let facets = has(Feature::Chain) || has(Feature::Smith) || has(Feature::Coat);
+    // Models of statistics need no closed form of D: their lobes have slope parameters of their own, not those of the layers.
+    let facets = features.has(Feature::Chain) || features.has(Feature::Smith) || features.has(Feature::Coat);
     let masking = masking::module(set, &features);
     let place = place(set, form);
-    // Functions that nothing calls are removed in the end. Conditions are for functions that programs around a shader call, and for names that several modules give.
+    // `reached` removes functions without a call. A condition here is for a module with public functions, and for one that shares names with another.
     let modules = [
         (true, include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
-        (has(Feature::Place), place.as_str()),
+        (features.has(Feature::Place), place.as_str()),
         (true, include_str!("../wgsl/surface/local.wgsl")),
         (true, include_str!("../wgsl/surface/hash.wgsl")),
-        (has(Feature::Flakes), include_str!("../wgsl/surface/flakes.wgsl")),
-        (has(Feature::Patina), include_str!("../wgsl/surface/patina.wgsl")),
+        (features.has(Feature::Flakes), include_str!("../wgsl/surface/flakes.wgsl")),
+        (features.has(Feature::Patina), include_str!("../wgsl/surface/patina.wgsl")),
         (true, include_str!("../wgsl/surface/glitter.wgsl")),
         (true, include_str!("../wgsl/surface/perlin.wgsl")),
         (true, include_str!("../wgsl/surface/pick.wgsl")),
         (true, include_str!("../wgsl/interface/power_lobe.wgsl")),
-        (has(Feature::OrenNayar), include_str!("../wgsl/base/oren_nayar.wgsl")),
-        (!has(Feature::OrenNayar), include_str!("../wgsl/base/lambert.wgsl")),
+        (features.has(Feature::OrenNayar), include_str!("../wgsl/base/oren_nayar.wgsl")),
+        (!features.has(Feature::OrenNayar), include_str!("../wgsl/base/lambert.wgsl")),
         (true, include_str!("../wgsl/base/reradiated.wgsl")),
         (true, include_str!("../wgsl/interface/complex.wgsl")),
-        (has(Feature::Computed), include_str!("../wgsl/interface/fresnel.wgsl")),
-        (has(Feature::Computed), include_str!("../wgsl/interface/film.wgsl")),
+        (features.has(Feature::Computed), include_str!("../wgsl/interface/fresnel.wgsl")),
+        (features.has(Feature::Computed), include_str!("../wgsl/interface/film.wgsl")),
         (true, include_str!("../wgsl/interface/schlick.wgsl")),
         (true, include_str!("../wgsl/interface/beckmann.wgsl")),
         (true, include_str!("../wgsl/interface/ggx.wgsl")),
@@ -85,16 +85,16 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (true, include_str!("../wgsl/interface/blinn.wgsl")),
         (true, include_str!("../wgsl/interface/abc.wgsl")),
         (true, include_str!("../wgsl/interface/sgd.wgsl")),
-        (has(Feature::Computed), include_str!("../wgsl/interface/full_terms.wgsl")),
-        (has(Feature::Closed) && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
-        (!has(Feature::Full), include_str!("../wgsl/interface/baked_terms.wgsl")),
+        (features.has(Feature::Computed), include_str!("../wgsl/interface/full_terms.wgsl")),
+        (features.has(Feature::Closed) && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
+        (!features.has(Feature::Full), include_str!("../wgsl/interface/baked_terms.wgsl")),
         (true, include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
-        (has(Feature::OwnF0), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
+        (features.has(Feature::OwnF0), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
         (true, include_str!("../wgsl/interface/slopes.wgsl")),
         (true, masking.as_str()),
         (true, include_str!("../wgsl/interface/smith.wgsl")),
-        (has(Feature::Chain), path::EVAL),
-        (has(Feature::Statistics), luthier_layers::models::statistics::SPREAD),
+        (features.has(Feature::Chain), path::EVAL),
+        (features.has(Feature::Statistics), luthier_layers::models::statistics::SPREAD),
     ];
     parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
     for model in set.models() {
@@ -105,8 +105,8 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     parts.push(eval(set, &features));
     parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
     parts.retain(|part| !part.trim().is_empty());
-    // Programs around a shader read these of a layer.
-    let kept: &[&str] = if has(Feature::Interface) { &["kind", "alpha"] } else { &["kind"] };
+    // Programs around a shader read these members of a layer, whether its own functions do or not.
+    let kept: &[&str] = if features.has(Feature::Interface) { &["kind", "alpha"] } else { &["kind"] };
     let wgsl = parts.join("\n");
     let wgsl = match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
@@ -126,10 +126,14 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
     module.replace("$layers", &format!("{count}u"))
 }
 
-/// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
-/// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there. `$diffuse(` is the BRDF of a
-/// base, which directions decide where one is rough. `$free_slopes` returns D of the distributions of the set. `$tiles` are the members of a layer that point into tables, `$assign_tiles` reads them. `$distribution_read`
-/// is pi alpha^2 D from the table, which is the distribution's term where no layer has it computed.
+/// The lines of a module that a set keeps, with these words replaced:
+///
+/// - If a material of the set varies over its surface, `$place_parameter` declares a `LuthierPlace`, `$place_argument` passes it on, and
+///   `$layer(` reads a layer at that place. Otherwise the first two vanish, and `$layer(` reads the record.
+/// - `$diffuse(` is the BRDF of a base. Directions are arguments only if a base is rough.
+/// - `$free_slopes` returns D of the distributions of the set.
+/// - `$tiles` declares the members of a layer that point into tables, and `$assign_tiles` reads them.
+/// - `$distribution_read` is pi alpha^2 D from the table. It is named as the term itself unless some layer has D computed.
 pub(crate) fn text(module: &str, features: &Features) -> String {
     let [parameter, argument, layer] = if features.has(Feature::Place) {
         ["place: LuthierPlace, ", "place, ", "luthier_layer_at(place, "]
@@ -150,10 +154,11 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     parts.filter_map(|part| part.split_once(')')).fold(first, |out, (_, after)| out + "luthier_diffuse(layer)" + after)
 }
 
-/// The functions that give the reflectance of a layer: `luthier_fresnel_term` where a set has one of them, else it chooses among them.
+/// The text with names for the functions that give the reflectance of a layer. A single one is `luthier_fresnel_term` itself; several get names of
+/// their own, and `luthier_fresnel_term` chooses among them.
 fn reflectances(text: &str, features: &Features) -> String {
     let is_one = !features.has(Feature::SeveralReflectances);
-    // Tables have the names of these functions.
+    // Look-ups of tables have the short names of these functions.
     let text = match features.has(Feature::Computed) && !features.has(Feature::Full) {
         true => {
             text.replace("luthier_fresnel(", "luthier_fresnel_exact(").replace("luthier_film(", "luthier_film_exact(")
@@ -172,23 +177,23 @@ fn reflectances(text: &str, features: &Features) -> String {
     })
 }
 
-/// The members of a layer that say where in the tables it is.
+/// The members of a layer that point into tables.
 fn tiles() -> String {
     let names = TableKind::ALL.into_iter().filter(|kind| kind.facts().slot.is_some()).map(TableKind::name);
     names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
 }
 
-/// The statements that read all tiles of a layer from its words in the buffer; those of members that are left out go with these.
+/// Statements that read all tiles of a layer from its words in the buffer. `reached` removes those of members that are left out.
 fn assign_tiles() -> String {
-    let assignment = |kind: TableKind| {
+    let assignments = TableKind::ALL.into_iter().filter_map(|kind| {
         let [word, component] = kind.facts().slot?;
         let read = words::layer(word);
         Some(format!("    layer.{}_tile = {read}.{};\n", kind.name(), ["x", "y", "z", "w"][component]))
-    };
-    TableKind::ALL.into_iter().filter_map(assignment).collect()
+    });
+    assignments.collect()
 }
 
-/// The modules of a model: kernels of its room, and for families that write them for each stack, steps and a function of these.
+/// The modules of a model: the kernels of its room, or, for families whose function depends on the stacks, steps and a function of these steps.
 fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
     let Kernels { eval, environment, .. } = room(model).kernels;
     let mut modules = match model.facts().family {
@@ -202,7 +207,7 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
     modules
 }
 
-/// Numbers of the materials and surfaces, by name.
+/// Constants with the numbers of materials and surfaces.
 fn constants(set: &MaterialSet<'_>) -> Result<String, ShaderError> {
     let mut out = String::new();
     for (i, constant) in set.constants()?.iter().enumerate() {
@@ -235,7 +240,7 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
     out
 }
 
-/// The function that reads a word where the material buffer is a texture.
+/// The function that reads a word of a material buffer in a texture.
 fn word(set: &MaterialSet<'_>) -> String {
     let texel = match MaterialTexture::of(set.words()).height {
         1 => "i32(index), 0".to_owned(),
@@ -247,11 +252,11 @@ fn word(set: &MaterialSet<'_>) -> String {
     )
 }
 
-/// The modules, which index the material buffer, with calls of [`word`] instead.
+/// The text with calls of [`word`] in place of indices into the material buffer.
 fn read_from_texture(wgsl: &str) -> String {
     let mut out = String::with_capacity(wgsl.len());
     let mut rest = wgsl;
-    // No index holds another.
+    // No index contains another, so the next bracket closes it.
     while let Some((before, (index, after))) =
         rest.split_once("luthier_materials[").and_then(|(before, rest)| Some((before, rest.split_once(']')?)))
     {
@@ -272,7 +277,7 @@ fn numbers(set: &MaterialSet<'_>) -> String {
     out
 }
 
-/// The functions that choose the model of a material: `luthier_eval`, and `luthier_eval_at` where surfaces vary.
+/// The functions that choose the model of a material: `luthier_eval`, and `luthier_eval_at` if a surface varies.
 fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     const SUMMARY: &str = "/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away\n\
          /// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.\n";
@@ -285,26 +290,19 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
         );
         body.push_str(&guard.replace("wi.z", "wi_here.z").replace("wo.z", "wo_here.z"));
     }
-    let call = |model: ShadingModel| {
+    let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
+    let (first, others) = by_model(set, "model", |model| {
         let name = function(model);
-        let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
         match (features.has(Feature::Fluorescent), model.is_path()) {
             (false, _) => format!("{name}({arguments})"),
             (true, true) => format!("{name}_lit({arguments}, light)"),
             (true, false) => format!("light * {name}({arguments})"),
         }
-    };
-    let models: Vec<ShadingModel> = set.models().collect();
-    if let [first, others @ ..] = models.as_slice() {
-        if !others.is_empty() {
-            body.push_str("    let model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
-        }
-        for &other in others {
-            let (number, call) = (other.number(), call(other));
-            let _ = writeln!(body, "    if model == {number}u {{\n        return {call};\n    }}");
-        }
-        let _ = writeln!(body, "    return {};", call(*first));
+    });
+    if !others.is_empty() {
+        body.push_str("    let model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
     }
+    let _ = writeln!(body, "{others}    return {first};");
     let parameters = "material: u32, wi: vec3<f32>, wo: vec3<f32>";
     if features.has(Feature::Fluorescent) {
         return lit(&body, turned, parameters, SUMMARY);
@@ -320,7 +318,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     }
 }
 
-/// [`eval`] where a base is fluorescent: the light goes in, because what leaves is not a factor times it.
+/// [`eval`] for a set with a fluorescent base. Functions take the light, because reflected light is not the product of a factor and the light.
 fn lit(body: &str, turned: bool, parameters: &str, summary: &str) -> String {
     const SUMMARY: &str = "/// Light that a material sends from wi to wo, RGB: `luthier_eval` for light of a colour, of which a fluorescent base\n\
          /// sends some out in other channels. Linear in the light; `luthier_eval` is that of white light, (1, 1, 1), D65.\n";
@@ -347,4 +345,16 @@ fn lit(body: &str, turned: bool, parameters: &str, summary: &str) -> String {
 /// The function of a model.
 pub(crate) fn function(model: ShadingModel) -> String {
     format!("luthier_eval_{}", model.name().replace('-', "_"))
+}
+
+/// The call for the first model of a set, and statements that return the calls for the others where `number` is theirs.
+fn by_model(set: &MaterialSet<'_>, number: &str, call: impl Fn(ShadingModel) -> String) -> (String, String) {
+    let mut models = set.models();
+    let first = models.next().map(&call).unwrap_or_default();
+    (first, models.map(|other| case(number, &format!("{}u", other.number()), &call(other))).collect())
+}
+
+/// A statement that returns a call where a number has a value.
+fn case(number: &str, value: &str, call: &str) -> String {
+    format!("    if {number} == {value} {{\n        return {call};\n    }}\n")
 }

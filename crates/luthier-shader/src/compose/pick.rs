@@ -1,4 +1,4 @@
-//! `luthier_pick`: which material is at a place of a surface. The numbers of surfaces are constants.
+//! `luthier_pick`: the material at a place of a surface. The numbers of surfaces are constants of the code.
 
 use std::fmt::Write as _;
 

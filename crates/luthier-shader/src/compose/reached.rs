@@ -6,11 +6,11 @@ use crate::compose::members::{Kinds, assigned, signature, without_missing};
 use crate::functions::is_public;
 use crate::identifiers::words;
 
-/// Structures whose members are for programs around a shader, whatever it reads itself.
+/// Structures of programs around a shader: all their members stay.
 const HOSTS: [&str; 4] = ["LuthierPlace", "LuthierLayerPlace", "LuthierSample", "LuthierPick"];
 
-/// A text without functions, structures and constants that no public function reaches, without members that no function reads, and without the statements
-/// that fill these. Of a layer, the record for programs around a shader, `kept` members stay.
+/// The text without functions, structures and constants that no public function reaches, without members that no function reads, and without
+/// the statements that fill these. `kept` members of a layer stay, because programs around a shader read them.
 pub(crate) fn reached(wgsl: &str, kept: &[&str]) -> String {
     let mut text = wgsl.to_owned();
     loop {
@@ -74,7 +74,7 @@ fn declarations(wgsl: &str) -> Vec<(&str, &str)> {
             _ => false,
         };
         if let (true, Some(declared)) = (is_end, name) {
-            // A function whose parameters stand on lines of their own goes on.
+            // Here the parameters of a function end, and not the function.
             if !(line.starts_with(')') && line.trim_end().ends_with('{')) {
                 found.push((declared, wgsl[start..end].trim_start_matches('\n')));
                 (start, name) = (end, None);
@@ -85,7 +85,7 @@ fn declarations(wgsl: &str) -> Vec<(&str, &str)> {
     found
 }
 
-/// The text without members that no function reads but to fill them anew.
+/// The text without members that functions fill and never read.
 fn without_unread(wgsl: &str, kept: &[&str]) -> String {
     let dead = unread(wgsl, kept);
     let mut out = String::with_capacity(wgsl.len());
@@ -117,12 +117,12 @@ fn unread<'t>(wgsl: &'t str, kept: &[&str]) -> BTreeSet<(&'t str, &'t str)> {
     let made = code.iter().flat_map(|line| words(line).zip(words(line).skip(1)));
     let made: BTreeSet<&str> = made.filter(|(_, next)| next.starts_with('(')).map(|(word, _)| word).collect();
     let mut dead = BTreeSet::new();
-    // What is made with all its members in their order stays whole.
+    // A constructor takes all members in their order: structures with one stay whole.
     for (name, members) in kinds.structures.iter().filter(|(name, _)| !HOSTS.contains(name) && !made.contains(*name)) {
-        let is_kept = |member: &&&str| *name == "LuthierLayer" && kept.contains(*member);
-        dead.extend(members.keys().filter(|member| !is_kept(member)).map(|member| (*name, *member)));
+        let kept = if *name == "LuthierLayer" { kept } else { &[] };
+        dead.extend(members.keys().filter(|member| !kept.contains(*member)).map(|member| (*name, *member)));
     }
-    // What fills a member reads others only where that member is read.
+    // An assignment to an unread member counts as reading nothing, until that member is read.
     let mut assignments = Vec::new();
     let mut variables = BTreeMap::new();
     for line in code {
@@ -142,7 +142,7 @@ fn unread<'t>(wgsl: &'t str, kept: &[&str]) -> BTreeSet<(&'t str, &'t str)> {
         while let Some(i) = assignments.iter().position(|(target, _)| !dead.contains(target)) {
             assignments.swap_remove(i).1.iter().for_each(|member| _ = dead.remove(member));
         }
-        // No structure is empty.
+        // WGSL has no empty structures: the first member stays.
         let empty =
             kinds.structures.iter().find(|(name, members)| members.keys().all(|m| dead.contains(&(**name, *m))));
         let Some((name, members)) = empty else { return dead };

@@ -1,4 +1,4 @@
-//! Distributions of slopes in closed form, where a set has others than those of Beckmann and of GGX.
+//! Distributions of slopes in closed form, for a set with others than those of Beckmann and of GGX.
 
 use std::fmt::Write as _;
 
@@ -14,12 +14,12 @@ const FORMS: [(Feature, u32, &str); 5] = [
     (Feature::Sgd, 4, "luthier_sgd(layer.shape, falloff, z_sq, across_sq)"),
 ];
 
-/// The statements that return D of a layer: of its own distribution, where a set has several.
+/// Statements that return D of a layer; they choose by its distribution if a set has several.
 pub(crate) fn returned(features: &Features) -> String {
     let used: Vec<_> = FORMS.iter().filter(|(name, ..)| features.has(*name)).collect();
     let mut out = String::new();
     for (i, (_, number, value)) in used.iter().enumerate().rev() {
-        // The highest numbers first, so that each has one comparison.
+        // From the highest number down, each distribution takes one comparison.
         let _ = match i {
             0 => writeln!(out, "    return {value};"),
             _ => writeln!(

@@ -1,6 +1,8 @@
-//! Words of the material buffer, by the names that modules have for them.
+//! Words of the material buffer, by their names in modules.
 
 use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS};
+
+use crate::identifiers::is_of_word;
 
 /// Header words of a material, as `MaterialConstants::words` lays them out behind the first.
 const MATERIAL: [&str; MATERIAL_WORDS] = [
@@ -32,7 +34,7 @@ const LAYER: [&str; 11] = [
     "numbers",
 ];
 
-/// The expression of a word of a layer in `luthier_layer`: words of numbers and tiles are there by name.
+/// The expression for a word of a layer in `luthier_layer`, which has variables for two of them.
 pub(crate) fn layer(word: usize) -> String {
     match LAYER.get(word) {
         Some(&name @ ("tiles" | "slab")) => name.to_owned(),
@@ -40,15 +42,15 @@ pub(crate) fn layer(word: usize) -> String {
     }
 }
 
-/// The text with the number of each word in place of `$word_NAME`, and how many there are in place of `$words_material` and `$words_layer`.
+/// The text with the number of each word in place of `$word_NAME`, and counts in place of `$words_material` and `$words_layer`.
 ///
 /// # Panics
-/// On a word that has no such name.
+/// On an unknown name.
 pub(crate) fn numbered(text: &str) -> String {
     let mut parts = text.split("$word_");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        let end = part.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(part.len());
+        let end = part.find(|c| !is_of_word(c)).unwrap_or(part.len());
         let (name, rest) = part.split_at(end);
         let number = [&MATERIAL[..], &LAYER].iter().find_map(|words| words.iter().position(|word| *word == name));
         let number = number.unwrap_or_else(|| panic!("no word of the material buffer is `{name}`"));

@@ -1,22 +1,23 @@
-//! The comment at the top of a text: its manual, for a reader who has no other page.
+//! The comment at the top of a text: a manual for readers without any other page.
 
 use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
 use luthier_manifest::{
-    BindingEntry, InternalReflection, LowerReflectance, Masking, MaterialTexture, Reflectance, ShadingModel,
+    BindingEntry, InternalReflection, LowerReflectance, Masking, MaterialEntry, MaterialTexture, Reflectance,
+    ShadingModel,
 };
 
 use super::Part;
 use crate::functions::FUNCTIONS;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
 
-/// Longest line of prose.
+/// Longest line of the comment.
 const WIDTH: usize = 140;
-/// Materials that are listed one by one; of more, the first and the last are named.
+/// The most materials that are listed one by one. A longer list is cut to its first and its last.
 const LISTED: usize = 6;
 
-/// The manual of a text, which was made of this WGSL.
+/// The manual of a text that was made from this WGSL.
 pub(super) fn manual(
     set: &MaterialSet<'_>,
     form: Form,
@@ -41,7 +42,7 @@ pub(super) fn manual(
     Ok(out)
 }
 
-/// A text as lines of a comment; entries of lists begin with two spaces, and go on below with four.
+/// Writes a text as lines of a comment. Entries of lists begin with two spaces, and their further lines with four.
 fn comment(out: &mut String, text: &str) {
     let indent = if text.starts_with("  ") { "  " } else { "" };
     let mut line = format!("//{indent}");
@@ -83,11 +84,11 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
     let titles: Vec<&str> = set.models().map(ShadingModel::title).collect();
     let plural = if titles.len() == 1 { "" } else { "s" };
     let mut texts = vec![format!("Model{plural}: {}.", titles.join("; "))];
-    let reads = |kind| set.tables_read(form).any(|table| table.kind == kind);
+    let read: Vec<TableKind> = set.tables_read(form).map(|table| table.kind).collect();
     let terms = match form {
         Form::Full => "No tables: Fresnel equations at three wavelengths, closed forms of D.",
-        Form::Baked if !reads(TableKind::Fresnel) => "",
-        Form::Baked if reads(TableKind::Distribution) => {
+        Form::Baked if !read.contains(&TableKind::Fresnel) => "",
+        Form::Baked if read.contains(&TableKind::Distribution) => {
             "Fresnel reflectance and slope distribution are read from tables."
         }
         Form::Baked => "Fresnel reflectance is read from tables; closed forms of D.",
@@ -107,42 +108,40 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
     texts
 }
 
-/// Parts that materials choose in place of the defaults, each once, with the first of these materials.
+/// Lines for parts that materials choose in place of the defaults: one for each part, with the first of its materials.
 fn parts(set: &MaterialSet<'_>) -> Vec<String> {
-    let chosen = || set.materials.iter().map(|material| (material.name.as_str(), material.parts()));
-    let line = |what: &str, title: &str, names: Vec<&str>| match names.as_slice() {
-        [first, others @ ..] => {
-            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
-            Some(format!("{what} of {first}{more}: {title}."))
-        }
-        [] => None,
+    let mut texts = Vec::new();
+    for masking in Masking::ALL.into_iter().filter(|masking| *masking != Masking::default()) {
+        texts.extend(part(set, "Masking", masking.title(), |m| m.parts().0 == masking));
+    }
+    for reflectance in Reflectance::ALL.into_iter().filter(|reflectance| *reflectance != Reflectance::default()) {
+        texts.extend(part(set, "Reflectance", reflectance.title(), |m| m.parts().1 == reflectance));
+    }
+    for internal in InternalReflection::ALL.into_iter().filter(|internal| *internal != InternalReflection::default()) {
+        texts.extend(part(set, "Internal reflection", internal.title(), |m| m.internal_reflection() == internal));
+    }
+    let in_air = LowerReflectance::InAir;
+    texts.extend(part(set, "Reflectance of lower interfaces", in_air.title(), |m| m.lower_reflectance() == in_air));
+    let own = "its own, in words 1 and 2 of its header";
+    texts.extend(part(set, "Exponents, weights and inner boundary", own, |m| m.constants.beams.is_some()));
+    texts
+}
+
+/// The line of a part, if a material chooses it.
+fn part(set: &MaterialSet<'_>, part: &str, title: &str, is_chosen: impl Fn(&MaterialEntry) -> bool) -> Option<String> {
+    let mut chosen = set.materials.iter().filter(|material| is_chosen(material));
+    let first = &chosen.next()?.name;
+    let more = match chosen.count() {
+        0 => String::new(),
+        others => format!(" and {others} more"),
     };
-    let maskings = Masking::ALL.into_iter().filter(|masking| *masking != Masking::default()).filter_map(|masking| {
-        let names = chosen().filter(|(_, parts)| parts.0 == masking).map(|(name, _)| name);
-        line("Masking", masking.title(), names.collect())
-    });
-    let is_other = |reflectance: &Reflectance| *reflectance != Reflectance::default();
-    let reflectances = Reflectance::ALL.into_iter().filter(is_other).filter_map(|reflectance| {
-        let names = chosen().filter(|(_, parts)| parts.1 == reflectance).map(|(name, _)| name);
-        line("Reflectance", reflectance.title(), names.collect())
-    });
-    let is_other = |internal: &InternalReflection| *internal != InternalReflection::default();
-    let internals = InternalReflection::ALL.into_iter().filter(is_other).filter_map(|internal| {
-        let chosen = set.materials.iter().filter(|material| material.internal_reflection() == internal);
-        line("Internal reflection", internal.title(), chosen.map(|material| material.name.as_str()).collect())
-    });
-    let in_air = set.materials.iter().filter(|material| material.lower_reflectance() == LowerReflectance::InAir);
-    let names = in_air.map(|material| material.name.as_str()).collect();
-    let lower = line("Reflectance of lower interfaces", LowerReflectance::InAir.title(), names);
-    let beams = set.materials.iter().filter(|material| material.constants.beams.is_some());
-    let names = beams.map(|material| material.name.as_str()).collect();
-    let beams = line("Exponents, weights and inner boundary", "its own, in words 1 and 2 of its header", names);
-    maskings.chain(reflectances).chain(internals).chain(lower).chain(beams).collect()
+    Some(format!("{part} of {first}{more}: {title}."))
 }
 
 fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl: &str) -> Vec<String> {
-    let is_there = |call: &str| call.split('(').next().is_some_and(|name| wgsl.contains(&format!("fn {name}(")));
-    let there = FUNCTIONS.iter().filter(|(call, _)| is_there(call));
+    let there = FUNCTIONS
+        .iter()
+        .filter(|(call, _)| call.split('(').next().is_some_and(|name| wgsl.contains(&format!("fn {name}("))));
     let mut texts = vec!["Functions:".to_owned()];
     texts.extend(there.map(|(call, gives)| format!("  {call}: {gives}")));
     let tables: Vec<&str> = set.tables_read(form).map(|table| table.kind.name()).collect();
@@ -164,7 +163,7 @@ fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl
     texts
 }
 
-/// Each binding with its number, name, kind, format and filter, and how to fill them.
+/// Each binding with its number, name, kind, format and filter, and instructions to fill them.
 fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Vec<String> {
     let has_buffer = part != Part::Constant;
     let is_numbered = target != Target::GlslEs300;
@@ -260,7 +259,7 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
     text
 }
 
-/// Requirements of a language, and the checks that a text in it has not had; `None` where there is nothing to say.
+/// Requirements of a language, and checks that its texts lack; `None` if there are none of both.
 fn note(target: Target, part: Part) -> Option<String> {
     let note = match target {
         Target::GlslEs300 if part != Part::Complete => {

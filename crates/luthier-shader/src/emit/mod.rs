@@ -1,4 +1,4 @@
-//! Snippets and complete shaders, each under a comment that says how to use it.
+//! Snippets and complete shaders, each below its manual.
 
 mod manual;
 
@@ -24,17 +24,28 @@ enum Part {
     Complete,
 }
 
-/// A snippet to paste: functions, bindings and constants for the materials of a set, without an entry point, below a comment that is
-/// its manual. It has been parsed and validated.
+/// A snippet to paste: functions, bindings and constants for the materials of a set, without an entry point. A comment at its top is its
+/// manual. naga has parsed and validated it.
+///
+/// ```
+/// use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry};
+/// use luthier_shader::{Form, MaterialSet, Target, emit};
+///
+/// let layer = LayerRecord { kind: LayerKind::Diffuse, albedo: [0.8; 3], ..LayerRecord::default() };
+/// let materials = [MaterialEntry { name: "chalk".to_owned(), layers: vec![layer], ..MaterialEntry::default() }];
+/// let hlsl = emit(&MaterialSet::new(&materials, Vec::new()), Form::Full, Target::Hlsl)?;
+/// assert!(hlsl.contains("float3 luthier_eval(uint material, float3 wi, float3 wo)"));
+/// # Ok::<(), luthier_shader::ShaderError>(())
+/// ```
 ///
 /// # Errors
-/// See [`ShaderError`]: materials that no shader can be emitted for, a defect found by naga, or SPIR-V, which is no text.
+/// See [`ShaderError`]: the set has no shader, naga finds a defect, or the target is SPIR-V, which is no text.
 pub fn emit(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
     text(set, form, target, Part::Snippet)
 }
 
-/// The snippet for one material, whose numbers are constants of the code: it binds no buffer, and what depends on them alone is
-/// computed when the shader is compiled. Same functions; the number of the material is not looked at.
+/// The snippet for one material, whose numbers are constants of the code. It binds no buffer, and compilers evaluate expressions of these numbers
+/// beforehand. Functions keep their signatures, and ignore the number of the material.
 ///
 /// # Errors
 /// As [`emit`], and [`ShaderError::NotOne`] for sets of any other length than 1.
@@ -45,7 +56,7 @@ pub fn emit_constant(set: &MaterialSet<'_>, form: Form, target: Target) -> Resul
     }
 }
 
-/// The part of a shader that a program around it calls, fills and binds: functions of its manual and look-ups, and the structures of places.
+/// The part of a shader that programs around it use: functions of its manual, look-ups, bindings, and the structures of places.
 ///
 /// # Errors
 /// As [`emit`].
@@ -73,8 +84,8 @@ pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<Str
     })
 }
 
-/// A library in SPIR-V 1.3, little endian: capability Linkage, no entry point, and every function exported under its name for
-/// a linker (`spirv-link`). Drivers take it only once it is linked.
+/// A library in SPIR-V 1.3, little endian: capability Linkage, no entry point, every function exported under its name. Drivers accept it
+/// only after a linker (`spirv-link`) has joined it to a shader.
 ///
 /// # Errors
 /// As [`emit`].
@@ -90,7 +101,7 @@ pub fn complete_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, Shad
     spirv::shader(&body(set, form, Target::SpirV, FRAGMENT)?)
 }
 
-/// A text of a language below its manual; entry points of GLSL are the caller's.
+/// A text in a language, below its manual. [`complete`] adds the entry points of GLSL.
 fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result<String, ShaderError> {
     let is_glsl = matches!(target, Target::Glsl450 | Target::GlslEs300);
     let wgsl = match part {
@@ -113,11 +124,11 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
     Ok(format!("{}\n{body}", manual(set, form, target, part, &wgsl)?))
 }
 
-/// The WGSL that a target is made from, and what WGSL is to follow it.
+/// The WGSL from which the text of a target is made, followed by `more`.
 fn body(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
     let buffer = match target {
         Target::GlslEs300 => Buffer::Texture,
-        // Arrays of any length would want a table of lengths as one more argument.
+        // For arrays of any length, functions in MSL would take a table of lengths as one more argument.
         Target::Msl => Buffer::Sized,
         Target::Wgsl | Target::Glsl450 | Target::Hlsl | Target::SpirV => Buffer::Storage,
     };

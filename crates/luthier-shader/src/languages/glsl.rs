@@ -1,4 +1,4 @@
-//! GLSL of a composed module: naga's output, with our names, comments and no entry point.
+//! GLSL of a module: naga's output with luthier's names and comments, without an entry point.
 
 use std::collections::BTreeMap;
 
@@ -12,14 +12,14 @@ use crate::languages::text::layout;
 use crate::validate::module;
 use crate::{ShaderError, Target};
 
-/// naga writes GLSL for an entry point only; this one is cut off again.
+/// naga writes GLSL for an entry point only. This one is cut off afterwards.
 const ENTRY: &str = "luthier_entry";
 /// Name of the block of the material buffer.
 const BLOCK: &str = "LuthierMaterials";
 
 /// Functions, blocks and uniforms in GLSL, without `#version`, precision and `main`.
 ///
-/// `calls` are statements that together use every binding.
+/// `calls` are statements that use every binding: naga reports its names only for bindings that the entry point uses.
 pub(crate) fn from_wgsl(
     wgsl: &str,
     bindings: &[BindingEntry],
@@ -29,20 +29,20 @@ pub(crate) fn from_wgsl(
 ) -> Result<String, ShaderError> {
     let (module, info) = module(&format!("{wgsl}\n@fragment fn {ENTRY}() {{\n{calls}}}\n"))?;
     let version = if target == Target::GlslEs300 { Version::new_gles(300) } else { Version::Desktop(450) };
-    let slot = |binding: u32| (ResourceBinding { group, binding }, binding as u8);
+    let slots = bindings.iter().map(|e| (ResourceBinding { group, binding: e.binding }, e.binding as u8));
     let options = Options {
         version,
         writer_flags: WriterFlags::INCLUDE_UNUSED_ITEMS,
-        binding_map: bindings.iter().map(|e| slot(e.binding)).collect(),
+        binding_map: slots.collect(),
         zero_initialize_workgroup_memory: false,
     };
     let pipeline =
         PipelineOptions { shader_stage: ShaderStage::Fragment, entry_point: ENTRY.to_owned(), multiview: None };
     let mut text = String::new();
-    let refused = |e: naga::back::glsl::Error| ShaderError::untranslatable(target, e);
-    let mut writer =
-        Writer::new(&mut text, &module, &info, &options, &pipeline, BoundsCheckPolicies::default()).map_err(refused)?;
-    let names = names(&module, &writer.write().map_err(refused)?);
+    let names = Writer::new(&mut text, &module, &info, &options, &pipeline, BoundsCheckPolicies::default())
+        .and_then(|mut writer| writer.write())
+        .map(|reflection| names(&module, &reflection))
+        .map_err(|e| ShaderError::untranslatable(target, e))?;
     let body = body(&text).ok_or_else(|| ShaderError::untranslatable(target, "no entry point"))?;
     let body = rename(body, |word| names.get(word).map(String::as_str));
     if body.contains(&format!("_group_{group}_")) {
@@ -51,20 +51,24 @@ pub(crate) fn from_wgsl(
     Ok(layout(&body, &module, wgsl))
 }
 
-/// Map from naga's names of bindings and blocks to ours.
+/// Names in the WGSL by naga's names of bindings and blocks.
 fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, String> {
-    let global = |handle: Handle<GlobalVariable>| module.global_variables[handle].name.clone().unwrap_or_default();
     let mut names = BTreeMap::new();
     for (name, mapping) in &reflection.texture_mapping {
-        names.insert(name.clone(), global(mapping.texture));
+        names.insert(name.clone(), global(module, mapping.texture));
     }
     for (&handle, block) in &reflection.uniforms {
         names.insert(block.clone(), BLOCK.to_owned());
         if let Some(at) = &module.global_variables[handle].binding {
-            names.insert(format!("_group_{}_binding_{}_fs", at.group, at.binding), global(handle));
+            names.insert(format!("_group_{}_binding_{}_fs", at.group, at.binding), global(module, handle));
         }
     }
     names
+}
+
+/// Name of a binding in the WGSL.
+fn global(module: &Module, handle: Handle<GlobalVariable>) -> String {
+    module.global_variables[handle].name.clone().unwrap_or_default()
 }
 
 /// The text between the precision statements and the entry point.

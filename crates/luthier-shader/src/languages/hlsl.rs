@@ -1,4 +1,4 @@
-//! HLSL of a composed module: naga's output, with our names and comments and a plain sampler.
+//! HLSL of a module: naga's output with luthier's names and comments, and with plain samplers.
 
 use luthier_manifest::BindingEntry;
 use naga::back::hlsl::{Options, PipelineOptions, ShaderModel, Writer};
@@ -13,24 +13,27 @@ use crate::{ShaderError, Target};
 pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry], group: u32) -> Result<String, ShaderError> {
     let (module, info) = module(wgsl)?;
     let options = Options { shader_model: ShaderModel::V5_1, restrict_indexing: false, ..Options::default() };
-    let refused = |e: &dyn ToString| ShaderError::untranslatable(Target::Hlsl, e.to_string());
     let mut text = String::new();
     let pipeline = PipelineOptions { entry_point: None };
-    let written = Writer::new(&mut text, &options, &pipeline).write(&module, &info, None).map_err(|e| refused(&e))?;
+    let written = Writer::new(&mut text, &options, &pipeline).write(&module, &info, None).map_err(refused)?;
     for name in written.entry_point_names {
-        name.map_err(|e| refused(&e))?;
+        name.map_err(refused)?;
     }
     let body = plain_sampler(&text.replace("\n{\n", " {\n"), bindings, group);
     let body = rename(&without_ceremony(&body), helper);
     if body.to_ascii_lowercase().contains("naga") {
-        return Err(refused(&"a name of naga's is left"));
+        return Err(refused("a name of naga's is left"));
     }
     let text = layout(&body, &module, wgsl);
     lint::check(&text, Target::Hlsl)?;
     Ok(text)
 }
 
-/// The sampler as a declaration of its own instead of an index into naga's heap of samplers.
+fn refused(reason: impl ToString) -> ShaderError {
+    ShaderError::untranslatable(Target::Hlsl, reason)
+}
+
+/// The text with each sampler as a declaration, instead of an index into naga's heap of samplers.
 fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
     let space = if group == 0 { String::new() } else { format!(", space{group}") };
     let mut out = String::with_capacity(text.len());
@@ -38,9 +41,9 @@ fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
         let declared =
             line.strip_prefix("static const SamplerState ").and_then(|rest| rest.split_once(" = nagaSamplerHeap["));
         if let Some((name, _)) = declared {
-            // A name that HLSL keeps for itself has an underscore more.
-            let of = |entry: &&BindingEntry| entry.name == name || name.strip_suffix('_') == Some(&entry.name);
-            for entry in bindings.iter().filter(of) {
+            // naga appends an underscore to a reserved word of HLSL.
+            let names = [Some(name), name.strip_suffix('_')];
+            for entry in bindings.iter().filter(|entry| names.contains(&Some(entry.name.as_str()))) {
                 out.push_str(&format!("SamplerState {name} : register(s{}{space});\n", entry.binding));
             }
         } else if !(line.contains(" nagaSamplerHeap[")
@@ -54,13 +57,9 @@ fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
     out
 }
 
-/// The text without the padding of structures that no buffer holds, `const` before temporaries, and names for values that are returned at
-/// once.
+/// The text without padding of structures (no buffer holds them), without `const` before temporaries, and without names for values that are
+/// returned at once.
 fn without_ceremony(text: &str) -> String {
-    let is_padding = |line: &str| {
-        let name = line.strip_prefix("    ").and_then(|l| l.strip_suffix(';')).and_then(|l| l.rsplit(' ').next());
-        name.is_some_and(|name| name.starts_with("_pad") || name.starts_with("_end_pad"))
-    };
     let mut lines: Vec<String> = Vec::new();
     for line in text.lines().filter(|line| !is_padding(line)) {
         let code = line.trim_start();
@@ -81,6 +80,12 @@ fn without_ceremony(text: &str) -> String {
         }
     }
     lines.join("\n") + "\n"
+}
+
+/// Whether a line declares padding of a structure.
+fn is_padding(line: &str) -> bool {
+    let name = line.strip_prefix("    ").and_then(|l| l.strip_suffix(';')).and_then(|l| l.rsplit(' ').next());
+    name.is_some_and(|name| name.starts_with("_pad") || name.starts_with("_end_pad"))
 }
 
 #[cfg(test)]

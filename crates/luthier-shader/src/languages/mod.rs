@@ -1,4 +1,4 @@
-//! The languages that composed WGSL is put into, by naga, with our names and comments.
+//! Translation of WGSL by naga, with luthier's names and comments put back.
 
 pub(crate) mod glsl;
 pub(crate) mod hlsl;

@@ -1,6 +1,6 @@
-//! Metal Shading Language of a composed module: naga's output, with our names and comments.
+//! Metal Shading Language of a module: naga's output with luthier's names and comments.
 //!
-//! Nothing here can compile it; a lint reads it.
+//! No compiler for it runs on Linux; a lint reads it instead.
 
 use luthier_manifest::BindingEntry;
 use naga::ResourceBinding;
@@ -14,7 +14,7 @@ use crate::{ShaderError, Target};
 
 /// Name of the type of the material buffer.
 const BUFFER: &str = "LuthierMaterials";
-/// Longest line that a list of parameters is joined into.
+/// Longest line of a joined list of parameters.
 const WIDTH: usize = 120;
 
 /// The module in MSL 2.0. Argument indices of entry points are binding numbers.
@@ -27,25 +27,27 @@ pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry]) -> Result<String,
         fake_missing_bindings: false,
         ..Options::default()
     };
-    let refused = |e: &dyn ToString| ShaderError::untranslatable(Target::Msl, e.to_string());
-    let (text, written) =
-        write_string(&module, &info, &options, &PipelineOptions::default()).map_err(|e| refused(&e))?;
+    let (text, written) = write_string(&module, &info, &options, &PipelineOptions::default()).map_err(refused)?;
     for name in written.entry_point_names {
-        name.map_err(|e| refused(&e))?;
+        name.map_err(refused)?;
     }
     let text = without_end_padding(&text.replace(", metal::access::sample>", ">"));
     let text = rename(text.trim_start_matches(|c| c != '#'), helper);
     let buffer = text.split_once(" const& luthier_materials").and_then(|(before, _)| before.rsplit(' ').next());
     let body = rename(&text, |word| (Some(word) == buffer).then_some(BUFFER));
     if body.to_ascii_lowercase().contains("naga") {
-        return Err(refused(&"a name of naga's is left"));
+        return Err(refused("a name of naga's is left"));
     }
     let text = layout(&joined(&body), &module, wgsl);
     lint::check(&text, Target::Msl)?;
     Ok(text)
 }
 
-/// Where an entry point finds a binding.
+fn refused(reason: impl ToString) -> ShaderError {
+    ShaderError::untranslatable(Target::Msl, reason)
+}
+
+/// Argument index of a binding in an entry point.
 fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
@@ -59,11 +61,14 @@ fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
 /// The text without padding at the end of structures: no buffer holds them, and no initialiser names it.
 fn without_end_padding(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();
-    let is_end_padding = |i: usize| lines[i].starts_with("    char _pad") && lines.get(i + 1) == Some(&"};");
-    (0..lines.len()).filter(|&i| !is_end_padding(i)).map(|i| format!("{}\n", lines[i])).collect()
+    let followed = lines.iter().zip(lines.iter().skip(1).map(Some).chain([None]));
+    followed
+        .filter(|(line, next)| !(line.starts_with("    char _pad") && *next == Some(&"};")))
+        .map(|(line, _)| format!("{line}\n"))
+        .collect()
 }
 
-/// Heads of functions on one line where it is not too long.
+/// The text with the head of each function on one line, unless that is too long.
 fn joined(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;

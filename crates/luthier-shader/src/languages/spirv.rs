@@ -18,7 +18,7 @@ const LINKAGE_TYPE_EXPORT: u32 = 0;
 /// Words before the first instruction.
 const HEADER_WORDS: usize = 5;
 
-/// A library in SPIR-V of any WGSL module, as [`emit_spirv`](crate::emit_spirv) writes it.
+/// A library in SPIR-V of any WGSL module, in the form of [`emit_spirv`](crate::emit_spirv).
 ///
 /// # Errors
 /// When naga refuses the module.
@@ -31,7 +31,7 @@ pub(crate) fn shader(wgsl: &str) -> Result<Vec<u8>, ShaderError> {
     Ok(bytes(&spirv_words(wgsl)?))
 }
 
-/// SPIR-V 1.3 of any WGSL module, in words: for kernels around a snippet.
+/// SPIR-V 1.3 of any WGSL module, in words, for kernels around a snippet.
 ///
 /// # Errors
 /// When naga refuses the module.
@@ -39,7 +39,7 @@ pub fn spirv_words(wgsl: &str) -> Result<Vec<u32>, ShaderError> {
     let (module, info) = module(wgsl)?;
     let options = Options {
         lang_version: (1, 3),
-        // Named in every build profile: the bytes depend on the inputs only.
+        // naga's default flags depend on the build profile. With these, the bytes depend on the inputs only.
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         // Descriptor set and binding are those of the WGSL.
         fake_missing_bindings: true,

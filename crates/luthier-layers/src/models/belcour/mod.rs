@@ -3,19 +3,19 @@
 //! See [`statistics`](crate::models::statistics) for the method. Surfaces count as isotropic GGX: anisotropic ones enter with the
 //! geometric mean of their slope parameters, Beckmann ones with their FGD-infinity and a GGX lobe of their slope parameter.
 //!
-//! Where it stands on what the paper and its code leave open, with what the tests measure:
+//! Choices where the paper and its code leave something open, with measurements by the tests:
 //!
-//! - *Total reflection* (TIR) is an integral, within 3e-4, in place of the paper's table; FGD-infinity is computed too. Either can be
-//!   read from a table: see [`Energy`](crate::models::statistics::energy::Energy).
-//! - *Mean number of bounces* m belongs to the wavelength. The paper's code averages it over the channels: for gold below a coat of
-//!   n = 1.5, both of alpha 0.2, slopes of single channels then differ by -1.6% to 1.2% at the normal and -3.8% to 2.6% at 78 degrees.
+//! - *Total reflection* (TIR) is an integral, within 3e-4, in place of the paper's table. FGD-infinity is computed, too. A table can supply either:
+//!   see [`Energy`](crate::models::statistics::energy::Energy).
+//! - *The mean number of bounces* m belongs to the wavelength. The paper's code averages it over the channels. For gold below a coat of n = 1.5, both
+//!   of alpha 0.2, slopes of single channels then differ by -1.6% to 1.2% at the normal and by -3.8% to 2.6% at 78 degrees.
 //! - *A diffuse base* is not in the paper: see [`diffuse_base`](crate::models::statistics::diffuse_base).
-//! - *Widening*: the variance of a base grows by the Jacobian j on the way out, and the fit makes that j^(1/1.1) in slope, so that a
-//!   base of small alpha appears 4% to 11% narrower than refraction makes it (n = 1.5, 0 to 70 degrees). At high alpha the
-//!   fit itself is off, 3.59 against 0.62 at alpha 0.8; it is undone on the way back to a slope, so what is wrong is sums: two
-//!   surfaces of 0.2 below each other make 0.311 where light paths have .25 to .28.
-//! - *Energy*: following the eye at most 1. At the half vector lobes carry the energy of another angle: at grazing angles a white
-//!   mirror of alpha 0.3 below a coat of alpha 0.05 returns 1.15 (89 degrees).
+//! - *Widening*: the variance of a base grows by the Jacobian j on the way out, which the fit turns into j^(1/1.1) in slope. So a base of small alpha
+//!   appears 4% to 11% narrower than refraction makes it (n = 1.5, 0 to 70 degrees). At high alpha the fit itself is off: 3.59 against 0.62 at
+//!   alpha 0.8. The way back to a slope undoes this error, except in sums: two surfaces of 0.2 below each other make 0.311, and light paths .25
+//!   to .28.
+//! - *Energy* is at most 1 if the model follows the eye. At the half vector, lobes carry the energy of another angle: a white mirror of alpha 0.3
+//!   below a coat of alpha 0.05 returns 1.15 at 89 degrees.
 
 use luthier_model::ShadingModel;
 
@@ -32,11 +32,11 @@ pub(crate) const ROOM: Room = Room {
     composed: |_| None,
 };
 
-/// Belcour 2018.
+/// The model of Belcour 2018.
 pub type Belcour = Statistical<f64>;
 
 impl Belcour {
-    /// The model, following one of the directions.
+    /// The model with the statistics of one direction.
     pub fn new(follow: Follow) -> Self {
         let domain = "any number of GGX interfaces and absorbing slabs on a conductor or a diffuse base; small alpha, away from \
                       grazing angles";

@@ -7,13 +7,13 @@
 //! T_12 = T_21 = 1 - F(V.H)      a = exp(-sigma d (1/NL' + 1/NV'))      t = (1 - G) + T_21 G
 //! ```
 //!
-//! with f_i the Torrance-Sparrow BRDF `F D G / (4 NL NV)`, D normalised (the paper's prefactors disagree with each
-//! other; see CONVENTIONS.md), G of V-cavities, and L', V' refracted at the surface normal. As in the paper, a
-//! layer is never smoother than the one above it, which stands for the blur of refraction.
+//! f_i is the Torrance-Sparrow BRDF `F D G / (4 NL NV)`, with D normalised (the paper's prefactors disagree with each other; see CONVENTIONS.md)
+//! and G of V-cavities. L' and V' are refracted at the surface normal. As in the paper, a layer is never smoother than the one above it, which
+//! stands for the blur of refraction.
 //!
-//! Simplifications of the model, all the paper's: no inter-reflection between layers, no 1/n^2 compression of
-//! radiance, `t` gives back blocked light heuristically, absorption and `f_i` combine in three colour channels.
-//! Roughness is isotropic: anisotropic surfaces enter with the geometric mean of their slope parameters.
+//! Simplifications of the model, all the paper's: no inter-reflection between layers, no 1/n^2 compression of radiance, `t` returns blocked light
+//! heuristically, absorption and `f_i` combine in three colour channels. Roughness is isotropic: anisotropic surfaces have the geometric mean of
+//! their slope parameters.
 
 mod eval;
 
@@ -42,18 +42,17 @@ pub(crate) const ROOM: Room = Room {
     composed: |Parts { internal_reflection, .. }| Some(Box::new(Elek { internal_reflection })),
 };
 
-/// The real-time model. Layers are isotropic ([`Layers::isotropic`]); at one wavelength, as a [`Model`], its own index bends the
-/// directions, where the colour form has one scalar.
+/// The real-time model. Layers are isotropic ([`Layers::isotropic`]). As a [`Model`], at one wavelength, the index of that wavelength bends
+/// directions. In colour, one index bends the directions of all channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Elek {
-    /// Light from below that interfaces let out.
+    /// Form of internal reflection: the light from below that interfaces let out.
     pub internal_reflection: InternalReflection,
 }
 
 impl Elek {
-    /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
-    /// horizon. Finite for all unit directions. Reciprocal: every factor of eq. 2 is symmetric in the two directions with T_12 and T_21
-    /// at the half vector.
+    /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. It is zero if either direction is at or below the horizon, and
+    /// finite for all unit directions. With T_12 and T_21 at the half vector every factor of eq. 2 is symmetric, so the model is reciprocal.
     pub fn eval_with<const C: usize>(
         &self,
         layers: &[Layer<C>],
@@ -64,9 +63,9 @@ impl Elek {
         self.eval_below(layers, terms, wi, wo, DVec3::Z)
     }
 
-    /// [`Self::eval_with`] with another normal below the first interface (unit, in the surface's frame): what flakes in the coat look like
-    /// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
-    /// in the paper's code; layers below see nothing when it hides either of them.
+    /// [`Self::eval_with`] with another normal below the first interface (unit, in the surface's frame), as flakes in the coat have (Elek 2010,
+    /// section 4.1). Refracted directions and path lengths in the first slab are measured against it, as in the paper's code. If a refracted direction
+    /// is at or below its horizon, the layers below are dark.
     pub fn eval_below<const C: usize>(
         &self,
         layers: &[Layer<C>],
@@ -102,7 +101,7 @@ impl PathModel for Elek {
         [cos_theta_i, 1.0]
     }
 
-    /// A layer is never smoother than one above it.
+    /// A layer has the greatest slope parameter of itself and those above: it is never smoother than one above it.
     fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let (wh, cos_theta_d) = half_vector(wi, wo)?;
         let (last, above) = layers.split_last()?;
@@ -146,9 +145,8 @@ impl Model for Elek {
     }
 }
 
-/// Light of an environment that a smooth first interface would mirror (Algorithm 1, lines 28 and 29): its reflectance at the
-/// angle of `wo`, times the radiance from the mirror direction. `environment` is to be blurred to the interface's
-/// roughness, which this term cannot do by itself.
+/// Light of an environment that a smooth first interface would mirror (Algorithm 1, lines 28 and 29): its reflectance at the angle of `wo`, times
+/// the radiance from the mirror direction. Callers blur `environment` to the roughness of the interface.
 pub fn environment(stack: &Monochrome, wo: DVec3, environment: impl FnOnce(DVec3) -> f64) -> f64 {
     match stack.layers.first() {
         Some(layer) if wo.z > 0.0 => {

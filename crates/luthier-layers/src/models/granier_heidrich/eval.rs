@@ -17,7 +17,7 @@ struct Twin {
     channels: [Monochrome; 3],
 }
 
-/// The twin for a surface, with the beams that the material chooses.
+/// The twin for a surface, with the material's numbers of beams.
 pub(super) fn twin(given: &Given<'_>) -> Box<dyn Shade> {
     Box::new(Twin { model: given.parts.beams, channels: channels(given.stack, given.wavelengths_nm) })
 }
@@ -28,7 +28,7 @@ impl Shade for Twin {
     }
 }
 
-/// Stacks of the channels with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
+/// Stacks of the channels with isotropic surfaces. The slope parameter is the mean of both axes, clamped afterwards.
 fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
     let mut channels = [0, 1, 2].map(|c| Monochrome::new(stack, wavelengths_nm[c], c));
     for one in &mut channels {
@@ -37,12 +37,12 @@ fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
             layer.surface = Surface::isotropic(given.surface.distribution, alpha);
         }
     }
-    // A record of Schlick's interface has one index.
+    // The record of a Schlick interface has one index for all channels.
     let has_f0 = channels[0].layers.first().is_some_and(|layer| layer.f0.is_some());
     channels.map(|one| if has_f0 { bend_alike(one, stack) } else { one })
 }
 
-/// The stack with the real indices of the common wavelength, which bend directions. Reflectances come from elsewhere.
+/// The stack with the real indices of the common wavelength, which bend directions. Reflectances come from the terms.
 fn bend_alike(mut one: Monochrome, stack: &Stack) -> Monochrome {
     for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
         if let (MonochromeBelow::Dielectric { ior, .. }, Base::Dielectric { ior: given, .. }) =

@@ -10,25 +10,24 @@
 //! rho_d = 1 + 2 cos(4 pi r_1 d / lambda) sqrt(T_d (1 - T_d))              (18)
 //! ```
 //!
-//! F is Schlick's; t_i and t_o are refracted at the outer normal n_0 with the index of the wavelength, r_ti is t_i mirrored at
-//! the inner normal n_1: normals that differ deviate the beam and spread colours, as a prism does.
+//! F is Schlick's. Directions t_i and t_o are refracted at the outer normal n_0 with the index of the wavelength, and r_ti is t_i mirrored at the
+//! inner normal n_1. Unlike normals deviate the beam and spread colours, as a prism does.
 //!
-//! The paper's lobes have height one: it does not say what share of the light they carry, and at its exponents it is 1/76 and less
-//! of their coefficients. [`GranierHeidrich`] scales them so that each carries its coefficient, the transmitted one in the film,
-//! where its directions are.
+//! The paper's lobes have height one, and it does not say what share of the light they carry. At its exponents this is 1/76 or less of their
+//! coefficients. [`GranierHeidrich`] scales each lobe so that it carries its coefficient. The transmitted lobe is scaled in the film, where its
+//! directions are.
 //!
-//! The errors that remain are the paper's, and the tests measure them:
+//! The remaining errors are the paper's, and the tests measure them:
 //!
-//! - both beams are added at full strength: where they are in phase the specular part returns `F + T^2 + 2 sqrt(F) T`, for n = 1.5
-//!   1.346 at the normal and 1.939 at 80 degrees, at the peaks (an eye under a white sky sees 1.316 and 1.483, because the
-//!   transmitted lobe is the wider one);
-//! - the transmitted beam is that of an object that mirrors everything, whatever the object; without interference it makes the
-//!   specular part `F + T^2`, nearly one, of any stack;
-//! - the diffuse term comes on top, up to `1 + 2 sqrt(T_d R_d)` (1.560 for n = 1.5) times its weight: a white object without
-//!   interference returns 1.96 at the normal;
-//! - T is Schlick's at the angle inside (eq. 9 and 10), F at the angle outside, so that it is not reciprocal, nor are lobes
-//!   without a cosine;
-//! - no half-wave shifts: indices have to rise from outside to inside.
+//! - Both beams are added at full strength. In phase, the specular part returns `F + T^2 + 2 sqrt(F) T` at its peak: for n = 1.5, 1.346 at the
+//!   normal and 1.939 at 80 degrees. An eye under a white sky sees 1.316 and 1.483, because the transmitted lobe is the wider one.
+//! - The object below is a perfect mirror for the transmitted beam, whatever it is. Without interference, the specular part of any stack is
+//!   `F + T^2`, nearly one.
+//! - The diffuse term is added to that, up to `1 + 2 sqrt(T_d R_d)` (1.560 for n = 1.5) times its weight. A white object without interference
+//!   returns 1.96 at the normal.
+//! - T is Schlick's at the angle inside (eq. 9 and 10) and F at the angle outside, so the model is not reciprocal. Lobes without a cosine are not,
+//!   either.
+//! - Half-wave shifts are missing: indices have to rise from outside to inside.
 
 mod eval;
 
@@ -59,11 +58,11 @@ pub(crate) const ROOM: Room = Room {
 /// A film as the model takes it, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Film {
-    /// Index r_1 over the index outside r_0.
+    /// Index r_1 over the index r_0 outside.
     pub eta: f64,
     /// Reflectance at normal incidence of the outer boundary, f in eq. 8; `None` takes that of `eta`.
     pub f0: Option<f64>,
-    /// `r_1 d / lambda`, lambda in vacuum: wavelengths in the film across its thickness; `None` for a layer too thick to interfere.
+    /// `r_1 d / lambda`, lambda in vacuum: number of wavelengths across the film; `None` for a layer too thick to interfere.
     pub waves_inside: Option<f64>,
     /// Normal n_1 of the inner boundary; n_0 is +z.
     pub inner_normal: DVec3,
@@ -71,17 +70,16 @@ pub struct Film {
     pub exponents: [f64; 2],
 }
 
-/// The powers of the two beams as the paper's eq. 6 and 10 give them, lobes of height one, and what the phase between them follows from.
+/// Powers of the two beams by the paper's eq. 6 and 10, with lobes of height one, and the sum that decides their phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beams {
     /// R.
     pub reflected: f64,
     /// T.
     pub transmitted: f64,
-    /// Sum of the cosines of both directions in the film, to which the phase is proportional; 0 when nothing is transmitted.
+    /// Sum of the cosines of both directions in the film, in proportion to the phase; 0 if nothing is transmitted.
     pub cosines: f64,
-    /// Solid angle of the incident light in the film over that outside, `cos_theta_i / (eta^2 cos_theta_t)`; 0 when nothing is
-    /// transmitted.
+    /// Ratio of the solid angles of incident light in the film and outside, `cos_theta_i / (eta^2 cos_theta_t)`; 0 if nothing is transmitted.
     pub compression: f64,
 }
 
@@ -92,7 +90,7 @@ impl Film {
         self.f0.unwrap_or(r * r)
     }
 
-    /// Eq. 3, 6 and 10. No transmitted beam in the cases of eq. 11, and under total reflection.
+    /// Eq. 3, 6 and 10. There is no transmitted beam in the cases of eq. 11, and under total reflection.
     pub fn beams(&self, wi: DVec3, wo: DVec3) -> Beams {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return Beams { reflected: 0.0, transmitted: 0.0, cosines: 0.0, compression: 0.0 };
@@ -114,20 +112,20 @@ impl Film {
         Beams { reflected, transmitted, cosines: ti.z + to.z, compression: wi.z / (self.eta * self.eta * ti.z) }
     }
 
-    /// Eq. 5: lobes of height one, as printed. Without interference when the layer is too thick for it.
+    /// Eq. 5 as printed, with lobes of height one. A layer too thick to interfere has no interference.
     pub fn specular(&self, wi: DVec3, wo: DVec3) -> f64 {
         let Beams { reflected, transmitted, cosines, .. } = self.beams(wi, wo);
         superpose(reflected, transmitted, self.interference(cosines))
     }
 
-    /// [`Film::specular`] with lobes that carry their coefficients, as [`GranierHeidrich`] has them.
+    /// [`Film::specular`] with the lobes of [`GranierHeidrich`], which carry their coefficients.
     pub fn scaled_specular(&self, wi: DVec3, wo: DVec3) -> f64 {
         let beams = self.beams(wi, wo);
         let [r, t] = self.scaled(&beams);
         superpose(r, t, self.interference(beams.cosines))
     }
 
-    /// Both powers, each lobe times `(e + 1) / (2 pi)`, that of the transmitted beam over solid angles in the film.
+    /// Both powers, each times `(e + 1) / (2 pi)`. The factor of the transmitted beam is over solid angles in the film.
     fn scaled(&self, beams: &Beams) -> [f64; 2] {
         let [outer, inner] = self.exponents.map(|e| (e + 1.0) / (2.0 * PI));
         [outer * beams.reflected, inner * beams.compression * beams.transmitted]
@@ -144,7 +142,7 @@ impl Film {
         superpose(reflected, 1.0 - reflected, interference)
     }
 
-    /// `2 cos(2 Phi)` for a sum of cosines in the film; 0 when the layer is too thick to interfere.
+    /// `2 cos(2 Phi)` for a sum of cosines in the film; 0 for a layer too thick to interfere.
     fn interference(&self, cosines: f64) -> f64 {
         self.waves_inside.map_or(0.0, |waves| 2.0 * libm::cos(2.0 * PI * waves * cosines))
     }
@@ -166,20 +164,24 @@ fn superpose(r: f64, t: f64, interference: f64) -> f64 {
 
 /// The model on a stack.
 ///
-/// The film is the first coherent one of the first interface, or its slab, then without interference: the mean over thicknesses.
-/// Lobes are Phong's of 1975, without a cosine, times `(e + 1) / (2 pi)`, that of the transmitted beam over solid angles in the
-/// film: what an eye sees of a white sky by each is its coefficient, at any angle, but for what falls below the horizon.
-/// Exponents are `2/alpha^2 - 2` unless given, that of the inner boundary with its own alpha, which is how the material of the paper's figure 4 states them; about the mirror
-/// direction such a lobe is half as wide as the surface's. The diffuse weight is the albedo of the diffuse base, zero without one. A
-/// first interface with neither film nor slab (a bare conductor) has the reflected beam alone, with its own reflectance at normal
-/// incidence. Layers and slabs below the film do not count.
+/// The film is the first coherent film of the first interface. If there is none, it is the slab below, without interference: the mean over
+/// thicknesses.
+///
+/// Lobes are Phong's of 1975, without a cosine, times `(e + 1) / (2 pi)`. By this factor an eye at any angle sees of a white sky the coefficient of
+/// each lobe, less the light from below the horizon. The transmitted lobe is scaled over solid angles in the film.
+///
+/// Exponents are `2/alpha^2 - 2` unless given, and the inner boundary has its own alpha, as in the material of the paper's figure 4. About the mirror
+/// direction such a lobe is half as wide as the surface's.
+///
+/// The diffuse weight is the albedo of the diffuse base, zero without one. A first interface with neither film nor slab (a bare conductor) has the
+/// reflected beam alone, with its own reflectance at normal incidence. Layers and slabs below the film do not count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GranierHeidrich {
     /// Normal n_1 of the inner boundary, unit.
     pub inner_normal: DVec3,
     /// Exponents instead of those of the surface.
     pub exponents: Option<[f64; 2]>,
-    /// Slope parameter of the inner boundary over that of the outer one, which the exponents of a surface follow from.
+    /// Ratio of the slope parameters of inner and outer boundary. The exponents of a surface follow from both.
     pub inner_alpha_ratio: f64,
     /// Weight of the specular part.
     pub specular_weight: f64,
@@ -194,7 +196,7 @@ impl Default for GranierHeidrich {
 }
 
 impl GranierHeidrich {
-    /// Boundaries that are parallel and alike, both parts at full weight.
+    /// Parallel boundaries of one slope parameter, both parts at full weight.
     pub const PLAIN: Self = Self {
         inner_normal: DVec3::Z,
         exponents: None,
@@ -203,8 +205,8 @@ impl GranierHeidrich {
         diffuse_weight: 1.0,
     };
 
-    /// The model with an inner boundary that leans at a place: slopes of heights add up, so that those of `normal` (unit, above the surface)
-    /// come on top of the model's own.
+    /// The model with an inner boundary that leans by `normal` (unit, above the surface) at a place. Slopes of heights add up: those of `normal` are
+    /// added to the model's own.
     #[must_use]
     pub fn leaning(self, normal: DVec3) -> Self {
         if self.inner_normal == DVec3::Z || normal == DVec3::Z {
@@ -218,7 +220,7 @@ impl GranierHeidrich {
     /// The exponents e_0 and e_1 of a surface of a slope parameter.
     fn exponents_of(&self, alpha: f64) -> [f64; 2] {
         self.exponents.unwrap_or_else(|| {
-            // Those of shaders are within these limits.
+            // Shaders have slope parameters within these limits.
             let inner = if self.inner_alpha_ratio == 1.0 {
                 alpha
             } else {
@@ -228,7 +230,7 @@ impl GranierHeidrich {
         })
     }
 
-    /// The film of a stack, or `None` when its first interface has none and nothing transparent below.
+    /// The film of a stack; `None` if its first interface has neither a film nor a transparent medium below.
     pub fn film(&self, stack: &Monochrome) -> Option<Film> {
         let layer = stack.layers.first()?;
         let (ior, waves_inside) = match (layer.films.first(), layer.below) {
@@ -267,8 +269,7 @@ impl Model for GranierHeidrich {
 }
 
 impl GranierHeidrich {
-    /// [`Model::eval`] at the wavelengths of some channels, with terms that may come from elsewhere; each wavelength bends directions by its
-    /// own index.
+    /// [`Model::eval`] in channels, with reflectances and interference from terms. Each channel bends directions by the index of its own wavelength.
     pub fn eval_with<const C: usize>(
         &self,
         stacks: &[Monochrome; C],
@@ -304,7 +305,7 @@ impl GranierHeidrich {
         })
     }
 
-    /// Light that an object without a film mirrors, whose reflectance at normal incidence is `f`.
+    /// Specular light of an object without a film, with reflectance `f` at normal incidence.
     fn bare_specular(&self, layer: &MonochromeLayer, f: f64, wi: DVec3, wo: DVec3) -> f64 {
         if matches!(layer.below, MonochromeBelow::Diffuse { .. }) {
             return 0.0;
@@ -314,7 +315,7 @@ impl GranierHeidrich {
     }
 }
 
-/// Schlick 1994. Manifests of scenes state errors to the last digit, in which `luthier_optics::schlick` differs by its order of products.
+/// Schlick 1994. `luthier_optics::schlick` multiplies in another order: its last digit differs, and manifests of scenes state errors to that digit.
 fn schlick(normal: f64, cos: f64) -> f64 {
     let q = (1.0 - cos).max(0.0);
     normal + (1.0 - normal) * (q * q) * (q * q) * q

@@ -1,4 +1,4 @@
-//! Ellipses of slopes by four numbers: those that a fit looks for.
+//! Ellipses of slopes by four numbers, which a fit looks for.
 
 use super::Shape;
 

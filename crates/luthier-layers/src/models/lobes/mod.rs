@@ -1,6 +1,6 @@
-//! The stack as it was simulated, in lobes: a model of our own.
+//! Lobes fitted to the simulated light of a stack: luthier's own model.
 //!
-//! A model that is a formula is as good as its assumptions. This one simulates the stack once ([`crate::references::layered_mc`]), keeps what has a
+//! A model by formulas is as good as its assumptions. This one simulates the stack once ([`crate::references::layered_mc`]), keeps the part with a
 //! short closed form, and fits the rest:
 //!
 //! ```text
@@ -9,26 +9,26 @@
 //!               + E_w(theta_o) S(theta_i) cos_theta_i / N              a wide remainder
 //! ```
 //!
-//! - **Slopes inside.** `s` is the slope of the half vector between the two directions *as they are refracted into a medium* of relative
-//!   index n. A smooth coat over facets has there the very distribution of the facets, at all angles; a rough one nearly so. Between the
-//!   directions outside, such a lobe shifts, widens by up to three times and is cut off.
-//! - **Shapes.** [`Shape`]: an ellipse with a tail between Beckmann's and GGX. Shift and widths hang on the view, the tail on the lobe;
-//!   channels share them.
+//! - **Slopes inside.** `s` is the slope of the half vector between both directions *after refraction into a medium* of relative index n. There the
+//!   lobe of facets below a smooth coat is the distribution of these facets, at all angles; below a rough coat it nearly is. Between the directions
+//!   outside, such a lobe shifts, widens by up to three times and is cut off.
+//! - **Shapes.** A [`Shape`] is an ellipse with a tail between Beckmann's and GGX. Shift and widths depend on the view, the tail on the lobe. Channels
+//!   share them.
 //! - **Energies.** E are energies by channel, taken from the simulation view by view, and A is the share of a shape above the horizon. So
 //!   the directional albedo of a row is that of the simulation, whatever the shapes are.
-//! - **A Lambertian base** sends light that does not remember from where it came: it has one shape at all views, that of the remainder, and it is in
-//!   closed form in the albedo ([`BaseLight`]). Rows have it apart, so that a place may have another colour wherever it is between them.
-//! - **Rows.** All that hangs on the view is in rows over [`ViewAxis`], linear between. An anisotropic stack has such rows at several azimuths of the
-//!   eye ([`Axes`]), linear between, too; its shapes are in the tangents of its axes, where they hardly change with the azimuth.
+//! - **A Lambertian base** sends light that does not remember from where it came. It has one shape at all views, that of the remainder, and a closed
+//!   form in the albedo ([`BaseLight`]). Rows store it apart, so that places can recolour the base without a new fit.
+//! - **Rows.** Everything that depends on the view is in rows over [`ViewAxis`], linear between. An anisotropic stack has such rows at several azimuths
+//!   of the eye ([`Axes`]), linear between, too. Its shapes are in the tangents of its axes, where they hardly change with the azimuth.
 //!
-//! [`Judge`] compares lobes with paths that no fit saw, between rows and nodes: bakes state these errors, and budgets limit them.
+//! [`Judge`] compares lobes with paths that no fit saw, between rows and nodes. Bakes state these errors, and budgets limit them.
 //!
-//! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. What is drawn beyond the horizon has no weight.
+//! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. A direction drawn beyond the horizon has no weight.
 //!
-//! Simplifications: the lobes are not reciprocal. Out of scope: anisotropic surfaces that vary, which keep the rows of the surface that does not.
+//! Simplifications: the lobes are not reciprocal. Out of scope: anisotropic surfaces that vary. They keep the rows of the unvaried surface.
 //!
-//! Lobes in the half vectors outside the stack are the case n = 1. The fit tries one next to it, whose lobes fall towards the horizon as facets mask them, and
-//! takes it where it is the nearest.
+//! Half vectors outside the stack are the case n = 1. The fit tries an index next to 1 instead, whose lobes fall towards the horizon as facets mask
+//! them, and takes it if its lobes are the nearest.
 
 mod axes;
 mod below;
@@ -88,13 +88,13 @@ pub(crate) const ROOM: Room = Room {
     composed: |_| None,
 };
 
-/// A stack in lobes, in the colour in which it was simulated.
+/// Lobes of a stack, in the colour of its simulation.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lobes {
     /// The first interface; none for a diffuse base alone.
     pub(crate) first: Option<FirstInterface>,
-    /// Numbers that hold at all views.
+    /// Numbers for all views.
     pub frame: Frame,
     /// The axis of the rows.
     pub axis: ViewAxis,
@@ -102,7 +102,7 @@ pub struct Lobes {
     pub rows: Vec<Row>,
 }
 
-/// Numbers of lobes that hold at all views.
+/// Numbers of lobes that do not depend on the view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frame {
@@ -110,19 +110,19 @@ pub struct Frame {
     pub index: f64,
     /// Shape of the wide remainder.
     pub wide: Wide,
-    /// Axes of an anisotropic stack, in which its lobes are; others are in the plane of the eye.
+    /// Axes of an anisotropic stack, in which its lobes are. Lobes of other stacks are in the plane of the eye.
     pub axes: Option<Axes>,
-    /// The diffuse base below interfaces: rows have its light.
+    /// The diffuse base below interfaces, whose light is in the rows.
     pub base: Option<Painted>,
 }
 
-/// A diffuse base below interfaces, which may have another colour at a place.
+/// A diffuse base below interfaces, which places may recolour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Painted {
-    /// Albedo with which it was simulated, RGB.
+    /// Albedo in the simulation, RGB.
     pub albedo: Rgb,
-    /// Whether it is Lambertian: all of its light is in the remainder then, whose shape rows have.
+    /// Whether it is Lambertian. All its light is then in the remainder, whose shape is in the rows.
     pub is_lambertian: bool,
 }
 
@@ -141,11 +141,10 @@ impl FirstInterface {
         Some(Self { facets: Facets::new(&stack.layers[0].surface), reflectance: interface.sampled(color) })
     }
 
-    /// Energy that one facet sends to `wo`, by channel: over [`NORMALS`] visible normals, within 4e-4. Reflectances of these are linear between
-    /// cosines whose roots are even.
+    /// Energy that single facets send to `wo`, by channel, over [`NORMALS`] visible normals; within 4e-4. Reflectances are linear between cosines
+    /// whose roots are evenly spaced.
     fn energy(&self, wo: DVec3) -> Rgb {
         let intervals = self.intervals();
-        let cos_theta = |i: usize| (i as f64 / intervals as f64) * (i as f64 / intervals as f64);
         let mut weights = vec![0.0; intervals + 1];
         for i in 0..NORMALS {
             // Hammersley's points.
@@ -155,14 +154,14 @@ impl FirstInterface {
             let Some(lobe) = self.facets.lobe(Masking::Smith, wi, wo) else { continue };
             let weight = lobe.value / self.facets.pdf_solid_angle(wi, wo) / f64::from(NORMALS);
             let first = ((lobe.cos_theta_d.max(0.0).sqrt() * intervals as f64) as usize).min(intervals - 1);
-            let [from, to] = [first, first + 1].map(cos_theta);
+            let [from, to] = [first, first + 1].map(|i| cos_theta(i, intervals));
             let share = (lobe.cos_theta_d - from) / (to - from);
             weights[first] += weight * (1.0 - share);
             weights[first + 1] += weight * share;
         }
         let mut sum = [0.0; 3];
         for (i, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
-            let reflected = self.reflectance.rgb(cos_theta(i));
+            let reflected = self.reflectance.rgb(cos_theta(i, intervals));
             (0..3).for_each(|c| sum[c] += weight * reflected[c]);
         }
         sum
@@ -176,10 +175,15 @@ impl FirstInterface {
     }
 }
 
+/// Cosine at the end of an interval: they gather at grazing angles, where reflectances are steep.
+fn cos_theta(i: usize, intervals: usize) -> f64 {
+    (i as f64 / intervals as f64) * (i as f64 / intervals as f64)
+}
+
 /// Visible normals over which the first interface's energy is a mean.
 const NORMALS: u32 = 4096;
 
-/// Intervals between the cosines at which its reflectance is computed, where there are no films.
+/// Intervals between the cosines at which the reflectance of an interface without films is computed.
 const INTERVALS: u32 = 256;
 
 /// The model, for listings.
@@ -193,20 +197,20 @@ const INFO: ModelInfo = ModelInfo {
     inputs: &[],
 };
 
-/// The most lobes that a bake has.
+/// The most lobes of a bake.
 pub const LOBES: usize = 2;
 
-/// The most lobes that a bake has of a stack: none of one interface. What bounces between its facets, or comes back through them, is wide: the
-/// remainder alone is within an albedo error of 0.01 (`tests/layers/bounces.rs`), for two reads less.
+/// The most lobes of a bake for a stack: none for one interface. Light that bounces between its facets, or comes back through them, is wide. The
+/// remainder alone is within an albedo error of 0.01 (`tests/layers/bounces.rs`), and saves two reads.
 pub fn most_lobes(stack: &Stack) -> usize {
     if stack.layers.len() > 1 { LOBES } else { 0 }
 }
 
-/// Excess for which a bake takes fewer lobes, see [`Simulation::fit_fewest`].
+/// Excess error that a bake accepts for fewer lobes, see [`Simulation::fit_fewest`].
 pub const EXCESS: f64 = 0.03;
 
 impl Lobes {
-    /// The lobes of a stack as bakes have them: as few as do, [`most_lobes`] at most, of [`FitSettings::default`].
+    /// The lobes of a stack as in bakes: the fewest that suffice, at most [`most_lobes`], with [`FitSettings::default`].
     pub fn of(stack: &Stack, color: &Color) -> Self {
         Self::with(stack, color, FitSettings::default())
     }
@@ -221,7 +225,7 @@ impl Lobes {
         &self.rows[tile * self.axis.size()..(tile + 1) * self.axis.size()]
     }
 
-    /// The row of a view (unit, above the surface), between those that were fitted.
+    /// The row of a view (unit, above the surface), between fitted rows.
     pub fn row(&self, wo: DVec3) -> Row {
         let c = self.axis.cosine(wo.z);
         self.frame.axes.map_or_else(|| self.row_of(0, c), |axes| axes.row(wo, |tile| self.row_of(tile, c)))
@@ -244,8 +248,8 @@ impl Lobes {
         Prepared::new(self, wo)
     }
 
-    /// `f cos_theta_i` by channel of light directions, as seen from `wo`: that of a bare diffuse base is its closed form, as shaders have it.
-    /// `stacks` is the stack of the lobes at each wavelength.
+    /// A function of the light direction: `f cos_theta_i` by channel as seen from `wo`. A bare diffuse base has its closed form, as in shaders. `stacks`
+    /// is the stack of the lobes at each wavelength.
     pub fn seen<'a>(&'a self, stacks: &'a [Monochrome; 3], wo: DVec3) -> impl Fn(DVec3) -> Rgb + 'a {
         let prepared = self.prepare(wo);
         move |wi| {
@@ -263,14 +267,15 @@ impl Lobes {
     }
 }
 
-/// The stack as shaders show it: metals have indices up to [`INDEX_MAX`], as in layer records.
+/// The stack of shaders: metals have indices up to [`INDEX_MAX`], as in layer records.
 pub fn shown(stack: &Stack) -> Stack {
     let mut stack = stack.clone();
     for layer in &mut stack.layers {
         if let Base::Conductor { ior } = &mut layer.base {
-            let bounded = |s: &IorSample| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s };
-            // Smaller numbers in the same order: an index still.
-            *ior = ior.with_samples(ior.samples().iter().map(bounded).collect()).unwrap_or_else(|_| ior.clone());
+            let samples = ior.samples().iter();
+            let bounded = samples.map(|s| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s });
+            // Bounds keep numbers valid and in order, so the samples are still an index.
+            *ior = ior.with_samples(bounded.collect()).unwrap_or_else(|_| ior.clone());
         }
     }
     stack
@@ -282,7 +287,7 @@ pub fn base_below(stack: &Stack) -> Option<Diffuse> {
     Some(*base)
 }
 
-/// `f cos_theta_i` of a diffuse base without interfaces, which keeps its closed form; `None` for another stack.
+/// `f cos_theta_i` of a diffuse base without interfaces, in closed form; `None` for another stack.
 fn bare_diffuse(stack: &Monochrome, wi: DVec3, wo: DVec3) -> Option<f64> {
     let MonochromeBelow::Diffuse { albedo, sigma } = stack.layers.first()?.below else { return None };
     Some(if wi.z > 0.0 && wo.z > 0.0 { wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo) } else { 0.0 })

@@ -61,7 +61,7 @@ impl<'a> Prepared<'a> {
         [0, 1, 2].map(|c: usize| first[c] + below[c])
     }
 
-    /// Density in solid angle with which [`Self::sample`] draws a direction. Its integral is 1 less what is drawn below the horizon.
+    /// Density in solid angle with which [`Self::sample`] draws a direction. Its integral is 1 less the share drawn below the horizon.
     pub fn pdf_solid_angle(&self, wi: DVec3) -> f64 {
         if wi.z <= 0.0 {
             return 0.0;

@@ -411,7 +411,7 @@ fn part([r, g, b]: Rgb, w: f64) -> [f64; 4] {
     [r, g, b, w]
 }
 
-/// The colour of a part; black where there is none.
+/// The colour of a part; black for a missing part.
 fn rgb(part: Option<&[f64; 4]>) -> Rgb {
     part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b])
 }

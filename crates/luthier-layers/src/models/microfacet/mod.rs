@@ -45,9 +45,7 @@ impl Components {
     pub const PLAIN: Self = Self { normals: Normals::Surface, masking: Masking::Smith, fresnel: Fresnel::Exact };
 }
 
-/// Each model by name: the components, and their source.
-///
-/// All but the first differ from it in one component.
+/// Variants of the model: name, components, source. Each differs from the first in one component.
 pub const VARIANTS: [(&str, Components, &str); 18] = {
     const P: Components = Components::PLAIN;
     const BECKMANN: Normals = Normals::Slopes(Distribution::Beckmann);
@@ -143,10 +141,10 @@ pub const VARIANTS: [(&str, Components, &str); 18] = {
 };
 
 /// `f = F D G / (4 cos_theta_i cos_theta_o)` of the first interface (Torrance and Sparrow 1967; Walter et al. 2007, eq. 20), D
-/// normalised. What the interface lets through is lost; a diffuse first layer is Oren and Nayar's.
+/// normalised. Light through the interface is lost. A diffuse first layer has Oren and Nayar's model.
 ///
-/// Reciprocal, and never above unit albedo on an interface, but for two beams, which gain. V-cavities let `f cos_theta_i` grow as
-/// 1/cos_theta_o towards grazing mirror directions.
+/// Reciprocal. The albedo of an interface is at most one, except for the variant with two beams, which gains. V-cavities let `f cos_theta_i` grow
+/// as 1/cos_theta_o towards grazing mirror directions.
 #[derive(Debug)]
 pub struct Microfacet {
     components: Components,
@@ -160,7 +158,7 @@ impl Microfacet {
         Self { components, normals: NormalsMemo::new(), fits: Memo::new() }
     }
 
-    /// The facets of the first layer that reflect `wi` to `wo`.
+    /// The lobe of the first layer for `wi` and `wo`.
     fn lobe<const C: usize>(&self, surface: &Surface, terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let Components { normals, masking, .. } = self.components;
         match normals {
@@ -169,8 +167,7 @@ impl Microfacet {
         }
     }
 
-    /// [`Model::eval`] of the first layer with terms that may come from elsewhere; of the components, these are the surface's own distribution
-    /// and the reflectance.
+    /// [`Model::eval`] of the first layer, with terms in place of the exact reflectance and of the surface's own distribution.
     pub fn eval_with<const C: usize>(&self, layer: &Layer<C>, terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> [f64; C] {
         self.eval_by(layer, terms, |cos_theta_d| terms.fresnel(0, cos_theta_d), wi, wo)
     }

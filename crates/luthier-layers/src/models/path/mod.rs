@@ -14,36 +14,36 @@ use crate::terms::Terms;
 /// Kernels of the walk.
 pub const EVAL: &str = include_str!("eval.wgsl");
 
-/// Kernels of the interfaces that it meets as lobes to draw directions from.
+/// Kernels of interfaces as lobes, from which directions are drawn.
 pub const PARTS: &str = include_str!("parts.wgsl");
 
-/// A model that walks, by the steps that are its own. Factors are multiplied in the order of each model.
+/// Steps in which walking models differ. Each model multiplies its factors in an order of its own.
 pub(crate) trait PathModel {
-    /// Light from below that interfaces let out.
+    /// Form of internal reflection: the light from below that interfaces let out.
     fn internal_reflection(&self) -> InternalReflection;
 
-    /// The cosine of the light outside: the factor on light that falls in, and that on light that an interface or the base sends back.
+    /// Two factors whose product is the cosine of the light outside: on light that falls in, and on light that an interface or the base returns.
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2];
 
-    /// The facets of the last of some layers that reflect `wi` to `wo`.
+    /// The lobe of the last layer for `wi` and `wo`. Layers above may bound its slope parameter.
     fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe>;
 
-    /// Both directions in the medium below, pointing up; `None` where either is totally reflected or leaves upward.
+    /// Both directions in the medium below, pointing up; `None` if either is totally reflected or refracted upward.
     fn refracted(&self, eta: f64, wi: DVec3, wo: DVec3) -> Option<[DVec3; 2]>;
 
-    /// Light that an interface sends back, of `passed` that comes to it; `cosines` is that outside over that of the medium above.
+    /// Light that an interface returns when `passed` arrives. `cosines` is the ratio of the light's cosine outside to that in the medium above.
     fn sent(&self, passed: f64, cosines: f64, reflectance: f64, lobe: f64) -> f64;
 
-    /// Share of light that comes through an interface and its slab, and back.
+    /// Share of light that crosses an interface and its slab, and back.
     fn kept(&self, entered: f64, left: f64, absorbed: f64) -> f64;
 }
 
 /// Normals of interfaces that are not those of the surface, all unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tilts<'a> {
-    /// Normal below the first interface, in its frame: all that lies there is turned.
+    /// Normal of everything below the first interface, in the frame of that interface.
     pub(crate) below: DVec3,
-    /// Normals of interfaces alone, from the top down, in the frame of the surface; those that are missing are +z.
+    /// Normals of single interfaces, from the top down, in the frame of the surface. Missing ones are +z.
     pub(crate) own: &'a [DVec3],
 }
 
@@ -52,11 +52,11 @@ impl Tilts<'_> {
     pub(crate) const NONE: Self = Self { below: DVec3::Z, own: &[] };
 }
 
-/// A way down through the layers and back.
+/// Light of a walk down through the layers and back.
 pub(crate) struct Walked<const C: usize> {
     /// f cos_theta_i of the interfaces.
     pub(crate) interfaces: [f64; C],
-    /// Light of the diffuse base, where the layers end with one and light comes there and back.
+    /// Light of the diffuse base; `None` if there is none, or if the walk ends above it.
     pub(crate) base: Option<AtBase<C>>,
 }
 
@@ -64,9 +64,9 @@ pub(crate) struct Walked<const C: usize> {
 pub(crate) struct AtBase<const C: usize> {
     /// f cos_theta_i of the base.
     value: [f64; C],
-    /// Share that comes down: T_12 of each interface, and what slabs leave on the way of `wi`.
+    /// Share of light that reaches the base: T_12 of each interface, times the transmittance of slabs along `wi`.
     pub(crate) down: [f64; C],
-    /// Share of what the base sends up that comes out: t of each interface, and what slabs leave on the way of `wo`.
+    /// Share of the base's light that leaves: t of each interface, times the transmittance of slabs along `wo`.
     pub(crate) up: [f64; C],
 }
 
@@ -80,7 +80,7 @@ impl<const C: usize> Walked<C> {
     }
 }
 
-/// The way of light from `wi` through the layers to `wo`.
+/// Walks with light from `wi` through the layers to `wo`.
 pub(crate) fn walk<const C: usize>(
     model: &impl PathModel,
     layers: &[Layer<C>],

@@ -1,4 +1,4 @@
-//! Twin of `eval.wgsl`: the material buffer has the coefficients.
+//! Twin of `eval.wgsl`, which reads the coefficients from the material buffer.
 
 use glam::DVec3;
 use luthier_optics::Rgb;
@@ -11,7 +11,7 @@ use crate::monochrome::Monochrome;
 #[derive(Debug)]
 struct Twin([Coefficients; 3]);
 
-/// The twin for a surface: coefficients in colour. One lobe has one exponent, that of the green wavelength.
+/// The twin for a surface, with coefficients in colour. The channels share one lobe, whose exponent is that of the green wavelength.
 pub(super) fn twin(given: &Given<'_>) -> Box<dyn Shade> {
     let [diffuse, specular] = Coefficients::in_color(given.stack, &given.color);
     let Coefficients { exponent, .. } = Coefficients::of(&Monochrome::new(given.stack, given.wavelengths_nm[1], 1));

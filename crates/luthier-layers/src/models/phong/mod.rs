@@ -30,13 +30,13 @@ pub(crate) const ROOM: Room = Room {
 /// f cos_theta_i = k_d cos_theta_i / pi + k_s (e + 1) / (2 pi) max(0, r.wo)^e
 /// ```
 ///
-/// r being the mirror direction of `wi`. As in 1975 the lobe has no cosine and no Fresnel term; it is scaled so that a whole
-/// lobe carries k_s, which is the only change. The coefficients come from the stack at normal incidence: k_s is what its
-/// interfaces reflect, k_d the diffuse base's albedo times what is left. e is that of the layer that reflects most, a
-/// quarter of the Blinn exponent `2/alpha^2 - 2`, because the lobe is about the mirror direction instead of the half vector.
+/// r is the mirror direction of `wi`. As in 1975, the lobe has no cosine and no Fresnel term. The only change is its scale: a whole lobe carries
+/// k_s. The coefficients come from the stack at normal incidence: k_s is the reflectance of its interfaces, and k_d the albedo of the diffuse base
+/// times the rest. The exponent e is that of the most reflecting layer: a quarter of Blinn's exponent `2/alpha^2 - 2`, because the lobe is about
+/// the mirror direction, not the half vector.
 ///
-/// Not reciprocal, for want of that cosine: what an eye sees of a white sky stays below one, but the albedo for light from a
-/// grazing direction does not (3.7 for alpha = 0.1 at 89 degrees).
+/// Without the cosine the model is not reciprocal: an eye sees less than one of a white sky, but the albedo for grazing light exceeds one (3.7 for
+/// alpha = 0.1 at 89 degrees).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Phong;
 
@@ -52,7 +52,7 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// The coefficients that stand for a stack.
+    /// The coefficients of a stack.
     pub fn of(stack: &Monochrome) -> Self {
         let (mut diffuse, mut specular, mut most, mut alpha) = (0.0, 0.0, -1.0, 1.0);
         for (k, layer) in stack.layers.iter().enumerate() {
@@ -91,7 +91,7 @@ impl Coefficients {
     }
 }
 
-/// `max(0, a.b)^e` of unit directions. `1 - a.b` is half the squared distance between them, which does not cancel in narrow lobes.
+/// `max(0, a.b)^e` of unit directions. `1 - a.b` is computed as half the squared distance, which keeps its digits in narrow lobes.
 pub(crate) fn lobe(a: DVec3, b: DVec3, e: f64) -> f64 {
     let away = 0.5 * (a - b).length_squared();
     if away < 1.0 { libm::exp(e * libm::log1p(-away)) } else { 0.0 }

@@ -1,6 +1,4 @@
-//! Diffuse base below the layers of the statistical models.
-//!
-//! The papers have none: its light has no mean direction to follow.
+//! Diffuse base below the layers of statistical models. The papers have none, because its light has no mean direction to follow.
 
 use std::array::from_fn;
 
@@ -15,7 +13,7 @@ use crate::layers::{Below, Layers};
 /// Points over the directions of diffuse light: within 1e-7 for smooth interfaces.
 const POINTS: usize = 24;
 
-/// A diffuse base as the layers above let it be seen, in `C` channels.
+/// A diffuse base seen through layers, in `C` channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiffuseBase<const C: usize> {
     albedo: [f64; C],
@@ -25,12 +23,12 @@ pub struct DiffuseBase<const C: usize> {
     veil: Veil<C>,
 }
 
-/// Effect of the layers above a diffuse base on diffuse light, whatever the direction.
+/// Effect of the layers above a diffuse base on diffuse light. It does not depend on directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Veil<const C: usize> {
-    /// Part of the base's cosine-weighted light that the layers send back down to it.
+    /// Part of the base's cosine-weighted light that the layers send back to it.
     pub internal: [f64; C],
-    /// Share of such light that the layers let up, over the share that they let down: 1 for smooth ones.
+    /// Ratio of the shares of such light that the layers pass up and down; 1 for smooth layers.
     pub upward: [f64; C],
 }
 
@@ -40,7 +38,7 @@ impl<const C: usize> Veil<C> {
 
     /// The veil of the layers above the base of a stack, or `None` if it has no diffuse one.
     ///
-    /// Light of the base beyond the critical angle of the exterior is totally reflected; it crosses the lowest slab only.
+    /// Light of the base beyond the critical angle of the exterior is totally reflected. It is taken to cross the lowest slab only.
     pub fn new(stack: &Layers<C>, energy: &dyn Energy<C>) -> Option<Self> {
         let (base, ..) = stack.base()?;
         let Some(lowest) = base.checked_sub(1).and_then(|above| stack.layers.get(above)) else {
@@ -56,11 +54,11 @@ impl<const C: usize> Veil<C> {
         let (mut sum, mut up, mut down) = ([0.0; C], [0.0; C], [0.0; C]);
         for (x, weight) in gauss_legendre(POINTS) {
             let beyond = critical * x;
-            // Below a medium that is no denser than the exterior nothing is beyond: 0/0 without absorption.
+            // In a medium no denser than the exterior there is no light beyond, and the exponent would be 0/0 without absorption.
             for c in (0..C).filter(|_| beyond > 0.0) {
                 sum[c] += weight * critical * 2.0 * beyond * libm::exp(-2.0 * depth[c] / beyond);
             }
-            // Squared away from the critical angle, where reflectances start like square roots.
+            // The square gathers points at the critical angle, from which reflectances fall like square roots.
             let cos = critical + (1.0 - critical) * x * x;
             let cos_outside_sq = 1.0 - eta * eta * (1.0 - cos) * (1.0 + cos);
             if cos_outside_sq > 0.0 {
@@ -84,7 +82,7 @@ impl<const C: usize> DiffuseBase<C> {
         Self::veiled(stack, Veil::new(stack, energy)?)
     }
 
-    /// The base of a stack below a known veil, or `None` if it has no diffuse one.
+    /// The base of a stack, with a known veil, or `None` if it has no diffuse one.
     pub fn veiled(stack: &Layers<C>, veil: Veil<C>) -> Option<Self> {
         let (base, albedo, sigma) = stack.base()?;
         Some(Self { albedo, sigma, eta: stack.layers[base].above / stack.exterior, veil })
@@ -92,21 +90,15 @@ impl<const C: usize> DiffuseBase<C> {
 
     /// BRDF of the base seen through the layers, in 1/sr, from the transports of both directions at their own angles.
     ///
-    /// `f = T(wi) T(wo) f_base / (n^2 (1 - rho R))`, R the diffuse reflectance from below: exact for smooth layers on Lambert.
+    /// `f = T(wi) T(wo) f_base / (n^2 (1 - rho R))`, with R the diffuse reflectance from below. This is exact for smooth layers on Lambert's base.
     ///
-    /// Through rough layers less light gets up, Ti0, than down, T0i, because the statistics count total reflection on the way up alone;
-    /// R goes with Ti0. Both T are T0i, and their means over diffuse light bring the difference in as one factor, so that the base
-    /// never returns more than enters, and all of it if it is white and nothing absorbs. Reciprocal.
+    /// The statistics count total reflection only on the way up. So rough layers pass less light up (Ti0) than down (T0i), and R belongs to Ti0. Both T
+    /// here are T0i, which keeps f reciprocal. One factor, the ratio of the means of Ti0 and T0i over diffuse light, makes up for the difference: the
+    /// base never returns more light than enters, and returns all of it if it is white and nothing absorbs.
     pub fn brdf<S>(&self, wi: (DVec3, &Transport<S, C>), wo: (DVec3, &Transport<S, C>)) -> [f64; C] {
-        let inside = |(w, transport): (DVec3, &Transport<S, C>)| {
-            let cos = transport.cos_theta;
-            let across = libm::hypot(w.x, w.y);
-            let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
-            DVec3::new(w.x * scale, w.y * scale, cos)
-        };
         from_fn(|c| {
             let transmitted = wi.1.transmitted[c] * wo.1.transmitted[c] * self.veil.upward[c];
-            // A white base below layers that return everything: nothing is transmitted to it either.
+            // Nothing is lost only between a white base and layers that return everything. These let no light in.
             let lost = 1.0 - self.albedo[c] * self.veil.internal[c];
             if transmitted <= 0.0 || lost <= 0.0 {
                 return 0.0;
@@ -120,6 +112,14 @@ impl<const C: usize> DiffuseBase<C> {
     pub fn veil(&self) -> Veil<C> {
         self.veil
     }
+}
+
+/// The mean direction of light above the base, at the azimuth of its direction outside.
+fn inside<S, const C: usize>((w, transport): (DVec3, &Transport<S, C>)) -> DVec3 {
+    let cos = transport.cos_theta;
+    let across = libm::hypot(w.x, w.y);
+    let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
+    DVec3::new(w.x * scale, w.y * scale, cos)
 }
 
 #[cfg(test)]

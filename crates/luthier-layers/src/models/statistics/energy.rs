@@ -16,13 +16,13 @@ use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
 /// Source of the energies of a stack, in `C` channels.
 ///
-/// A closure `(layer, cos_theta_i, alpha) -> reflectance` is one for a single channel.
+/// A closure `(layer, cos_theta_i, alpha) -> reflectance` is a source for a single channel.
 pub trait Energy<const C: usize> {
-    /// FGD-infinity: the part of the light at `cos_theta_i`, above the interface of a layer (counted from the top), that the
-    /// interface sends back, all bounces between its facets included. `alpha` is the isotropic slope parameter of the layer.
+    /// FGD-infinity: the part of light at `cos_theta_i` that the interface of a layer (counted from the top) returns upward, after all bounces between
+    /// its facets. `alpha` is the isotropic slope parameter of the layer.
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> [f64; C];
 
-    /// TIR: see [`escaping_share`]. The lobe is in the medium below the interface of `layer`, and meets that interface.
+    /// TIR, see [`escaping_share`]. The lobe lies in the medium below the interface of `layer`, and meets that interface.
     fn escaping(&self, _layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
         escaping_share(cos_theta_i, alpha, eta)
     }
@@ -34,24 +34,25 @@ impl<F: Fn(usize, f64, f64) -> f64> Energy<1> for F {
     }
 }
 
-/// Alpha below which the difference to a smooth interface is tabulated, which vanishes with alpha; of rougher surfaces FGD-infinity itself
-/// is, which has lost the kinks and fringes of the reflectance.
+/// Below this alpha, nodes have the difference to a smooth interface, which vanishes with alpha: cubics would blur the kinks and fringes of
+/// FGD-infinity itself. FGD-infinity of rougher surfaces has none, and is in the nodes.
 const NEARLY_SMOOTH: f64 = 0.025;
 
-/// Fineness of the computation of FGD-infinity: without, and with, a kink that total reflection puts into the reflectance.
+/// Fineness of the computation of FGD-infinity. Of pairs, the first is for reflectances without a kink of total reflection, the second for those
+/// with one.
 #[derive(Debug, Clone, Copy)]
 struct Detail {
-    /// Intervals over the cosine; between their ends FGD-infinity is a cubic.
+    /// Intervals over the cosine. Between nodes, FGD-infinity is a cubic.
     intervals: [usize; 2],
     /// Effort of the quadrature and the walks at a node.
     effort: [Effort; 2],
-    /// Walks per node of the light that crosses the interface and comes back, shared among wavelengths.
+    /// Walks per node with light that crosses the interface and comes back. Wavelengths share them.
     crossed_walks: [u32; 2],
-    /// Least such walks of a wavelength.
+    /// Least number of such walks for a wavelength.
     crossed_walks_min: u32,
 }
 
-/// Detail for models that are evaluated wavelength by wavelength: within 2e-3, see [`ExactEnergy`].
+/// Detail for models evaluated wavelength by wavelength; within 2e-3, see [`ExactEnergy`].
 const QUICK: Detail = Detail {
     intervals: [32, 96],
     effort: [Effort { first: 24, later: 20 }, Effort { first: 64, later: 32 }],
@@ -59,7 +60,7 @@ const QUICK: Detail = Detail {
     crossed_walks_min: 128,
 };
 
-/// Detail for the energies that tables are held against.
+/// Detail for energies with which tables are compared.
 const FINE: Detail = Detail {
     intervals: [64, 96],
     effort: [Effort { first: 48, later: 64 }, Effort { first: 64, later: 48 }],
@@ -69,8 +70,8 @@ const FINE: Detail = Detail {
 
 /// FGD-infinity of every interface of a stack at one wavelength, computed from the micro-surface.
 ///
-/// Smooth interfaces are exact. Rough ones are computed at 33 cosines and joined by cubics, within 2e-3 of a direct computation.
-/// Seen from the denser side it is 97 cosines and 2e-2, and for alpha below 0.025 it may be 0.2 right beside the critical angle.
+/// Smooth interfaces are exact. Rough ones are computed at 33 cosines and joined by cubics, within 2e-3 of a direct computation. From the denser
+/// side there are 97 cosines, and the error is within 2e-2. Right beside the critical angle it may be 0.2 for alpha below 0.025.
 #[derive(Debug, Clone)]
 pub struct ExactEnergy {
     layers: Vec<LayerEnergy>,
@@ -79,7 +80,7 @@ pub struct ExactEnergy {
 #[derive(Debug, Clone)]
 struct LayerEnergy {
     interface: MonochromeLayer,
-    /// FGD-infinity per node, less the reflectance of the smooth interface for nearly smooth surfaces; empty for smooth ones.
+    /// FGD-infinity at each node, less the smooth reflectance if the surface is nearly smooth; empty for smooth surfaces.
     nodes: Vec<[f64; 1]>,
 }
 
@@ -89,7 +90,7 @@ impl ExactEnergy {
         Self::with_facets(stack, &mut FacetCache::default())
     }
 
-    /// The energies of a stack, sharing all that depends on the micro-surface alone with other stacks (the other wavelengths).
+    /// The energies of a stack. Stacks at other wavelengths may share `facets`, which depend on the micro-surface alone.
     pub fn with_facets(stack: &Monochrome, facets: &mut FacetCache) -> Self {
         Self { layers: stack.layers.iter().map(|layer| LayerEnergy::new(layer, facets)).collect() }
     }
@@ -101,8 +102,8 @@ impl Energy<1> for ExactEnergy {
     }
 }
 
-/// FGD-infinity of every interface of a stack in colour: [`ExactEnergy`] at every wavelength of a colour mode, summed. Slope
-/// parameters are those of shaders ([`Layers::rgb`]).
+/// FGD-infinity of every interface of a stack in colour: the sum of [`ExactEnergy`] over the wavelengths of a colour mode. Slope parameters are
+/// those of shaders ([`Layers::rgb`]).
 ///
 /// Computed at 65 cosines (97 from the denser side), within 5e-4 of a direct computation from above, and within 2e-2 from the denser
 /// side.
@@ -119,24 +120,24 @@ struct ColorLayer {
 }
 
 impl ColorEnergy {
-    /// The energies of a stack: up to some seconds for spectra of films.
+    /// Computes the energies of a stack, which takes up to some seconds for spectra of films.
     pub fn new(stack: &Stack, color: Color) -> Self {
         let mut facets = FacetCache { detail: FINE, surfaces: Vec::new() };
         let shader = Layers::rgb(stack);
-        let layer = |i: usize| {
+        let layers = (0..stack.layers.len()).map(|i| {
             let interface = Interface::of(stack, i)?.sampled(&color);
             let transparent = matches!(stack.layers[i].base, Base::Dielectric { .. });
             Some(ColorLayer::new(interface, transparent, &shader.layers[i].surface, &mut facets))
-        };
-        Self { layers: (0..stack.layers.len()).map(layer).collect() }
+        });
+        Self { layers: layers.collect() }
     }
 }
 
 impl ColorLayer {
     fn new(interface: Sampled, transparent: bool, surface: &Surface, facets: &mut FacetCache) -> Self {
         let curves = ReflectanceCurves::new(interface.nodes.len(), |k, cos| interface.nodes[k].1.reflectance(cos));
-        let eta = |one: &interface::Monochrome| transparent.then(|| one.below.re / one.above.re);
-        let etas: Vec<Option<f64>> = interface.nodes.iter().map(|(_, one)| eta(one)).collect();
+        let ones = interface.nodes.iter().map(|(_, one)| one);
+        let etas: Vec<Option<f64>> = ones.map(|one| transparent.then(|| one.below.re / one.above.re)).collect();
         let nearly_smooth = surface.alpha_isotropic() < NEARLY_SMOOTH;
         let nodes = albedo_nodes(surface, &curves, &etas, facets)
             .map(|(cos, albedos)| {
@@ -163,9 +164,8 @@ impl Energy<3> for ColorEnergy {
 
 /// The energies of shaders without tables: Fresnel's reflectance at the mean direction, at three wavelengths, films included.
 ///
-/// In place of FGD-infinity the facets count as level, and no part of a lobe is totally reflected: what Unity's StackLit does.
-/// Exact for smooth interfaces. For rough ones single reflections miss the brighter reflectance of tilted facets at grazing
-/// angles, and slabs absorb less because nothing is kept in them.
+/// In place of FGD-infinity, facets count as level, and no part of a lobe is totally reflected, as in Unity's StackLit. Smooth interfaces are exact.
+/// For rough interfaces the reflectance at grazing angles lacks that of tilted facets, and slabs absorb less because no light is kept in them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FresnelEnergy {
     interfaces: Vec<Option<[interface::Monochrome; 3]>>,
@@ -174,9 +174,9 @@ pub struct FresnelEnergy {
 impl FresnelEnergy {
     /// The energies of a stack at three wavelengths.
     pub fn new(stack: &Stack, wavelengths_nm: [f64; 3]) -> Self {
-        let at =
-            |i| Interface::of(stack, i).map(|interface| [0, 1, 2].map(|c: usize| interface.at(wavelengths_nm[c], c)));
-        Self { interfaces: (0..stack.layers.len()).map(at).collect() }
+        let interfaces = (0..stack.layers.len()).map(|i| Interface::of(stack, i));
+        let at = interfaces.map(|one| one.map(|one| [0, 1, 2].map(|c: usize| one.at(wavelengths_nm[c], c))));
+        Self { interfaces: at.collect() }
     }
 }
 
@@ -217,8 +217,8 @@ impl LayerEnergy {
     }
 }
 
-/// Cosine and FGD-infinity, per curve, at every node of a rough surface. `etas` are the indices below over above of the curves of a
-/// transparent interface.
+/// Cosine and FGD-infinity of each curve at every node of a rough surface. `etas` has, for each curve of a transparent interface, the index below
+/// over the index above.
 fn albedo_nodes(
     surface: &Surface,
     curves: &ReflectanceCurves,
@@ -249,18 +249,18 @@ fn between_nodes<const C: usize>(nodes: &[[f64; C]], cos_theta_i: f64) -> [f64; 
     from_fn(|c| weights.iter().zip(&nodes[first..]).map(|(w, value)| w * value[c]).sum())
 }
 
-/// Part of the energy of an interface that is not tabulated: the reflectance of a nearly smooth one.
+/// Part of the energy of an interface outside its nodes: the smooth reflectance of a nearly smooth one.
 fn smooth_part(interface: &MonochromeLayer, cos_theta_i: f64) -> f64 {
     if interface.surface.alpha_isotropic() < NEARLY_SMOOTH { interface.reflectance(cos_theta_i) } else { 0.0 }
 }
 
-/// Cosine of a node: they gather at grazing angles.
+/// Cosine of a node. Nodes gather at grazing angles.
 fn node(i: usize, count: usize) -> f64 {
     let u = i as f64 / (count - 1) as f64;
     u * u
 }
 
-/// Facet statistics of micro-surfaces at all nodes, from which the energies of any interface on them are computed.
+/// Facet statistics of micro-surfaces at all nodes. The energies of any interface with such a surface follow from them.
 #[derive(Debug, Clone)]
 pub struct FacetCache {
     detail: Detail,
@@ -283,14 +283,16 @@ struct FacetNodes {
 
 impl FacetCache {
     fn nodes(&mut self, distribution: Distribution, alpha: f64, kinked: bool) -> Arc<[FacetStatistics]> {
-        let same = |s: &&FacetNodes| s.distribution == distribution && s.alpha == alpha && s.kinked == kinked;
-        if let Some(known) = self.surfaces.iter().find(same) {
+        let mut surfaces = self.surfaces.iter();
+        if let Some(known) = surfaces.find(|s| s.distribution == distribution && s.alpha == alpha && s.kinked == kinked)
+        {
             return Arc::clone(&known.nodes);
         }
         let Detail { effort, intervals, .. } = self.detail;
         let (effort, intervals) = (effort[usize::from(kinked)], intervals[usize::from(kinked)]);
-        let at = |i| FacetStatistics::new(distribution, alpha, node(i, intervals + 1), effort, 0);
-        let nodes: Arc<[FacetStatistics]> = (0..=intervals).map(at).collect();
+        let cosines = (0..=intervals).map(|i| node(i, intervals + 1));
+        let nodes: Arc<[FacetStatistics]> =
+            cosines.map(|cos| FacetStatistics::new(distribution, alpha, cos, effort, 0)).collect();
         self.surfaces.push(FacetNodes { distribution, alpha, kinked, nodes: Arc::clone(&nodes) });
         nodes
     }

@@ -1,4 +1,4 @@
-//! Twin of the kernels that models of statistics have: three channels that share directions and spreads.
+//! Twin of the kernels of statistics: three channels that share directions and spreads.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;

@@ -14,20 +14,21 @@ use crate::frame::cos_theta_d;
 use crate::layers::Layers;
 use crate::monochrome::Monochrome;
 
-/// The direction whose statistics all lobes are given.
+/// The direction whose statistics all lobes have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Follow {
-    /// The eye's, as in the papers (whose paths start there): once per pixel, and lobes carry their energy exactly. Not reciprocal.
+    /// The eye's direction, as in the papers, whose paths start there. It takes one evaluation per pixel, and lobes carry their energy exactly. Not
+    /// reciprocal.
     Eye,
-    /// Either direction against the half vector: once per light, and reciprocal.
+    /// The angle of both directions against the half vector. It takes one evaluation per light. Reciprocal.
     HalfVector,
 }
 
-/// `f cos_theta_i`: every lobe of the stack as a GGX surface of its spread with height-correlated Smith masking (Yamaguchi et al.
-/// 2019, eq. 3), plus the diffuse base.
+/// `f cos_theta_i` of all lobes and the diffuse base. A lobe is a GGX surface of its spread, with height-correlated Smith masking (Yamaguchi et al.
+/// 2019, eq. 3).
 ///
-/// Light that leaves a lobe's surface downward, or is blocked on it, is lost, although FGD-infinity counts it: directional albedos
-/// fall short of the energies by what single scattering loses.
+/// FGD-infinity counts light that leaves such a surface downward or is blocked on it, and the lobe loses it. So directional albedos fall short of
+/// the energies by the losses of single scattering.
 pub fn evaluate<S: Spread, const C: usize>(
     stack: &Layers<C>,
     energy: &dyn Energy<C>,
@@ -59,7 +60,7 @@ pub fn evaluate<S: Spread, const C: usize>(
     sum
 }
 
-/// A stack with the energies that do not depend on directions computed.
+/// A stack with its energies, which do not depend on directions.
 #[derive(Debug, Clone)]
 pub struct Prepared {
     stack: Monochrome,
@@ -69,7 +70,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Computes them: tens of milliseconds for a rough interface.
+    /// Computes the energies of a stack: tens of milliseconds for a rough interface.
     pub fn new(stack: &Monochrome) -> Self {
         Self::with_facets(stack, &mut FacetCache::default())
     }
@@ -81,12 +82,12 @@ impl Prepared {
         Self { stack: stack.clone(), layers, energy, base }
     }
 
-    /// The stack as the statistics see it.
+    /// The layers that the statistics follow.
     pub fn layers(&self) -> &Layers<1> {
         &self.layers
     }
 
-    /// Effect of the layers on the light of a diffuse base, if there is one.
+    /// Effect of the layers on the light of a diffuse base; `None` without one.
     pub fn veil(&self) -> Option<Veil<1>> {
         self.base.as_ref().map(DiffuseBase::veil)
     }
@@ -103,10 +104,10 @@ impl Prepared {
     }
 }
 
-/// Stacks that a model keeps prepared, at most.
+/// The most stacks that a model keeps prepared.
 const KEPT: usize = 1024;
 
-/// Prepared stacks of a model, so that it can be evaluated direction by direction. Values do not depend on what is kept.
+/// Prepared stacks of a model, for evaluation direction by direction. Values do not depend on which stacks are kept.
 #[derive(Debug, Default)]
 pub struct Memory {
     kept: Mutex<Kept>,

@@ -6,9 +6,9 @@
 //! disc (the mean of its directions, projected on the surface), an energy and a spread around that point. Interfaces and
 //! slabs change the three; adding sums all paths between them.
 //!
-//! The two papers differ in the type of a spread only: a number, or a covariance matrix. So does the code: everything here is
-//! generic over [`spread::Spread`]. It is generic over the number of channels too: the models of this crate have one, a wavelength; shaders
-//! have three colours that share directions and spreads ([`Layers::rgb`](crate::layers::Layers::rgb)).
+//! The two papers differ only in the type of a spread: a number, or a covariance matrix. Everything here is generic over [`spread::Spread`], and
+//! over the number of channels. The models of this crate have one channel, a wavelength. Shaders have three channels, which share directions and
+//! spreads ([`Layers::rgb`](crate::layers::Layers::rgb)).
 //!
 //! Out of scope: media that scatter.
 
@@ -26,5 +26,5 @@ pub mod total_reflection;
 /// Kernels of spreads.
 pub const SPREAD: &str = include_str!("spread.wgsl");
 
-/// Kernels of the adding of layers. `$Path`, `$spread` and `$add(` stand for the types and functions of a model.
+/// Kernels that add layers. `$Path`, `$spread` and `$add(` stand for the types and functions of a model.
 pub const ADDING: &str = include_str!("adding.wgsl");

@@ -1,4 +1,4 @@
-//! Model by statistics: one stack in, one value out, with the energies that it has computed before.
+//! Models of statistics at one wavelength, which keep the energies of stacks.
 
 use std::marker::PhantomData;
 
@@ -9,8 +9,8 @@ use super::spread::Spread;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 
-/// A model whose lobes have spreads of type `S`, with FGD-infinity computed exactly. To read it from a table, see
-/// [`evaluate`](super::evaluate::evaluate).
+/// A model whose lobes have spreads of type `S`. FGD-infinity is computed exactly; [`evaluate`](super::evaluate::evaluate) takes other sources, such
+/// as a table.
 #[derive(Debug)]
 pub struct Statistical<S> {
     follow: Follow,
@@ -20,7 +20,7 @@ pub struct Statistical<S> {
 }
 
 impl<S> Statistical<S> {
-    /// The model of a paper, following one of the directions: its name, source, domain, and what it leaves out.
+    /// A published model with the statistics of one direction, and the texts of its listing: name, source, domain, omissions.
     pub(in crate::models) fn published(follow: Follow, [name, source, domain, leaves_out]: [&'static str; 4]) -> Self {
         let claims = match follow {
             Follow::Eye => Claims::ENERGY,

@@ -7,10 +7,10 @@ use luthier_optics::stack::{Distribution, Surface};
 /// Exponent of the fit between slope parameter and variance (Belcour 2018, eq. 4; 1.1 in the papers and their code).
 const EXPONENT: f64 = 1.1;
 
-/// Rougher surfaces count as this one: the variance of alpha = 1 is infinite.
+/// Rougher surfaces count as this one, because the variance of alpha = 1 is infinite.
 const ALPHA_MAX: f64 = 0.9999;
 
-/// Variances are held below this, far beyond that of any surface (9 000), so that sums stay finite.
+/// Limit of variances, so that sums stay finite. It is far beyond the variance of any surface (9 000).
 const VARIANCE_MAX: f64 = 1e9;
 
 /// Variance of the light that a GGX surface reflects, in the projected disc: `h(alpha) = alpha^1.1 / (1 - alpha^1.1)`.
@@ -37,7 +37,7 @@ pub trait Spread: Copy + Add<Output = Self> + Mul<f64, Output = Self> {
     /// Slope parameter of the isotropic surface of the same mean variance.
     fn mean_alpha(self) -> f64;
 
-    /// The spread, with variances that are beyond any surface held finite.
+    /// The spread with its variances limited to finite ones.
     fn limited(self) -> Self;
 
     /// The GGX surface that spreads light this way.

@@ -4,22 +4,21 @@ use std::f64::consts::PI;
 
 use luthier_optics::albedo::ALPHA_MIN;
 
-/// Points of the integral over slopes: shares are within 3e-4 of the limit, next to grazing; mostly within 1e-4.
+/// Points of the integral over slopes. Shares are within 3e-4 of the limit next to grazing angles, and mostly within 1e-4.
 const POINTS: u32 = 32;
 
-/// Directions this close to the critical angle count as within it: a mean direction that was refracted from grazing
-/// incidence lies on it but for rounding.
+/// Directions this close to the critical angle count as within it. A mean direction refracted from grazing incidence lies on it; without a
+/// tolerance, rounding would decide.
 const CRITICAL_TOLERANCE: f64 = 1e-9;
 
 /// Share of a lobe that is not totally reflected: TIR of Belcour 2018, sec. 5.
 ///
-/// The lobe is what a GGX surface of slope `alpha` reflects upward of light at `cos_theta_i` (first bounce, without masking).
-/// `eta` is the index above the interface that the lobe meets next over the index of the medium it is in. 1 for `eta >= 1`; in
-/// 0..=1.
+/// The lobe is light at `cos_theta_i` that a GGX surface of slope `alpha` reflects upward (first bounce, without masking). It lies in a medium, and
+/// next meets an interface; `eta` is the index above that interface over the index of the medium. The share is in 0..=1, and 1 for `eta >= 1`.
 ///
-/// Slopes in polar form: of each circle of equal slopes, the arc that reflects above a given elevation is known in closed form,
-/// and so is the visible area on it. What is left is one integral between square-root ends, which the midpoint rule in the
-/// angle of a half circle takes well.
+/// Method: slopes are in polar form. On a circle of equal slopes, the arc that reflects above an elevation has a closed form, and so has the visible
+/// area on it. One integral remains, whose integrand behaves like square roots at both ends: the midpoint rule over the angle of a half circle
+/// suits it.
 pub fn escaping_share(cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
     if eta >= 1.0 {
         return 1.0;
@@ -37,7 +36,7 @@ pub fn escaping_share(cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
 fn reflected_above(cos_i: f64, alpha: f64, cos_min: f64) -> f64 {
     let sin_i = ((1.0 - cos_i) * (1.0 + cos_i)).max(0.0).sqrt();
     let sin_min = ((1.0 - cos_min) * (1.0 + cos_min)).max(0.0).sqrt();
-    // Slopes at which the arc begins to be cut, and at which nothing is left of it.
+    // Between these slopes part of the circle reflects above `cos_min`: below the first all or nothing of it does, above the second nothing.
     let sum = cos_i + cos_min;
     if sum <= 0.0 {
         return 0.0;
@@ -55,7 +54,7 @@ fn reflected_above(cos_i: f64, alpha: f64, cos_min: f64) -> f64 {
         let theta = PI * (f64::from(k) + 0.5) / f64::from(POINTS);
         let psi = from + (to - from) * 0.5 * (1.0 - libm::cos(theta));
         let slope = alpha * libm::tan(psi);
-        // cos phi on the edge of the arc.
+        // cos phi on the edge of the arc. The limit avoids a division by 0 at normal incidence.
         let edge = (0.5 * sum * (1.0 + slope * slope) - cos_i) / (slope * sin_i).max(f64::MIN_POSITIVE);
         let phi = libm::acos(edge.clamp(-1.0, 1.0));
         let area = 2.0 * (cos_i * phi + slope * sin_i * libm::sin(phi));

@@ -3,7 +3,7 @@
 //! Two corrections to [`crate::models::weidlich_wilkie`]:
 //!
 //! - radiance that leaves a medium of index n is divided by n^2;
-//! - bounces between a layer and all the interfaces above it are summed. The term `t` goes.
+//! - bounces between a layer and all the interfaces above it are summed, which replaces the term `t`.
 //!
 //! Layer k, seen from the exterior through the interfaces above it, contributes
 //!
@@ -11,10 +11,9 @@
 //! f_k(wi', wo') T(wi) T(wo) (n_0 / n_k)^2 / (1 - R_k S_k)
 //! ```
 //!
-//! T being the power that the smooth interfaces above pass with all bounces between them, R_k what they return downwards, and
-//! S_k what layer k reflects. For a conductor or another interface R_k and S_k are taken at the angle of its half vector; for
-//! a diffuse base R_k is the mean over diffuse light and S_k the albedo. For smooth layers over a mirror or Lambert's
-//! surface that is exact (adding of powers, layer by layer), and the whole is reciprocal for any stack.
+//! T is the power that the smooth interfaces above transmit, with all bounces between them, R_k their reflectance from below, and S_k the reflectance
+//! of layer k. For an interface, R_k and S_k are taken at the angle of its half vector. For a diffuse base, R_k is the mean over diffuse light and S_k
+//! the albedo. This is exact for smooth layers over a mirror or Lambert's surface (adding of powers, layer by layer), and reciprocal for any stack.
 
 use glam::DVec3;
 use luthier_model::Masking;
@@ -80,7 +79,7 @@ impl Model for WeidlichWilkieCorrected {
     }
 }
 
-/// `1 + echo + echo^2 + ...`, and 0 for light that never leaves: none of it got in.
+/// `1 + echo + echo^2 + ...`; 0 for an echo of 1. Light that never leaves has not entered either.
 fn series(echo: f64) -> f64 {
     if echo < 1.0 { 1.0 / (1.0 - echo) } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! Twin of the path's kernels, which are all that the model has.
+//! Twin of the path's kernels. The model has no others.
 
 use glam::DVec3;
 use luthier_optics::Rgb;

@@ -8,13 +8,12 @@
 //! a = exp(-sigma d (1/cos_theta_i' + 1/cos_theta_o'))      t = (1 - G) + T_21 G
 //! ```
 //!
-//! f_2 is again a layered surface; T_12 = T_21 = 1 - F at the half vector (the course's shader takes both there, see
-//! [`InternalReflection`]); G is of V-cavities. Of the distributions the course leaves free, each surface brings its own.
+//! f_2 is again a layered surface. T_12 = T_21 = 1 - F at the half vector, as in the course's shader (see [`InternalReflection`]). G is of
+//! V-cavities. The course leaves the distribution free, and each surface has its own.
 //!
-//! The model errs in two ways, which the tests measure: radiance is not compressed by 1/n^2 on its way out, so that a smooth
-//! coat over a white base returns about twice what it receives; and light that comes back from the underside of an
-//! interface is lost or, by `t`, made up for where facets hide each other. [`crate::models::weidlich_wilkie::corrected`] mends
-//! both.
+//! The model errs in two ways, which the tests measure. Radiance is not compressed by 1/n^2 on its way out: a smooth coat over a white base returns
+//! about twice the light that it receives. Light that an interface returns downward is lost, except for the share that `t` makes up for, by how far
+//! facets hide each other. [`crate::models::weidlich_wilkie::corrected`] mends both.
 
 pub mod corrected;
 mod eval;
@@ -57,11 +56,11 @@ pub(crate) const ROOM: Room = Room {
 /// Normal at which both directions are refracted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Refraction {
-    /// The surface's, as in Elek's form of the model and in the sampling of this crate.
+    /// The normal of the surface, as in Elek's form of the model and in the sampling of this crate.
     #[default]
     Surface,
-    /// The half vector: both rays pass the one facet that they have in common (the course's first simplification, read by the
-    /// letter). The lower layer then sees the same half vector, whatever the index.
+    /// The half vector: both rays pass through their common facet (the course's first simplification, read by the letter). The lower layer then has
+    /// the same half vector, whatever the index.
     Facet,
 }
 
@@ -70,7 +69,7 @@ pub enum Refraction {
 pub struct WeidlichWilkie {
     /// Normal at which directions are refracted.
     pub refraction: Refraction,
-    /// Light that comes out.
+    /// Form of internal reflection: the light from below that interfaces let out.
     pub internal_reflection: InternalReflection,
 }
 
@@ -79,7 +78,7 @@ impl PathModel for WeidlichWilkie {
         self.internal_reflection
     }
 
-    /// Lobes carry the cosine of their own medium.
+    /// The cosine is a factor on returned light. Interfaces get it over that of the medium above, because lobes carry the cosine of their own medium.
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2] {
         [1.0, cos_theta_i]
     }

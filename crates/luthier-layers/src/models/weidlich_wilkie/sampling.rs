@@ -1,25 +1,24 @@
 //! Sampling of a layered surface, by the two methods of Weidlich and Wilkie 2009, sec. 3.2.
 //!
-//! - *Global* (3.2.2): every layer proposes one direction for a path to go on; one of them is followed, with a probability
-//!   in proportion to what it carries ([`Sampler::propose`], [`Sampler::follow`]).
+//! - *Global* (3.2.2): every layer proposes a direction. A path follows one of them, with a probability in proportion to the light that it carries
+//!   ([`Sampler::propose`], [`Sampler::follow`]).
 //! - *Local* (3.2.4, eq. 3.6): one direction for the whole surface ([`Sampler::sample`]), with the mixture density
 //!   `p = sum w_k p_k`, `sum w_k = 1`.
 //!
-//! Every draw leaves the surface: each `p_k` integrates to 1, and so does `p`. Layer k lies in a medium of the index `n_k`, that of the
-//! exterior being 1. The product `n sin_theta` is the same in all media, so that light leaves whose `n_k sin_theta` is below the
-//! least index m on its way, and which goes up. In the medium of the layer that is a cone about the normal,
-//! `cos_theta > c_k = sqrt(1 - m^2 / n_k^2)`. Solid angles grow on the way out: `d omega' = d omega cos_theta / (n_k^2 cos_theta')`, the prime
-//! for the medium of the layer.
+//! Every draw leaves the surface: each `p_k` integrates to 1, and so does `p`. Layer k lies in a medium of index `n_k`, and the exterior has index 1.
+//! The product `n sin_theta` is the same in all media. So upward light leaves if its `n_k sin_theta` is below the least index m on its way. In the
+//! medium of the layer these directions are a cone about the normal, `cos_theta > c_k = sqrt(1 - m^2 / n_k^2)`. Solid angles grow on the way out:
+//! `d omega' = d omega cos_theta / (n_k^2 cos_theta')`, with primes for the medium of the layer.
 //!
-//! - *A diffuse base* is drawn by the cosine inside the cone. Outside that is
-//!   `p_k = cos_theta / (pi m^2)` up to `sin_theta = m`: for m = 1, the cosine over the hemisphere.
+//! - *A diffuse base* is drawn by the cosine inside the cone. In directions outside the stack this is `p_k = cos_theta / (pi m^2)` up to
+//!   `sin_theta = m`. For m = 1 it is the cosine over the hemisphere.
 //! - *An interface* mirrors `wo'` at a visible facet. The density `q = G1 D / (4 cos_theta_o')` integrates to 1 over the sphere, and
 //!   reaches from `z = cos_theta' = 1` down to `-cos_theta_o'`. The part outside the cone is folded into it at its edge:
-//!   `z -> c_k + s (c_k - z)`, the azimuth is kept, and s = min(1, (1 - c_k) / (c_k + cos_theta_o')) makes it fit. Solid angle is
-//!   `dz d phi`, so that inside the cone the density is `q(z) + q(c_k - (z - c_k) / s) / s`, and outside
-//!   `p_k = d omega' / d omega` times that.
+//!   `z -> c_k + s (c_k - z)`. The azimuth is kept, and s = min(1, (1 - c_k) / (c_k + cos_theta_o')) makes it fit. Solid angle is
+//!   `dz d phi`, so the density inside the cone is `q(z) + q(c_k - (z - c_k) / s) / s`. In directions outside the stack, `p_k` is this times
+//!   `d omega' / d omega`.
 //!
-//! The fold only adds to the density where light leaves, so that it never makes an estimate noisier than a draw that is lost.
+//! The fold adds density to directions that leave, and removes none. So it never makes an estimate noisier than losing the draw would.
 
 use std::f64::consts::PI;
 
@@ -57,16 +56,16 @@ struct Sampled {
     etas: Vec<f64>,
     /// Cosine, there, of the edge of the cone of directions that leave.
     edge: f64,
-    /// Part of the samples.
+    /// Share of the samples.
     weight: f64,
 }
 
 impl Sampler {
-    /// The sampler for a direction above the horizon; without layers, and so without samples, for others.
+    /// The sampler for a direction above the horizon. For other directions it has no layers, and so no samples.
     ///
-    /// The weights of the mixture are what smooth layers would send to `wo` in the model of the course: power passed by the interfaces
-    /// above, both ways, times the reflectance; and of an interface times `n_k^2`, for that model spreads a lobe over as much
-    /// more solid angle on its way out and does not dim it.
+    /// The weights of the mixture are the light that smooth layers would send to `wo` in the model of the course: the power that the interfaces above
+    /// transmit, both ways, times the reflectance. The weight of an interface is also multiplied by `n_k^2`, because that model spreads a lobe over
+    /// so much more solid angle on its way out and does not dim it.
     pub fn new(stack: &Monochrome, wo: DVec3) -> Self {
         let mut layers: Vec<Sampled> = Vec::with_capacity(stack.layers.len());
         let (mut wo_local, mut etas) = (wo, Vec::new());
@@ -126,25 +125,25 @@ impl Sampler {
         self.layers.iter().map(|layer| layer.weight * layer.pdf_solid_angle(wi)).sum()
     }
 
-    /// The proposal of one layer, from two numbers in 0..1; the global method's list is that of all layers.
+    /// The proposal of one layer, from two numbers in 0..1. The global method takes the proposals of all layers.
     pub fn propose(&self, layer: usize, u: [f64; 2]) -> Option<Proposal> {
         let sampled = self.layers.get(layer)?;
         let wi = sampled.sample(u)?;
         Some(Proposal { layer, wi, pdf_solid_angle: sampled.pdf_solid_angle(wi) })
     }
 
-    /// Density of the proposals of one layer; 0 for a layer that there is not.
+    /// Density of the proposals of one layer; 0 for a missing layer.
     pub fn pdf_of_layer(&self, layer: usize, wi: DVec3) -> f64 {
         self.layers.get(layer).map_or(0.0, |l| l.pdf_solid_angle(wi))
     }
 
-    /// Sum of the densities of all layers: what weighs a proposal against those of other layers (balance heuristic, Veach 1995).
+    /// Sum of the densities of all layers, the divisor of the balance heuristic (Veach 1995).
     pub fn sum_of_densities(&self, wi: DVec3) -> f64 {
         self.layers.iter().map(|layer| layer.pdf_solid_angle(wi)).sum()
     }
 
-    /// The global method's choice: one of the proposals, in proportion to `carried` (what each brings: the model's
-    /// `f cos_theta_i` over [`Self::sum_of_densities`]), with its probability. `None` when nothing is carried.
+    /// The choice of the global method: one of the proposals, and its probability, in proportion to `carried`. That is the light of a proposal: the
+    /// model's `f cos_theta_i` over [`Self::sum_of_densities`]. `None` if no proposal carries light.
     pub fn follow(proposals: &[Proposal], carried: impl Fn(&Proposal) -> f64, u: f64) -> Option<(Proposal, f64)> {
         let shares: Vec<f64> = proposals.iter().map(|p| carried(p).max(0.0)).collect();
         let sum: f64 = shares.iter().sum();
@@ -203,7 +202,7 @@ impl Sampled {
         (reach, ((1.0 - self.edge) / reach).min(1.0))
     }
 
-    /// A direction as it leaves: one that does not is folded into the cone.
+    /// A direction outside the stack. One that would not leave is folded into the cone first.
     fn folded(&self, w: DVec3) -> DVec3 {
         if w.z > self.edge {
             return w;

@@ -1,18 +1,21 @@
-//! Mistakes in HLSL and MSL that no compiler here sees: glslang, which reads HLSL, is laxer than Microsoft's compilers, and nothing here reads MSL.
+//! A lint for mistakes in HLSL and MSL that tests on Linux would miss: glslang reads HLSL, but is laxer than Microsoft's compilers, and no compiler
+//! there reads MSL.
 //!
-//! The lint reads a text that naga wrote, and this crate arranged, by its tokens. It finds
+//! The lint reads the tokens of a text that naga wrote and this crate arranged. It finds
 //!
-//! - vectors as conditions of `?:`, `if`, `while`, `&&` and `||`, which HLSL 2021 refuses, and which C++ does not have;
-//! - names that the language keeps for itself;
-//! - types and functions that the stated version of the language does not have;
-//! - loops without a counter that is stepped by a constant and compared where the loop ends.
+//! - vectors as conditions of `?:`, `if`, `while`, `&&` and `||`: HLSL 2021 refuses them, and C++ lacks them;
+//! - reserved words as names;
+//! - types and functions that the stated version of the language lacks;
+//! - loops without a counter that is stepped by a constant and compared at an end of the loop.
 //!
-//! It follows the shapes of values through declarations. A condition whose shape it does not know is a finding, too, so that silence means
-//! that everything was read. It is no compiler: it does not check arguments, assignments or the order of declarations.
+//! It follows the shapes of values through declarations. A condition of unknown shape is a finding, too, so that silence means that everything
+//! was read. It is no compiler: it does not check arguments, assignments or the order of declarations.
 
 mod shape;
 mod tokens;
 mod vocabulary;
+
+use std::ops::Range;
 
 use self::shape::{Names, Shape};
 use self::tokens::{Token, tokens};
@@ -43,21 +46,21 @@ const BEFORE_TYPES: [&str; 18] = [
 /// Words before brackets that are no functions.
 const CONTROL: [&str; 8] = ["if", "while", "for", "switch", "return", "register", "case", "packoffset"];
 
-/// Something that a compiler would refuse.
+/// A mistake that a compiler would refuse.
 #[derive(Debug, PartialEq, Eq)]
 struct Finding {
     line: usize,
     what: String,
 }
 
-/// Refuses a text that the language would.
+/// Refuses a text with a finding.
 pub(super) fn check(text: &str, target: Target) -> Result<(), ShaderError> {
     let Some(Finding { line, what }) = findings(text, target).into_iter().next() else { return Ok(()) };
     let code = text.lines().nth(line - 1).unwrap_or_default().trim();
     Err(ShaderError::untranslatable(target, format!("{what}, in `{code}`")))
 }
 
-/// All that a text has, from the top.
+/// All findings in a text, from the top.
 fn findings(text: &str, target: Target) -> Vec<Finding> {
     let tokens = tokens(text);
     let mut lint =
@@ -69,7 +72,7 @@ fn findings(text: &str, target: Target) -> Vec<Finding> {
     lint.found
 }
 
-/// A type and a name: where the name is, and what it stands for.
+/// A declared name: its token, and the shape of its value.
 struct Declaration {
     name: usize,
     shape: Shape,
@@ -116,7 +119,7 @@ impl<'a> Lint<'a> {
         Some(Declaration { name, shape })
     }
 
-    /// A name that is declared: not one of the language's own.
+    /// A declared name. It is a finding if it is a reserved word.
     fn declare(&mut self, name: usize) -> String {
         let word = self.text(name);
         if self.vocabulary.keeps(word) {
@@ -141,7 +144,7 @@ impl<'a> Lint<'a> {
         self.tokens.len()
     }
 
-    /// Structures with their members, and other names for types.
+    /// Reads structures with their members, and other names of types.
     fn structs(&mut self) {
         for i in 0..self.tokens.len() {
             if self.text(i) == "typedef" {
@@ -169,7 +172,7 @@ impl<'a> Lint<'a> {
         }
     }
 
-    /// Types that functions return.
+    /// Reads the types that functions return.
     fn functions(&mut self) {
         let mut depth = 0;
         for i in 0..self.tokens.len() {
@@ -185,13 +188,13 @@ impl<'a> Lint<'a> {
         }
     }
 
-    /// Variables and what is done with them.
+    /// Reads variables, conditions, loops and words.
     fn bodies(&mut self) {
         let (mut depth, mut of_file) = (0, 0);
         let mut i = 0;
         while i < self.tokens.len() {
             match self.text(i) {
-                // Read before.
+                // Structures and other names of types have been read.
                 "struct" if self.text(i + 2) == "{" => {
                     i = self.behind(i + 2);
                     continue;
@@ -223,7 +226,7 @@ impl<'a> Lint<'a> {
                     // A local variable may have the name of one of the file.
                     let name = self.declare(name);
                     self.names.variables.push((name, shape));
-                    // Parameters are before the first bracket of a function, and go with it.
+                    // Parameters stand before the first brace of a function, and end with it.
                     if depth == 0 && !self.is_parameter(i) {
                         of_file = self.names.variables.len();
                     }
@@ -235,7 +238,7 @@ impl<'a> Lint<'a> {
         }
     }
 
-    /// Whether what begins here lies in round brackets.
+    /// Whether a token lies in round brackets.
     fn is_parameter(&self, at: usize) -> bool {
         let mut depth = 0;
         for token in self.tokens[..at].iter().rev() {
@@ -250,7 +253,7 @@ impl<'a> Lint<'a> {
         false
     }
 
-    /// Types and functions that the language does not have.
+    /// Finds a type or a function that the language lacks.
     fn words(&mut self, at: usize) {
         let (word, next) = (self.tokens[at], self.text(at + 1));
         if !word.is_word() || CONTROL.contains(&word.text) {
@@ -281,7 +284,7 @@ impl<'a> Lint<'a> {
         }
     }
 
-    /// Where the operand before a sign begins: behind an open bracket, or behind one of these signs.
+    /// First token of the operand before a sign. It stands behind an open bracket, or behind a sign that binds less.
     fn beginning(&self, sign: usize, stops: &[&str]) -> usize {
         let mut depth = 0;
         for i in (0..sign).rev() {
@@ -297,7 +300,7 @@ impl<'a> Lint<'a> {
         0
     }
 
-    /// Where the operand that begins here ends.
+    /// The token behind the operand that begins here.
     fn end(&self, start: usize) -> usize {
         let mut depth = 0;
         for i in start..self.tokens.len() {
@@ -312,7 +315,7 @@ impl<'a> Lint<'a> {
         self.tokens.len()
     }
 
-    /// A condition from one token to another: one number.
+    /// Finds a condition, from one token to another, that is not one number.
     fn condition(&mut self, start: usize, end: usize) {
         let what = match shape::of(&self.tokens[start..end], &self.names, self.vocabulary) {
             Shape::Scalar => return,
@@ -322,34 +325,12 @@ impl<'a> Lint<'a> {
         self.find(start, what);
     }
 
-    /// A loop: it has a counter, which is stepped by a constant and compared where the loop ends.
+    /// Finds a loop without a counter that is stepped by a constant and compared in its head or before a `break`.
     fn repeats(&mut self, at: usize) {
         let head_end = self.behind(at + 1);
         let end = if self.text(head_end) == "{" { self.behind(head_end) } else { head_end };
-        let stepped = |name: &str| {
-            (at..end).any(|i| {
-                if self.text(i) != name {
-                    return false;
-                }
-                let statement_end = (i..end).find(|&j| self.text(j) == ";").unwrap_or(end);
-                // A number, in casts or not: `1u`, `asuint(int(1))`, `as_type<uint>(1)`.
-                let is_number = |j: usize| {
-                    let is_of_cast = |token: &&Token<'_>| token.is_word() || ["(", "<", ">"].contains(&token.text);
-                    self.tokens[j..].iter().find(|token| !is_of_cast(token)).is_some_and(Token::is_number)
-                };
-                match self.text(i + 1) {
-                    "++" | "--" => true,
-                    "+=" | "-=" => is_number(i + 2),
-                    "=" => (i..statement_end).any(|j| ["+", "-"].contains(&self.text(j)) && is_number(j + 1)),
-                    _ => false,
-                }
-            })
-        };
-        let compares = |start: usize, end: usize| {
-            let is_comparison = (start..end).any(|i| ["<", "<=", ">", ">=", "!="].contains(&self.text(i)));
-            is_comparison && (start..end).any(|i| self.tokens[i].is_word() && stepped(self.text(i)))
-        };
-        let has_bound = compares(at + 2, head_end - 1)
+        let loops = at..end;
+        let has_bound = self.compares(at + 2..head_end - 1, &loops)
             || (head_end..end).any(|i| {
                 if self.text(i) != "if" {
                     return false;
@@ -357,11 +338,38 @@ impl<'a> Lint<'a> {
                 let behind = self.behind(i + 1);
                 let then = self.behind(behind);
                 let last = if self.text(then) == "else" { self.behind(then + 1) } else { then };
-                (behind..last).any(|j| self.text(j) == "break") && compares(i + 2, behind - 1)
+                (behind..last).any(|j| self.text(j) == "break") && self.compares(i + 2..behind - 1, &loops)
             });
         if !has_bound {
             self.find(at, "a loop without a bound".to_owned());
         }
+    }
+
+    /// Whether a condition compares a name that the loop around it steps.
+    fn compares(&self, mut condition: Range<usize>, loops: &Range<usize>) -> bool {
+        condition.clone().any(|i| ["<", "<=", ">", ">=", "!="].contains(&self.text(i)))
+            && condition.any(|i| self.tokens[i].is_word() && self.steps(loops.clone(), self.text(i)))
+    }
+
+    /// Whether a loop adds a number to a name, or subtracts it.
+    fn steps(&self, mut loops: Range<usize>, name: &str) -> bool {
+        let end = loops.end;
+        loops.any(|i| match self.text(i + 1) {
+            _ if self.text(i) != name => false,
+            "++" | "--" => true,
+            "+=" | "-=" => self.is_number(i + 2),
+            "=" => {
+                let statement_end = (i..end).find(|&j| self.text(j) == ";").unwrap_or(end);
+                (i..statement_end).any(|j| ["+", "-"].contains(&self.text(j)) && self.is_number(j + 1))
+            }
+            _ => false,
+        })
+    }
+
+    /// Whether a number begins here, in casts or not: `1u`, `asuint(int(1))`, `as_type<uint>(1)`.
+    fn is_number(&self, at: usize) -> bool {
+        let mut inside = self.tokens[at..].iter().skip_while(|t| t.is_word() || ["(", "<", ">"].contains(&t.text));
+        inside.next().is_some_and(Token::is_number)
     }
 }
 

@@ -1,9 +1,10 @@
-//! Shapes of expressions: how many numbers a value has.
+//! Shapes of expressions: numbers of components.
 
 use std::collections::BTreeMap;
 
 use super::tokens::Token;
 use super::vocabulary::Vocabulary;
+use crate::identifiers::is_of_word;
 
 /// Shape of a value: its components.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,7 +17,7 @@ pub(super) enum Shape {
     Struct(String),
     /// A texture, a sampler or a buffer of bytes.
     Resource(String),
-    /// Something that the lint does not know.
+    /// Not known to the lint.
     Unknown,
 }
 
@@ -24,11 +25,10 @@ impl Shape {
     /// The shape of a type of numbers by its name: `float3`, `uint`, `float3x3`.
     pub(super) fn of_numbers(name: &str) -> Option<Self> {
         let size = ["bool", "float", "uint", "int"].iter().find_map(|base| name.strip_prefix(base))?;
-        let digit = |text: &str| text.parse::<u8>().ok().filter(|count| (2..=4).contains(count));
         match size.split_once('x') {
             _ if size.is_empty() => Some(Self::Scalar),
-            None => digit(size).map(Self::Vector),
-            Some((columns, rows)) => Some(Self::Matrix(digit(columns)?, digit(rows)?)),
+            None => count(size).map(Self::Vector),
+            Some((columns, rows)) => Some(Self::Matrix(count(columns)?, count(rows)?)),
         }
     }
 
@@ -70,11 +70,15 @@ pub(super) struct Names {
 impl Names {
     /// The shape of a type by its name.
     pub(super) fn of_type(&self, name: &str, vocabulary: Vocabulary) -> Option<Shape> {
-        let own = || self.structs.contains_key(name).then(|| Shape::Struct(name.to_owned()));
-        let packed = || (name == "packed_float3").then_some(Shape::Vector(3));
-        let known = || vocabulary.has_type(name).then(|| Shape::Resource(name.to_owned()));
-        let alias = || self.aliases.get(name).cloned();
-        Shape::of_numbers(name).or_else(own).or_else(alias).or_else(packed).or_else(known)
+        if let Some(numbers) = Shape::of_numbers(name) {
+            return Some(numbers);
+        }
+        match self.aliases.get(name) {
+            _ if self.structs.contains_key(name) => Some(Shape::Struct(name.to_owned())),
+            Some(alias) => Some(alias.clone()),
+            None if name == "packed_float3" => Some(Shape::Vector(3)),
+            None => vocabulary.has_type(name).then(|| Shape::Resource(name.to_owned())),
+        }
     }
 
     fn of_variable(&self, name: &str) -> Shape {
@@ -83,7 +87,7 @@ impl Names {
     }
 }
 
-/// The shape of the expression that some tokens are.
+/// The shape of an expression.
 pub(super) fn of(tokens: &[Token<'_>], names: &Names, vocabulary: Vocabulary) -> Shape {
     let mut reader = Reader { tokens, at: 0, names, vocabulary };
     let shape = reader.expression();
@@ -108,7 +112,7 @@ impl<'a> Reader<'a> {
         is_there
     }
 
-    /// Operands and operators: what binds more tightly does not matter to the shape.
+    /// Reads operands and operators. Precedence does not matter: it does not change the shape.
     fn expression(&mut self) -> Shape {
         let mut shape = self.unary();
         while is_operator(self.peek(0)) {
@@ -157,14 +161,11 @@ impl<'a> Reader<'a> {
         let Some(token) = self.tokens.get(self.at) else { return Shape::Unknown };
         self.at += 1;
         let name = token.text;
-        let starts_operand = |text: &str| {
-            text == "(" || text == "{" || text.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
-        };
         if token.is("(") {
             // A cast, `(float)x` or `(Record)0`.
             if let Some(shape) = self.names.of_type(self.peek(0), self.vocabulary)
                 && self.peek(1) == ")"
-                && starts_operand(self.peek(2))
+                && self.peek(2).starts_with(|c| is_of_word(c) || c == '(' || c == '{')
             {
                 self.at += 2;
                 self.unary();
@@ -216,7 +217,6 @@ impl<'a> Reader<'a> {
     }
 
     fn intrinsic(&self, name: &str, arguments: Vec<Shape>) -> Shape {
-        let widest = |shapes: Vec<Shape>| shapes.into_iter().reduce(Shape::with).unwrap_or(Shape::Unknown);
         match name {
             "cross" => Shape::Vector(3),
             "transpose" => match arguments.first() {
@@ -224,8 +224,9 @@ impl<'a> Reader<'a> {
                 _ => Shape::Unknown,
             },
             _ if self.vocabulary.gives_scalar(name) => Shape::Scalar,
-            "mul" => widest(arguments),
-            _ if self.vocabulary.gives_widest(name) => widest(arguments),
+            _ if name == "mul" || self.vocabulary.gives_widest(name) => {
+                arguments.into_iter().reduce(Shape::with).unwrap_or(Shape::Unknown)
+            }
             _ => Shape::Unknown,
         }
     }
@@ -257,6 +258,11 @@ impl<'a> Reader<'a> {
             _ => Shape::Unknown,
         }
     }
+}
+
+/// How many numbers a type has along a side.
+fn count(text: &str) -> Option<u8> {
+    text.parse().ok().filter(|count| (2..=4).contains(count))
 }
 
 fn is_operator(text: &str) -> bool {

@@ -1,6 +1,8 @@
-//! Words and signs of a text in HLSL or MSL, without comments, preprocessor lines, attributes, and what says only where a value lies.
+//! Words and signs of a text in HLSL or MSL, without comments, preprocessor lines, attributes and qualifiers.
 
-/// Words that stand before a type and do not change its shape.
+use crate::identifiers::is_of_word;
+
+/// Qualifiers: words before a type that do not change its shape.
 const PLACES: [&str; 12] = [
     "static",
     "const",
@@ -30,7 +32,7 @@ pub(super) enum Kind {
     Sign,
 }
 
-/// A word, a number or a sign, and the line where it is, from 1.
+/// A word, a number or a sign, with its line, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Token<'a> {
     pub(super) text: &'a str,
@@ -73,36 +75,33 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
 
 /// Kind and length of the token at the beginning of a text.
 fn read(rest: &str, first: char) -> (Kind, usize) {
-    let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let end = |is_in: &dyn Fn(char) -> bool| rest.find(|c| !is_in(c)).unwrap_or(rest.len());
     if first.is_ascii_digit() || (first == '.' && rest[1..].starts_with(|c: char| c.is_ascii_digit())) {
-        // The sign of an exponent belongs to it; that of a hexadecimal number ending in e would not, and there is none.
-        let mut length = end(&|c| is_of_word(c) || c == '.');
+        // A sign behind the e of an exponent belongs to the number. Behind a hexadecimal number, whose e is a digit, it would be an operator.
+        let mut length = rest.find(|c| !is_of_word(c) && c != '.').unwrap_or(rest.len());
         if rest[..length].ends_with(['e', 'E']) && !rest.starts_with("0x") && rest[length..].starts_with(['+', '-']) {
             length += 1 + rest[length + 1..].find(|c| !is_of_word(c)).unwrap_or(rest.len() - length - 1);
         }
         return (Kind::Number, length);
     }
     if is_of_word(first) {
-        return (Kind::Word, end(&is_of_word));
+        return (Kind::Word, rest.find(|c| !is_of_word(c)).unwrap_or(rest.len()));
     }
     let sign = SIGNS.iter().find(|sign| rest.starts_with(**sign));
     (Kind::Sign, sign.map_or(first.len_utf8(), |sign| sign.len()))
 }
 
-/// The tokens without attributes `[[...]]`, the namespace `metal::`, and words for places of values.
+/// The tokens without attributes `[[...]]`, the namespace `metal::`, and qualifiers.
 fn without_ceremony<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let mut kept: Vec<Token<'a>> = Vec::new();
     let mut i = 0;
     while let Some(token) = tokens.get(i) {
-        let next = tokens.get(i + 1);
-        let is_next = |text: &str| next.is_some_and(|next| next.is(text));
-        if token.is("[") && is_next("[") {
+        let next = tokens.get(i + 1).map_or("", |next| next.text);
+        if token.is("[") && next == "[" {
             while i < tokens.len() && !(tokens[i].is("]") && tokens.get(i + 1).is_some_and(|next| next.is("]"))) {
                 i += 1;
             }
             i += 2;
-        } else if token.is("metal") && is_next("::") {
+        } else if token.is("metal") && next == "::" {
             i += 2;
         } else if PLACES.contains(&token.text) {
             i += 1;

@@ -1,6 +1,6 @@
-//! Words that the languages know or reserve, from their references: the pages "Intrinsic functions", "Keywords" and "Reserved words" of
-//! Microsoft's reference of HLSL, with what shader model 5.1 has; Apple's Metal Shading Language Specification, version 2.0, sections 4 and 5, and
-//! the keywords of C++14 that it is based on.
+//! Words that the languages know or reserve. Sources for HLSL: the pages "Intrinsic functions", "Keywords" and "Reserved words" of Microsoft's
+//! reference, for shader model 5.1. Sources for MSL: Apple's Metal Shading Language Specification, version 2.0, sections 4 and 5, and the
+//! keywords of C++14, on which it is based.
 
 use crate::Target;
 
@@ -90,7 +90,7 @@ const MSL_WIDEST: [&str; 12] =
     ["dfdx", "dfdy", "fract", "fwidth", "mix", "popcount", "rint", "select", "trunc", "tanh", "clz", "copysign"];
 /// Functions that give one number, whatever their arguments are.
 const SCALAR: [&str; 6] = ["all", "any", "determinant", "distance", "dot", "length"];
-/// Functions of textures and buffers, called on them, and how many numbers each gives.
+/// Methods of textures and buffers, and how many numbers each gives.
 const HLSL_METHODS: [(&str, u8); 12] = [
     ("Load", 0),
     ("Load2", 2),
@@ -118,7 +118,7 @@ const MSL_METHODS: [(&str, u8); 8] = [
 /// Arguments of `sample` in MSL.
 const MSL_ARGUMENTS: [&str; 4] = ["level", "bias", "gradient2d", "gradientcube"];
 
-/// Words that name nothing else.
+/// Reserved words.
 const HLSL_RESERVED: &str = "asm asm_fragment auto BlendState bool break Buffer case catch cbuffer centroid char class column_major compile \
     compile_fragment const const_cast continue ComputeShader ConsumeStructuredBuffer default delete DepthStencilState DepthStencilView discard do \
     double DomainShader dword dynamic_cast else enum explicit export extern false float for friend fxgroup GeometryShader goto groupshared half Hullshader \
@@ -129,7 +129,7 @@ const HLSL_RESERVED: &str = "asm asm_fragment auto BlendState bool break Buffer 
     StructuredBuffer switch tbuffer technique technique10 technique11 template texture Texture1D Texture2D Texture2DArray Texture2DMS Texture3D TextureCube \
     this throw triangle triangleadj TriangleStream true try typedef typename uint uniform union unorm unsigned using vector vertexfragment VertexShader \
     virtual void volatile while min10float min12int min16float min16int min16uint";
-/// Words that HLSL knows in small and capital letters.
+/// Words that HLSL reserves in any case of their letters.
 const HLSL_RESERVED_ANYHOW: [&str; 6] = ["asm", "decl", "pass", "technique", "texture2d", "texturecube"];
 const MSL_RESERVED: &str = "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t class compl const const_cast \
     constexpr continue decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto half if inline int \
@@ -154,7 +154,7 @@ impl Vocabulary {
         if self.is_hlsl { "shader model 5.1" } else { "MSL 2.0" }
     }
 
-    /// Whether a name is that of a type beside numbers, vectors, matrices and structures.
+    /// Whether a name is that of a type other than numbers, vectors, matrices and structures.
     pub(super) fn has_type(self, name: &str) -> bool {
         if self.is_hlsl { HLSL_TYPES.contains(&name) } else { MSL_TYPES.contains(&name) }
     }
@@ -169,7 +169,7 @@ impl Vocabulary {
         SCALAR.contains(&name)
     }
 
-    /// Whether a function is one of the language.
+    /// Whether the language has a function.
     pub(super) fn has_function(self, name: &str) -> bool {
         let others: &[&str] =
             if self.is_hlsl { &["clip", "cross", "mul", "transpose", "modf"] } else { &MSL_ARGUMENTS };
@@ -179,13 +179,13 @@ impl Vocabulary {
             || ["cross", "transpose"].contains(&name)
     }
 
-    /// How many numbers a function of a texture or a buffer gives; 0 where one of a buffer gives one, and of a texture four.
+    /// How many numbers a method gives; 0 for one that gives one number of a buffer and four of a texture.
     pub(super) fn method(self, name: &str) -> Option<u8> {
         let methods: &[(&str, u8)] = if self.is_hlsl { &HLSL_METHODS } else { &MSL_METHODS };
         methods.iter().find(|(method, _)| *method == name).map(|(_, numbers)| *numbers)
     }
 
-    /// Whether the language keeps a word for itself.
+    /// Whether the language reserves a word.
     pub(super) fn keeps(self, name: &str) -> bool {
         let words = if self.is_hlsl { HLSL_RESERVED } else { MSL_RESERVED };
         let is_kept_anyhow = self.is_hlsl && HLSL_RESERVED_ANYHOW.iter().any(|word| word.eq_ignore_ascii_case(name));

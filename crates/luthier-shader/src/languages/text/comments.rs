@@ -33,7 +33,7 @@ impl<'w> Comments<'w> {
         Self(comments)
     }
 
-    /// Writes the comment of a key, if it has one.
+    /// Writes the comment of a key, if there is one.
     pub(super) fn write(&self, out: &mut String, key: &str, indent: &str) {
         for line in self.0.get(key).into_iter().flatten() {
             let _ = writeln!(out, "{indent}// {line}");

@@ -1,4 +1,4 @@
-//! The text that naga writes, made readable again: our names and comments, and the order of the WGSL.
+//! Readable text from naga's output: names, comments and order of the WGSL.
 
 mod comments;
 mod tidy;
@@ -10,13 +10,13 @@ use naga::Module;
 use self::comments::Comments;
 use self::tidy::tidy;
 
-/// Our name for a helper function of naga's, which does in another language what WGSL promises.
+/// Our name for a helper function of naga's, by which another language keeps a promise of WGSL.
 pub(crate) fn helper(word: &str) -> Option<String> {
     let name = word.strip_prefix("naga_").or_else(|| word.strip_prefix("Naga"))?;
     Some(format!("luthier_wgsl_{name}"))
 }
 
-/// The declarations one by one: comments of the WGSL put back, functions tidied, blank lines between unlike things.
+/// The text with comments of the WGSL put back, functions tidied, and blank lines between unlike declarations.
 pub(crate) fn layout(body: &str, module: &Module, wgsl: &str) -> String {
     let comments = Comments::of(wgsl);
     let globals: BTreeSet<&str> = module
@@ -26,7 +26,7 @@ pub(crate) fn layout(body: &str, module: &Module, wgsl: &str) -> String {
         .chain(module.constants.iter().filter_map(|(_, c)| c.name.as_deref()))
         .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.as_deref()))
         .chain(module.types.iter().filter_map(|(_, t)| t.name.as_deref()))
-        // Types that only the language has, as MSL's structures around arrays.
+        // Types of the language alone, such as MSL's structures around arrays.
         .chain(body.lines().filter_map(|line| line.strip_prefix("struct ")?.strip_suffix(" {")))
         .collect();
     let mut out = String::with_capacity(body.len() * 2);
@@ -44,7 +44,7 @@ pub(crate) fn layout(body: &str, module: &Module, wgsl: &str) -> String {
         } else if declaration.contains('\n') {
             let name = first.split('(').next().and_then(|head| head.rsplit(' ').next()).unwrap_or_default();
             comments.write(&mut out, name, "");
-            // An entry point is `main_` where no function may be `main`.
+            // In MSL no function may be `main`: the entry point is `main_`.
             let entry = module.entry_points.iter().find(|e| e.name == name.trim_end_matches('_')).map(|e| &e.function);
             let function = module.functions.iter().map(|(_, f)| f).find(|f| f.name.as_deref() == Some(name)).or(entry);
             match function {

@@ -6,10 +6,10 @@ use naga::{Block, Function, Statement};
 
 use crate::identifiers::{rename, words};
 
-/// A function with the names that WGSL gave to its values, as far as they clash with nothing; without temporaries that
-/// are used once, on the next line; without brackets around whole expressions and arguments.
+/// A function with the names of its values in WGSL, unless they clash; without temporaries whose only use is on the next line; without brackets
+/// around whole expressions and arguments.
 ///
-/// Relies on what holds for the modules here: functions have no side effects, and there are no loops.
+/// Precondition: functions have no side effects, and there are no loops. Otherwise moving a value to its use could change it.
 pub(super) fn tidy(text: &str, function: &Function, globals: &BTreeSet<&str>) -> String {
     let mut names: BTreeMap<String, String> = BTreeMap::new();
     let mut taken: BTreeSet<String> = local_words(text).map(str::to_owned).collect();
@@ -45,7 +45,7 @@ fn local_words(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Visits the results of all calls, with the number that naga gives them.
+/// Visits the results of all calls, each with naga's number for it.
 fn calls(block: &Block, visit: &mut impl FnMut(usize, naga::Handle<naga::Expression>)) {
     for statement in block.iter() {
         match statement {
@@ -60,32 +60,36 @@ fn calls(block: &Block, visit: &mut impl FnMut(usize, naga::Handle<naga::Express
     }
 }
 
-/// `name` of `name_3`, as naga numbers names that it has seen before.
+/// `name` of `name_3`: naga numbers a name that it has seen before.
 fn unnumbered(word: &str) -> Option<&str> {
     let (name, number) = word.rsplit_once('_')?;
     let is_numbered = !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
     (is_numbered && name.ends_with(|c: char| c.is_ascii_alphabetic())).then_some(name)
 }
 
-/// Names that WGSL allows and another language keeps for itself: those that a shader writer might well give to a value.
+/// Words that WGSL allows and another language reserves, as far as a shader may well use them as names of values.
 const RESERVED: &str = "active asm attribute buffer centroid char common constant device double filter fixed flat fragment half highp in \
     inline inout input kernel line linear long lowp matrix metal out output partition pass patch point precise \
     sample sampler shared short smooth string superp technique texture triangle varying vector vertex";
 
-/// Puts `TYPE _eN = VALUE;` into the next line where that is the only place that reads it.
+/// Moves the value of `TYPE _eN = VALUE;` into the next line, if only that line reads it.
 fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {
     for i in (0..lines.len().saturating_sub(1)).rev() {
         let Some((name, value)) = temporary(&lines[i]).map(|(name, value)| (name.to_owned(), value.to_owned())) else {
             continue;
         };
-        let uses = |line: &String| words(line).filter(|word| *word == name).count();
-        if uses(&lines[i + 1]) == 1 && lines.iter().map(uses).sum::<usize>() == 2 {
+        if uses(&lines[i + 1], &name) == 1 && lines.iter().map(|line| uses(line, &name)).sum::<usize>() == 2 {
             let value = if is_compound(&value) { format!("({value})") } else { value };
             lines[i + 1] = rename(&lines[i + 1], |word| (word == name).then_some(value.as_str()));
             lines.remove(i);
         }
     }
     lines
+}
+
+/// How often a line mentions a name.
+fn uses(line: &str, name: &str) -> usize {
+    words(line).filter(|word| *word == name).count()
 }
 
 /// Name and value of a line that declares a temporary of naga's.
@@ -109,7 +113,7 @@ fn is_compound(value: &str) -> bool {
     })
 }
 
-/// Declares a variable where it is first given a value, if that is at the outer level: naga declares all at the top.
+/// The lines with each variable declared at its first assignment, if that is at the outer level. naga declares all variables at the top.
 fn declared_late(mut lines: Vec<String>) -> Vec<String> {
     let mut i = 1;
     while i < lines.len() {
@@ -124,17 +128,16 @@ fn declared_late(mut lines: Vec<String>) -> Vec<String> {
     lines
 }
 
-/// The line that could declare in place of a declaration in line `i`, and its new text.
+/// Number and new text of the line that can take over a declaration in line `i`.
 fn late_declaration(lines: &[String], i: usize) -> Option<(usize, String)> {
     let (declared, _) = lines[i].strip_suffix(';')?.split_once(" = ")?;
     let (kind, name) = declared.trim_start().split_once(' ')?;
-    let mentions = |line: &str| words(line).any(|word| word == name);
-    let first = (i + 1..lines.len()).find(|&j| mentions(&lines[j]))?;
+    let first = (i + 1..lines.len()).find(|&j| uses(&lines[j], name) > 0)?;
     let value = lines[first].strip_prefix("    ")?.strip_prefix(name)?.strip_prefix(" = ")?;
-    (!mentions(value)).then(|| (first, format!("    {kind} {name} = {value}")))
+    (uses(value, name) == 0).then(|| (first, format!("    {kind} {name} = {value}")))
 }
 
-/// A line without brackets that enclose a whole argument, index, condition or value.
+/// The line without brackets around a whole argument, index, condition or value.
 fn unbracketed(line: &str) -> String {
     let bytes = line.as_bytes();
     let mut open = Vec::new();

@@ -1,4 +1,4 @@
-//! Adding of interfaces from the top down: all paths of light between them, as one lobe per layer.
+//! Adding of interfaces from the top down. All paths of light that turn at a layer make one lobe.
 
 use std::array::from_fn;
 
@@ -9,8 +9,7 @@ use super::spread::Spread;
 use crate::formulas::refraction::cos_theta_t_sq;
 use crate::layers::{Below, Layers};
 
-/// Number of inter-reflections that spread light, at most. Between two perfect reflectors it is infinite, and so are
-/// variances.
+/// The most inter-reflections that spread light. Between two perfect reflectors their number is infinite, and so would variances be.
 const BOUNCES_MAX: f64 = 1e6;
 
 /// Light that leaves a stack upward after a turn at one layer.
@@ -27,12 +26,12 @@ pub struct Lobe<S, const C: usize> {
 pub struct Transport<S, const C: usize> {
     /// One lobe per interface that light reaches, from the top.
     pub lobes: Vec<Lobe<S, C>>,
-    /// Part of the light that arrives below the last interface, slabs included: T0i.
+    /// Part of the light that arrives below the last interface, slabs included (T0i).
     pub transmitted: [f64; C],
-    /// Part of the light at the mean direction below the last interface that leaves the stack upward: Ti0. Less than T0i where
-    /// lobes of rough interfaces are totally reflected.
+    /// Part of the light at the mean direction below the last interface that leaves the stack upward (Ti0). It is less than T0i if lobes of rough
+    /// interfaces are totally reflected.
     pub emerging: [f64; C],
-    /// Reflectance of the whole stack from below at the mean direction there: Ri0.
+    /// Reflectance of the whole stack from below, at the mean direction there (Ri0).
     pub from_below: [f64; C],
     /// Cosine of the mean direction below the last interface; 0 if light is totally reflected on its way.
     pub cos_theta: f64,
@@ -47,20 +46,20 @@ impl<S, const C: usize> Transport<S, C> {
 
 /// Sends light at `cos_theta` (in the exterior, 0..=1) through a stack, down to the last interface or to a diffuse base.
 ///
-/// Belcour 2018, sec. 4 and 5. Interface 12 is added below a stack 0i with Ri0 R12 summed as a geometric series; energies
-/// from below are taken at the refracted mean direction, as those from above: R21 = R12. Total reflection moves the part of a lobe
-/// beyond the critical angle of the interface above from Ti0 to Ri0; that part crosses the slab once more on its way down.
+/// Belcour 2018, sec. 4 and 5. Interface 12 is added below a stack 0i, and Ri0 R12 is summed as a geometric series. Energies from below are those
+/// from above at the refracted mean direction: R21 = R12. Total reflection moves the part of a lobe beyond the critical angle of the interface
+/// above from Ti0 to Ri0. That part crosses the slab once more on its way down.
 ///
-/// R21 = R12 holds for smooth interfaces. A rough one sends more back from below, where facets are beyond the critical angle. But
-/// FGD-infinity from below at the mean direction of a lobe that is much wider helps at the normal only: for glass on gold of alpha (0.2,
-/// 0.2) and (0.5, 0.1) albedos then miss those of light paths by up to 0.03, 0.08 and 0.12 at 0, 60 and 80 degrees, and with R21 = R12 by
-/// 0.07, 0.04 and 0.02.
+/// R21 = R12 holds for smooth interfaces. Rough ones return more light from below, because some facets are beyond the critical angle. FGD-infinity
+/// from below would help at the normal only, because it is taken at the mean direction and lobes are much wider. For glass on gold of alpha
+/// (0.2, 0.2) and (0.5, 0.1), albedos would then miss those of light paths by up to 0.03, 0.08 and 0.12 at 0, 60 and 80 degrees. With R21 = R12
+/// they miss by 0.07, 0.04 and 0.02.
 ///
-/// Channels have energies of their own. They share directions and spreads: the number of bounces that widen a lobe is the mean over the
-/// channels, as in the paper, and so are the weights by which lobes are merged.
+/// Channels have energies of their own, and share directions and spreads. So the number of bounces that widen a lobe is a mean over the channels, as
+/// in the paper, and so are the weights of merged lobes.
 ///
-/// For any energies in 0..=1 those of the lobes sum to at most 1, and to 1 if nothing is absorbed or sent below: where
-/// the series diverges its limit without absorption is taken.
+/// For any energies in 0..=1, the energies of the lobes sum to at most 1, and to 1 if nothing is absorbed or sent below. If the series diverges, its
+/// limit without absorption is taken.
 pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>, cos_theta: f64) -> Transport<S, C> {
     let mut lobes = Vec::with_capacity(stack.layers.len());
     let (mut t0i, mut ti0, mut ri0) = ([1.0; C], [1.0; C], [0.0; C]);
@@ -68,7 +67,6 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
     let (mut jacobian_0i, mut jacobian_i0) = (1.0, 1.0);
     let mut cos_i = cos_theta.clamp(COS_THETA_MIN, 1.0);
     let mut slab = [1.0; C];
-    let mean = |x: [f64; C]| x.iter().sum::<f64>() / C as f64;
 
     for (i, layer) in stack.layers.iter().enumerate() {
         if matches!(layer.below, Below::Diffuse { .. }) {
@@ -90,10 +88,8 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
         }
 
         let q: [f64; C] = from_fn(|c| 1.0 - ri0[c] * r12[c]);
-        // Ti0/q and T12/q are at most 1, because Ri0 + Ti0 <= 1 and R12 + T12 <= 1; 1 is their limit without absorption.
-        let over_q = |t: f64, c: usize| if q[c] > 0.0 { (t / q[c]).min(1.0) } else { 1.0 };
-        let bounces = mean(from_fn(|c| (ri0[c] * r12[c] / q[c].max(1.0 / BOUNCES_MAX)).min(BOUNCES_MAX)));
-        let upward: [f64; C] = from_fn(|c| over_q(ti0[c], c));
+        let bounces = mean::<C>(from_fn(|c| (ri0[c] * r12[c] / q[c].max(1.0 / BOUNCES_MAX)).min(BOUNCES_MAX)));
+        let upward: [f64; C] = from_fn(|c| over(ti0[c], q[c]));
         let between = (spread_r12 + spread_ri0) * bounces;
         let spread = spread_ti0 + (spread_t0i + spread_r12 + between) * jacobian_0i;
         lobes.push(Lobe { energy: from_fn(|c| t0i[c] * r12[c] * upward[c]), spread: spread.limited() });
@@ -114,11 +110,11 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
         let spread_t12 = S::of(&layer.surface, 0.5 * (1.0 - 1.0 / j12).abs());
         let spread_t21 = S::of(&layer.surface, 0.5 * (1.0 - j12).abs());
 
-        let downward: [f64; C] = from_fn(|c| over_q(1.0 - r12[c], c));
+        let downward: [f64; C] = from_fn(|c| over(1.0 - r12[c], q[c]));
         let back: [f64; C] = from_fn(|c| (1.0 - r21[c]) * ri0[c] * downward[c]);
         let reflected: [f64; C] = from_fn(|c| r21[c] + back[c]);
         let deep = spread_t12 + (spread_t21 + spread_ri0 + between) * j12;
-        // Means by energy: both shares are in 0..=1, and a stack that reflects nothing from below spreads nothing.
+        // Spreads from below are means weighed by energies. A stack that returns nothing from below has no share to weigh.
         let share = if mean(reflected) > 0.0 { mean(back) / mean(reflected) } else { 0.0 };
         spread_ri0 = (spread_r12 * (1.0 - share) + deep * share).limited();
         spread_t0i = (spread_t0i * j12 + spread_t12 + between * j12).limited();
@@ -138,6 +134,16 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &dyn Energy<C>,
         }
     }
     Transport { lobes, transmitted: t0i, emerging: ti0, from_below: ri0, cos_theta: cos_i }
+}
+
+/// Ti0/q or T12/q: at most 1, because Ri0 + Ti0 <= 1 and R12 + T12 <= 1. Where q is 0, the limit without absorption.
+fn over(t: f64, q: f64) -> f64 {
+    if q > 0.0 { (t / q).min(1.0) } else { 1.0 }
+}
+
+/// Mean over the channels.
+fn mean<const C: usize>(x: [f64; C]) -> f64 {
+    x.iter().sum::<f64>() / C as f64
 }
 
 #[cfg(test)]
