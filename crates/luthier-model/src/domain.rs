@@ -5,39 +5,25 @@
 //!
 //! A model may leave out parts of the light within its domain (bounces, blur, 1/n^2): `docs/pages/models.md` has their size.
 
-/// Quantity that a domain limits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// Index of a coat over that above it, at the wavelength that bends directions.
-    Index,
-    /// Slope parameter of an interface that is not smooth.
-    Alpha,
-    /// Largest thickness of a film, nm.
-    FilmNm,
-    /// Number of layers.
-    Layers,
-    /// Optical depth of a slab, of the channel that absorbs most.
-    OpticalDepth,
-    /// Largest extinction coefficient of a metal.
-    MetalK,
+luthier_lut::named! {
+    /// Quantity that a domain limits.
+    pub enum Quantity("quantity") {
+        /// Index of a coat over that above it, at the wavelength that bends directions.
+        Index = "index ratio of the coat",
+        /// Slope parameter of an interface that is not smooth.
+        Alpha = "alpha",
+        /// Largest thickness of a film, nm.
+        FilmNm = "film thickness (nm)",
+        /// Number of layers.
+        Layers = "number of layers",
+        /// Optical depth of a slab, of the channel that absorbs most.
+        OpticalDepth = "optical depth",
+        /// Largest extinction coefficient of a metal.
+        MetalK = "k of the metal",
+    }
 }
 
 impl Quantity {
-    /// All, in the order of pages.
-    pub const ALL: [Self; 6] = [Self::Index, Self::Alpha, Self::FilmNm, Self::Layers, Self::OpticalDepth, Self::MetalK];
-
-    /// The name in reports and messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Index => "index ratio of the coat",
-            Self::Alpha => "alpha",
-            Self::FilmNm => "film thickness (nm)",
-            Self::Layers => "number of layers",
-            Self::OpticalDepth => "optical depth",
-            Self::MetalK => "k of the metal",
-        }
-    }
-
     /// The value of an ordinary material, from which a domain is followed to both sides.
     pub fn ordinary(self) -> f64 {
         match self {

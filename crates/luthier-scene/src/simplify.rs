@@ -42,8 +42,8 @@ impl LeaveOut {
 
     /// The part of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        let feature = Feature::ALL.into_iter().find(|feature| feature.name() == name);
-        feature.map(Self::Feature).or_else(|| Some(Self::Layer(name.strip_prefix("layer ")?.parse().ok()?)))
+        let feature = Feature::from_name(name).map(Self::Feature);
+        feature.or_else(|| Some(Self::Layer(name.strip_prefix("layer ")?.parse().ok()?)))
     }
 }
 

@@ -5,58 +5,31 @@ use luthier_optics::diffuse_albedo::unity_disney_albedo;
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumRow, SplitSumSurface, split_sum};
 use luthier_optics::stack::Distribution;
 
-/// Content of one channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Value {
-    /// Factor of f0.
-    Scale,
-    /// Summand beside the factor of f0.
-    Bias,
-    /// Sum of scale and bias: the albedo for f0 = 1.
-    Albedo,
-    /// 1 less the albedo. It is small where the albedo is near 1, so half floats hold it more closely.
-    Loss,
-    /// The albedo of cloth under [`ClothVisibility::Neubelt`]. It exceeds 1 at low alphas and grazing light.
-    Cloth,
-    /// The albedo of cloth under [`ClothVisibility::EstevezKulla`].
-    Sheen,
-    /// The albedo of Disney's diffuse lobe as Unity scales it, less 1/2 ([`unity_disney_albedo`]).
-    Disney,
-    /// 0: a channel that the engine keeps for something else.
-    Zero,
-    /// 1.
-    One,
+luthier_lut::named! {
+    /// Content of one channel.
+    pub enum Value("value") {
+        /// Factor of f0.
+        Scale = "scale",
+        /// Summand beside the factor of f0.
+        Bias = "bias",
+        /// Sum of scale and bias: the albedo for f0 = 1.
+        Albedo = "albedo",
+        /// 1 less the albedo. It is small where the albedo is near 1, so half floats hold it more closely.
+        Loss = "loss",
+        /// The albedo of cloth under [`ClothVisibility::Neubelt`]. It exceeds 1 at low alphas and grazing light.
+        Cloth = "cloth",
+        /// The albedo of cloth under [`ClothVisibility::EstevezKulla`].
+        Sheen = "sheen",
+        /// The albedo of Disney's diffuse lobe as Unity scales it, less 1/2 ([`unity_disney_albedo`]).
+        Disney = "disney",
+        /// 0: a channel that the engine keeps for something else.
+        Zero = "zero",
+        /// 1.
+        One = "one",
+    }
 }
 
 impl Value {
-    /// All contents.
-    pub const ALL: [Self; 9] = [
-        Self::Scale,
-        Self::Bias,
-        Self::Albedo,
-        Self::Loss,
-        Self::Cloth,
-        Self::Sheen,
-        Self::Disney,
-        Self::Zero,
-        Self::One,
-    ];
-
-    /// Its name in files and on command lines.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Scale => "scale",
-            Self::Bias => "bias",
-            Self::Albedo => "albedo",
-            Self::Loss => "loss",
-            Self::Cloth => "cloth",
-            Self::Sheen => "sheen",
-            Self::Disney => "disney",
-            Self::Zero => "zero",
-            Self::One => "one",
-        }
-    }
-
     /// Whether the split sum determines it.
     pub fn is_split_sum(self) -> bool {
         matches!(self, Self::Scale | Self::Bias | Self::Albedo | Self::Loss)

@@ -9,27 +9,29 @@ use serde::{Deserialize, Serialize};
 /// `(wi, wo)`: unit to f32 precision, above the horizon, in the local frame.
 pub type Pair = ([f32; 3], [f32; 3]);
 
-/// Set of directions at which a shader is compared with its reference.
-///
-/// ```
-/// use luthier_report::DirectionSet;
-///
-/// // A pair depends on its number only: a longer set begins with the shorter one.
-/// let [few, many] = [8, 64].map(|count| DirectionSet::Grazing.pairs(count, &[]));
-/// assert_eq!(few, many[..8]);
-/// assert!(many.iter().all(|(wi, wo)| wi[2].min(wo[2]) <= 0.1));
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DirectionSet {
-    /// Both directions uniform over the hemisphere.
-    Random,
-    /// One direction or both grazing, any azimuths.
-    Grazing,
-    /// Near the mirror direction, as wide as each lobe of the material.
-    Highlight,
-    /// Near the mirror direction, wi grazing.
-    Glancing,
+luthier_lut::named! {
+    /// Set of directions at which a shader is compared with its reference.
+    ///
+    /// ```
+    /// use luthier_report::DirectionSet;
+    ///
+    /// // A pair depends on its number only: a longer set begins with the shorter one.
+    /// let [few, many] = [8, 64].map(|count| DirectionSet::Grazing.pairs(count, &[]));
+    /// assert_eq!(few, many[..8]);
+    /// assert!(many.iter().all(|(wi, wo)| wi[2].min(wo[2]) <= 0.1));
+    /// ```
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum DirectionSet("direction set") {
+        /// Both directions uniform over the hemisphere.
+        Random = "random",
+        /// One direction or both grazing, any azimuths.
+        Grazing = "grazing",
+        /// Near the mirror direction, as wide as each lobe of the material.
+        Highlight = "highlight",
+        /// Near the mirror direction, wi grazing.
+        Glancing = "glancing",
+    }
 }
 
 /// Smallest cosine of the grazing set: 89.99994 degrees.
@@ -44,19 +46,6 @@ const GLANCING_COS_MIN: f64 = 1.745e-4;
 pub(crate) const LOBE_REACH: f64 = 4.0;
 
 impl DirectionSet {
-    /// All sets, in the order of the report.
-    pub const ALL: [Self; 4] = [Self::Random, Self::Grazing, Self::Highlight, Self::Glancing];
-
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Random => "random",
-            Self::Grazing => "grazing",
-            Self::Highlight => "highlight",
-            Self::Glancing => "glancing",
-        }
-    }
-
     /// Description of the set, for a reader.
     pub fn description(self) -> &'static str {
         match self {

@@ -7,32 +7,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::Pair;
 
-/// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, clipped per channel to the range of a Rec.709 display, and
-/// seen by an eye that is adapted to D65.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SeenLight {
-    /// D65, so bright that a white diffuser lit along its normal is the white of the display.
-    Daylight,
-    /// Light 16 times as bright as `Daylight` (four stops): it shows errors in dark colours, and clips highlights.
-    BrightDaylight,
-    /// CIE illuminant A of the luminance of `Daylight`.
-    Incandescent,
+luthier_lut::named! {
+    /// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, clipped per channel to the range of a Rec.709 display, and
+    /// seen by an eye that is adapted to D65.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum SeenLight("seen light") {
+        /// D65, so bright that a white diffuser lit along its normal is the white of the display.
+        Daylight = "daylight",
+        /// Light 16 times as bright as `Daylight` (four stops): it shows errors in dark colours, and clips highlights.
+        BrightDaylight = "daylight × 16",
+        /// CIE illuminant A of the luminance of `Daylight`.
+        Incandescent = "incandescent",
+    }
 }
 
 impl SeenLight {
-    /// All, in the order of reports.
-    pub const ALL: [Self; 3] = [Self::Daylight, Self::BrightDaylight, Self::Incandescent];
-
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Daylight => "daylight",
-            Self::BrightDaylight => "daylight × 16",
-            Self::Incandescent => "incandescent",
-        }
-    }
-
     /// Colour of the light, linear Rec.709. `Incandescent` has the tristimulus values (1.09850, 1, 0.35585) of illuminant A (CIE 15), converted by the
     /// matrix of IEC 61966-2-1.
     fn rgb(self) -> Rgb {

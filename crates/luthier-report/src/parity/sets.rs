@@ -8,20 +8,22 @@ use crate::measure::directions::{
     DirectionSet, GRAZING_COS_MIN, LOBE_REACH, Pair, direction, down, halton, log_uniform, mirrored, rounded, spreads,
 };
 
-/// Set of directions at which a shader is compared with its twin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ParitySet {
-    /// Both directions uniform over the hemisphere.
-    Uniform,
-    /// Near the mirror direction.
-    NearSpecular,
-    /// Grazing to 89.9 degrees.
-    Grazing,
-    /// Near the mirror direction of smoother surfaces, alpha down to 0.001.
-    Smooth,
-    /// Along one line, and below the horizon.
-    Opposite,
+luthier_lut::named! {
+    /// Set of directions at which a shader is compared with its twin.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum ParitySet("parity set") {
+        /// Both directions uniform over the hemisphere.
+        Uniform = "uniform",
+        /// Near the mirror direction.
+        NearSpecular = "near-specular",
+        /// Grazing to 89.9 degrees.
+        Grazing = "grazing",
+        /// Near the mirror direction of smoother surfaces, alpha down to 0.001.
+        Smooth = "smooth",
+        /// Along one line, and below the horizon.
+        Opposite = "opposite",
+    }
 }
 
 /// Cosine of 89.9 degrees.
@@ -32,20 +34,6 @@ const COS_89_9: f64 = 1.745_328_365_898_309e-3;
 pub const POLISHED_ALPHAS: [f64; 4] = [0.001, 0.003, 0.01, 0.03];
 
 impl ParitySet {
-    /// All sets, in the order of the page.
-    pub const ALL: [Self; 5] = [Self::Uniform, Self::NearSpecular, Self::Grazing, Self::Smooth, Self::Opposite];
-
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::NearSpecular => "near-specular",
-            Self::Grazing => "grazing",
-            Self::Smooth => "smooth",
-            Self::Opposite => "opposite",
-        }
-    }
-
     /// Description of the set, for a reader.
     pub fn description(self) -> &'static str {
         match self {

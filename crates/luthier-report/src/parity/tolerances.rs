@@ -7,26 +7,15 @@ use serde::{Deserialize, Serialize};
 use crate::measure::causes::Factor;
 use crate::measure::table_terms::Weights;
 
-/// A share of the error of a shader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Share {
-    /// The error of reading tables.
-    Table,
-    /// The error of f32 arithmetic.
-    Arithmetic,
-}
-
-impl Share {
-    /// Both shares.
-    pub const ALL: [Self; 2] = [Self::Table, Self::Arithmetic];
-
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Table => "table",
-            Self::Arithmetic => "arithmetic",
-        }
+luthier_lut::named! {
+    /// A share of the error of a shader.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Share("share") {
+        /// The error of reading tables.
+        Table = "table",
+        /// The error of f32 arithmetic.
+        Arithmetic = "arithmetic",
     }
 }
 

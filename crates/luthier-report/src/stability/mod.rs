@@ -55,34 +55,23 @@ pub const FAILS: f64 = 1.0;
 /// Largest relative difference on exchanging directions that counts as rounding. Beyond it a BRDF is not reciprocal.
 pub const RECIPROCITY: f64 = 1e-6;
 
-/// Level at which a method runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
-#[serde(rename_all = "kebab-case")]
-pub enum Level {
-    /// A model in double precision.
-    F64,
-    /// The tables of a shader, read in double precision.
-    Table,
-    /// The shader without tables on the adapter.
-    F32,
-    /// The shader with tables on the adapter.
-    Device,
+luthier_lut::named! {
+    /// Level at which a method runs.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Level("level") {
+        /// A model in double precision.
+        F64 = "f64",
+        /// The tables of a shader, read in double precision.
+        Table = "table",
+        /// The shader without tables on the adapter.
+        F32 = "f32",
+        /// The shader with tables on the adapter.
+        Device = "device",
+    }
 }
 
 impl Level {
-    /// All, in the order of the page.
-    pub const ALL: [Self; 4] = [Self::F64, Self::Table, Self::F32, Self::Device];
-
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F64 => "f64",
-            Self::Table => "table",
-            Self::F32 => "f32",
-            Self::Device => "device",
-        }
-    }
-
     /// Whether the code of this level ships.
     pub fn ships(self) -> bool {
         self != Self::F64

@@ -19,66 +19,38 @@ pub use container::EnergyContainer;
 pub use measure::EnergyDomain;
 pub use preset::{EnergyFile, EnergyPreset};
 
-/// The surface whose albedo a table holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EnergySurface {
-    /// Facets that reflect everything: metals. Their colour enters by the average Fresnel (Kulla and Conty 2017) or by
-    /// the factor `1 + f0 (1 - E)/E` (Turquin 2019).
-    Reflector,
-    /// An interface between transparent media with exact Fresnel, lit from the rarer side.
-    FromRarer,
-    /// An interface between transparent media lit from the denser side, with total reflection.
-    FromDenser,
-}
-
-impl EnergySurface {
-    /// All surfaces.
-    pub const ALL: [Self; 3] = [Self::Reflector, Self::FromRarer, Self::FromDenser];
-
-    /// Its name in files and on command lines.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Reflector => "reflector",
-            Self::FromRarer => "from-rarer",
-            Self::FromDenser => "from-denser",
-        }
+luthier_lut::named! {
+    /// The surface whose albedo a table holds.
+    pub enum EnergySurface("energy surface") {
+        /// Facets that reflect everything: metals. Their colour enters by the average Fresnel (Kulla and Conty 2017) or by
+        /// the factor `1 + f0 (1 - E)/E` (Turquin 2019).
+        Reflector = "reflector",
+        /// An interface between transparent media with exact Fresnel, lit from the rarer side.
+        FromRarer = "from-rarer",
+        /// An interface between transparent media lit from the denser side, with total reflection.
+        FromDenser = "from-denser",
     }
 }
 
-/// Content of one channel of a table of energy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EnergyValue {
-    /// E: light reflected and transmitted.
-    Albedo,
-    /// 1 - E: the share of multiple scattering.
-    Loss,
-    /// (1 - E)/E: the added part of a factor on the single scattering (Turquin 2019).
-    Compensation,
-    /// Light reflected.
-    Reflected,
-    /// 1 less the light reflected.
-    Unreflected,
-    /// Light transmitted.
-    Transmitted,
+luthier_lut::named! {
+    /// Content of one channel of a table of energy.
+    pub enum EnergyValue("energy value") {
+        /// E: light reflected and transmitted.
+        Albedo = "albedo",
+        /// 1 - E: the share of multiple scattering.
+        Loss = "loss",
+        /// (1 - E)/E: the added part of a factor on the single scattering (Turquin 2019).
+        Compensation = "compensation",
+        /// Light reflected.
+        Reflected = "reflected",
+        /// 1 less the light reflected.
+        Unreflected = "unreflected",
+        /// Light transmitted.
+        Transmitted = "transmitted",
+    }
 }
 
 impl EnergyValue {
-    /// All contents.
-    pub const ALL: [Self; 6] =
-        [Self::Albedo, Self::Loss, Self::Compensation, Self::Reflected, Self::Unreflected, Self::Transmitted];
-
-    /// Its name in files and on command lines.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Albedo => "albedo",
-            Self::Loss => "loss",
-            Self::Compensation => "compensation",
-            Self::Reflected => "reflected",
-            Self::Unreflected => "unreflected",
-            Self::Transmitted => "transmitted",
-        }
-    }
-
     /// The content for an albedo.
     pub fn of(self, albedo: InterfaceAlbedo) -> f64 {
         let total = albedo.total();
