@@ -16,8 +16,7 @@ pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f6
     let moved: f64 = found.energies.iter().zip(&reference.energies).map(|(e, r)| (e - r).abs()).sum();
     let lobe = share_of(albedo_ref, 0.5 * moved);
     let differences = found.energies.iter().zip(&reference.energies).map(|(e, r)| e - r);
-    let half_signs: Vec<f64> =
-        differences.map(|d| if d > 0.0 || d < 0.0 { 0.5_f64.copysign(d) } else { 0.0 }).collect();
+    let half_signs: Vec<f64> = differences.map(|d| if d.abs() > 0.0 { 0.5_f64.copysign(d) } else { 0.0 }).collect();
     let of_reference = reference.variance(|cell| half_signs[cell] + lobe);
     let lobe_std_err = libm::sqrt(of_reference + found.variance(|cell| half_signs[cell]));
     let variances = (0..reference.energies.len()).map(|cell: usize| {
