@@ -4,41 +4,40 @@ use std::fmt;
 
 use luthier_optics::stack::{Base, Stack, Surface};
 
-luthier_lut::named! {
-    /// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4, and four classes of surfaces without a coat.
-    ///
-    /// ```
-    /// use luthier_material::SurfaceClass;
-    ///
-    /// assert_eq!(SurfaceClass::D.to_string(), "d) Metal Foil");
-    /// assert!(SurfaceClass::H.is_layered() && !SurfaceClass::Film.is_layered());
-    /// ```
-    pub enum SurfaceClass("surface class") {
-        /// Smooth clear coat on a diffuse base.
-        A = "Glossy Paint",
-        /// Smooth tinted coat on a diffuse base.
-        B = "Tinted Glazing",
-        /// Rough coat on a diffuse base.
-        C = "Frosted Paint",
-        /// Smooth coat on a smooth metal.
-        D = "Metal Foil",
-        /// Smooth coat on a rough metal.
-        E = "Metallic Paint",
-        /// Rough coat on a smooth metal.
-        F = "Frosted Metal",
-        /// Rough coat on a rough metal.
-        G = "Patina",
-        /// More than two layers.
-        H = "Multi-Layer",
-        /// A metal without a coat.
-        Metal = "Bare Metal",
-        /// Films on a surface without a coat, or in a free sheet.
-        Film = "Thin Film",
-        /// A diffuse base without a coat.
-        Matte = "Matte",
-        /// A transparent medium with nothing below.
-        Glass = "Glass",
-    }
+/// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4, and four classes of surfaces without a coat.
+///
+/// ```
+/// use luthier_material::SurfaceClass;
+///
+/// assert_eq!(SurfaceClass::D.to_string(), "d) Metal Foil");
+/// assert!(SurfaceClass::H.is_layered() && !SurfaceClass::Film.is_layered());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum SurfaceClass {
+    /// Smooth clear coat on a diffuse base.
+    A,
+    /// Smooth tinted coat on a diffuse base.
+    B,
+    /// Rough coat on a diffuse base.
+    C,
+    /// Smooth coat on a smooth metal.
+    D,
+    /// Smooth coat on a rough metal.
+    E,
+    /// Rough coat on a smooth metal.
+    F,
+    /// Rough coat on a rough metal.
+    G,
+    /// More than two layers.
+    H,
+    /// A metal without a coat.
+    Metal,
+    /// Films on a surface without a coat, or in a free sheet.
+    Film,
+    /// A diffuse base without a coat.
+    Matte,
+    /// A transparent medium with nothing below.
+    Glass,
 }
 
 /// Steepest slope, in degrees, of a surface that counts as smooth. The text calls 0.01 to 4 degrees smooth (glossy
@@ -49,6 +48,22 @@ pub const SMOOTH_SLOPE_DEG: f64 = 4.5;
 const TINT_DEPTH: f64 = 0.01;
 
 impl SurfaceClass {
+    /// All classes in order: those of the text, then those of one layer.
+    pub const ALL: [Self; 12] = [
+        Self::A,
+        Self::B,
+        Self::C,
+        Self::D,
+        Self::E,
+        Self::F,
+        Self::G,
+        Self::H,
+        Self::Metal,
+        Self::Film,
+        Self::Matte,
+        Self::Glass,
+    ];
+
     /// The class by the decision tree of chapter 4: metal or not; is the top smooth; is the base smooth; and h for more
     /// than two layers. Films share a layer's surface and do not count below or on a coat. A dielectric base, glass for instance,
     /// goes with the diffuse ones: a, b or c by its top.
@@ -104,6 +119,24 @@ impl SurfaceClass {
     /// Whether it is one of the text's classes of layered surfaces.
     pub fn is_layered(self) -> bool {
         self <= Self::H
+    }
+
+    /// Its name in the text, or ours.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::A => "Glossy Paint",
+            Self::B => "Tinted Glazing",
+            Self::C => "Frosted Paint",
+            Self::D => "Metal Foil",
+            Self::E => "Metallic Paint",
+            Self::F => "Frosted Metal",
+            Self::G => "Patina",
+            Self::H => "Multi-Layer",
+            Self::Metal => "Bare Metal",
+            Self::Film => "Thin Film",
+            Self::Matte => "Matte",
+            Self::Glass => "Glass",
+        }
     }
 }
 
