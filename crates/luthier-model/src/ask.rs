@@ -39,7 +39,7 @@ impl ShadingModel {
     pub fn honours(self, feature: Feature, form: Form) -> bool {
         let Shows { always, baked, full } = &self.facts().shows;
         let in_form = if form == Form::Baked { baked } else { full };
-        always.contains(&feature) || in_form.contains(&feature)
+        always.iter().any(|group| group.contains(&feature)) || in_form.contains(&feature)
     }
 
     /// Whether it goes down a path of refracted directions, layer by layer.

@@ -81,8 +81,8 @@ pub enum Reach {
 /// Features of materials that the shader of a model shows. The model leaves out features that are in no list.
 #[derive(Debug, Clone, Copy)]
 pub struct Shows {
-    /// In both forms.
-    pub always: &'static [Feature],
+    /// In both forms, by groups.
+    pub always: &'static [&'static [Feature]],
     /// In the form `baked` alone.
     pub baked: &'static [Feature],
     /// In the form `full` alone.

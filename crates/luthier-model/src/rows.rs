@@ -9,7 +9,7 @@ use crate::tolerance::{
     BEAMS_IN_F32, ENERGY_TABLE, FILTERED_BELOW_A_COAT, FILTERED_BY_HARDWARE, LAYERS_IN_F32, LOBE_READ, LOBE_TABLE,
     LOBES_IN_F32, PHASE_TABLE, PHONG_IN_F32, ROW_TABLE, STATISTICS_IN_F32, Tolerance, Tolerances,
 };
-use crate::{DefaultFor, Feature::*, Form, ModelPart};
+use crate::{DefaultFor, Feature, Feature::*, Form, ModelPart};
 
 const fn read(kind: TableKind, when: ReadWhen) -> TableRead {
     TableRead { kind, when }
@@ -26,6 +26,19 @@ const FACET_TABLES: &[TableRead] = &[
 /// Tables of models that follow statistics of lobes.
 const STATISTICS_TABLES: &[TableRead] =
     &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
+
+/// Layers below the first, and what slabs absorb.
+const STACK: &[Feature] = &[InnerInterface, Base, Absorption, BaseAbsorption];
+/// Facets of an interface, in the light of its film.
+const FACETS: &[Feature] = &[Films, FilmVariation, DiffuseSlopes, Beckmann, Distribution];
+/// Axes of a surface.
+const AXES: &[Feature] = &[Anisotropy, Tangents];
+/// Maps of normals, slopes and thicknesses.
+const MAPS: &[Feature] = &[NormalMap, RoughnessMap, ThicknessMap, LayerAlpha, InnerThickness];
+/// Maps of colour.
+const COLOR: &[Feature] = &[AlbedoMap, MetallicMap];
+/// Effects of layers that are there in places.
+const EFFECTS: &[Feature] = &[Flakes, Patina, Glitter];
 
 /// Headings that models share.
 const ONE_LAYER: &str = "One layer";
@@ -58,29 +71,7 @@ const ELEK: Facts = Facts {
     forms: &[Form::Baked, Form::Full],
     // Records have one film of an interface; tables are made of all.
     shows: Shows {
-        always: &[
-            InnerInterface,
-            Base,
-            Absorption,
-            BaseAbsorption,
-            Films,
-            FilmVariation,
-            DiffuseSlopes,
-            Beckmann,
-            NormalMap,
-            RoughnessMap,
-            ThicknessMap,
-            Bumps,
-            LayerAlpha,
-            InnerThickness,
-            AlbedoMap,
-            MetallicMap,
-            Flakes,
-            Patina,
-            Glitter,
-            Reradiation,
-            Distribution,
-        ],
+        always: &[STACK, FACETS, MAPS, COLOR, EFFECTS, &[Bumps, Reradiation]],
         baked: &[InnerFilms],
         full: &[],
     },
@@ -101,31 +92,7 @@ const WEIDLICH_WILKIE: Facts = Facts {
     is_isotropic: false,
     forms: &[Form::Baked, Form::Full],
     shows: Shows {
-        always: &[
-            InnerInterface,
-            Base,
-            Absorption,
-            BaseAbsorption,
-            Films,
-            FilmVariation,
-            DiffuseSlopes,
-            Anisotropy,
-            Beckmann,
-            NormalMap,
-            RoughnessMap,
-            ThicknessMap,
-            Bumps,
-            LayerAlpha,
-            Tangents,
-            InnerThickness,
-            AlbedoMap,
-            MetallicMap,
-            Flakes,
-            Patina,
-            Glitter,
-            Reradiation,
-            Distribution,
-        ],
+        always: &[STACK, FACETS, AXES, MAPS, COLOR, EFFECTS, &[Bumps, Reradiation]],
         baked: &[InnerFilms],
         full: &[],
     },
@@ -146,7 +113,7 @@ const GRANIER_HEIDRICH: Facts = Facts {
     is_isotropic: true,
     forms: &[Form::Baked, Form::Full],
     shows: Shows {
-        always: &[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter],
+        always: &[&[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter]],
         baked: &[],
         full: &[],
     },
@@ -178,22 +145,7 @@ const BELCOUR: Facts = Facts {
     forms: &[Form::Baked, Form::Full],
     // Albedos are tabulated at the nominal thickness of a film.
     shows: Shows {
-        always: &[
-            InnerInterface,
-            Base,
-            Absorption,
-            BaseAbsorption,
-            Films,
-            DiffuseSlopes,
-            NormalMap,
-            RoughnessMap,
-            ThicknessMap,
-            LayerAlpha,
-            InnerThickness,
-            AlbedoMap,
-            MetallicMap,
-            Glitter,
-        ],
+        always: &[STACK, MAPS, COLOR, &[Films, DiffuseSlopes, Glitter]],
         baked: &[InnerFilms],
         full: &[FilmVariation],
     },
@@ -214,24 +166,7 @@ const YAMAGUCHI: Facts = Facts {
     is_isotropic: false,
     forms: &[Form::Baked, Form::Full],
     shows: Shows {
-        always: &[
-            InnerInterface,
-            Base,
-            Absorption,
-            BaseAbsorption,
-            Films,
-            DiffuseSlopes,
-            Anisotropy,
-            NormalMap,
-            RoughnessMap,
-            ThicknessMap,
-            LayerAlpha,
-            Tangents,
-            InnerThickness,
-            AlbedoMap,
-            MetallicMap,
-            Glitter,
-        ],
+        always: &[STACK, AXES, MAPS, COLOR, &[Films, DiffuseSlopes, Glitter]],
         baked: &[InnerFilms],
         full: &[FilmVariation],
     },
@@ -254,7 +189,7 @@ const PHONG: Facts = Facts {
     // Coefficients are computed from the stack at normal incidence: what changes these is not left out. The diffuse one is the albedo of
     // the base, less what interfaces reflect.
     shows: Shows {
-        always: &[InnerInterface, Base, Absorption, Films, InnerFilms, NormalMap, RoughnessMap, Glitter],
+        always: &[&[InnerInterface, Base, Absorption, Films, InnerFilms, NormalMap, RoughnessMap, Glitter]],
         baked: &[],
         full: &[],
     },
@@ -281,21 +216,7 @@ const MICROFACET: Facts = Facts {
     forms: &[Form::Baked, Form::Full],
     // V-cavities and the other maskings without Smith's Lambda need no more than D of a distribution.
     shows: Shows {
-        always: &[
-            Films,
-            FilmVariation,
-            DiffuseSlopes,
-            Anisotropy,
-            Beckmann,
-            NormalMap,
-            RoughnessMap,
-            LayerAlpha,
-            Tangents,
-            AlbedoMap,
-            MetallicMap,
-            Glitter,
-            Distribution,
-        ],
+        always: &[FACETS, AXES, COLOR, &[NormalMap, RoughnessMap, LayerAlpha, Glitter]],
         baked: &[InnerFilms],
         full: &[],
     },
@@ -319,23 +240,20 @@ const LOBES: Facts = Facts {
     // its own.
     shows: Shows {
         always: &[
-            InnerInterface,
-            Base,
-            Absorption,
-            BaseAbsorption,
-            Films,
-            InnerFilms,
-            FilmVariation,
-            DiffuseSlopes,
-            Anisotropy,
-            Beckmann,
-            NormalMap,
-            RoughnessMap,
-            ThicknessMap,
-            AlbedoMap,
-            Flakes,
-            Patina,
-            Glitter,
+            STACK,
+            EFFECTS,
+            &[
+                Films,
+                InnerFilms,
+                FilmVariation,
+                DiffuseSlopes,
+                Anisotropy,
+                Beckmann,
+                NormalMap,
+                RoughnessMap,
+                ThicknessMap,
+                AlbedoMap,
+            ],
         ],
         baked: &[],
         full: &[],
