@@ -15,7 +15,7 @@ use crate::{BakeError, planner};
 /// Jobs that a bake would run.
 ///
 /// ```
-/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let text = "schema = 1\nname = \"glass\"\n[bake]\nmodel = \"elek\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
 /// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
 /// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
 /// use luthier_bake::{MemoryStore, Options, missing};
