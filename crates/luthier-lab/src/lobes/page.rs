@@ -34,7 +34,7 @@ pub(super) fn page(groups: &[Group], options: &LobesOptions) -> Result<String, s
 }
 
 const INTRODUCTION: &str = "\
-The model `lobes` (`luthier-layers/src/lobes`) simulates a stack and fits the light from below the first interface by a few lobes. This page
+The model `lobes` (`luthier-layers/src/models/lobes`) simulates a stack and fits the light from below the first interface by a few lobes. This page
 compares the fits with another simulation of other random numbers, the judge. Fits are those of a bake: the fewest lobes that do, two at
 most. Beside them are two models of papers.
 

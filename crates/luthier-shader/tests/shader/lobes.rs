@@ -411,7 +411,7 @@ fn covered_rows() -> (AtlasLayout, Image) {
 }
 
 /// The normal of flakes shifts lobes, the variance of normals widens them, and the colour of a base has its light, as in the twin, whose own oracles
-/// are a walk, a mean and paths (`luthier-layers/src/lobes/tilt_tests.rs`, `tests.rs`).
+/// are a walk, a mean and paths (`luthier-layers/src/models/lobes/tests`).
 #[test]
 fn values_of_a_place_change_lobes_as_in_the_twin() {
     let surface = [FunctionGroup::Surface];

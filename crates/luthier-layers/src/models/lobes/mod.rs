@@ -41,7 +41,6 @@ mod judge;
 mod parameters;
 mod patina;
 mod prepared;
-mod problem;
 mod rows;
 mod shape;
 mod solve;

@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 
-use super::ellipse::{Numbers, Plane};
-use super::fit::{Found, Simulation, Views};
-use super::half_vector::{outside, refracted};
-use super::parameters::{Basis, NODES, SHIFT, Term};
-use super::solve::{Amounts, Column, Guess, Residuals};
-use super::tally::{Cells, Point, Tally, mean};
-use super::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
+use super::{Found, Simulation, Views};
+use crate::models::lobes::ellipse::{Numbers, Plane};
+use crate::models::lobes::half_vector::{outside, refracted};
+use crate::models::lobes::parameters::{Basis, NODES, SHIFT, Term};
+use crate::models::lobes::solve::{Amounts, Column, Guess, Residuals};
+use crate::models::lobes::tally::{Cells, Point, Tally, mean};
+use crate::models::lobes::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
 /// Shapes with less than this share above the horizon are penalised: energies are divided by the share.
 const SHARE_WANTED: f64 = 0.35;

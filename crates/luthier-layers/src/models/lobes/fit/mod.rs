@@ -5,18 +5,20 @@
 //! projection, Golub and Pereyra 1973). Cells have residuals `(e - r) / sqrt(r + c)`. One fit has all views, so that lobes keep their identity
 //! from view to view; with an anisotropic stack it has all azimuths, too ([`Basis`]).
 
+mod problem;
+
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
-use super::problem::{Lobed, Problem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
 use crate::formulas::facets::ALPHA_MIN;
 use crate::references::layered_mc::ColorPaths;
+use problem::{Lobed, Problem, seen_from};
 
 /// Settings of a simulation and of the fit to it. The same settings give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
