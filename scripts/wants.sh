@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 chromium groff-base zsh fish
-  gcc libc6-dev python3 util-linux)
+  gcc libc6-dev python3 util-linux make ninja-build)
 
 missing() {
   command -v glslangValidator >/dev/null || echo glslangValidator
@@ -16,7 +16,7 @@ missing() {
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null ||
     echo 'a Vulkan driver'
   command -v Xvfb >/dev/null || echo Xvfb
-  for program in groff zsh fish cc python3 setpriv; do
+  for program in groff zsh fish cc python3 setpriv make ninja; do
     command -v "$program" >/dev/null || echo "$program"
   done
   command -v chromium chromium-browser google-chrome >/dev/null || echo Chromium

@@ -28,6 +28,8 @@ pub trait Program {
 #[derive(Debug)]
 pub struct Workshop<P> {
     folder: TempDir,
+    /// Whether its commands share a store with those of other tests.
+    shares: bool,
     program: PhantomData<P>,
 }
 
@@ -40,7 +42,7 @@ impl<P: Program> Default for Workshop<P> {
 impl<P: Program> Workshop<P> {
     /// An empty folder.
     pub fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: PhantomData }
+        Self { folder: tempfile::tempdir().unwrap(), shares: true, program: PhantomData }
     }
 
     /// A folder with files in it, most of them materials.
@@ -79,18 +81,31 @@ impl<P: Program> Workshop<P> {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
+    /// The folder, whose commands have no store but those that they name.
+    #[must_use]
+    pub fn apart(self) -> Self {
+        Self { shares: false, ..self }
+    }
+
     /// Runs the command in the folder; its streams are pipes.
     pub fn run(&self, args: &[&str]) -> Run {
-        Self::run_in(self.folder.path(), args)
+        Self::run_with(self.shares, self.folder.path(), args)
     }
 
     /// Runs the command in any folder; its streams are pipes.
     pub fn run_in(folder: &Path, args: &[&str]) -> Run {
+        Self::run_with(true, folder, args)
+    }
+
+    fn run_with(shares: bool, folder: &Path, args: &[&str]) -> Run {
         let said = format!("{} {}", P::NAME, args.join(" "));
         let mut command = Command::new(P::PATH);
         // Tests leave nothing in the caches of who runs them. Those of one run of scripts/test.sh share a store, so that none computes
         // what another has.
-        command.env("LUTHIER_CACHE", std::env::var_os(STORE).unwrap_or_default()).current_dir(folder).args(args);
+        command
+            .env("LUTHIER_CACHE", std::env::var_os(STORE).filter(|_| shares).unwrap_or_default())
+            .current_dir(folder)
+            .args(args);
         // No test opens a window through this.
         command.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT");
         let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

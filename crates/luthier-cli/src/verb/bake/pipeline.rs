@@ -52,8 +52,12 @@ pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<Strin
     } else {
         format!("up to date: {}", options.out.join(MANIFEST).display())
     };
-    let json = json!({ "stale": stale, "materials": materials });
-    Ok(Done { json, text, is_stale: !stale.is_empty(), ..Done::default() })
+    Ok(Done { json: compared(&stale, &materials), text, is_stale: !stale.is_empty(), ..Done::default() })
+}
+
+/// The JSON of a check.
+pub(super) fn compared(stale: &[String], materials: &[&str]) -> Value {
+    json!({ "stale": stale, "materials": materials })
 }
 
 /// The jobs that a bake would run, as JSON and in words.

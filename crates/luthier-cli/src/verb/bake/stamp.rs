@@ -1,5 +1,6 @@
 //! Stamps record the files that a bake read and wrote. By them the next bake knows at once that nothing has changed.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::fs::File;
 use std::io;
@@ -7,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use luthier::Files;
-use luthier_bake::Key;
+use luthier_bake::{Key, Missing};
 use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
 use luthier_material::Material;
 use luthier_terminal::complain;
@@ -17,6 +18,7 @@ use serde_json::{Value, json};
 
 use crate::cli::BakeOptions;
 use crate::store::disk;
+use crate::verb::bake::pipeline;
 use crate::watched::{State, all_named, state};
 
 /// The kind of stamps in the store.
@@ -122,10 +124,17 @@ impl Kept {
         files.iter().chain(&self.named).cloned().collect()
     }
 
-    /// The outcome of a bake that had nothing to do, as JSON and in words. Standard error gets the number of earlier warnings.
+    /// The outcome of a bake that had nothing to do, as JSON and in words: a check and a dry run have objects of their own. Standard error gets
+    /// the number of earlier warnings.
     pub(super) fn say(&self, options: &BakeOptions) -> (Value, String) {
+        if options.pipeline.dry_run {
+            return pipeline::missing(&Missing { jobs: BTreeMap::new(), is_all: true });
+        }
         let mut summary = self.summary.clone();
         summary["up_to_date"] = json!(true);
+        if options.pipeline.check {
+            summary = pipeline::compared(&[], &[]);
+        }
         if options.json || options.quiet {
             return (summary, String::new());
         }

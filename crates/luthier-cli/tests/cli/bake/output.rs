@@ -199,7 +199,7 @@ fn json_says_what_was_made() {
 
 #[test]
 fn quiet_is_quiet() {
-    let workshop = Workshop::with(&[("doubtful.toml", &doubtful("doubtful"))]);
+    let workshop = Workshop::with(&[("doubtful.toml", &doubtful("doubtful"))]).apart();
     let run = workshop.run(&["bake", "doubtful.toml", "--quiet"]).exits(0);
     assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
     let run = workshop.run(&["bake", "doubtful.toml"]).exits(0);

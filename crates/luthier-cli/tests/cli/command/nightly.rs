@@ -182,7 +182,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("crates/luthier-lut/tests/all.rs", &["packages", "random"]),
         // The window is a feature of the command; meshes are for pictures.
         ("crates/luthier-view/src/lib.rs", &["packages", "release"]),
-        ("crates/luthier-mesh/src/lib.rs", &["fuzz", "packages", "release", "tests"]),
+        ("crates/luthier-mesh/src/lib.rs", &["fuzz", "kind", "packages", "release", "tests"]),
         ("crates/luthier-fuzz/corpus/a", &["fuzz", "packages"]),
         ("crates/luthier-gallery/src/lib.rs", &["crash", "examples", "farm", "kind", "packages", "release", "scale"]),
     ];

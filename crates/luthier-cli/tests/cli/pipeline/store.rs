@@ -74,7 +74,7 @@ fn damaged_results_are_made_anew() {
 
 #[test]
 fn a_store_that_cannot_be_used_is_named() {
-    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer")), ("file", "")]);
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer")), ("file", "")]).apart();
     workshop.run(&["bake", "lacquer.toml", "--cache", "file"]).fails(3, &["cannot make the folder", "file/tmp"]);
     workshop.run(&["bake", "lacquer.toml", "--cache", "a", "--no-cache"]).fails(2, &["--no-cache"]);
     workshop.run(&["cache", "stats"]).fails(2, &["no store", "--cache"]);

@@ -19,6 +19,8 @@ fn a_bake_of_what_has_not_changed_does_nothing() {
     let before = std::fs::metadata(workshop.path("out/manifest.json")).unwrap().modified().unwrap();
     assert_eq!(bake(&[]).stdout, "up to date: out/manifest.json\n");
     assert_eq!(bake(&["--check"]).stdout, "up to date: out/manifest.json\n");
+    assert_eq!(bake(&["--check", "--json"]).json(), serde_json::json!({ "stale": [], "materials": [] }));
+    assert_eq!(bake(&["--dry-run", "--json"]).json(), serde_json::json!({ "jobs": {}, "is_all": true }));
     let json = bake(&["--json"]).json();
     assert_eq!((&json["up_to_date"], &json["materials"]), (&true.into(), &serde_json::json!(["film"])));
     assert_eq!(bake(&["--quiet"]).stdout, "");
@@ -93,7 +95,7 @@ fn dependencies_are_a_rule_of_make() {
 
 #[test]
 fn options_that_do_not_go_together_are_refused() {
-    let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]);
+    let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]).apart();
     for (args, parts) in [
         (&["--check", "--dry-run"][..], &["--check"][..]),
         (&["--check", "--watch"], &["--check"]),
