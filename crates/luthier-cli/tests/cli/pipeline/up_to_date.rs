@@ -19,8 +19,14 @@ fn a_bake_of_what_has_not_changed_does_nothing() {
     let before = std::fs::metadata(workshop.path("out/manifest.json")).unwrap().modified().unwrap();
     assert_eq!(bake(&[]).stdout, "up to date: out/manifest.json\n");
     assert_eq!(bake(&["--check"]).stdout, "up to date: out/manifest.json\n");
-    assert_eq!(bake(&["--check", "--json"]).json(), serde_json::json!({ "stale": [], "materials": [] }));
-    assert_eq!(bake(&["--dry-run", "--json"]).json(), serde_json::json!({ "jobs": {}, "is_all": true }));
+    assert_eq!(
+        bake(&["--check", "--json"]).json(),
+        serde_json::json!({ "stale": [], "materials": [], "packages": {} })
+    );
+    assert_eq!(
+        bake(&["--dry-run", "--json"]).json(),
+        serde_json::json!({ "jobs": {}, "is_all": true, "packages": {} })
+    );
     let json = bake(&["--json"]).json();
     assert_eq!((&json["up_to_date"], &json["materials"]), (&true.into(), &serde_json::json!(["film"])));
     assert_eq!(bake(&["--quiet"]).stdout, "");
