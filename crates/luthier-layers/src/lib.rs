@@ -13,9 +13,9 @@
 //! | formulas | [`formulas`] that models share |
 //! | a stack in channels | [`layers`], whose channels share their directions |
 //! | the trait | [`model`]: `Model`, its inputs and its estimates; [`directional_albedo`] and [`furnace`] integrate any |
-//! | models | [`models`], each under its name |
 //! | references | [`references`]: random walks through one rough interface or a rough stack, a closed form for a smooth one |
-//! | above the models | [`effects`]: flakes, patina, particles, textures, fluorescence; [`lobes`]: a simulated stack in a few lobes |
+//! | models | [`models`], each under its name; `lobes` are fitted to a reference |
+//! | above the models | [`effects`]: flakes, patina, particles, textures, fluorescence |
 //! | shaders | [`twins`]: models as shaders evaluate them, in three channels |
 //! | lists | [`registry`] of all models by name, [`domain`] of each |
 //!

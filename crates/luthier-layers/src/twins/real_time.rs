@@ -36,7 +36,7 @@ pub struct Twin {
 
 impl Twin {
     /// The twin of the shader of a model. `wavelengths_nm` are those of the three channels. `color` is the colour of Phong's coefficients, which both
-    /// forms of the shader read from the material. Everything else has the colour of the [`Terms`].
+    /// forms of the shader read from the material. Everything else has the colour of the [`Terms`](crate::terms::Terms).
     pub fn new(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Self {
         Self::with(model, stack, wavelengths_nm, color, Parts::PLAIN)
     }
