@@ -9,10 +9,8 @@ if [ "$files" -gt 6 ]; then
   echo "error: scripts/add-kind.patch touches $files files"
   exit 1
 fi
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-git archive HEAD | tar -x -C "$work"
-patch --directory "$work" --strip 1 --quiet <scripts/add-kind.patch
+. scripts/patched.sh
+patched add-kind --no-default-features
 
 cat >"$work/masked.toml" <<'EOF'
 schema = 1
@@ -28,9 +26,6 @@ distribution = "ggx"
 [bake]
 tables = ["masking"]
 EOF
-luthier() {
-  cargo run --quiet --locked --manifest-path "$work/Cargo.toml" --target-dir target/add-kind -p luthier-cli --no-default-features -- "$@"
-}
 luthier bake "$work/masked.toml" --out "$work/out" --quiet
 grep -q 'fn luthier_lookup_masking' "$work/out/shaders/baked.wgsl"
 luthier report --out "$work/out" --no-device --max-abs 5e-2

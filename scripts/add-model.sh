@@ -4,10 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-git archive HEAD | tar -x -C "$work"
-patch --directory "$work" --strip 1 --quiet <scripts/add-model.patch
+. scripts/patched.sh
+patched add-model
 
 cat >"$work/gold.toml" <<'EOF'
 schema = 1
@@ -23,9 +21,6 @@ distribution = "ggx"
 [bake]
 model = "neumann"
 EOF
-luthier() {
-  cargo run --quiet --locked --manifest-path "$work/Cargo.toml" --target-dir target/add-model -p luthier-cli -- "$@"
-}
 luthier bake "$work/gold.toml" --out "$work/out" --functions sample,albedo --quiet
 grep -q 'fn luthier_eval_neumann' "$work/out/shaders/baked.wgsl"
 grep -q 'fn luthier_parts_neumann' "$work/out/shaders/baked.wgsl"

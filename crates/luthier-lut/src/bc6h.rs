@@ -1,7 +1,7 @@
 //! BC6H without sign (Khronos Data Format 1.4, section 20.2; Direct3D 11): 4 x 4 texels of three half floats in 16 bytes.
 //!
-//! Of the fourteen modes, only those with one line through the colours of a block are written: the colours of a block of a smooth table lie on
-//! a short line, nearly. Such a block is the mode (5 bits), two ends of three numbers each (60), and for each texel its place between them (4, the
+//! The encoder writes only the modes with one line through the colours of a block, of the fourteen that there are: in a smooth table these
+//! colours lie nearly on a short line. Such a block is the mode (5 bits), two ends of three numbers each (60), and for each texel its place between them (4, the
 //! first 3).
 
 use half::f16;

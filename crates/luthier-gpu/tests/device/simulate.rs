@@ -150,7 +150,7 @@ fn walks_are_the_reference() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: scripts/nightly.sh tests"]
 fn the_reference_with_many_samples() {
     let efforts: Vec<Effort> = stacks().iter().map(|(name, _)| (*name, 1 << 18, 1 << 17)).collect();
     assert_agrees(Facets::One, InterfaceMode::OneFacet, &efforts);

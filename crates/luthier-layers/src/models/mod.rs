@@ -1,7 +1,7 @@
 //! Reflectance models, each under its own name.
 //!
 //! Each model with a shader has a room, [`room::Room`]: a folder with its formula, its kernels in WGSL, and `eval.rs`, the f64 twin of
-//! `eval.wgsl`.
+//! `eval.wgsl`. Models of a path and models of statistics share the twin of their family: `path/eval.rs` and `statistics/eval.rs`.
 
 pub mod belcour;
 pub mod densities;

@@ -78,6 +78,7 @@ impl Repository {
             "crates/luthier-fuzz/corpus/a",
             "scripts/add-kind.patch",
             "scripts/add-model.patch",
+            "scripts/patched.sh",
             "scripts/patience.mjs",
         ] {
             workshop.write(file, "");

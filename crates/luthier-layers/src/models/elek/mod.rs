@@ -15,8 +15,6 @@
 //! heuristically, absorption and `f_i` combine in three colour channels. Roughness is isotropic: anisotropic surfaces have the geometric mean of
 //! their slope parameters.
 
-mod eval;
-
 use std::f64::consts::PI;
 
 use glam::DVec3;
@@ -29,7 +27,7 @@ use crate::frame::half_vector;
 use crate::layers::{ALPHA_MIN, Layer, Layers};
 use crate::model::{Claims, Input, Kind, Model, ModelInfo};
 use crate::models::parts::Parts;
-use crate::models::path::{PathModel, Tilts, walk};
+use crate::models::path::{PathModel, Tilts, eval, walk};
 use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
@@ -37,9 +35,9 @@ use crate::terms::Terms;
 /// The room of the model.
 pub(crate) const ROOM: Room = Room {
     kernels: Kernels { eval: include_str!("eval.wgsl"), ..Kernels::NONE },
-    twin: eval::twin,
+    twin: |given| eval::twin(Elek::of(given.parts), Layers::isotropic_rgb(given.stack)),
     models: || vec![Box::new(Elek::default())],
-    composed: |Parts { internal_reflection, .. }| Some(Box::new(Elek { internal_reflection })),
+    composed: |parts| Some(Box::new(Elek::of(parts))),
 };
 
 /// The real-time model. Layers are isotropic ([`Layers::isotropic`]). As a [`Model`], at one wavelength, the index of that wavelength bends
@@ -51,6 +49,11 @@ pub struct Elek {
 }
 
 impl Elek {
+    /// The model with the parts that a material chooses.
+    fn of(Parts { internal_reflection, .. }: Parts) -> Self {
+        Self { internal_reflection }
+    }
+
     /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. It is zero if either direction is at or below the horizon, and
     /// finite for all unit directions. With T_12 and T_21 at the half vector every factor of eq. 2 is symmetric, so the model is reciprocal.
     pub fn eval_with<const C: usize>(

@@ -1,5 +1,7 @@
 //! The walk of Weidlich and Wilkie's model and of Elek's form of it: down through the layers along refracted directions, and back.
 
+pub(in crate::models) mod eval;
+
 use std::array::from_fn;
 
 use glam::DVec3;

@@ -16,7 +16,6 @@
 //! facets hide each other. [`crate::models::weidlich_wilkie::corrected`] mends both.
 
 pub mod corrected;
-mod eval;
 pub mod sampling;
 
 use glam::DVec3;
@@ -27,7 +26,7 @@ use crate::formulas::refraction::{refract, refract_at};
 use crate::layers::{Layer, Layers};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::models::parts::Parts;
-use crate::models::path::{PathModel, Tilts, walk};
+use crate::models::path::{PathModel, Tilts, eval, walk};
 use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
@@ -36,7 +35,7 @@ use corrected::WeidlichWilkieCorrected;
 /// The room of the model.
 pub(crate) const ROOM: Room = Room {
     kernels: Kernels::NONE,
-    twin: eval::twin,
+    twin: |given| eval::twin(WeidlichWilkie::of(given.parts), Layers::rgb(given.stack)),
     models: || {
         vec![
             Box::new(WeidlichWilkie::default()),
@@ -48,9 +47,7 @@ pub(crate) const ROOM: Room = Room {
             Box::new(WeidlichWilkieCorrected),
         ]
     },
-    composed: |Parts { internal_reflection, .. }| {
-        Some(Box::new(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }))
-    },
+    composed: |parts| Some(Box::new(WeidlichWilkie::of(parts))),
 };
 
 /// Normal at which both directions are refracted.
@@ -71,6 +68,13 @@ pub struct WeidlichWilkie {
     pub refraction: Refraction,
     /// Form of internal reflection: the light from below that interfaces let out.
     pub internal_reflection: InternalReflection,
+}
+
+impl WeidlichWilkie {
+    /// The model with the parts that a material chooses.
+    fn of(Parts { internal_reflection, .. }: Parts) -> Self {
+        Self { internal_reflection, ..Self::default() }
+    }
 }
 
 impl PathModel for WeidlichWilkie {
