@@ -31,7 +31,6 @@
 //! crates are re-exported.
 
 pub mod angles;
-#[cfg(feature = "fit")]
 pub mod beam_fit;
 pub mod directional_albedo;
 pub mod domain;
@@ -40,6 +39,7 @@ pub mod formulas;
 pub mod frame;
 pub mod furnace;
 pub mod layers;
+mod least_squares;
 mod memo;
 pub mod model;
 pub mod models;

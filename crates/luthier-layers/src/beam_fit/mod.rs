@@ -16,11 +16,12 @@ mod problem;
 #[cfg(test)]
 mod tests;
 
-use levenberg_marquardt::LevenbergMarquardt;
 use luthier_optics::Rgb;
 
 pub use lobe::{LobeError, Sample, samples};
 use problem::Problem;
+
+use crate::least_squares::{LeastSquares, Place};
 
 /// Form of the layer that is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,16 +57,18 @@ pub struct Fitted {
 
 /// Number of best starts that are followed to their minimum.
 const STARTS: usize = 8;
+/// Most steps towards a minimum.
+const STEPS: u32 = 400;
+/// Numbers are logarithms, roots and slopes, of the order of 1.
+const SEARCH: LeastSquares = LeastSquares { longest: 1.0, gain: 1e-9 };
 
 /// The numbers whose lobe is nearest to the samples; `None` for fewer samples than numbers, or for values that are all 0.
 pub fn fit(samples: &[Sample], form: &Form) -> Option<Fitted> {
     let problem = Problem::new(samples, form)?;
     let mut starts = problem.starts();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let found = starts.into_iter().take(STARTS).map(|(_, start)| {
-        let (found, _) = LevenbergMarquardt::new().with_patience(40).minimize(start);
-        (found.sum_of_squares(), found)
-    });
-    let (_, best) = found.filter(|(sum, _)| sum.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(best.fitted())
+    let found =
+        starts.into_iter().take(STARTS).map(|(_, start)| SEARCH.descend(Place::new(start, &problem), &problem, STEPS));
+    let best = found.filter(|place| place.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    Some(problem.fitted(&best.parameters))
 }

@@ -3,12 +3,11 @@
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use glam::DVec3;
-use levenberg_marquardt::LeastSquaresProblem;
 use luthier_optics::Rgb;
-use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
 use super::lobe::Sample;
 use super::{Fitted, Form};
+use crate::least_squares::{Column, Residuals};
 use crate::models::granier_heidrich::Film;
 
 /// Numbers of every fit: logarithms of three indices less 1, of two exponents and of a weight, and roots of three diffuse coefficients.
@@ -32,13 +31,12 @@ const EXPONENT_MAX: f64 = 1e6;
 /// Largest slope of a lean, at 80 degrees: material files accept no more.
 const LEAN_MAX: f64 = 5.67;
 
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Problem<'s> {
     samples: &'s [Sample],
     form: Form,
     /// Weight of each sample.
     weights: Vec<f64>,
-    numbers: DVector<f64>,
 }
 
 /// Parts of the model of a sample and a channel: the specular one of weight 1, and the diffuse one of coefficient 1.
@@ -53,11 +51,11 @@ impl<'s> Problem<'s> {
             return None;
         }
         let weights = means.iter().map(|mean| 1.0 / (mean + floor)).collect();
-        Some(Self { samples, form: *form, weights, numbers: DVector::zeros(count) })
+        Some(Self { samples, form: *form, weights })
     }
 
     /// A grid of numbers of the film: of each lean and thickness the best, with the weight and the diffuse coefficients that suit it.
-    pub(super) fn starts(&self) -> Vec<(f64, Self)> {
+    pub(super) fn starts(&self) -> Vec<(f64, Vec<f64>)> {
         let thicknesses: Vec<Option<f64>> = match self.form.thickness_nm {
             None => vec![None],
             Some([least, most]) => (0..THICKNESSES)
@@ -74,7 +72,7 @@ impl<'s> Problem<'s> {
         let mut starts = Vec::new();
         for thickness_nm in &thicknesses {
             for lean in &leans {
-                let mut best: Option<(f64, Self)> = None;
+                let mut best: Option<(f64, Vec<f64>)> = None;
                 for outer in EXPONENTS {
                     for inner in EXPONENTS {
                         for index in INDICES {
@@ -88,8 +86,8 @@ impl<'s> Problem<'s> {
                                 rms_err: 0.0,
                                 lobe_err: 0.0,
                             };
-                            let start = self.at(&self.balanced(fitted));
-                            let sum = start.sum_of_squares();
+                            let start = self.numbers(&self.balanced(fitted));
+                            let sum = self.sum_of_squares(&start);
                             if best.as_ref().is_none_or(|(least, _)| sum < *least) {
                                 best = Some((sum, start));
                             }
@@ -125,8 +123,8 @@ impl<'s> Problem<'s> {
         Fitted { specular_weight, diffuse, ..fitted }
     }
 
-    /// The problem at the numbers of a model.
-    fn at(&self, fitted: &Fitted) -> Self {
+    /// The unbounded numbers of a model.
+    fn numbers(&self, fitted: &Fitted) -> Vec<f64> {
         let mut numbers: Vec<f64> = fitted.index.iter().map(|n| libm::log(n - 1.0)).collect();
         numbers.extend(fitted.exponents.map(libm::log));
         numbers.push(libm::log(fitted.specular_weight));
@@ -135,12 +133,11 @@ impl<'s> Problem<'s> {
         if self.form.leans {
             numbers.extend(fitted.lean);
         }
-        Self { numbers: DVector::from_vec(numbers), ..self.clone() }
+        numbers
     }
 
-    /// The numbers of the model.
-    fn model(&self) -> Fitted {
-        let x = &self.numbers;
+    /// The model of unbounded numbers.
+    fn model(&self, x: &[f64]) -> Fitted {
         let thickness_nm = self.form.thickness_nm.map(|[least, most]| libm::exp(x[COMMON]).clamp(least, most));
         let first = COMMON + usize::from(thickness_nm.is_some());
         Fitted {
@@ -182,59 +179,47 @@ impl<'s> Problem<'s> {
         values.collect()
     }
 
-    fn differences(&self) -> DVector<f64> {
-        let values = self.values(&self.model());
+    fn differences(&self, numbers: &[f64]) -> Vec<f64> {
+        let values = self.values(&self.model(numbers));
         let each = values.iter().zip(self.samples).zip(&self.weights);
-        DVector::from_iterator(
-            3 * self.samples.len(),
-            each.flat_map(|((value, sample), weight)| [0, 1, 2].map(|c: usize| (value[c] - sample.value[c]) * weight)),
-        )
+        each.flat_map(|((value, sample), weight)| [0, 1, 2].map(|c: usize| (value[c] - sample.value[c]) * weight))
+            .collect()
     }
 
-    pub(super) fn sum_of_squares(&self) -> f64 {
-        self.differences().norm_squared()
+    fn sum_of_squares(&self, numbers: &[f64]) -> f64 {
+        self.differences(numbers).iter().map(|x| x * x).sum()
     }
 
-    /// The numbers of the model, with their errors.
-    pub(super) fn fitted(&self) -> Fitted {
-        let fitted = self.model();
+    /// The model of unbounded numbers, with its errors.
+    pub(super) fn fitted(&self, numbers: &[f64]) -> Fitted {
+        let fitted = self.model(numbers);
         let values = self.values(&fitted);
         let pairs = values.iter().flatten().zip(self.samples.iter().flat_map(|sample| &sample.value));
         let apart: f64 = pairs.clone().map(|(found, value)| (found - value).abs()).sum();
         let whole: f64 = pairs.map(|(_, value)| value).sum();
-        let rms_err = (self.sum_of_squares() / (3 * self.samples.len()) as f64).sqrt();
+        let rms_err = (self.sum_of_squares(numbers) / (3 * self.samples.len()) as f64).sqrt();
         Fitted { rms_err, lobe_err: apart / whole, ..fitted }
     }
 }
 
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-    type ParameterStorage = Owned<f64, Dyn>;
-
-    fn set_params(&mut self, x: &DVector<f64>) {
-        self.numbers.copy_from(x);
+impl Residuals for Problem<'_> {
+    fn blocks(&self) -> usize {
+        1
     }
 
-    fn params(&self) -> DVector<f64> {
-        self.numbers.clone()
+    fn block(&self, numbers: &[f64], _: usize) -> Vec<f64> {
+        self.differences(numbers)
     }
 
-    fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.differences())
-    }
-
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let mut jacobian = DMatrix::zeros(3 * self.samples.len(), self.numbers.len());
-        let mut here = self.clone();
-        for i in 0..self.numbers.len() {
-            let [more, less] = [STEP, -STEP].map(|step| {
-                here.numbers[i] = self.numbers[i] + step;
-                here.differences()
-            });
-            here.numbers[i] = self.numbers[i];
-            jacobian.set_column(i, &((more - less) / (2.0 * STEP)));
-        }
-        Some(jacobian)
+    fn slopes(&self, numbers: &[f64], _: usize, _: &[f64]) -> Vec<Column> {
+        let slope = |number: usize| {
+            let mut there = numbers.to_vec();
+            there[number] = numbers[number] + STEP;
+            let more = self.differences(&there);
+            there[number] = numbers[number] - STEP;
+            let less = self.differences(&there);
+            more.iter().zip(less).map(|(more, less)| (more - less) / (2.0 * STEP)).collect()
+        };
+        (0..numbers.len()).map(|number| (number, slope(number))).collect()
     }
 }

@@ -137,12 +137,37 @@ pub struct TableTerms<'a> {
     /// Tables by kind, each with the quantity of its x axis.
     tables: [Option<(Table<'a>, AngleAxis)>; TableKind::ALL.len()],
     veil: Veil<3>,
-    lobes: Option<LobesRecord>,
-    /// The first tile of lobes.
-    lobes_tile: Option<u32>,
+    lobes: Option<Lobes>,
     records: Cow<'a, [LayerRecord]>,
     weights: Weights,
     here: Here,
+}
+
+/// Rows of lobes, and what all of them have in common.
+#[derive(Debug)]
+struct Lobes {
+    /// The first tile.
+    tile: u32,
+    axis: ViewAxis,
+    frame: Frame,
+    varying: Option<VaryingRecord>,
+}
+
+impl Lobes {
+    fn new(record: &LobesRecord, tile: u32) -> Self {
+        let critical = Critical {
+            cot_sq: record.critical_cot_sq,
+            width: record.critical_width,
+            plain_share: record.critical_plain_share,
+        };
+        let axis = ViewAxis::new(2, critical);
+        let axes = record.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
+        let base = record
+            .painted
+            .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
+        let frame = Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base };
+        Self { tile, axis, frame, varying: record.varying }
+    }
 }
 
 /// Changes that the textures of a place make to terms.
@@ -203,8 +228,11 @@ impl<'a> TableTerms<'a> {
         let terms = Self {
             tables,
             veil: recorded_veil(entry),
-            lobes: entry.constants.lobes,
-            lobes_tile: entry.layers.first().and_then(|layer| layer.tiles[TableKind::Lobes]),
+            lobes: entry
+                .constants
+                .lobes
+                .as_ref()
+                .and_then(|record| Some(Lobes::new(record, entry.layers.first()?.tiles[TableKind::Lobes]?))),
             records: Cow::Borrowed(&entry.layers),
             weights,
             here: Here::NOMINAL,
@@ -369,29 +397,18 @@ impl ShaderTerms for TableTerms<'_> {
     }
 
     fn below(&self, wo: DVec3) -> Option<Below> {
-        let lobes = self.lobes.filter(|_| wo.z > 0.0)?;
-        let (table, tile) = (self.table(TableKind::Lobes)?, self.lobes_tile?);
-        let critical = Critical {
-            cot_sq: lobes.critical_cot_sq,
-            width: lobes.critical_width,
-            plain_share: lobes.critical_plain_share,
-        };
-        let axis = ViewAxis::new(2, critical);
-        let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
-        let base = lobes.painted;
-        let base = base.map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
-        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes, base };
-        let cos_theta = axis.cosine(wo.z);
-        let row = match (axes, lobes.varying) {
+        let Lobes { tile, axis, frame, varying } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
+        let (table, cos_theta) = (self.table(TableKind::Lobes)?, axis.cosine(wo.z));
+        let row = match (frame.axes, varying) {
             (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
             (None, Some(varying)) => {
-                let (place, spread) = self.here.tile(&varying);
+                let (place, spread) = self.here.tile(varying);
                 let first = (place as u32).min(varying.tiles.saturating_sub(2));
                 let share = place - f64::from(first);
                 table.row_between(tile + first, share, cos_theta, self.weights).spread(spread)
             }
-            (None, None) => table.row(tile, cos_theta, self.weights),
+            (None, None) => table.row(*tile, cos_theta, self.weights),
         };
-        Some(Below::new(frame, row, wo))
+        Some(Below::new(*frame, row, wo))
     }
 }

@@ -1,5 +1,5 @@
-//! Symmetric positive systems, in a fixed order of operations, because bytes of tables depend on it. (Products of
-//! nalgebra are fused on some machines.)
+//! Symmetric positive systems, in a fixed order of operations, because bytes of tables depend on it. No library is used: nalgebra fuses products
+//! on some machines.
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

@@ -30,6 +30,7 @@
 //! Half vectors outside the stack are the case n = 1. The fit tries an index next to 1 instead, whose lobes fall towards the horizon as facets mask
 //! them, and takes it if its lobes are the nearest.
 
+mod amounts;
 mod axes;
 mod below;
 mod ellipse;
@@ -43,7 +44,6 @@ mod patina;
 mod prepared;
 mod rows;
 mod shape;
-mod solve;
 mod tally;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 
 use super::shape::{Shape, TAIL_MIN};
-use super::solve::solve;
+use crate::least_squares::solve;
 
 /// Cosine at which the row of the horizon is traced, at 89.9 degrees.
 const FLATTEST: f64 = 0.001_745;

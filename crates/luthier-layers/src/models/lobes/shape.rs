@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use super::ViewAxis;
-use super::solve::solve;
 use super::tally::{COSINES, Tally};
+use crate::least_squares::solve;
 
 /// Points of a bin of cosines.
 const STEPS: usize = 8;

@@ -13,10 +13,10 @@ use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
-use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
 use crate::formulas::facets::ALPHA_MIN;
+use crate::least_squares::{LeastSquares, Place};
 use crate::references::layered_mc::ColorPaths;
 use problem::{Lobed, Problem, seen_from};
 

@@ -6,10 +6,11 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 
 use super::{Found, Simulation, Views};
+use crate::least_squares::{Column, Residuals};
+use crate::models::lobes::amounts::{Amounts, Guess};
 use crate::models::lobes::ellipse::{Numbers, Plane};
 use crate::models::lobes::half_vector::{outside, refracted};
 use crate::models::lobes::parameters::{Basis, NODES, SHIFT, Term};
-use crate::models::lobes::solve::{Amounts, Column, Guess, Residuals};
 use crate::models::lobes::tally::{Cells, Point, Tally, mean};
 use crate::models::lobes::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 

@@ -11,9 +11,9 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
 
 use super::fit::{Simulation, indices};
-use super::solve::solve;
 use super::{FirstInterface, FitSettings, Lobe, Lobes, Row, ViewAxis, Wide};
 use crate::layers::ALPHA_MIN;
+use crate::least_squares::solve;
 
 /// A patina that has grown fully.
 #[derive(Debug, Clone, Copy, PartialEq)]
