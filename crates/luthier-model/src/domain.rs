@@ -64,7 +64,8 @@ const fn limit(quantity: Quantity, least: f64, most: f64, reason: &'static str) 
     Limit { quantity, least, most, refuses: false, reason }
 }
 
-/// Real part and k of an index that records hold; beyond it single precision has no fourth power.
+/// Largest real part and k of an index that records hold. Formulas of Fresnel square it twice, to 1e16, and single precision has room for products
+/// of such numbers.
 pub const INDEX_MAX: f64 = 1e4;
 
 /// Thickest film whose phase single precision resolves at all: 1 mm is 4000 waves, a phase error of 1e-3 turns.

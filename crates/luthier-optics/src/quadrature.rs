@@ -40,7 +40,7 @@ pub struct GradedRules {
 const RULE_BITS: u32 = 2;
 /// Largest power of two of the square of a reach: scales down to 2^-30 of the interval.
 const LAST_EXPONENT: u64 = 60;
-/// Longest reach of a rule over the shortest that it serves, rounded up: the fourth of a doubling of squares is at most 5/4 long.
+/// Reach of a rule over the shortest that it serves: near the middle, as the square of the longest is at most 5/4 of that of the shortest.
 const REACH_WITHIN: f64 = 1.06;
 
 impl GradedRules {

@@ -20,7 +20,7 @@ pub enum ShaderError {
     #[error("material `{0}` has no layers")]
     NoLayers(String),
     /// No identifier can be made of a name.
-    #[error("`{0}` makes no shader identifier: names are letters, digits and hyphens")]
+    #[error("`{0}` makes no shader identifier: names are letters, digits, hyphens and underscores")]
     Name(String),
     /// Two names make the same identifier.
     #[error("`{first}` and `{second}` are both `{constant}` in a shader; rename one")]

@@ -1,6 +1,7 @@
 // The tiles: every material small. Each is drawn with one sample first, then with all; it turns while the pointer is over it, or after a press.
 
-const TILE_PIXELS = 192;
+/** Side of a tile; less where the page is shown smaller. */
+const TILE_PIXELS = Math.ceil(192 * Math.min(devicePixelRatio, 1));
 const TILE_SAMPLES = 4;
 /** Directions of the environment where it is not blurred beforehand. */
 const TILE_DIRECTIONS = 16;

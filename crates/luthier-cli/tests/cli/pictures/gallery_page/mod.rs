@@ -33,7 +33,7 @@ const MATERIALS: [&str; 11] = [
 ];
 
 /// Side of compared pictures.
-const SIZE: u32 = 96;
+const SIZE: u32 = 64;
 
 /// What the page says of itself once all of its pictures are there, and what the given script adds to that. It tells of each picture before.
 const TELL: &str = r#"<script>
@@ -118,6 +118,8 @@ fn opened(browser: &Path, workshop: &Workshop, page: &str, size: [u32; 2], hash:
             "--no-first-run",
             "--use-angle=swiftshader",
             "--enable-unsafe-swiftshader",
+            // Few pixels: software draws them.
+            "--force-device-scale-factor=0.125",
         ])
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("--window-size={},{}", size[0], size[1]))
@@ -299,33 +301,44 @@ found.names = all("input, select, button").filter(control => !control.labels?.le
 "##,
     ]
     .concat();
-    for size in [[1000, 700], [500, 844]] {
-        let found = opened(&browser, &workshop, "page.html", size, "", &script);
-        assert_eq!((&found["tiles"], &found["unseen"], &found["tilesBeside"]), (&json!(4), &json!(0), &json!(0)));
-        assert_eq!((&found["open"], &found["text"]), (&json!(["lacquer"]), &json!([true])), "{found}");
-        assert!(found["layers"].as_u64().unwrap() >= 3, "exterior and layers: {found}");
-        assert_eq!(found["beyond"], json!([0, 0]), "scrolls sideways at {size:?}");
-        assert!(found["turned"].as_f64().unwrap() > 0.2 && found["reset"] == 0, "{found}");
-        let choices = ["elek, tables", "elek, no tables", "belcour, tables", "belcour, no tables"];
-        assert_eq!(found["choices"], json!(choices));
-        let [same, other] = ["same_model", "other_model"].map(|name| found[name].as_u64().unwrap());
-        assert!(same < 40 && other > 60, "forms of a model are near, models are not: {same} {other}");
-        assert!(found["apart"].as_str().unwrap().contains("Root mean square difference"), "{found}");
-        assert!(found["rougher"][0].as_f64().unwrap() > 0.2 && found["nominal"] == 0, "{found}");
-        assert_eq!([&found["rougher"][1], &found["rougher"][2]], [&json!("× 2.00"), &json!("2.00 times the slopes")]);
-        assert_eq!(found["matte"][0], json!(true), "a diffuse base has no slopes");
-        assert!(found["matte"][1].as_str().unwrap().contains("no interface"), "{found}");
-        assert!(found["facts"].as_array().unwrap().contains(&json!("Bytes of tables")), "{found}");
-        assert_eq!(found["back"], json!([4, "#lacquer"]), "Escape leads back to where one was");
-        let printed: Vec<u64> = found["printed"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
-        assert!(printed.len() == 4 && printed.iter().all(|&values| values > 8), "pictures in print: {printed:?}");
-        assert_eq!((&found["leftOut"], &found["unprinted"]), (&json!(3), &json!(0)), "the filter holds in print");
-        assert_eq!((&found["filtered"], &found["names"]), (&json!(["gold"]), &json!([])));
-    }
-    // An address leads to its material at once.
-    let script = r##"await marked("luthier-stage"); found.open = [...document.querySelectorAll("article.open")].map(article => article.id);"##;
-    let found = opened(&browser, &workshop, "page.html", [1280, 900], "#gold", script);
-    assert_eq!(found["open"], json!(["gold"]));
+    let found = opened(&browser, &workshop, "page.html", [1000, 700], "", &script);
+    assert_eq!((&found["tiles"], &found["unseen"], &found["tilesBeside"]), (&json!(4), &json!(0), &json!(0)));
+    assert_eq!((&found["open"], &found["text"]), (&json!(["lacquer"]), &json!([true])), "{found}");
+    assert!(found["layers"].as_u64().unwrap() >= 3, "exterior and layers: {found}");
+    assert_eq!(found["beyond"], json!([0, 0]), "scrolls sideways");
+    assert!(found["turned"].as_f64().unwrap() > 0.2 && found["reset"] == 0, "{found}");
+    let choices = ["elek, tables", "elek, no tables", "belcour, tables", "belcour, no tables"];
+    assert_eq!(found["choices"], json!(choices));
+    let [same, other] = ["same_model", "other_model"].map(|name| found[name].as_u64().unwrap());
+    assert!(same < 40 && other > 60, "forms of a model are near, models are not: {same} {other}");
+    assert!(found["apart"].as_str().unwrap().contains("Root mean square difference"), "{found}");
+    assert!(found["rougher"][0].as_f64().unwrap() > 0.2 && found["nominal"] == 0, "{found}");
+    assert_eq!([&found["rougher"][1], &found["rougher"][2]], [&json!("× 2.00"), &json!("2.00 times the slopes")]);
+    assert_eq!(found["matte"][0], json!(true), "a diffuse base has no slopes");
+    assert!(found["matte"][1].as_str().unwrap().contains("no interface"), "{found}");
+    assert!(found["facts"].as_array().unwrap().contains(&json!("Bytes of tables")), "{found}");
+    assert_eq!(found["back"], json!([4, "#lacquer"]), "Escape leads back to where one was");
+    let printed: Vec<u64> = found["printed"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
+    assert!(printed.len() == 4 && printed.iter().all(|&values| values > 8), "pictures in print: {printed:?}");
+    assert_eq!((&found["leftOut"], &found["unprinted"]), (&json!(3), &json!(0)), "the filter holds in print");
+    assert_eq!((&found["filtered"], &found["names"]), (&json!(["gold"]), &json!([])));
+    // An address leads to its material at once, on a narrow screen, too.
+    let script = [
+        USE,
+        r##"
+await marked("luthier-stage");
+found.open = shown("article").map(article => article.id);
+found.beyond = [beyond()];
+dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
+await wait(50);
+found.tiles = shown(".tiles li").length;
+found.beyond.push(beyond());
+"##,
+    ]
+    .concat();
+    let found = opened(&browser, &workshop, "page.html", [500, 844], "#gold", &script);
+    assert_eq!((&found["open"], &found["tiles"]), (&json!(["gold"]), &json!(4)));
+    assert_eq!(found["beyond"], json!([0, 0]), "scrolls sideways");
 }
 
 /// Sixty materials have their first pictures soon: the times are printed, because machines differ.

@@ -126,7 +126,7 @@ found.half = [...await luthierPicture("worn", { size: $size, slopes: 0.5 })];
     ]
     .concat()
     .replace("$size", &size);
-    let found = opened(&browser, &workshop, "page.html", [1000, 700], "", &script);
+    let found = opened(&browser, &workshop, "page.html", [500, 400], "", &script);
     assert_eq!(found["choices"], json!(["lobes, tables", "belcour, tables", "belcour, no tables"]));
     assert_eq!([&found["fitted"][0], &found["fitted"][2]], [&json!(true), &json!("fixed")]);
     assert!(found["fitted"][1].as_str().unwrap().contains("fitted for one roughness"));
