@@ -74,11 +74,16 @@ const RESERVED: &str = "active asm attribute buffer centroid char common constan
 
 /// Moves the value of `TYPE _eN = VALUE;` into the next line, if only that line reads it.
 fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {
+    // A move takes a name away and changes the number of no other.
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for word in lines.iter().flat_map(|line| words(line)).filter(|word| word.starts_with("_e")) {
+        *counts.entry(word.to_owned()).or_default() += 1;
+    }
     for i in (0..lines.len().saturating_sub(1)).rev() {
         let Some((name, value)) = temporary(&lines[i]).map(|(name, value)| (name.to_owned(), value.to_owned())) else {
             continue;
         };
-        if uses(&lines[i + 1], &name) == 1 && lines.iter().map(|line| uses(line, &name)).sum::<usize>() == 2 {
+        if counts.get(&name) == Some(&2) && uses(&lines[i + 1], &name) == 1 {
             let value = if is_compound(&value) { format!("({value})") } else { value };
             lines[i + 1] = rename(&lines[i + 1], |word| (word == name).then_some(value.as_str()));
             lines.remove(i);
@@ -89,7 +94,8 @@ fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {
 
 /// How often a line mentions a name.
 fn uses(line: &str, name: &str) -> usize {
-    words(line).filter(|word| *word == name).count()
+    // Most lines lack it, and a search for bytes is quicker than one for words.
+    if line.contains(name) { words(line).filter(|word| *word == name).count() } else { 0 }
 }
 
 /// Name and value of a line that declares a temporary of naga's.
