@@ -59,6 +59,6 @@ pub use num_complex;
 
 /// A value per colour channel: linear Rec.709, D65 white.
 ///
-/// It is an array, without operators: three of four loops over channels call a function of the channel or read one element of many, which operators
-/// would not shorten.
+/// It is an array, without operators: many loops over channels call a function of the channel or read one element of many, which operators would not
+/// shorten.
 pub type Rgb = [f64; 3];
