@@ -12,13 +12,13 @@ const HOSTS: [&str; 4] = ["LuthierPlace", "LuthierLayerPlace", "LuthierSample", 
 /// The text without functions, structures and constants that no public function reaches, without members that no function reads, and without
 /// the statements that fill these. `kept` members of a layer stay, because programs around a shader read them.
 pub(crate) fn reached(wgsl: &str, kept: &[&str]) -> String {
-    let mut text = wgsl.to_owned();
+    let mut text = declarations_reached(wgsl);
     loop {
-        let next = without_missing(&without_unread(&declarations_reached(&text), kept));
+        let next = without_missing(&without_unread(&text, kept));
         if next == text {
             return text;
         }
-        text = next;
+        text = declarations_reached(&next);
     }
 }
 

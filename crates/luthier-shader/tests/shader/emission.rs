@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
-use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, forms, material, sets, tables};
+use crate::scenes::{Part, clear, conductor, dielectric, diffuse, filmed, forms, material, sets, tables, text};
 use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, FunctionGroup, LAYER_WORDS, LayerKind};
 use luthier_shader::{
@@ -28,8 +28,15 @@ fn richest() -> Vec<luthier_manifest::MaterialEntry> {
 
 #[test]
 fn every_set_passes() {
-    for (_, materials) in sets() {
-        emit_all(&materials, &tables());
+    for (name, materials) in sets() {
+        let set = MaterialSet::new(&materials, tables());
+        for form in forms(&materials) {
+            for target in Target::TEXT {
+                text((name, &set), form, target, Part::Complete);
+            }
+            emit_spirv(&set, form).unwrap_or_else(|e| panic!("{name} {form} library: {e}"));
+            complete_spirv(&set, form).unwrap_or_else(|e| panic!("{name} {form} shader: {e}"));
+        }
     }
 }
 
@@ -43,16 +50,13 @@ fn every_function_passes_the_lint() {
         let has_several = ["models", "lobes-mixed", "everything"].contains(&name);
         let groups = if has_several { &groups[..] } else { &groups[..1] };
         for (form, target) in forms(&materials).flat_map(|form| [(form, Target::Hlsl), (form, Target::Msl)]) {
-            let passes = |text: Result<String, ShaderError>, what: &str| {
-                text.unwrap_or_else(|error| panic!("{name} {form} {target} {what}: {error}"));
-            };
             for functions in groups {
                 let functions = functions.iter().copied().collect();
                 let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
-                passes(complete(&set, form, target), &format!("{:?}", set.functions));
+                text((name, &set), form, target, Part::Complete);
             }
             if materials.len() == 1 {
-                passes(emit_constant(&MaterialSet::new(&materials, tables()), form, target), "constants");
+                text((name, &MaterialSet::new(&materials, tables())), form, target, Part::Constant);
             }
         }
     }
@@ -164,12 +168,12 @@ fn what_a_set_lacks_is_not_in_its_text() {
 #[test]
 fn shipped_functions_have_no_loops_and_no_placeholders() {
     // The cells of glitter are looked for in a loop.
-    for (_, materials) in sets().into_iter().filter(|(_, m)| m.iter().all(|m| m.constants.glitter.is_none())) {
+    for (name, materials) in sets().into_iter().filter(|(_, m)| m.iter().all(|m| m.constants.glitter.is_none())) {
         let plain = MaterialSet::new(&materials, tables());
         let whole = MaterialSet { functions: FunctionGroup::ALL.into_iter().collect(), ..plain.clone() };
         for (set, form) in [plain, whole].iter().flat_map(|set| forms(&materials).map(move |form| (set, form))) {
             for target in Target::TEXT {
-                let text = emit(set, form, target).unwrap();
+                let text = text((name, set), form, target, Part::Snippet);
                 for word in ["loop", "while", "for (", "$", "//?", "_group_", "_e1", "main(", "\n\n\n"] {
                     assert!(!text.contains(word), "`{word}` in {form} {target}:\n{text}");
                 }

@@ -55,9 +55,8 @@ fn prepared_materials_give_the_light_of_eval() {
                     compared += usize::from(expected.iter().any(|&v| v > 1e-3));
 
                     let u = [0.05 + 0.08 * f64::from(i), 0.3, 0.7];
-                    let Value::Many(drawn) = call("luthier_sample", single(u)) else {
-                        panic!("a sample is a structure")
-                    };
+                    let drawn = call("luthier_sample", single(u));
+                    let drawn = drawn.members();
                     let pdf = call("luthier_pdf", drawn[0].clone()).floats()[0];
                     assert_eq!(drawn[1].floats(), [pdf], "{what}");
                     let weight = drawn[2].floats();
@@ -98,17 +97,17 @@ fn draws_lean_with_the_normal_of_a_place() {
             continue;
         }
         let machine = Machine::new(&text, &material_buffer(&materials), textures());
-        let Value::Many(members) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let place = machine.call("luthier_place", Vec::new());
         for number in 0..materials.len() as u32 {
             for (wi, wo) in directions(8).filter(|(wi, wo)| turned(*wi)[2] > 0.2 && turned(*wo)[2] > 0.2) {
                 let what = format!("{name} {number} {wi:?} {wo:?}");
-                let prepared = |place: &[Value], wo| {
-                    let arguments = vec![Value::Many(place.to_vec()), Value::U(number), single(wo)];
+                let prepared = |place: &Value, wo| {
+                    let arguments = vec![place.clone(), Value::U(number), single(wo)];
                     machine.call("luthier_prepare_at", arguments)
                 };
-                let mut leaning = members.clone();
-                leaning[0] = single(turned([0.0, 0.0, 1.0]));
-                let (level, leaning) = (prepared(&members, wo), prepared(&leaning, turned(wo)));
+                let mut leaning = place.clone();
+                leaning.members_mut()[0] = single(turned([0.0, 0.0, 1.0]));
+                let (level, leaning) = (prepared(&place, wo), prepared(&leaning, turned(wo)));
                 let pdf =
                     |prepared: &Value, wi| machine.call("luthier_pdf", vec![prepared.clone(), single(wi)]).floats()[0];
                 let (expected, found) = (pdf(&level, wi), pdf(&leaning, turned(wi)));
@@ -116,8 +115,7 @@ fn draws_lean_with_the_normal_of_a_place() {
                 assert!((found - expected).abs() <= 1e-3 * expected, "{what}: {found} {expected}");
                 let draw = |prepared: &Value| {
                     let drawn = machine.call("luthier_sample", vec![prepared.clone(), single([0.4, 0.3, 0.6])]);
-                    let Value::Many(members) = drawn else { panic!("a sample is a structure") };
-                    members[0].floats()
+                    drawn.members()[0].floats()
                 };
                 let expected = turned([0, 1, 2].map(|i| f64::from(draw(&level)[i])));
                 let found = draw(&leaning);
@@ -170,16 +168,16 @@ fn a_variance_of_slopes_is_a_factor_on_the_only_slope_parameter() {
         let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
         let machine =
             Machine::new(&emit(&set, Form::Baked, Target::Wgsl).unwrap(), &material_buffer(&materials), textures());
-        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let neutral = machine.call("luthier_place", Vec::new());
         let (alpha, variance) = (materials[0].layers[0].alpha, 0.02);
         let (mut varied, mut scaled) = (neutral.clone(), neutral.clone());
         // After the normal and three factors.
-        varied[4] = Value::F(variance as f32);
-        scaled[1] = Value::F(((alpha * alpha + 2.0 * variance).sqrt() / alpha) as f32);
+        varied.members_mut()[4] = Value::F(variance as f32);
+        scaled.members_mut()[1] = Value::F(((alpha * alpha + 2.0 * variance).sqrt() / alpha) as f32);
         let mut moved = 0.0_f32;
         for (wi, wo) in directions(40).filter(|(wi, wo)| wi[2] > 0.0 && wo[2] > 0.0) {
-            let at = |place: &[Value]| {
-                let arguments = vec![Value::Many(place.to_vec()), Value::U(0), single(wi), single(wo)];
+            let at = |place: &Value| {
+                let arguments = vec![place.clone(), Value::U(0), single(wi), single(wo)];
                 machine.call("luthier_eval_at", arguments).floats()[0]
             };
             let (found, expected, plain) = (at(&varied), at(&scaled), at(&neutral));

@@ -22,7 +22,7 @@ const SHOWN: f32 = 0.02;
 struct Shader {
     machine: Machine,
     wgsl: String,
-    place: Option<Vec<Value>>,
+    place: Option<Value>,
 }
 
 /// D is computed: a table of it would hide which distribution a record names.
@@ -53,10 +53,7 @@ impl Shader {
         let wgsl = emit(&set, form, Target::Wgsl).unwrap();
         let machine = Machine::new(&wgsl, &material_buffer(&materials), textures());
         let has_place = wgsl.contains("fn luthier_place(");
-        let place = has_place.then(|| match machine.call("luthier_place", Vec::new()) {
-            Value::Many(members) => members,
-            other => panic!("{other:?}"),
-        });
+        let place = has_place.then(|| machine.call("luthier_place", Vec::new()));
         Self { machine, wgsl, place }
     }
 
@@ -66,7 +63,7 @@ impl Shader {
         let mut names = text.lines().filter_map(|line| line.trim().split_once(": ")).map(|(name, _)| name);
         let names: Vec<&str> = names.by_ref().filter(|name| !name.starts_with("//")).collect();
         if let (Some(index), Some(place)) = (names.iter().position(|name| *name == member), &mut self.place) {
-            place[index] = value;
+            place.members_mut()[index] = value;
         }
         self
     }
@@ -77,11 +74,9 @@ impl Shader {
         let text = text.split('}').next().unwrap();
         let names = text.lines().filter_map(|line| line.trim().split_once(": ")).map(|(name, _)| name);
         let index = names.filter(|name| !name.starts_with("//")).position(|name| name == member);
-        let layers = self.place.as_mut().and_then(|place| place.last_mut());
-        if let (Some(index), Some(Value::Many(layers))) = (index, layers)
-            && let Some(Value::Many(members)) = layers.get_mut(layer)
-        {
-            members[index] = value;
+        let layers = self.place.as_mut().and_then(|place| place.members_mut().last_mut());
+        if let (Some(index), Some(layers)) = (index, layers) {
+            layers.members_mut()[layer].members_mut()[index] = value;
         }
         self
     }
@@ -91,7 +86,7 @@ impl Shader {
             let [wi, wo] = [wi, wo].map(|w| vector(&w.map(|v| v as f32)));
             match &self.place {
                 Some(place) => {
-                    let arguments = vec![Value::Many(place.clone()), Value::U(0), wi, wo];
+                    let arguments = vec![place.clone(), Value::U(0), wi, wo];
                     self.machine.call("luthier_eval_at", arguments).floats()
                 }
                 None => self.machine.call("luthier_eval", vec![Value::U(0), wi, wo]).floats(),

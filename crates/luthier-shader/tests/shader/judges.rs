@@ -4,13 +4,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::Arc;
 
-use luthier_manifest::{FunctionGroup, MaterialEntry};
-use luthier_shader::{Form, MaterialSet, Target, bindings, complete, complete_spirv, emit, emit_spirv};
+use luthier_manifest::FunctionGroup;
+use luthier_shader::{Form, MaterialSet, Target, bindings, complete, complete_spirv, emit_spirv};
 use tempfile::TempDir;
 
 use crate::examples;
-use crate::scenes::{clear, conductor, forms, material, sets, tables};
+use crate::scenes::{Part, clear, conductor, forms, material, sets, tables, text};
 
 /// Environment that SPIR-V emitted here is for.
 const VULKAN: &str = "vulkan1.1";
@@ -30,31 +31,47 @@ fn expect_success(output: &Output, what: &str, source: &str) {
     assert!(output.status.success(), "{what}:\n{stdout}{stderr}\n{source}");
 }
 
-/// Every set of materials in both forms, with `luthier_eval` alone and with all functions, a name and a folder to work in.
-fn each(mut judge: impl FnMut(&str, &MaterialSet<'_>, Form, &Path)) {
-    let folder = TempDir::new().unwrap();
-    for (name, materials) in sets() {
-        for form in forms(&materials) {
-            let plain = set(&materials);
-            let functions = FunctionGroup::ALL.into_iter().collect();
-            judge(
-                &format!("{name} {form} all functions"),
-                &MaterialSet { functions, ..plain.clone() },
-                form,
-                folder.path(),
-            );
-            judge(&format!("{name} {form}"), &plain, form, folder.path());
-        }
-        let functions = [FunctionGroup::Environment].into_iter().collect();
-        let lit = MaterialSet { functions, ..set(&materials) };
-        if bindings(&lit, Form::Baked).iter().any(|entry| entry.name == "luthier_environment_map") {
-            judge(&format!("{name} with the environment"), &lit, Form::Baked, folder.path());
-        }
+/// A set of materials with functions, in a form, for a judge to work on in a folder.
+struct Case<'c> {
+    name: &'static str,
+    set: MaterialSet<'c>,
+    form: Form,
+    folder: &'c Path,
+}
+
+impl Case<'_> {
+    fn complete(&self, target: Target) -> Arc<str> {
+        text((self.name, &self.set), self.form, target, Part::Complete)
+    }
+
+    fn what(&self) -> String {
+        format!("{} {} {:?}", self.name, self.form, self.set.functions)
     }
 }
 
-fn set(materials: &[MaterialEntry]) -> MaterialSet<'_> {
-    MaterialSet::new(materials, tables())
+/// Judges that start programs for each case take turns with every change: each case is for one of them, and for all of them at night.
+const TURNS: usize = 4;
+
+/// Every set of materials in both forms, with `luthier_eval` alone and with all functions; of [`TURNS`] only the given one, if any.
+fn each(turn: Option<usize>, mut judge: impl FnMut(&Case<'_>)) {
+    let folder = TempDir::new().unwrap();
+    let mut count = 0;
+    for (name, materials) in sets() {
+        let of = |functions: &[FunctionGroup]| {
+            let functions = functions.iter().copied().collect();
+            MaterialSet { functions, ..MaterialSet::new(&materials, tables()) }
+        };
+        let (whole, plain, lit) = (of(&FunctionGroup::ALL), of(&[]), of(&[FunctionGroup::Environment]));
+        let has_light = bindings(&lit, Form::Baked).iter().any(|entry| entry.name == "luthier_environment_map");
+        let cases = forms(&materials).flat_map(|form| [(form, &whole), (form, &plain)]);
+        for (form, set) in cases.chain(has_light.then_some((Form::Baked, &lit))) {
+            if turn.is_none_or(|turn| count % TURNS == turn) {
+                judge(&Case { name, set: set.clone(), form, folder: folder.path() });
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 100, "{count}");
 }
 
 /// Compiles with glslang into `shader.spv` of the folder.
@@ -75,17 +92,32 @@ pub(crate) fn validate_spirv(module: &Path, environment: &str, what: &str, sourc
 
 #[test]
 fn khronos_tools_accept_complete_glsl() {
-    if !is_installed("glslangValidator", "glslang-tools") || !is_installed("spirv-val", "spirv-tools") {
-        return;
+    if has_khronos_tools() {
+        each(Some(0), accept_complete_glsl);
     }
-    each(|what, set, form, folder| {
-        let text = complete(set, form, Target::Glsl450).unwrap();
-        for (client, environment) in [("-V", VULKAN), ("-G", "opengl4.5")] {
-            let module = compile(&text, folder, what, &[client]);
-            validate_spirv(&module, environment, what, &text);
-        }
-        accept_glsl_es(what, &complete(set, form, Target::GlslEs300).unwrap(), folder);
-    });
+}
+
+#[test]
+#[ignore = "minutes: scripts/nightly.sh tests"]
+fn khronos_tools_accept_all() {
+    assert!(has_khronos_tools());
+    let judges = [accept_complete_glsl, accept_complete_hlsl, accept_complete_spirv, accept_linked_spirv];
+    for judge in judges {
+        each(None, judge);
+    }
+}
+
+fn has_khronos_tools() -> bool {
+    is_installed("glslangValidator", "glslang-tools") && is_installed("spirv-val", "spirv-tools")
+}
+
+fn accept_complete_glsl(case: &Case<'_>) {
+    let text = case.complete(Target::Glsl450);
+    for (client, environment) in [("-V", VULKAN), ("-G", "opengl4.5")] {
+        let module = compile(&text, case.folder, &case.what(), &[client]);
+        validate_spirv(&module, environment, &case.what(), &text);
+    }
+    accept_glsl_es(&case.what(), &case.complete(Target::GlslEs300), case.folder);
 }
 
 /// Has glslang read a fragment shader. GLSL ES 3.00 has no locations for what the vertex shader hands over, so it makes no SPIR-V.
@@ -116,7 +148,7 @@ fn khronos_tools_accept_glsl_of_many_materials() {
     for count in [33, 63, 1000] {
         let materials: Vec<_> = (0..count).map(|i| material(&format!("m-{i}"), &[clear(), conductor()])).collect();
         for form in Form::ALL {
-            let text = complete(&set(&materials), form, Target::GlslEs300).unwrap();
+            let text = complete(&MaterialSet::new(&materials, tables()), form, Target::GlslEs300).unwrap();
             accept_glsl_es(&format!("{count} materials, {form}"), &text, folder.path());
         }
     }
@@ -124,49 +156,52 @@ fn khronos_tools_accept_glsl_of_many_materials() {
 
 #[test]
 fn khronos_tools_accept_complete_hlsl() {
-    if !is_installed("glslangValidator", "glslang-tools") || !is_installed("spirv-val", "spirv-tools") {
-        return;
+    if has_khronos_tools() {
+        each(Some(1), accept_complete_hlsl);
     }
-    each(|what, set, form, folder| {
-        let text = complete(set, form, Target::Hlsl).unwrap();
-        let module = compile(&text, folder, what, &["-D", "-V", "-e", "main"]);
-        validate_spirv(&module, VULKAN, what, &text);
-    });
+}
+
+fn accept_complete_hlsl(case: &Case<'_>) {
+    let text = case.complete(Target::Hlsl);
+    let module = compile(&text, case.folder, &case.what(), &["-D", "-V", "-e", "main"]);
+    validate_spirv(&module, VULKAN, &case.what(), &text);
 }
 
 #[test]
 fn khronos_tools_accept_spirv() {
-    if !is_installed("spirv-val", "spirv-tools") {
-        return;
+    if is_installed("spirv-val", "spirv-tools") {
+        each(Some(2), accept_complete_spirv);
     }
-    each(|what, set, form, folder| {
-        let module = folder.join("module.spv");
-        fs::write(&module, complete_spirv(set, form).unwrap()).unwrap();
-        validate_spirv(&module, VULKAN, what, "");
-        fs::write(&module, emit_spirv(set, form).unwrap()).unwrap();
-        // No Vulkan environment has libraries.
-        validate_spirv(&module, "spv1.3", what, "");
-    });
+}
+
+fn accept_complete_spirv(case: &Case<'_>) {
+    let module = case.folder.join("module.spv");
+    fs::write(&module, complete_spirv(&case.set, case.form).unwrap()).unwrap();
+    validate_spirv(&module, VULKAN, &case.what(), "");
+    fs::write(&module, emit_spirv(&case.set, case.form).unwrap()).unwrap();
+    // No Vulkan environment has libraries.
+    validate_spirv(&module, "spv1.3", &case.what(), "");
 }
 
 /// A shader made elsewhere, which imports `luthier_eval`, links with the library to one that Vulkan takes.
 #[test]
 fn a_shader_links_with_the_spirv_library() {
-    if !is_installed("spirv-link", "spirv-tools") {
-        return;
+    if is_installed("spirv-link", "spirv-tools") {
+        each(Some(3), accept_linked_spirv);
     }
-    each(|what, set, form, folder| {
-        let path = |name: &str| folder.join(name);
-        fs::write(path("user.spvasm"), include_str!("user.spvasm")).unwrap();
-        fs::write(path("library.spv"), emit_spirv(set, form).unwrap()).unwrap();
-        let mut assemble = Command::new("spirv-as");
-        assemble.args(["--target-env", "spv1.3", "-o"]).args([path("user.spv"), path("user.spvasm")]);
-        expect_success(&assemble.output().unwrap(), what, "");
-        let mut link = Command::new("spirv-link");
-        link.args(["--target-env", "spv1.3", "-o"]).args([path("linked.spv"), path("user.spv"), path("library.spv")]);
-        expect_success(&link.output().unwrap(), what, "");
-        validate_spirv(&path("linked.spv"), VULKAN, what, "");
-    });
+}
+
+fn accept_linked_spirv(case: &Case<'_>) {
+    let path = |name: &str| case.folder.join(name);
+    fs::write(path("user.spvasm"), include_str!("user.spvasm")).unwrap();
+    fs::write(path("library.spv"), emit_spirv(&case.set, case.form).unwrap()).unwrap();
+    let mut assemble = Command::new("spirv-as");
+    assemble.args(["--target-env", "spv1.3", "-o"]).args([path("user.spv"), path("user.spvasm")]);
+    expect_success(&assemble.output().unwrap(), &case.what(), "");
+    let mut link = Command::new("spirv-link");
+    link.args(["--target-env", "spv1.3", "-o"]).args([path("linked.spv"), path("user.spv"), path("library.spv")]);
+    expect_success(&link.output().unwrap(), &case.what(), "");
+    validate_spirv(&path("linked.spv"), VULKAN, &case.what(), "");
 }
 
 /// The script that has Tint compile files; `None` where it cannot run. On a build server it must.
@@ -184,11 +219,10 @@ fn tint() -> Option<PathBuf> {
 #[test]
 fn tint_accepts_wgsl() {
     let mut texts = Vec::new();
-    each(|what, set, form, _| {
-        for (part, text) in
-            [("snippet", emit(set, form, Target::Wgsl)), ("complete", complete(set, form, Target::Wgsl))]
-        {
-            texts.push((format!("{what} {part}"), text.unwrap()));
+    each(None, |case| {
+        for part in [Part::Snippet, Part::Complete] {
+            let text = text((case.name, &case.set), case.form, Target::Wgsl, part);
+            texts.push((format!("{} {part:?}", case.what()), text.to_string()));
         }
     });
     accept_wgsl(&texts);
@@ -221,7 +255,9 @@ fn judges_find_a_fault() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("shader.wgsl");
     let materials = sets().pop().unwrap().1;
-    let faulty = |target| complete(&set(&materials), Form::Baked, target).unwrap().replacen("sqrt(", "sqrd(", 1);
+    let faulty = |target| {
+        complete(&MaterialSet::new(&materials, tables()), Form::Baked, target).unwrap().replacen("sqrt(", "sqrd(", 1)
+    };
     if let Some(script) = tint() {
         fs::write(&file, faulty(Target::Wgsl)).unwrap();
         assert_eq!(Command::new("node").arg(&script).arg(&file).output().unwrap().status.code(), Some(1));
@@ -235,7 +271,7 @@ fn judges_find_a_fault() {
         }
     }
     if is_installed("spirv-val", "spirv-tools") {
-        let mut module = complete_spirv(&set(&materials), Form::Baked).unwrap();
+        let mut module = complete_spirv(&MaterialSet::new(&materials, tables()), Form::Baked).unwrap();
         module.truncate(module.len() - 4);
         fs::write(&file, module).unwrap();
         assert!(!Command::new("spirv-val").arg(&file).output().unwrap().status.success());

@@ -160,7 +160,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
-        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let neutral = machine.call("luthier_place", Vec::new());
         // By hand: roots 1, .7, .41, 0; of four tiles, the last on slopes is that of 1/4. Films are at equal distances from 1.2 to .2.
         for (scale, over_alpha, over_slab, over_film) in [
             (1.0, 0.0, 0.0, 0.6),
@@ -170,7 +170,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
             (0.0, 3.0, 3.0, 3.0),
         ] {
             let mut place = neutral.clone();
-            place[1 + member] = Value::F(scale as f32);
+            place.members_mut()[1 + member] = Value::F(scale as f32);
             let (over, spread) = match member {
                 0 => (over_alpha, f64::max(scale, 0.1)),
                 1 => (over_slab, 1.0),
@@ -191,7 +191,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
                 };
                 let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false).spread(spread);
                 let expected = Below::new(frame, row, eye).eval(light);
-                let arguments = vec![Value::Many(place.clone()), Value::U(0), vector(&wo.map(|w| w as f32))];
+                let arguments = vec![place.clone(), Value::U(0), vector(&wo.map(|w| w as f32))];
                 let prepared = machine.call("luthier_prepare_lobes", arguments);
                 let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
                 for (found, expected) in found.iter().zip(expected) {
@@ -268,9 +268,9 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
         let place = (variance > 0.0).then(|| {
-            let Value::Many(mut place) = machine.call("luthier_place", Vec::new()) else { panic!("a structure") };
-            place[4] = Value::F(variance as f32);
-            Value::Many(place)
+            let mut place = machine.call("luthier_place", Vec::new());
+            place.members_mut()[4] = Value::F(variance as f32);
+            place
         });
         let mut brightest = 0.0_f64;
         for (wi, wo) in directions(300) {
@@ -332,11 +332,11 @@ fn patina_mixes_the_light_of_two_ends() {
         let textures = [("luthier_fresnel", gray), ("luthier_lobes", image.clone())];
         let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
         let machine = Machine::new(&text, &material_buffer(&materials), textures);
-        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let neutral = machine.call("luthier_place", Vec::new());
         for (patina, tile, cover) in [(-1.0, 1.0, 1.0), (1.0, 2.0, 1.0), (0.3, 2.7, 0.3), (0.0, 3.0, 0.0)] {
             let (tile, cover) = if bare.is_some() { (tile, cover) } else { (1.0, 1.0) };
             let mut place = neutral.clone();
-            *place.last_mut().unwrap() = Value::F(patina as f32);
+            *place.members_mut().last_mut().unwrap() = Value::F(patina as f32);
             for (wi, wo) in directions(100) {
                 let [light, eye] = [wi, wo].map(DVec3::from);
                 if light.z <= 0.0 || eye.z <= 0.0 {
@@ -368,7 +368,7 @@ fn patina_mixes_the_light_of_two_ends() {
                 });
                 let below = Below::new(frame, row, eye).eval(light);
                 let arguments = vec![
-                    Value::Many(place.clone()),
+                    place.clone(),
                     Value::U(number as u32),
                     vector(&wi.map(|w| w as f32)),
                     vector(&wo.map(|w| w as f32)),
@@ -440,7 +440,7 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
         let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
-        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let neutral = machine.call("luthier_place", Vec::new());
         let mut moved = 0.0_f64;
         for (k, (wi, wo)) in directions(300).enumerate() {
             let [light, eye] = [wi, wo].map(DVec3::from);
@@ -452,17 +452,17 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
             // After the normal and three factors.
             let color = [0.0, 0.6, 1.0].map(|x: f64| (x + 0.01 * k as f64) % 1.0);
             if has_base {
-                place[4] = Value::F(variance as f32);
-                place[5] = vector(&color.map(|x| x as f32));
+                place.members_mut()[4] = Value::F(variance as f32);
+                place.members_mut()[5] = vector(&color.map(|x| x as f32));
             }
-            *place.last_mut().unwrap() = vector(&normal.to_array());
+            *place.members_mut().last_mut().unwrap() = vector(&normal.to_array());
             let part = |part: i32| bilinear(&image, layout.position(0, [eye.z, f64::from(part)]), WeightBits::Exact);
             let parts: Vec<_> = (if has_base { -2 } else { 0 }..6).map(part).collect();
             let below = Below::new(frame, Row::of_parts(&parts, has_base), eye);
             let straight = below.eval(light);
             let there = below.widened(eye, variance).tilted(normal.as_dvec3(), given.layers[0].eta).over_base(color);
             let there = there.eval(light);
-            let arguments = vec![Value::Many(place), Value::U(0), vector(&wo.map(|w| w as f32))];
+            let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
             let prepared = machine.call("luthier_prepare_lobes", arguments);
             let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
             for c in 0..3 {
@@ -586,9 +586,9 @@ fn directions_are_drawn_as_their_density_says() {
             let prepared = match varying {
                 None => machine.call("luthier_prepare", vec![Value::U(0), vector(&wo)]),
                 Some(_) => {
-                    let Value::Many(mut place) = machine.call("luthier_place", vec![]) else { panic!("a structure") };
-                    *place.last_mut().unwrap() = Value::F(0.4);
-                    machine.call("luthier_prepare_at", vec![Value::Many(place), Value::U(0), vector(&wo)])
+                    let mut place = machine.call("luthier_place", vec![]);
+                    *place.members_mut().last_mut().unwrap() = Value::F(0.4);
+                    machine.call("luthier_prepare_at", vec![place, Value::U(0), vector(&wo)])
                 }
             };
             let call =
@@ -604,7 +604,8 @@ fn directions_are_drawn_as_their_density_says() {
                 // Roberts 2018: multiples of the powers of the root of x^4 = x + 1.
                 let u = [0.819_172_5, 0.671_043_6, 0.549_700_5]
                     .map(|step: f64| ((f64::from(i) + 0.5) * step).fract() as f32);
-                let Value::Many(members) = call("luthier_sample", &u) else { panic!("a sample is a structure") };
+                let drawn = call("luthier_sample", &u);
+                let members = drawn.members();
                 let (wi, pdf) = (members[0].floats(), members[1].floats()[0]);
                 let weight = members[2].floats();
                 if pdf == 0.0 {

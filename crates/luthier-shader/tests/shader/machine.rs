@@ -2,6 +2,8 @@
 //! arithmetic is tested where there is no GPU.
 
 use std::collections::BTreeMap;
+use std::iter;
+use std::sync::Arc;
 
 use luthier_lut::{Image, WeightBits, bilinear};
 use naga::{
@@ -16,26 +18,42 @@ pub(crate) enum Value {
     U(u32),
     I(i32),
     B(bool),
-    /// Vector, array or structure.
-    Many(Vec<Value>),
+    /// Vector, array or structure. Shared, for structures are passed from function to function.
+    Many(Arc<[Value]>),
     /// A place: root, then indices.
-    Place(Root, Vec<usize>),
+    Place(Root, Box<[usize]>),
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Root {
     Local(Handle<naga::LocalVariable>),
-    Global(String),
+    Global(Handle<naga::GlobalVariable>),
 }
 
 use Value::{B, F, I, Many, Place, U};
 
 /// A vector of f32.
 pub(crate) fn vector(values: &[f32]) -> Value {
-    Many(values.iter().map(|&v| F(v)).collect())
+    values.iter().map(|&v| F(v)).collect()
+}
+
+impl FromIterator<Value> for Value {
+    fn from_iter<T: IntoIterator<Item = Value>>(parts: T) -> Self {
+        Many(parts.into_iter().collect())
+    }
 }
 
 impl Value {
+    /// The members of a structure, the parts of a vector or an array.
+    pub(crate) fn members(&self) -> &[Value] {
+        if let Many(parts) = self { parts } else { panic!("{self:?} has no members") }
+    }
+
+    /// The members, to be changed.
+    pub(crate) fn members_mut(&mut self) -> &mut [Value] {
+        if let Many(parts) = self { Arc::make_mut(parts) } else { panic!("no members") }
+    }
+
     pub(crate) fn floats(&self) -> Vec<f32> {
         match self {
             F(v) => vec![*v],
@@ -60,8 +78,7 @@ impl Value {
     fn at_mut(&mut self, path: &[usize]) -> &mut Value {
         match (self, path) {
             (value, []) => value,
-            (Many(parts), [first, rest @ ..]) => parts[*first].at_mut(rest),
-            _ => panic!("no member {path:?}"),
+            (value, [first, rest @ ..]) => value.members_mut()[*first].at_mut(rest),
         }
     }
 }
@@ -83,14 +100,26 @@ enum Flow {
 struct Frame<'f> {
     function: &'f Function,
     arguments: Vec<Value>,
-    values: BTreeMap<Handle<Expression>, Value>,
-    locals: BTreeMap<Handle<naga::LocalVariable>, Value>,
+    /// By number of the expression, once it was emitted.
+    values: Vec<Option<Value>>,
+    /// By number of the variable.
+    locals: Vec<Value>,
+}
+
+impl Frame<'_> {
+    /// What needs no evaluation any more.
+    fn known(&self, handle: Handle<Expression>) -> Option<&Value> {
+        match self.function.expressions[handle] {
+            Expression::FunctionArgument(i) => Some(&self.arguments[i as usize]),
+            _ => self.values[handle.index()].as_ref(),
+        }
+    }
 }
 
 impl Machine {
     pub(crate) fn new(wgsl: &str, buffer: &[[f32; 4]], textures: BTreeMap<String, Image>) -> Self {
         let module = naga::front::wgsl::parse_str(wgsl).unwrap();
-        Self { module, buffer: Many(buffer.iter().map(|word| vector(word)).collect()), textures }
+        Self { module, buffer: buffer.iter().map(|word| vector(word)).collect(), textures }
     }
 
     pub(crate) fn call(&self, name: &str, arguments: Vec<Value>) -> Value {
@@ -100,10 +129,11 @@ impl Machine {
     }
 
     fn run(&self, function: &Function, arguments: Vec<Value>) -> Value {
-        let mut frame = Frame { function, arguments, values: BTreeMap::new(), locals: BTreeMap::new() };
-        for (handle, local) in function.local_variables.iter() {
-            let value = local.init.map_or_else(|| self.zero(local.ty), |init| self.get(&mut frame, init));
-            frame.locals.insert(handle, value);
+        let values = vec![None; function.expressions.len()];
+        let mut frame = Frame { function, arguments, values, locals: Vec::new() };
+        for (_, local) in function.local_variables.iter() {
+            let value = local.init.map_or_else(|| self.zero(local.ty), |init| self.get(&frame, init));
+            frame.locals.push(value);
         }
         let Flow::Return(Some(value)) = self.block(&mut frame, &function.body) else {
             panic!("functions return a value")
@@ -117,7 +147,7 @@ impl Machine {
                 Statement::Emit(range) => {
                     for handle in range.clone() {
                         let value = self.expression(frame, handle);
-                        frame.values.insert(handle, value);
+                        frame.values[handle.index()] = Some(value);
                     }
                 }
                 Statement::Block(inner) => match self.block(frame, inner) {
@@ -146,12 +176,12 @@ impl Machine {
                     let Place(Root::Local(local), path) = self.get(frame, *pointer) else {
                         panic!("store to a global")
                     };
-                    *frame.locals.get_mut(&local).unwrap().at_mut(&path) = value;
+                    *frame.locals[local.index()].at_mut(&path) = value;
                 }
                 Statement::Call { function, arguments, result } => {
                     let arguments = arguments.iter().map(|a| self.get(frame, *a)).collect();
                     let value = self.run(&self.module.functions[*function], arguments);
-                    frame.values.insert(result.unwrap(), value);
+                    frame.values[result.unwrap().index()] = Some(value);
                 }
                 other => panic!("no {other:?} here"),
             }
@@ -159,71 +189,81 @@ impl Machine {
         Flow::Next
     }
 
-    fn get(&self, frame: &mut Frame<'_>, handle: Handle<Expression>) -> Value {
-        match frame.values.get(&handle) {
-            Some(value) => value.clone(),
-            None => self.expression(frame, handle),
+    fn get(&self, frame: &Frame<'_>, handle: Handle<Expression>) -> Value {
+        frame.known(handle).cloned().unwrap_or_else(|| self.expression(frame, handle))
+    }
+
+    fn member(&self, frame: &Frame<'_>, base: Handle<Expression>, index: usize) -> Value {
+        match frame.known(base) {
+            Some(base) => member(base, index),
+            None => member(&self.expression(frame, base), index),
         }
     }
 
-    fn expression(&self, frame: &mut Frame<'_>, handle: Handle<Expression>) -> Value {
-        match frame.function.expressions[handle].clone() {
+    fn expression(&self, frame: &Frame<'_>, handle: Handle<Expression>) -> Value {
+        match frame.function.expressions[handle] {
             Expression::FunctionArgument(i) => frame.arguments[i as usize].clone(),
-            Expression::LocalVariable(local) => Place(Root::Local(local), Vec::new()),
-            Expression::GlobalVariable(global) => {
-                Place(Root::Global(self.module.global_variables[global].name.clone().unwrap()), Vec::new())
-            }
+            Expression::LocalVariable(local) => Place(Root::Local(local), Box::default()),
+            Expression::GlobalVariable(global) => Place(Root::Global(global), Box::default()),
             Expression::Constant(constant) => self.global(self.module.constants[constant].init),
             Expression::Literal(literal) => self::literal(literal),
             Expression::ZeroValue(ty) => self.zero(ty),
-            Expression::Compose { ty, components } => {
-                let parts = components.iter().map(|c| self.get(frame, *c)).collect();
-                self.compose(ty, parts)
+            Expression::Compose { ty, ref components } => {
+                self.compose(ty, components.iter().map(|c| self.get(frame, *c)))
             }
-            Expression::Splat { size, value } => Many(vec![self.get(frame, value); size as usize]),
+            Expression::Splat { size, value } => iter::repeat_n(self.get(frame, value), size as usize).collect(),
             Expression::Access { base, index } => {
                 let U(index) = self.get(frame, index) else { panic!("indices are u32") };
-                member(self.get(frame, base), index as usize)
+                self.member(frame, base, index as usize)
             }
-            Expression::AccessIndex { base, index } => member(self.get(frame, base), index as usize),
+            Expression::AccessIndex { base, index } => self.member(frame, base, index as usize),
             Expression::Swizzle { size, vector, pattern } => {
-                let Many(parts) = self.get(frame, vector) else { panic!("swizzle of a scalar") };
-                Many(pattern[..size as usize].iter().map(|&c| parts[c as usize].clone()).collect())
+                let vector = self.get(frame, vector);
+                pattern[..size as usize].iter().map(|&c| vector.members()[c as usize].clone()).collect()
             }
             Expression::Load { pointer } => match self.get(frame, pointer) {
-                Place(Root::Local(local), path) => frame.locals[&local].at(&path).clone(),
+                Place(Root::Local(local), path) => frame.locals[local.index()].at(&path).clone(),
                 Place(Root::Global(_), path) => self.buffer.at(&path).clone(),
                 other => panic!("load from {other:?}"),
             },
-            Expression::Unary { op, expr } => each(&[self.get(frame, expr)], &|v| match (op, v[0].clone()) {
+            Expression::Unary { op, expr } => each([self.get(frame, expr)], |[v]| match (op, v) {
                 (UnaryOperator::Negate, F(v)) => F(-v),
                 (UnaryOperator::LogicalNot, B(v)) => B(!v),
                 other => panic!("no {other:?} here"),
             }),
             Expression::Binary { op, left, right } => {
-                each(&[self.get(frame, left), self.get(frame, right)], &|v| binary(op, &v[0], &v[1]))
+                each([left, right].map(|h| self.get(frame, h)), |[a, b]| binary(op, a, b))
             }
             Expression::Select { condition, accept, reject } => {
                 let operands = [condition, accept, reject].map(|h| self.get(frame, h));
-                each(&operands, &|v| if v[0] == B(true) { v[1].clone() } else { v[2].clone() })
+                each(
+                    operands,
+                    |[condition, accept, reject]| {
+                        if *condition == B(true) { accept.clone() } else { reject.clone() }
+                    },
+                )
             }
             Expression::Math { fun, arg, arg1, arg2, .. } => {
-                let operands: Vec<Value> =
-                    [Some(arg), arg1, arg2].into_iter().flatten().map(|h| self.get(frame, h)).collect();
-                math(fun, &operands)
+                // What a function of fewer does not read is the first once more.
+                math(fun, [arg, arg1.unwrap_or(arg), arg2.unwrap_or(arg)].map(|h| self.get(frame, h)))
             }
-            Expression::As { expr, kind, convert: Some(_) } => each(&[self.get(frame, expr)], &|v| cast(kind, &v[0])),
-            Expression::As { expr, kind: ScalarKind::Uint, convert: None } => each(&[self.get(frame, expr)], &|v| {
-                if let F(v) = v[0] { U(v.to_bits()) } else { panic!("no bits of {v:?}") }
-            }),
+            Expression::As { expr, kind, convert: Some(_) } => each([self.get(frame, expr)], |[v]| cast(kind, v)),
+            Expression::As { expr, kind: ScalarKind::Uint, convert: None } => {
+                each(
+                    [self.get(frame, expr)],
+                    |[v]| {
+                        if let F(v) = v { U(v.to_bits()) } else { panic!("no bits of {v:?}") }
+                    },
+                )
+            }
             Expression::ImageSample { image, coordinate, .. } => {
                 let (image, at) = (self.image(frame, image), self.get(frame, coordinate).floats());
                 let position = [f64::from(at[0]) * f64::from(image.width), f64::from(at[1]) * f64::from(image.height)];
                 vector(&bilinear(image, position, WeightBits::Exact).map(|v| v as f32))
             }
             Expression::ImageLoad { image, coordinate, .. } => {
-                let Many(at) = self.get(frame, coordinate) else { panic!("texels have two coordinates") };
-                let (I(x), I(y)) = (&at[0], &at[1]) else { panic!("texel coordinates are i32") };
+                let at = self.get(frame, coordinate);
+                let [I(x), I(y)] = at.members() else { panic!("texels have two coordinates in i32") };
                 let image = self.image(frame, image);
                 let mut texel = vec![0.0, 0.0, 0.0, 1.0];
                 let channels = image.texel(*x as u32, *y as u32);
@@ -232,35 +272,39 @@ impl Machine {
             }
             Expression::ImageQuery { image, query: ImageQuery::Size { .. } } => {
                 let image = self.image(frame, image);
-                Many(vec![U(image.width), U(image.height)])
+                [image.width, image.height].into_iter().map(U).collect()
             }
-            other => panic!("no {other:?} here"),
+            ref other => panic!("no {other:?} here"),
         }
     }
 
-    fn image(&self, frame: &mut Frame<'_>, handle: Handle<Expression>) -> &Image {
-        let Place(Root::Global(name), _) = self.get(frame, handle) else { panic!("textures are globals") };
-        &self.textures[&name]
+    fn image(&self, frame: &Frame<'_>, handle: Handle<Expression>) -> &Image {
+        let Place(Root::Global(global), _) = self.get(frame, handle) else { panic!("textures are globals") };
+        &self.textures[self.module.global_variables[global].name.as_deref().unwrap()]
     }
 
     fn global(&self, handle: Handle<Expression>) -> Value {
         match &self.module.global_expressions[handle] {
             Expression::Literal(literal) => self::literal(*literal),
             Expression::Constant(constant) => self.global(self.module.constants[*constant].init),
-            Expression::Compose { ty, components } => {
-                self.compose(*ty, components.iter().map(|c| self.global(*c)).collect())
-            }
+            Expression::Compose { ty, components } => self.compose(*ty, components.iter().map(|c| self.global(*c))),
             other => panic!("no {other:?} here"),
         }
     }
 
     /// Vectors are made of scalars and vectors, structures of their members.
-    fn compose(&self, ty: Handle<naga::Type>, parts: Vec<Value>) -> Value {
+    fn compose(&self, ty: Handle<naga::Type>, parts: impl Iterator<Item = Value>) -> Value {
         if !matches!(self.module.types[ty].inner, TypeInner::Vector { .. }) {
-            return Many(parts);
+            return parts.collect();
         }
-        let flat = |part| if let Many(inner) = part { inner } else { vec![part] };
-        Many(parts.into_iter().flat_map(flat).collect())
+        let mut flat = Vec::with_capacity(4);
+        for part in parts {
+            match part {
+                Many(inner) => flat.extend_from_slice(&inner),
+                scalar => flat.push(scalar),
+            }
+        }
+        Many(flat.into())
     }
 
     fn zero(&self, ty: Handle<naga::Type>) -> Value {
@@ -272,10 +316,10 @@ impl Machine {
         };
         match &self.module.types[ty].inner {
             TypeInner::Scalar(s) => scalar(s),
-            TypeInner::Vector { size, scalar: s } => Many(vec![scalar(s); *size as usize]),
-            TypeInner::Struct { members, .. } => Many(members.iter().map(|m| self.zero(m.ty)).collect()),
+            TypeInner::Vector { size, scalar: s } => iter::repeat_n(scalar(s), *size as usize).collect(),
+            TypeInner::Struct { members, .. } => members.iter().map(|m| self.zero(m.ty)).collect(),
             TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
-                Many(vec![self.zero(*base); count.get() as usize])
+                iter::repeat_n(self.zero(*base), count.get() as usize).collect()
             }
             other => panic!("no zero of {other:?}"),
         }
@@ -292,23 +336,19 @@ fn literal(literal: Literal) -> Value {
     }
 }
 
-fn member(base: Value, index: usize) -> Value {
+fn member(base: &Value, index: usize) -> Value {
     match base {
-        Place(root, mut path) => {
-            path.push(index);
-            Place(root, path)
-        }
-        Many(parts) => parts[index].clone(),
-        other => panic!("no members in {other:?}"),
+        Place(root, path) => Place(*root, path.iter().copied().chain([index]).collect()),
+        many => many.members()[index].clone(),
     }
 }
 
 /// Applies an operation to scalars, or component by component; scalars go with every component.
-fn each(operands: &[Value], operation: &dyn Fn(&[Value]) -> Value) -> Value {
+fn each<const N: usize>(operands: [Value; N], operation: impl Fn([&Value; N]) -> Value) -> Value {
     let length = operands.iter().find_map(|v| if let Many(parts) = v { Some(parts.len()) } else { None });
-    let Some(length) = length else { return operation(operands) };
-    let component = |v: &Value, i: usize| if let Many(parts) = v { parts[i].clone() } else { v.clone() };
-    Many((0..length).map(|i| operation(&operands.iter().map(|v| component(v, i)).collect::<Vec<_>>())).collect())
+    let Some(length) = length else { return operation(operands.each_ref()) };
+    let component = |i: usize| operands.each_ref().map(|v| if let Many(parts) = v { &parts[i] } else { v });
+    (0..length).map(|i| operation(component(i))).collect()
 }
 
 fn cast(kind: ScalarKind, value: &Value) -> Value {
@@ -354,24 +394,27 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
     }
 }
 
-fn math(fun: MathFunction, operands: &[Value]) -> Value {
+/// The sum over the components, first to last.
+fn dot(a: &Value, b: &Value) -> f32 {
+    a.members().iter().zip(b.members()).map(|(a, b)| a.float() * b.float()).sum()
+}
+
+fn math(fun: MathFunction, operands: [Value; 3]) -> Value {
     use MathFunction as M;
-    let dot = |a: &Value, b: &Value| a.floats().iter().zip(b.floats()).map(|(a, b)| a * b).sum::<f32>();
     match fun {
         M::Dot => return F(dot(&operands[0], &operands[1])),
         M::Length => return F(dot(&operands[0], &operands[0]).sqrt()),
         M::Normalize => {
             let length = dot(&operands[0], &operands[0]).sqrt();
-            return vector(&operands[0].floats().iter().map(|v| v / length).collect::<Vec<_>>());
+            return operands[0].members().iter().map(|v| F(v.float() / length)).collect();
         }
         _ => {}
     }
-    each(operands, &|v| {
-        if let I(a) = v[0] {
-            let other = |i: usize| if let I(b) = v[i] { b } else { panic!("mixed operands") };
+    each(operands, |v| {
+        if let [I(a), I(b), I(c)] = v {
             return match fun {
-                M::Min => I(a.min(other(1))),
-                M::Clamp => I(a.clamp(other(1), other(2))),
+                M::Min => I(*a.min(b)),
+                M::Clamp => I(*a.clamp(b, c)),
                 _ => panic!("no {fun:?} of integers here"),
             };
         }

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::scenes::{clear, conductor, forms, material, sets, tables};
+use crate::scenes::{Part, clear, conductor, forms, material, sets, tables, text};
 use luthier_lut::TableKind;
 use luthier_manifest::{FunctionGroup, MaterialEntry};
-use luthier_shader::{Form, MaterialSet, Target, bindings, complete, emit, emit_constant, identifier};
+use luthier_shader::{Form, MaterialSet, Target, bindings, emit, identifier};
 
 /// Functions of the shader's face, as ARCHITECTURE.md has them, each once.
 fn face() -> BTreeSet<String> {
@@ -67,10 +67,11 @@ fn manuals_name_what_is_there() {
         for (set, form) in [plain, whole].iter().flat_map(|set| forms(&materials).map(move |form| (set, form))) {
             for target in Target::TEXT {
                 let what = format!("{name} {form} {target}");
-                check(&what, set, form, true, &emit(set, form, target).unwrap());
-                check(&what, set, form, true, &complete(set, form, target).unwrap());
+                let check =
+                    |part| check(&what, set, form, part != Part::Constant, &text((name, set), form, target, part));
+                [Part::Snippet, Part::Complete].into_iter().for_each(check);
                 if materials.len() == 1 {
-                    check(&what, set, form, false, &emit_constant(set, form, target).unwrap());
+                    check(Part::Constant);
                 }
             }
         }

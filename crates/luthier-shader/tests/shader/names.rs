@@ -5,17 +5,19 @@ use std::collections::BTreeSet;
 use luthier_manifest::{CellsRecord, FunctionGroup, MaterialEntry, SurfaceEntry};
 use luthier_shader::{Form, MaterialSet, Target, complete, emit, identifier, surface_identifier};
 
-use crate::scenes::{forms, sets, tables};
+use crate::scenes::{Part, forms, sets, tables, text};
 
 /// The words of a text that may be identifiers.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
-/// Every word of every language, form and set with all functions, but the constants of the set itself. A surface chooses among all materials.
+/// Every word of every language, form and set with all functions, but the constants of the set itself. A surface chooses among the materials of
+/// the richest set.
 fn words_of_all() -> BTreeSet<String> {
     let mut all = BTreeSet::new();
-    for (_, materials) in sets() {
+    let richest = sets().pop().unwrap().0;
+    for (name, materials) in sets() {
         let numbers = (0..materials.len().min(2) as u32).collect();
         let cells = CellsRecord { seed: 1, frequency: 4.0, materials: numbers };
         let surface = SurfaceEntry {
@@ -28,10 +30,16 @@ fn words_of_all() -> BTreeSet<String> {
         };
         let functions = FunctionGroup::ALL.into_iter().collect();
         let surfaces = [surface];
-        let set = MaterialSet { functions, surfaces: &surfaces, ..MaterialSet::new(&materials, tables()) };
+        let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
+        let chosen = MaterialSet { surfaces: &surfaces, ..set.clone() };
         let own = own(&materials);
         for (form, target) in forms(&materials).flat_map(|form| Target::TEXT.map(|target| (form, target))) {
-            let texts = [emit(&set, form, target), complete(&set, form, target)].map(Result::unwrap);
+            let mut texts = [Part::Snippet, Part::Complete].map(|part| text((name, &set), form, target, part)).to_vec();
+            if name == richest {
+                texts.extend(
+                    [emit(&chosen, form, target), complete(&chosen, form, target)].map(|text| text.unwrap().into()),
+                );
+            }
             all.extend(
                 texts.iter().flat_map(|text| words(text)).filter(|word| !own.contains(*word)).map(str::to_owned),
             );

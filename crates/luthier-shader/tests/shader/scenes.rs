@@ -1,11 +1,14 @@
 //! Material sets for the tests: small, with one material for every kind of layer.
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock};
+
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
     AxesRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MaterialConstants,
     MaterialEntry, PatinaRecord, ShadingModel, Tiles, VaryingFactor, VaryingRecord,
 };
-use luthier_shader::{Form, TableFace};
+use luthier_shader::{Form, MaterialSet, TableFace, Target, complete, emit, emit_constant};
 
 /// An interface without film: red-lacquer's coat.
 pub(crate) fn dielectric() -> LayerRecord {
@@ -338,6 +341,30 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
 
 fn axis(quantity: &str, min: f64, max: f64, size: u32, mapping: Mapping) -> Axis {
     Axis { quantity: quantity.to_owned(), unit: String::new(), min, max, size, mapping }
+}
+
+/// What is composed of a set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Part {
+    Snippet,
+    Complete,
+    Constant,
+}
+
+/// A text of one of [`sets`] with the [`tables`], composed once for all tests of a run: several look at each.
+pub(crate) fn text((name, set): (&str, &MaterialSet<'_>), form: Form, target: Target, part: Part) -> Arc<str> {
+    type Texts = BTreeMap<String, Arc<OnceLock<Arc<str>>>>;
+    static TEXTS: Mutex<Texts> = Mutex::new(BTreeMap::new());
+    assert_eq!(set.materials.len(), sets().iter().find(|(known, _)| *known == name).unwrap().1.len());
+    let key = format!("{name} {form} {target} {part:?} {:?}", set.functions);
+    let text = Arc::clone(TEXTS.lock().unwrap().entry(key).or_default());
+    let compose = match part {
+        Part::Snippet => emit,
+        Part::Complete => complete,
+        Part::Constant => emit_constant,
+    };
+    let composed = || compose(set, form, target).unwrap_or_else(|e| panic!("{name} {form} {target} {part:?}: {e}"));
+    Arc::clone(text.get_or_init(|| composed().into()))
 }
 
 /// The tables of a bake with default settings.
