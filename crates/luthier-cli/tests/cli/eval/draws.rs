@@ -237,10 +237,10 @@ pub(super) struct Found {
     pub(super) faults: Vec<String>,
 }
 
-/// Every material of every model from one angle, another for the next.
+/// A third of the materials of every model, each from one angle, another for the next.
 #[test]
 fn directions_are_drawn_as_the_density_says() {
-    drawn_as_the_density_says(|at| vec![EYES[at % EYES.len()]]);
+    drawn_as_the_density_says(|at| if at % 3 == 1 { vec![EYES[at / 3 % EYES.len()]] } else { Vec::new() });
 }
 
 #[test]
@@ -262,11 +262,14 @@ fn drawn_as_the_density_says(eyes: impl Fn(usize) -> Vec<f64>) {
         let mut materials = shipped(model.name());
         materials.retain(|material| named.contains(&material.name.as_str()));
         assert_eq!(materials.len(), named.len());
+        let seen: Vec<Vec<f64>> = (at..at + materials.len()).map(&eyes).collect();
+        at += materials.len();
+        let (materials, seen): (Vec<_>, Vec<_>) =
+            materials.into_iter().zip(seen).filter(|(_, eyes)| !eyes.is_empty()).unzip();
         let Some(scene) = scene(&materials) else { return };
         let mut found = Found::default();
-        for (number, material) in (0..).zip(&materials) {
-            at += 1;
-            for theta in eyes(at) {
+        for ((number, material), eyes) in (0..).zip(&materials).zip(seen) {
+            for theta in eyes {
                 seed += 1;
                 judge(&scene, number, theta, seed, &format!("{} {} {theta}", model.name(), material.name), &mut found);
             }

@@ -34,6 +34,8 @@ pub(super) enum Number {
     Values([f64; 2], String),
     /// None yet.
     Open,
+    /// Left to another run.
+    Unmeasured,
     /// A page that has the number.
     Page(String),
 }

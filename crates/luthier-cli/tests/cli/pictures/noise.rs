@@ -89,7 +89,7 @@ fn pictures_of_maps_have_no_white_dots() {
         let scene = scene(&workshop, &gpu, &text);
         let picture = |environment_samples| {
             let settings = RenderSettings {
-                size: 32,
+                size: 16,
                 samples: 1,
                 environment_samples,
                 lights: Vec::new(),

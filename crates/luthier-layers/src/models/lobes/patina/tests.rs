@@ -1,5 +1,8 @@
 //! Lobes under patina, against the simulation of both ends.
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock};
+
 use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -40,8 +43,13 @@ fn stacks() -> [Stack; 3] {
     below.map(|below| Stack { exterior: Ior::vacuum(), layers: [vec![patina.clone()], below].concat() })
 }
 
-fn nodes(stack: &Stack, cover: Cover) -> Vec<Lobes> {
-    Varied::with(stack, &COLOR, Some(Varying::Patina(cover)), SETTINGS).nodes
+/// Fits for a stack, each made once for all tests.
+fn nodes(stack: &Stack, cover: Cover) -> Arc<[Lobes]> {
+    type Fits = BTreeMap<String, Arc<OnceLock<Arc<[Lobes]>>>>;
+    static FITS: Mutex<Fits> = Mutex::new(BTreeMap::new());
+    let fits = Arc::clone(FITS.lock().unwrap().entry(format!("{stack:?} {cover:?}")).or_default());
+    let fit = || Varied::with(stack, &COLOR, Some(Varying::Patina(cover)), SETTINGS).nodes.into();
+    Arc::clone(fits.get_or_init(fit))
 }
 
 /// Cells along either side of the square about the projected hemisphere, and points along those.
@@ -106,7 +114,7 @@ fn both_ends_are_those_of_the_simulation() {
 fn light_is_linear_in_the_amount() {
     for stack in stacks() {
         let nodes = nodes(&stack, GROWN);
-        let [_, grown, bare] = nodes.as_slice() else { panic!("three nodes") };
+        let [_, grown, bare] = &*nodes else { panic!("three nodes") };
         for (theta_deg, amount) in [(20.0, 0.3), (60.0, 0.8), (80.0, 0.5)] {
             let wo = direction(theta_deg, 0.5);
             let between = Below::new(grown.frame, bare.row(wo).between(&grown.row(wo), amount), wo);
