@@ -86,7 +86,8 @@ impl Package {
         for Shader { form, target, bytes, interface } in &self.shaders {
             let file = files.add(format!("shaders/{form}.{}", target.extension()), bytes.clone());
             let (target, form, interface) = (*target, *form, Some(interface.clone()));
-            manifest.shaders.push(ShaderEntry { target, form, file, interface });
+            let materials = manifest.partial(form);
+            manifest.shaders.push(ShaderEntry { target, form, file, materials, interface });
         }
         Ok(Encoded { manifest, files: files.0 })
     }

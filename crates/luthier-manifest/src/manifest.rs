@@ -81,6 +81,9 @@ pub struct ShaderEntry {
     pub form: Form,
     /// The file.
     pub file: FileEntry,
+    /// Numbers of the materials that it is for; absent if it is for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub materials: Option<Vec<u32>>,
     /// Functions, structures and bindings for a program around it; absent from earlier bakes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<Interface>,
@@ -133,9 +136,16 @@ impl Manifest {
         Ok(json)
     }
 
-    /// Whether shaders of all its materials have a form.
+    /// Whether the model of some material has a form.
     pub fn has(&self, form: Form) -> bool {
-        self.materials.iter().all(|material| material.model.has(form))
+        self.materials.iter().any(|material| material.model.has(form))
+    }
+
+    /// Numbers of the materials whose models have a form; `None` if all have it.
+    pub fn partial(&self, form: Form) -> Option<Vec<u32>> {
+        let numbers = (0u32..).zip(&self.materials).filter(|(_, material)| material.model.has(form));
+        let numbers: Vec<u32> = numbers.map(|(number, _)| number).collect();
+        (numbers.len() < self.materials.len()).then_some(numbers)
     }
 
     /// A manifest of materials and tables, without shaders and files.
@@ -331,6 +341,7 @@ mod tests {
                 target: Target::Wgsl,
                 form: Form::Baked,
                 file: file("shaders/baked.wgsl"),
+                materials: None,
                 interface: Some(Interface::default()),
             }],
             functions: Functions::default(),

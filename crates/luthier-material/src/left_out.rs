@@ -140,3 +140,26 @@ fn feature_of(layer: &Layer) -> Feature {
 pub fn distribution_key(distribution: Distribution) -> &'static str {
     if distribution.own_alpha().is_some() { distribution.name() } else { "distribution" }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parse;
+
+    /// Films under the first are a feature of their own: one film alone is not.
+    #[test]
+    fn a_second_film_is_told_apart() {
+        let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.33\nthickness_nm = 300\n";
+        let keys = |films: &str| {
+            let text = format!(
+                "schema = 1\nname = \"m\"\n{films}[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n"
+            );
+            let material = parse("m.toml", &text, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap().material;
+            let parts = ShadingModel::ALL.into_iter().flat_map(|model| left_out(&material, model));
+            parts.filter(|part| part.feature == Feature::InnerFilms).map(|part| part.key).collect::<Vec<_>>()
+        };
+        assert_eq!(keys(film), [""; 0]);
+        let two = keys(&film.repeat(2));
+        assert!(!two.is_empty() && two.iter().all(|key| key == "layer.0.film.1.type"), "{two:?}");
+    }
+}

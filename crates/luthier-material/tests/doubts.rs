@@ -117,3 +117,25 @@ fn samples_beside_the_middle_of_the_visible() {
     assert_eq!(warnings(&metal("[690, 450]")), "");
     assert!(warnings(&metal("[900, 700]")).contains("`ior` covers 700-900 nm only"));
 }
+
+#[test]
+fn reflectances_that_no_clear_medium_has() {
+    let coat = |f0: &str| layer("dielectric", &format!("f0 = {f0}\nalpha = 0.2")) + DIFFUSE;
+    assert!(warnings(&coat("[0.3, 0.3, 0.3]")).contains("diamond has 0.17"));
+    assert_eq!(warnings(&coat("[0.04, 0.04, 0.04]")), "");
+}
+
+/// Indices that differ by less than a thousandth: the same medium, and a squared difference is not the difference.
+#[test]
+fn media_that_are_nearly_equal() {
+    let under = |ior: &str| layer("dielectric", &format!("ior = {ior}\nsmooth = true"));
+    assert_eq!(warnings(&format!("{COAT}{}{DIFFUSE}", under("1.52"))), "");
+    assert!(warnings(&format!("{COAT}{}{DIFFUSE}", under("1.50001"))).contains("reflects nothing"));
+}
+
+#[test]
+fn tables_that_no_layer_fills() {
+    let asks = |kind: &str| warnings(&format!("{COAT}{DIFFUSE}[bake]\nmodel = \"elek\"\ntables = [\"{kind}\"]\n"));
+    assert!(asks("phase").contains("no layer has a film"), "{}", asks("phase"));
+    assert_eq!(asks("fresnel"), "");
+}

@@ -199,3 +199,25 @@ fn maps_of_the_whole_surface_belong_to_the_first_layer() {
         "{found}"
     );
 }
+
+/// By hand: the slope parameter that an exponent n stands for is (2 / (n + 2))^(1/2), so that 30 and 6 are a ratio of 2.
+#[test]
+fn the_inner_lobe_is_as_wide_as_its_exponent_says() {
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.33\nthickness_nm = 300\n";
+    let text = format!(
+        "{film}[[layer]]\ntype = \"conductor\"\nior = \"au\"\nexponents = [30, 6]\n[bake]\nmodel = \"granier-heidrich\"\n"
+    );
+    assert_eq!(material(&text).beams().unwrap().inner_alpha_ratio, 2.0);
+}
+
+#[test]
+fn texels_have_a_scale_of_one_at_most() {
+    let paint = |scale: &str| {
+        format!(
+            "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\nmaps = {{ albedo = {{ image = \"a.png\", scale = {scale} }} }}\n"
+        )
+    };
+    material(&paint("1"));
+    material(&paint("0.5"));
+    assert!(errors(&paint("1.5")).contains("`scale` must be at most 1, found 1.5"));
+}

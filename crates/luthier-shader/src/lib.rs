@@ -46,6 +46,6 @@ pub use error::ShaderError;
 pub use languages::spirv::{library_spirv, spirv_words};
 pub use library::library;
 pub use luthier_manifest::{Form, Target};
-pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier, surface_identifier};
+pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, Within, bindings, identifier, surface_identifier};
 pub use style::style_name;
 pub use validate::validate;

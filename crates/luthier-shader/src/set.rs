@@ -1,5 +1,6 @@
 //! The set that a shader serves: materials and descriptions of tables. Its bindings.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
@@ -68,7 +69,9 @@ pub struct TableFace {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialSet<'a> {
     /// The materials.
-    pub materials: &'a [MaterialEntry],
+    pub materials: Cow<'a, [MaterialEntry]>,
+    /// Their places among more materials in a buffer; `None` if the buffer has these alone.
+    pub within: Option<Within>,
     /// Surfaces of these materials, in the order of their numbers.
     pub surfaces: &'a [SurfaceEntry],
     /// The tables. Of several of one kind the first counts. The `baked` form evaluates D in closed form for layers without a tile of a
@@ -78,10 +81,19 @@ pub struct MaterialSet<'a> {
     pub functions: Functions,
 }
 
+/// Places of materials in a buffer that has others, too.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Within {
+    /// The number of each.
+    pub numbers: Vec<u32>,
+    /// Words of the whole buffer.
+    pub words: usize,
+}
+
 impl<'a> MaterialSet<'a> {
     /// Materials and tables, for shaders of `luthier_eval` alone.
     pub fn new(materials: &'a [MaterialEntry], tables: Vec<TableFace>) -> Self {
-        Self { materials, surfaces: &[], tables, functions: Functions::default() }
+        Self { materials: materials.into(), within: None, surfaces: &[], tables, functions: Functions::default() }
     }
 
     /// All materials, tables and groups of functions of a bake.
@@ -89,11 +101,34 @@ impl<'a> MaterialSet<'a> {
         let tables = manifest.tables.iter();
         let faces = tables.map(|t| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format });
         Self {
-            materials: &manifest.materials,
+            materials: manifest.materials.as_slice().into(),
+            within: None,
             surfaces: &manifest.surfaces,
             tables: faces.collect(),
             functions: manifest.functions.clone(),
         }
+    }
+
+    /// The materials whose models have a form, with the numbers and the buffer of all; none if there are none. Surfaces of others are left out, and
+    /// all with them: their numbers are their places.
+    #[must_use]
+    pub fn in_form(&self, form: Form) -> Self {
+        let has = |material: &MaterialEntry| material.model.has(form);
+        if self.materials.iter().all(has) {
+            return self.clone();
+        }
+        let kept = (0u32..).zip(&*self.materials).filter(|(_, material)| has(material));
+        let (numbers, materials): (Vec<u32>, Vec<MaterialEntry>) =
+            kept.map(|(i, material)| (i, material.clone())).unzip();
+        let mut chosen = self.surfaces.iter().flat_map(SurfaceEntry::all_cells).flat_map(|cells| &cells.materials);
+        let surfaces = if chosen.all(|number| numbers.contains(number)) { self.surfaces } else { &[] };
+        let within = Some(Within { numbers, words: self.words() });
+        Self { materials: materials.into(), within, surfaces, ..self.clone() }
+    }
+
+    /// The number of a material, by its place in the set.
+    pub(crate) fn number(&self, place: usize) -> u32 {
+        self.within.as_ref().map_or(place as u32, |within| within.numbers[place])
     }
 
     /// All records of all materials, in the order of the buffer.
@@ -116,7 +151,8 @@ impl<'a> MaterialSet<'a> {
 
     /// Words of the material buffer.
     pub(crate) fn words(&self) -> usize {
-        self.materials.len() * MATERIAL_WORDS + self.layers().count() * LAYER_WORDS
+        let own = || self.materials.len() * MATERIAL_WORDS + self.layers().count() * LAYER_WORDS;
+        self.within.as_ref().map_or_else(own, |within| within.words)
     }
 
     /// Whether the set has a table.
@@ -136,7 +172,7 @@ impl<'a> MaterialSet<'a> {
     pub(crate) fn constants(&self) -> Result<Vec<String>, ShaderError> {
         let mut seen: BTreeMap<String, &str> = BTreeMap::new();
         let mut constants = Vec::with_capacity(self.materials.len());
-        for material in self.materials {
+        for material in &*self.materials {
             let constant = identifier(&material.name)?;
             if let Some(first) = seen.insert(constant.clone(), &material.name) {
                 let (first, second) = (first.to_owned(), material.name.clone());
@@ -164,12 +200,13 @@ impl<'a> MaterialSet<'a> {
     /// Refuses surfaces with cells of no material, of too many, or of one that the set lacks.
     fn check_surfaces(&self) -> Result<(), ShaderError> {
         let count = self.materials.len() as u32;
+        let has = |number: u32| self.within.as_ref().map_or(number < count, |within| within.numbers.contains(&number));
         for surface in self.surfaces {
             let lists = surface.all_cells().map(|cells| cells.materials.as_slice());
             if lists.clone().any(|list| list.is_empty() || list.len() > CHOICES_MAX) {
                 return Err(ShaderError::Choices { surface: surface.name.clone(), limit: CHOICES_MAX });
             }
-            if let Some(&material) = lists.flatten().find(|material| **material >= count) {
+            if let Some(&material) = lists.flatten().find(|material| !has(**material)) {
                 return Err(ShaderError::NoMaterial { surface: surface.name.clone(), material, count });
             }
         }
@@ -186,7 +223,7 @@ impl<'a> MaterialSet<'a> {
         if words > BUFFER_WORDS_MAX {
             return Err(ShaderError::BufferTooLarge { words, limit: BUFFER_WORDS_MAX });
         }
-        for material in self.materials {
+        for material in &*self.materials {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
             }

@@ -14,7 +14,7 @@ pub struct Shaders {
     /// The adapter, and a hash of the texts of the shaders.
     identity: String,
     baked: Scene,
-    /// None where a model of the bake has no such form.
+    /// None where the package has no such shader.
     full: Option<Scene>,
 }
 
@@ -24,7 +24,7 @@ impl Shaders {
     /// # Errors
     /// Errors of the adapter.
     pub fn new(gpu: &Gpu, package: &Package) -> Outcome<Self> {
-        let has_full = package.manifest.has(Form::Full);
+        let has_full = package.shaders.iter().any(|shader| shader.form == Form::Full);
         let full = has_full.then(|| gpu.scene(package, Form::Full)).transpose()?;
         let texts: Vec<u8> = package.shaders.iter().flat_map(|shader| shader.bytes.iter().copied()).collect();
         let identity = format!("{} {}", adapter_label(gpu), sha256(&texts));
@@ -47,6 +47,10 @@ impl Device for Shaders {
 
     fn identity(&self) -> String {
         self.identity.clone()
+    }
+
+    fn has(&self, form: Form) -> bool {
+        self.scene(form).is_some()
     }
 
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {

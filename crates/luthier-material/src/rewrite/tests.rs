@@ -151,3 +151,13 @@ fn layers_may_be_a_list() {
     let text = written(list, |m| m.stack.layers[0].surface = Surface::isotropic(Default::default(), 0.2));
     assert_eq!(text, list.replace("smooth = true", "alpha = 0.2"));
 }
+
+#[test]
+fn paint_has_another_colour() {
+    const PAINT: &str = "schema = 1\nname = \"m\"\n\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5 # grey\n";
+    let text = written(PAINT, |m| {
+        m.stack.layers[0].base =
+            Base::Diffuse(luthier_optics::stack::Diffuse { albedo: [0.5, 0.25, 0.125], sigma: 0.0 });
+    });
+    assert_eq!(text, PAINT.replace("0.5 # grey", "[0.5, 0.25, 0.125] # grey"));
+}

@@ -107,14 +107,14 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
     let flip = flip.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
     let lobe = report.worst_model().map(|(_, model)| model.lobe_err);
     let stated = [
-        ("tables: largest absolute error", asked.max_abs, Some(tables)),
-        ("shaders: largest CIEDE2000 in daylight", asked.delta_e, seen),
-        ("pictures: largest mean FLIP", asked.flip, flip),
-        ("bytes of all tables", asked.max_bytes.map(|b| b as f64), Some(bytes(report))),
-        ("models: largest lobe error against the reference", asked.lobe, lobe),
+        ("tables: largest absolute error", asked.max_abs, Some(tables), LARGER),
+        ("shaders: largest CIEDE2000 in daylight", asked.delta_e, seen, HERE),
+        ("pictures: largest mean FLIP", asked.flip, flip, HERE),
+        ("bytes of all tables", asked.max_bytes.map(|b| b as f64), Some(bytes(report)), HERE),
+        ("models: largest lobe error against the reference", asked.lobe, lobe, HERE),
     ];
-    for (quantity, limit, found) in stated {
-        out.extend(limit.map(|limit| made("command line", quantity, limit, found, HERE)));
+    for (quantity, limit, found, by) in stated {
+        out.extend(limit.map(|limit| made("command line", quantity, limit, found, by)));
     }
     out
 }

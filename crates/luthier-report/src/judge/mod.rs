@@ -245,7 +245,7 @@ impl Bench<'_> {
                 gathered.add(Compared::ThreeWavelengths, set, &pairs, three, spectral);
             }
             if let Some(device) = device {
-                if let Some(three) = three.as_ref().filter(|_| manifest.has(Form::Full)) {
+                if let Some(three) = three.as_ref().filter(|_| device.has(Form::Full)) {
                     let found = run(device, Form::Full, index as u32, &pairs)?;
                     let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
                     gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(three));

@@ -240,12 +240,11 @@ impl Report {
         budget.into_iter().chain(limits).reduce(|a, b| a && b)
     }
 
-    /// The largest error of tables against their functions, as measured here, with the kind of table and the name of the tile.
+    /// The largest error of tables against their functions, measured here or stated by the baker, with the kind of table and the name of the tile.
     pub fn worst_table(&self) -> Option<(f64, TableKind, &str)> {
         let tiles = self.tables.iter().flat_map(|t| t.tiles.iter().map(move |tile| (t.kind, tile)));
-        let measured =
-            tiles.filter_map(|(kind, tile)| Some((tile.judge.as_ref()?.max_abs_err, kind, tile.name.as_str())));
-        measured.max_by(|a, b| a.0.total_cmp(&b.0))
+        let errors = tiles.map(|(kind, tile)| (tile.max_abs_err(), kind, tile.name.as_str()));
+        errors.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// The largest colour difference under a light of the comparisons that [`Report::max_error`] covers, with the name of the material.

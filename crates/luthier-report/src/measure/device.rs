@@ -18,6 +18,12 @@ pub trait Device {
     /// a [`Memory`](crate::Memory) keeps results.
     fn identity(&self) -> String;
 
+    /// Whether it has a shader of a form. That of the form `baked` is always there.
+    fn has(&self, form: Form) -> bool {
+        let _ = form;
+        true
+    }
+
     /// `f cos_theta_i`, linear RGB, of a material for pairs `(wi, wo)` of unit directions: one value per pair, in
     /// order.
     ///

@@ -237,7 +237,7 @@ fn compare(
             Ok((number, references))
         })
         .collect::<Result<_, ReportError>>()?;
-    let has_full = subject.manifest.has(Form::Full);
+    let has_full = subject.manifest.materials[case.material as usize].model.has(Form::Full) && device.has(Form::Full);
     let mut blocks = Vec::new();
     let mut vote = WeightsVote::default();
     for set in ParitySet::ALL {

@@ -62,7 +62,7 @@ pub fn shader_cells(
         let of = |level, found: &[Rgb], truth: &[Rgb]| cell(level, &method, case, pairs, found, truth);
         cells.push(of(Level::Table, read, baked));
         if let Some(device) = device {
-            if let Some(full) = full.as_ref().filter(|_| tables.is_none() && subject.manifest.has(Form::Full)) {
+            if let Some(full) = full.as_ref().filter(|_| tables.is_none() && device.has(Form::Full)) {
                 cells.push(of(Level::F32, &run(device, Form::Full, number as u32, pairs)?, full));
             }
             cells.push(of(Level::Device, &run(device, Form::Baked, number as u32, pairs)?, baked));

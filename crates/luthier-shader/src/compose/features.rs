@@ -24,7 +24,7 @@ pub(crate) struct Features(BTreeSet<Feature>);
 impl Features {
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
-        for material in set.materials {
+        for material in &*set.materials {
             names.extend(of_model(material));
             if material.varies() {
                 names.insert(Feature::Place);

@@ -210,8 +210,8 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
 /// Constants with the numbers of materials and surfaces.
 fn constants(set: &MaterialSet<'_>) -> Result<String, ShaderError> {
     let mut out = String::new();
-    for (i, constant) in set.constants()?.iter().enumerate() {
-        let _ = writeln!(out, "const {constant}: u32 = {i}u;");
+    for (place, constant) in set.constants()?.iter().enumerate() {
+        let _ = writeln!(out, "const {constant}: u32 = {}u;", set.number(place));
     }
     for (i, constant) in set.surface_constants()?.iter().enumerate() {
         let _ = writeln!(out, "const {constant}: u32 = {i}u;");
@@ -268,7 +268,7 @@ fn read_from_texture(wgsl: &str) -> String {
 
 /// The words of the material buffer as a constant.
 fn numbers(set: &MaterialSet<'_>) -> String {
-    let words = material_buffer(set.materials);
+    let words = material_buffer(&set.materials);
     let mut out = format!("const luthier_materials = array<vec4<f32>, {}>(\n", words.len());
     for [x, y, z, w] in words {
         let _ = writeln!(out, "    vec4<f32>({x:?}, {y:?}, {z:?}, {w:?}),");

@@ -10,7 +10,7 @@ pub(super) fn is_diffuse(layer: &LayerRecord) -> bool {
 }
 
 /// The layers of each material of a model.
-pub(super) fn stacks<'a>(set: &MaterialSet<'a>, model: ShadingModel) -> Vec<&'a [LayerRecord]> {
+pub(super) fn stacks<'a>(set: &'a MaterialSet<'_>, model: ShadingModel) -> Vec<&'a [LayerRecord]> {
     set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect()
 }
 

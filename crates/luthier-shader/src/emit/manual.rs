@@ -59,20 +59,26 @@ fn comment(out: &mut String, text: &str) {
 fn materials(set: &MaterialSet<'_>, part: Part) -> Result<Vec<String>, ShaderError> {
     let constants = set.constants()?;
     let mut texts = Vec::new();
-    match (set.materials, constants.as_slice()) {
+    match (&*set.materials, constants.as_slice()) {
         ([first, .., last], [constant, ..]) if constants.len() > LISTED => {
-            let (count, end) = (constants.len(), constants.len() - 1);
-            let (first, last) = (&first.name, &last.name);
-            texts.push(format!("Materials: {count}, from 0 ({first}) to {end} ({last})."));
+            let (count, ends) = (constants.len(), [0, constants.len() - 1].map(|place| set.number(place)));
+            let ([start, end], first, last) = (ends, &first.name, &last.name);
+            texts.push(format!("Materials: {count}, from {start} ({first}) to {end} ({last})."));
             texts.push(format!("The number of each is a constant, as {constant} is."));
         }
         (materials, constants) => {
             texts.push("Materials, each a number and a constant:".to_owned());
-            texts.extend(constants.iter().zip(materials).enumerate().map(|(i, (constant, material))| {
+            texts.extend(constants.iter().zip(materials).enumerate().map(|(place, (constant, material))| {
+                let i = set.number(place);
                 let (model, layers) = (material.model.name(), counted(material.layers.len() as u32, "layer"));
                 format!("  {i} {}, {constant}: {model}, {layers}", material.name)
             }));
         }
+    }
+    if set.within.is_some() {
+        texts.push(
+            "The buffer has others, whose models have no such form: no function here is for their numbers.".to_owned(),
+        );
     }
     if part == Part::Constant {
         texts.push("What the material is made of is in the code. Functions do not look at its number.".to_owned());

@@ -4,7 +4,9 @@ use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
 use crate::scenes::{Part, clear, conductor, dielectric, diffuse, filmed, forms, material, sets, tables, text};
 use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
-use luthier_manifest::{BUFFER_WORDS_MAX, FunctionGroup, LAYER_WORDS, LayerKind};
+use luthier_manifest::{
+    BUFFER_WORDS_MAX, CellsRecord, FunctionGroup, LAYER_WORDS, LayerKind, SurfaceEntry, material_buffer,
+};
 use luthier_shader::{
     Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_constant,
     emit_spirv, validate,
@@ -266,6 +268,48 @@ fn sets_that_cannot_be_emitted_say_why() {
     let layers = vec![conductor(); BUFFER_WORDS_MAX / LAYER_WORDS];
     let error = attempt(&[material("deep", &layers)], tables(), Target::Wgsl);
     assert!(matches!(error, ShaderError::BufferTooLarge { words: 8_388_611, limit: 8_388_608 }), "{error}");
+}
+
+/// A material of `lobes` has no form `full`; the others keep theirs, with the numbers of a buffer that has all. Oracle: the shader of one alone.
+#[test]
+fn a_form_is_for_those_that_have_it() {
+    let fitted = sets().into_iter().find(|(name, _)| *name == "lobes").unwrap().1.remove(0);
+    let gold = material("gold", &[clear(), conductor()]);
+    let materials = [material("clay", &[diffuse(0.3)]), fitted, gold];
+    let set = MaterialSet::new(&materials, tables());
+    assert_eq!(set.in_form(Form::Baked), set);
+    assert!(matches!(emit(&set, Form::Full, Target::Wgsl), Err(ShaderError::NoForm { .. })));
+    for target in Target::TEXT {
+        let text = complete(&set.in_form(Form::Full), Form::Full, target).unwrap();
+        assert!(text.contains("The buffer has others") && !text.to_lowercase().contains("lobes"), "{target}:\n{text}");
+        assert!(target == Target::Wgsl || text.contains("LUTHIER_MATERIAL_GOLD"), "{target}:\n{text}");
+    }
+    let text = emit(&set.in_form(Form::Full), Form::Full, Target::Wgsl).unwrap();
+    assert!(text.contains("const LUTHIER_MATERIAL_GOLD: u32 = 2u;"), "{text}");
+    let machine = Machine::new(&text, &material_buffer(&materials), std::collections::BTreeMap::new());
+    for number in [0, 2] {
+        let alone = full(&materials[number..=number]);
+        for (wi, wo) in directions(40) {
+            assert_eq!(eval(&machine, number as u32, wi, wo), eval(&alone, 0, wi, wo));
+        }
+    }
+    let only = MaterialSet::new(&materials[1..2], tables()).in_form(Form::Full);
+    assert!(matches!(emit(&only, Form::Full, Target::Wgsl), Err(ShaderError::NoMaterials)));
+    // A surface with cells of a material that is not there is not either.
+    let cells = |numbers: &[u32]| CellsRecord { seed: 1, frequency: 4.0, materials: numbers.to_vec() };
+    for (numbers, is_kept) in [(vec![0, 2], true), (vec![0, 1], false)] {
+        let surface = SurfaceEntry {
+            name: "ground".to_owned(),
+            source: String::new(),
+            source_hash: String::new(),
+            cells: cells(&numbers),
+            switches: Vec::new(),
+            glitter: None,
+        };
+        let surfaces = [surface];
+        let set = MaterialSet { surfaces: &surfaces, ..set.clone() }.in_form(Form::Full);
+        assert_eq!(emit(&set, Form::Full, Target::Wgsl).unwrap().contains("fn luthier_pick("), is_kept, "{numbers:?}");
+    }
 }
 
 /// A set that no uniform block of GLSL ES 3.00 holds; 33 materials of two layers take 1,089 words, and 63 more than one row of texels.

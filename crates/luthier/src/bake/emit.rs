@@ -15,10 +15,14 @@ pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) ->
     manifest.material_texture = MaterialTexture::of(material_buffer(&manifest.materials).len());
     let set = MaterialSet::from_manifest(manifest);
     // A form has one interface in all languages.
-    let interfaces = forms.par_iter().map(|&form| Ok((form, luthier_shader::interface(&set, form)?)));
-    let interfaces = interfaces.collect::<Result<Vec<_>, ShaderError>>()?;
-    let wanted: Vec<_> = interfaces.iter().flat_map(|declared| targets.iter().map(move |&to| (declared, to))).collect();
-    let shaders = wanted.into_par_iter().map(|((form, interface), target)| shader(&set, *form, interface, target));
+    let sets = forms.par_iter().map(|&form| {
+        let set = set.in_form(form);
+        let interface = luthier_shader::interface(&set, form)?;
+        Ok((form, set, interface))
+    });
+    let sets = sets.collect::<Result<Vec<_>, ShaderError>>()?;
+    let wanted: Vec<_> = sets.iter().flat_map(|set| targets.iter().map(move |&to| (set, to))).collect();
+    let shaders = wanted.into_par_iter().map(|((form, set, interface), target)| shader(set, *form, interface, target));
     package.shaders = shaders.collect::<Result<_, ShaderError>>()?;
     manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
     Ok(())
@@ -33,7 +37,8 @@ fn shader(set: &MaterialSet, form: Form, interface: &Interface, target: Target) 
     Ok(Shader { form, target, bytes: bytes?, interface: interface.clone() })
 }
 
-/// A package of some materials of another, by number: with all tables, without surfaces, and with shaders for these materials alone.
+/// A package of some materials of another, by number: with all tables, without surfaces, and with shaders for these materials alone, in the forms that some of
+/// them have.
 ///
 /// # Errors
 /// [`Error::Shader`].
@@ -52,8 +57,7 @@ pub fn of_materials(all: &Package, numbers: Range<usize>) -> Result<Package, Err
             forms.push(*form);
         }
     }
-    // Forms that only the other materials lack.
-    forms.extend(Form::ALL.into_iter().filter(|&form| !all.manifest.has(form) && package.manifest.has(form)));
+    forms.retain(|&form| package.manifest.has(form));
     emit(&mut package, &targets, &forms)?;
     Ok(package)
 }

@@ -243,11 +243,12 @@ fn refused(diagnostics: Vec<Diagnostic>) -> Error {
     Error::Refused { sentence, diagnostics }
 }
 
-/// The forms of the shaders: those asked for, or every form that the models of all materials have.
+/// The forms of the shaders: those asked for, which all materials must have, or every form that some model has.
 fn forms(materials: &[Material], asked: &[Form]) -> Result<Vec<Form>, Error> {
     let lacking = |form: Form| materials.iter().find(|material| !material.model().has(form));
     if asked.is_empty() {
-        return Ok(Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect());
+        let has = |form: Form| materials.iter().any(|material| material.model().has(form));
+        return Ok(Form::ALL.into_iter().filter(|&form| has(form)).collect());
     }
     for &form in asked {
         if let Some(material) = lacking(form) {

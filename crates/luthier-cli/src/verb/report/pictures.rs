@@ -26,8 +26,8 @@ const ENVIRONMENT_SAMPLES: u32 = 16;
 /// Samples along each side of a pixel.
 const SAMPLES: u32 = 2;
 
-/// Renders every material with both shaders, compares them, and puts the figures into the report. A bake without the form `full` has pictures of
-/// the form `baked` alone.
+/// Renders every material with both shaders, compares them, and puts the figures into the report. A material without the form `full` has a picture
+/// of the form `baked` alone.
 pub(super) fn pictures(
     report: &mut Report,
     shaders: Option<&Shaders>,
@@ -58,7 +58,8 @@ pub(super) fn pictures(
             continue;
         }
         let baked = baked.render(&[number], &settings)?;
-        let exhibits = if let Some(full) = full {
+        let has_full = subject.manifest.materials[number as usize].model.has(Form::Full);
+        let exhibits = if let Some(full) = full.filter(|_| has_full) {
             let full = full.render(&[number], &settings)?;
             let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
             let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));

@@ -55,6 +55,11 @@ impl TileReport {
         self.users.iter().any(|user| user.split('/').next() == Some(material))
     }
 
+    /// Its largest error: the one that was measured here or the one that the baker states, whichever is larger. Both look at points of their own.
+    pub fn max_abs_err(&self) -> f64 {
+        self.judge.as_ref().map_or(0.0, |judge| judge.max_abs_err).max(self.baker.max_abs_err)
+    }
+
     /// The sampled error of the tile and the aim of the bake, if the error exceeds the aim. The error is the larger of the one that was measured here
     /// and the one that the baker states.
     pub fn miss(&self) -> Option<(f64, f64)> {
