@@ -286,7 +286,7 @@ def oren_nayar(rho, sigma):
     return value
 
 
-def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=False):
+def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=False, own_cosine=False):
     """The recursion of Weidlich and Wilkie, eq. 3.1 to 3.3, in Elek's form: surfaces are (eta, alpha, optical depth, distribution, index below over vacuum)."""
 
     def value(i, o):
@@ -296,7 +296,8 @@ def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=Fal
             h = half(wi, wo)
             cos_d = dot(wi, h)
             f, g = fresnel(index, cos_d, 1.0 if in_air else above), v_cavity(wi, wo, h)
-            total += through * f * distribution(least)(h) * g / (4 * wi[2] * wo[2])
+            seen = wi[2] / i[2] if own_cosine else 1
+            total += seen * through * f * distribution(least)(h) * g / (4 * wi[2] * wo[2])
             if depth is None:
                 return total * i[2]
             eta = index / above
@@ -607,6 +608,8 @@ def compare():
     values(COURSE, "transmission at the directions' angles, of a file", "eq. 3.1, another reading", chosen, "weidlich-wilkie", layers(below_three, none, "directions"))
     chosen = f'{two}[bake]\nmodel = "elek"\nlower_reflectance = "in-air"\n'
     values(ELEK, "elek: F2 as in air", "algorithm 1, line 21", chosen, "elek", layers(below_two, none, clamp=True, in_air=True))
+    chosen = f'{two}[bake]\nmodel = "elek"\nlower_cosine = "inside"\n'
+    values(ELEK, "elek: NdotL' of the lower layer", "algorithm 1, line 21; appendix B", chosen, "elek", layers(below_two, none, clamp=True, own_cosine=True))
 
     # Granier and Heidrich.
     thin = film(*soap) + metal(rough)

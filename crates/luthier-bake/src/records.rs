@@ -4,7 +4,7 @@ use luthier_layers::layers::ALPHA_MIN;
 use luthier_layers::layers::{Below, Layers};
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
-    InternalReflection, LayerKind, LayerRecord, LowerReflectance, Masking, Reflectance, ReflectanceCurve,
+    InternalReflection, LayerKind, LayerRecord, LowerCosine, LowerReflectance, Masking, Reflectance, ReflectanceCurve,
 };
 use luthier_material::Material;
 use luthier_model::INDEX_MAX;
@@ -33,6 +33,7 @@ pub(crate) struct Parts {
     pub(crate) reflectance: Reflectance,
     pub(crate) internal_reflection: InternalReflection,
     pub(crate) lower_reflectance: LowerReflectance,
+    pub(crate) lower_cosine: LowerCosine,
     pub(crate) color: Color,
 }
 
@@ -45,6 +46,7 @@ impl Parts {
             reflectance: bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default(),
             internal_reflection: bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default(),
             lower_reflectance: bake.lower_reflectance.filter(|_| model.is_path()).unwrap_or_default(),
+            lower_cosine: bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine)).unwrap_or_default(),
             color: material.color(),
         }
     }
@@ -99,7 +101,7 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
             if let Some(interface) = Interface::of(stack, i) {
                 record.f0 = interface.below.f0();
                 if i > 0 {
-                    record.lower_reflectance = parts.lower_reflectance;
+                    (record.lower_reflectance, record.lower_cosine) = (parts.lower_reflectance, parts.lower_cosine);
                 }
                 parts.write(&interface, &mut record);
                 for (c, node) in nodes.iter().enumerate() {

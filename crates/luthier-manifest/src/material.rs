@@ -1,6 +1,8 @@
 //! Materials of a bake.
 
-use luthier_model::{Feature, Form, InternalReflection, LowerReflectance, Masking, Reach, Reflectance, ShadingModel};
+use luthier_model::{
+    Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, Reach, Reflectance, ShadingModel,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::color::ColorMode;
@@ -69,6 +71,12 @@ impl MaterialEntry {
             .map(|layer| layer.lower_reflectance)
             .find(|lower| *lower != LowerReflectance::default())
             .unwrap_or_default()
+    }
+
+    /// Cosine of the light on the interfaces below the first.
+    pub fn lower_cosine(&self) -> LowerCosine {
+        let is_inside = self.layers.iter().any(|layer| layer.lower_cosine == LowerCosine::Inside);
+        if is_inside { LowerCosine::Inside } else { LowerCosine::Outside }
     }
 
     /// Whether `luthier_environment` shows its lobes: the model is fitted, and the first layer is an interface.

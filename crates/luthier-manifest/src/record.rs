@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_1_PI, LOG2_E};
 
 use luthier_lut::{TableKind, refracted_cosine};
-use luthier_model::{InternalReflection, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
+use luthier_model::{InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -112,6 +112,9 @@ pub struct LayerRecord {
     /// Medium above the interface in the computation of its reflectance, and of the indices here; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub lower_reflectance: LowerReflectance,
+    /// Cosine of the light on the interface, of the model `elek`; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub lower_cosine: LowerCosine,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
     #[serde(flatten)]
     pub tiles: Tiles,
@@ -164,8 +167,10 @@ impl LayerRecord {
             LayerKind::Conductor => 1,
             LayerKind::Diffuse => 2,
         };
-        let parts =
-            4 * self.reflectance.number() + 16 * self.masking.number() + 128 * self.internal_reflection.number();
+        let parts = 4 * self.reflectance.number()
+            + 16 * self.masking.number()
+            + 128 * self.internal_reflection.number()
+            + 512 * self.lower_cosine as u32;
         let [first, second, third] = match self.curve {
             Some(ReflectanceCurve { f0, weight, exponent }) => [f0, weight, exponent],
             None => [self.film_ior_n, self.film_ior_k, self.film_thickness_waves],
@@ -266,6 +271,7 @@ mod tests {
             curve: None,
             internal_reflection: InternalReflection::Facets,
             lower_reflectance: LowerReflectance::InPlace,
+            lower_cosine: LowerCosine::Outside,
             tiles: Tiles::default().with([
                 (TableKind::Fresnel, Some(27)),
                 (TableKind::Distribution, Some(28)),
@@ -332,7 +338,7 @@ mod tests {
         assert_eq!(schlick.words()[4..6], [[0.25, 0.5, 0.75, 25.0], [-1.0, -1.0, -1.0, 26.0]]);
     }
 
-    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3, no internal reflection 128.
+    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3, no internal reflection 128, the inner cosine 512.
     #[test]
     fn chosen_parts_lie_where_the_documentation_says() {
         let plain = numbered(LayerKind::Conductor);
@@ -343,17 +349,18 @@ mod tests {
             curve: Some(curve),
             internal_reflection: InternalReflection::None,
             lower_reflectance: LowerReflectance::InAir,
+            lower_cosine: LowerCosine::Inside,
             ..plain.clone()
         };
         let words = chosen.words();
         assert_eq!(words[6..9], [[0.1, 0.2, 0.3, 33.0], [1.1, 1.2, 1.3, 35.0], [6.1, 6.2, 6.3, 34.0]]);
-        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3 + 128);
+        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3 + 128 + 512);
         let json = serde_json::to_value(&chosen).unwrap();
         assert_eq!((&json["masking"], &json["reflectance"]), (&"v-cavity".into(), &"lazanyi".into()));
         assert_eq!(serde_json::from_value::<LayerRecord>(json).unwrap(), chosen);
         let json = serde_json::to_value(plain).unwrap();
         assert!(
-            ["masking", "reflectance", "curve", "internal_reflection", "lower_reflectance"]
+            ["masking", "reflectance", "curve", "internal_reflection", "lower_reflectance", "lower_cosine"]
                 .iter()
                 .all(|key| json.get(key).is_none()),
             "{json}"

@@ -1,7 +1,9 @@
 //! Settings that a material file asks of its tables.
 
 use luthier_lut::{TableKind, TexelFormat, named};
-use luthier_manifest::{ColorMode, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{
+    ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+};
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
 pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -56,6 +58,8 @@ pub struct BakeSettings {
     pub internal_reflection: Option<InternalReflection>,
     /// Reflectance of the interfaces below the first, of these models.
     pub lower_reflectance: Option<LowerReflectance>,
+    /// Cosine of the light on these interfaces, of the model `elek`.
+    pub lower_cosine: Option<LowerCosine>,
     /// Numbers of the model `granier-heidrich`.
     pub beams: Option<Beams>,
     /// Kinds of tables to bake beside those that the shader reads.

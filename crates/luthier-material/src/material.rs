@@ -77,6 +77,7 @@ impl Material {
         self.bake.reflectance = self.bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance));
         self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.is_path());
         self.bake.lower_reflectance = self.bake.lower_reflectance.filter(|_| model.is_path());
+        self.bake.lower_cosine = self.bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine));
         if !model.takes(ModelPart::Beams) {
             self.bake.beams = None;
             self.layers.iter_mut().for_each(|layer| layer.exponents = None);

@@ -14,6 +14,8 @@ pub enum ModelPart {
     InternalReflection,
     /// Reflectance of interfaces below the first, by [`LowerReflectance`].
     LowerReflectance,
+    /// Cosine of the light on interfaces below the first, by [`LowerCosine`].
+    LowerCosine,
     /// Exponents, weights and a lean of the inner boundary of a film.
     Beams,
 }
@@ -75,6 +77,20 @@ luthier_lut::named! {
         InPlace = "in-place",
         /// By the index below alone, as if air lay above: the F2 of Elek 2010, Algorithm 1, line 21.
         InAir = "in-air",
+    }
+}
+
+luthier_lut::named! {
+    /// Cosine of the light on the interfaces below the first, of the model `elek`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum LowerCosine("lower cosine") {
+        /// That outside, as light falls on the surface: f cos_theta_i of Elek 2010, eq. 2.
+        #[default]
+        Outside = "outside",
+        /// That of the refracted direction, as the code of Elek 2010 has it (Algorithm 1, line 21, and appendix B). Light is not kept: at grazing
+        /// incidence lower interfaces are too bright by the ratio of both cosines.
+        Inside = "inside",
     }
 }
 
@@ -151,6 +167,16 @@ impl LowerReflectance {
     }
 }
 
+impl LowerCosine {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Outside => "the cosine outside (Elek 2010, eq. 2)",
+            Self::Inside => "the cosine of the refracted direction (Elek 2010, Algorithm 1, line 21)",
+        }
+    }
+}
+
 impl InternalReflection {
     /// Formula and source, for headers and messages.
     pub fn title(self) -> &'static str {
@@ -188,6 +214,7 @@ mod tests {
         assert_eq!((Reflectance::default(), Reflectance::default().number()), (Reflectance::ALL[0], 0));
         assert_eq!(InternalReflection::default().number(), 0);
         assert_eq!(LowerReflectance::default(), LowerReflectance::ALL[0]);
+        assert_eq!(LowerCosine::default(), LowerCosine::ALL[0]);
         // Two bits and three of a word: see `LayerRecord::words`.
         assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
         assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));

@@ -48,6 +48,10 @@ const STATISTICS: &str = "Statistics of light";
 /// Parts of models that go down a path.
 const PATH_PARTS: &[ModelPart] = &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance];
 
+/// Parts of Elek's model.
+const ELEK_PARTS: &[ModelPart] =
+    &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance, ModelPart::LowerCosine];
+
 /// Tolerances of models that go down a path.
 const PATH_TOLERANCES: Tolerances =
     Tolerances { table: LOBE_TABLE, baked: LOBE_READ, full: LAYERS_IN_F32, filtered: FILTERED_BELOW_A_COAT };
@@ -76,7 +80,7 @@ const ELEK: Facts = Facts {
         full: &[],
     },
     tables: FACET_TABLES,
-    parts: PATH_PARTS,
+    parts: ELEK_PARTS,
     domain: &[BRIGHT],
     tolerances: PATH_TOLERANCES,
     default_for: &[(DefaultFor::Closed, 0)],

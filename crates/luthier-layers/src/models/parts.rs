@@ -2,7 +2,7 @@
 //! numbers of `granier-heidrich`.
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, Masking, Reflectance};
+use luthier_model::{InternalReflection, LowerCosine, Masking, Reflectance};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
@@ -27,6 +27,8 @@ pub struct Parts {
     pub reflectance: Reflectance,
     /// Internal reflection of `elek` and `weidlich-wilkie`.
     pub internal_reflection: InternalReflection,
+    /// Cosine of the light on lower interfaces of `elek`.
+    pub lower_cosine: LowerCosine,
     /// Numbers of `granier-heidrich`.
     pub beams: GranierHeidrich,
 }
@@ -37,6 +39,7 @@ impl Parts {
         masking: Masking::Smith,
         reflectance: Reflectance::Table,
         internal_reflection: InternalReflection::Facets,
+        lower_cosine: LowerCosine::Outside,
         beams: GranierHeidrich::PLAIN,
     };
 

@@ -1,7 +1,9 @@
 //! Bake settings and budgets of a file.
 
 use luthier_lut::{TableKind, TexelFormat};
-use luthier_manifest::{Budget, ColorMode, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{
+    Budget, ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+};
 
 use crate::bake_settings::{
     AlphaMapping, BakeSettings, Beams, DistributionMapping, DistributionSettings, FresnelMapping, FresnelSettings,
@@ -21,6 +23,7 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
         reflectance: at.text("reflectance").and_then(Reflectance::from_name),
         internal_reflection: at.text("internal_reflection").and_then(InternalReflection::from_name),
         lower_reflectance: at.text("lower_reflectance").and_then(LowerReflectance::from_name),
+        lower_cosine: at.text("lower_cosine").and_then(LowerCosine::from_name),
         beams: at.section("granier-heidrich").map(|at| beams(&at, sink)),
         tables: at.texts("tables").iter().filter_map(|name| TableKind::from_name(name)).collect(),
         color: at.text("color").and_then(ColorMode::from_name),

@@ -1,7 +1,9 @@
 //! Keys of `[bake]` and `[budget]`.
 
 use luthier_lut::TableKind;
-use luthier_manifest::{ColorMode, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{
+    ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+};
 
 use super::table::{ANY, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
 use crate::bake_settings::{AlphaMapping, DistributionMapping, FresnelMapping};
@@ -59,6 +61,13 @@ pub(super) static BAKE: Table = Table {
             "\"in-place\"",
             "Reflectance of the interfaces below the first, in the models elek and weidlich-wilkie: below the medium that lies above them, or as in air, \
              the F2 of Elek's Algorithm 1.",
+        ),
+        Key::with_default(
+            "lower_cosine",
+            Kind::Choice(LowerCosine::NAMES),
+            "\"outside\"",
+            "Cosine of the light on the interfaces below the first, in the model elek: outside, or of the refracted direction, as in the code of \
+             Elek's Algorithm 1.",
         ),
         Key::optional(
             "tables",

@@ -66,7 +66,8 @@ impl References {
 /// The parts of a model that a material chooses.
 pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     let (masking, reflectance) = material.parts();
-    let parts = Parts { masking, reflectance, internal_reflection: material.internal_reflection(), ..Parts::PLAIN };
+    let (internal_reflection, lower_cosine) = (material.internal_reflection(), material.lower_cosine());
+    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
     material.constants.beams.map_or(parts, |beams| {
         let weights = [beams.specular_weight, beams.diffuse_weight];
         parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)

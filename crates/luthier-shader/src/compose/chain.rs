@@ -77,13 +77,14 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
     };
     let alpha = if features.has(Feature::Clamped) { "0.0, " } else { "" };
+    let outer = if features.has(Feature::InnerCosine) { ", down.z" } else { "" };
     let light = if is_lit { ", light" } else { "" };
     let _ = writeln!(
         out,
         "    // Products of lower cosines would underflow; the outer one stays as it is.\n    \
              let down = vec3<f32>(wi.xy, max(wi.z, 1e-16));\n    \
              let up = vec3<f32>(wo.xy, max(wo.z, 1e-16));\n    \
-             var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below});"
+             var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below}{outer});"
     );
     for i in 0..depth {
         // The layer below patina has a second record, for bare places.
@@ -237,9 +238,11 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
     let clamp = if is_clamped { "0.0, " } else { "" };
     let lit = if features.has(Feature::Fluorescent) { ", vec3<f32>(1.0)" } else { "" };
     let rest = format!("vec3<f32>({}){lit}, vec3<f32>(0.0), {clamp}true{below}", walk.share);
+    let [of_path, of_mean] =
+        [", wo.z", ", light.z"].map(|outer| if features.has(Feature::InnerCosine) { outer } else { "" });
     let mut lines = vec![
-        format!("var path = LuthierPath(vec3<f32>(-wo.xy, wo.z), wo, vec2<f32>(0.0), {rest});"),
-        format!("var mean = LuthierPath(light, wo, light.xy + wo.xy, {rest});"),
+        format!("var path = LuthierPath(vec3<f32>(-wo.xy, wo.z), wo, vec2<f32>(0.0), {rest}{of_path});"),
+        format!("var mean = LuthierPath(light, wo, light.xy + wo.xy, {rest}{of_mean});"),
     ];
     let (least, depth) = depths(layers);
     let first = usize::from(walk.is_bare);

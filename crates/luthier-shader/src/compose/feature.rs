@@ -85,6 +85,8 @@ luthier_lut::named! {
         Internal = "internal",
         /// A material chooses transmission at the angles of the directions.
         OwnAngles = "own_angles",
+        /// A material chooses the cosine of the refracted direction for lower interfaces.
+        InnerCosine = "inner_cosine",
         /// A table has a format that no sampler filters.
         Bilinear = "bilinear",
         /// The axis of a look-up is an angle.

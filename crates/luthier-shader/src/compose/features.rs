@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, MapSlot, Masking,
-    MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
+    Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, LowerCosine, MapSlot,
+    Masking, MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
 };
 use luthier_model::{Family, Reach};
 
@@ -163,11 +163,12 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
     let maskings = masking::used(set);
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
     let is_chain_over = features.has(Feature::Chain) && features.has(Feature::Below);
-    let (mut is_packed, mut is_whole, mut is_own) = (false, false, false);
+    let (mut is_packed, mut is_whole, mut is_own, mut is_inside) = (false, false, false, false);
     for record in set.materials.iter().flat_map(MaterialEntry::records) {
         is_packed |= (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
         is_whole |= record.internal_reflection != InternalReflection::default();
         is_own |= record.internal_reflection == InternalReflection::Directions;
+        is_inside |= record.lower_cosine == LowerCosine::Inside;
     }
     let words = [
         (Feature::Rows, is_read),
@@ -175,9 +176,10 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
         (Feature::SeveralReflectances, sources > 1),
         (Feature::Masked, is_masked),
         (Feature::SeveralMaskings, maskings.len() > 1),
-        (Feature::Packed, is_whole || is_packed),
+        (Feature::Packed, is_whole || is_packed || is_inside),
         (Feature::Internal, is_whole && is_chain_over),
         (Feature::OwnAngles, is_own && is_chain_over),
+        (Feature::InnerCosine, is_inside && is_chain_over),
     ];
     let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()

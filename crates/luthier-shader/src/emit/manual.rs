@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
 use luthier_manifest::{
-    BindingEntry, InternalReflection, LowerReflectance, Masking, MaterialEntry, MaterialTexture, Reflectance,
-    ShadingModel,
+    BindingEntry, InternalReflection, LowerCosine, LowerReflectance, Masking, MaterialEntry, MaterialTexture,
+    Reflectance, ShadingModel,
 };
 
 use super::Part;
@@ -128,6 +128,8 @@ fn parts(set: &MaterialSet<'_>) -> Vec<String> {
     }
     let in_air = LowerReflectance::InAir;
     texts.extend(part(set, "Reflectance of lower interfaces", in_air.title(), |m| m.lower_reflectance() == in_air));
+    let inside = LowerCosine::Inside;
+    texts.extend(part(set, "Light on lower interfaces", inside.title(), |m| m.lower_cosine() == inside));
     let own = "its own, in words 1 and 2 of its header";
     texts.extend(part(set, "Exponents, weights and inner boundary", own, |m| m.constants.beams.is_some()));
     texts

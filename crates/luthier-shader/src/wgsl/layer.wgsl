@@ -40,6 +40,9 @@ struct LuthierLayer {
     internal_reflection: f32,
     /// Whether light passes by its own angles with the normal, and not by that of the half vector.
     own_angles: bool,
+    //? inner_cosine
+    /// Whether its light counts by the cosine of the refracted direction.
+    inner_cosine: bool,
     /// Reflectance at normal incidence, where it is a curve.
     f0: vec3<f32>,
     /// Weight of the curve's correction.
@@ -107,6 +110,11 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     var layer: LuthierLayer;
     //? packed
     {
+        //? inner_cosine
+        layer.inner_cosine = luthier_whole(numbers.x) >= 512u;
+        //? inner_cosine
+        let kind = luthier_whole(numbers.x) & 511u;
+        //? else
         let kind = luthier_whole(numbers.x);
         layer.kind = kind & 3u;
         layer.reflectance = (kind >> 2u) & 3u;

@@ -4,12 +4,13 @@ use luthier_layers::models::parts::Parts;
 use luthier_lut::TableKind;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
-    BeamsRecord, Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel,
+    BeamsRecord, Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
 };
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_model::Reach;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
+use luthier_optics::stack::Base;
 
 use super::beams::{self, of_beams};
 
@@ -27,6 +28,7 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts.extend(internal.and_then(|internal| of_internal_reflection(material, model, internal)));
     let lower = material.bake.lower_reflectance;
     doubts.extend(lower.and_then(|lower| of_lower_reflectance(material, model, lower)));
+    doubts.extend(material.bake.lower_cosine.and_then(|lower| of_lower_cosine(material, model, lower)));
     doubts
 }
 
@@ -36,7 +38,8 @@ pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
     let reflectance = bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default();
     let internal_reflection = bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default();
-    let parts = Parts { masking, reflectance, internal_reflection, ..Parts::PLAIN };
+    let lower_cosine = bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine)).unwrap_or_default();
+    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
     let beams = material.beams().filter(|_| model.takes(ModelPart::Beams));
     beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
         parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
@@ -53,6 +56,7 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("reflectance", material.bake.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Table)),
         ("internal_reflection", material.bake.internal_reflection.is_some()),
         ("lower_reflectance", material.bake.lower_reflectance.is_some()),
+        ("lower_cosine", material.bake.lower_cosine.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
     let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
@@ -256,6 +260,28 @@ fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerRe
     );
     let hint = "`in-place`, the default, is the reflectance of the interface".to_owned();
     Some(material.diagnostic(Severity::Warning, key, format!("the lower reflectance `{name}` {effect}"), Some(hint)))
+}
+
+fn of_lower_cosine(material: &Material, model: ShadingModel, lower: LowerCosine) -> Option<Diagnostic> {
+    let (name, key) = (lower.name(), "bake.lower_cosine");
+    if !model.takes(ModelPart::LowerCosine) {
+        let message = format!("the model `{model}` of this material has no lower cosine `{name}`");
+        let hint = "leave it out, or write `[bake] model = \"elek\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if lower == LowerCosine::Outside {
+        return None;
+    }
+    let layers = material.stack.layers.iter().skip(1);
+    let effect = if layers.clone().all(|layer| matches!(layer.base, Base::Diffuse(_))) {
+        "changes nothing here: no interface lies below the first"
+    } else {
+        // By hand: cos(asin(sin 75 / 1.5)) / cos 75.
+        "returns more light than falls in: below an index of 1.5, an interface is 2.96 times as bright for light at 75 degrees"
+    };
+    let message = format!("the lower cosine `{name}` {effect}");
+    let hint = "`outside`, the default, is that of the light on the surface".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 
 /// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.

@@ -191,6 +191,11 @@ fn parts_that_a_model_does_not_have() {
             ["model `microfacet` of this material has", "no lower reflectance `in-air`", "x.toml:15:21"],
         ),
         (
+            format!("{coat}{metal}"),
+            "model = \"weidlich-wilkie\"\nlower_cosine = \"inside\"",
+            ["model `weidlich-wilkie` of this material has", "no lower cosine `inside`", "x.toml:15:16"],
+        ),
+        (
             metal.replace("alpha = 0.2", "exponents = [90, 170]"),
             "model = \"elek\"",
             ["`exponents` gives lobes of the model `granier-heidrich`", "has `elek`", "x.toml:7:13"],
@@ -241,6 +246,8 @@ fn parts_that_a_model_does_not_have() {
         (format!("{coat}{metal}"), "model = \"elek\"\nlower_reflectance = \"in-place\"", 0),
         (format!("{coat}{metal}"), "model = \"elek\"\nlower_reflectance = \"in-air\"", 1),
         (metal.to_owned(), "model = \"elek\"\nlower_reflectance = \"in-air\"", 1),
+        (format!("{coat}{metal}"), "model = \"elek\"\nlower_cosine = \"outside\"", 0),
+        (format!("{coat}{metal}"), "model = \"elek\"\nlower_cosine = \"inside\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"smith\"", 0),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"implicit\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"v-cavity\"\nreflectance = \"approximate\"", 2),

@@ -73,7 +73,8 @@ fn parts(material: &Material) -> (Parts, Reflectance) {
     let (masking, reflectance) =
         (material.bake.masking.unwrap_or_default(), material.bake.reflectance.unwrap_or_default());
     let internal_reflection = material.bake.internal_reflection.unwrap_or_default();
-    let parts = Parts { masking, reflectance, internal_reflection, ..Parts::PLAIN };
+    let lower_cosine = material.bake.lower_cosine.unwrap_or_default();
+    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
     (material.beams().map_or(parts, |beams| of_beams(parts, &beams)), reflectance)
 }
 
@@ -206,6 +207,47 @@ fn ways_through_interfaces_are_those_of_the_twin() {
             assert!((values[a] / values[b] - 1.0).abs() > 1e-3, "{}: {values:?}", plain[i].name);
         }
     }
+}
+
+/// Light on lower interfaces by their own cosine, beside materials without the choice. By hand: at 65 degrees on an index of 1.5, cosines are in the
+/// ratio 1.885; the light of a base stays.
+#[test]
+fn lower_cosines_are_those_of_the_twin() {
+    let of_elek = |bake: &str| {
+        let all = [COPPER, "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n"].map(|base| {
+            let slab = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.3\n";
+            let name = if base == COPPER { "copper" } else { "paint" };
+            let rough = if base == COPPER { "alpha = 0.4\n" } else { "" };
+            material(
+                &format!("{name}{}", bake.len()),
+                &format!("{slab}{base}{rough}"),
+                &format!("model = \"elek\"\nreflectance = \"exact\"\n{bake}"),
+            )
+        });
+        all.to_vec()
+    };
+    let (plain, inside) = (of_elek(""), of_elek("lower_cosine = \"inside\""));
+    let mut worst = 0.0;
+    compare(&inside, &mut worst);
+    compare(&[plain.clone(), inside.clone()].concat(), &mut worst);
+    let both = of_elek("lower_cosine = \"inside\"\ninternal_reflection = \"directions\"");
+    compare(&[both, plain.clone()].concat(), &mut worst);
+    eprintln!("lower cosines: at most {worst:.1e}");
+    let at = |theta_deg: f64| {
+        let (sin, cos) = libm::sincos(theta_deg.to_radians());
+        DVec3::new(sin, 0.0, cos)
+    };
+    let (wi, wo) = (at(65.0), at(-50.0));
+    let value = |material: &Material, layers: usize| {
+        let nm = material.bake.wavelengths_nm();
+        let mut stack = material.stack.clone();
+        stack.layers.truncate(layers);
+        let color = Color::ThreeWavelengths(nm);
+        Shaded::with(ShadingModel::Elek, &stack, nm, color, &Place::NONE, parts(material).0).unwrap().eval(wi, wo)[1]
+    };
+    let below = |set: &[Material], i: usize| value(&set[i], 2) - value(&set[i], 1);
+    assert!((below(&inside, 0) / below(&plain, 0) - 1.885).abs() < 5e-4, "{}", below(&inside, 0) / below(&plain, 0));
+    assert_eq!(below(&inside, 1), below(&plain, 1));
 }
 
 /// Films, slabs and metals with numbers of Granier and Heidrich's model; some alike, some not.

@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 11] = [
+pub(super) static SAMPLES: [Sample; 12] = [
     sample(
         "bake.model",
         "bake.model",
@@ -32,6 +32,12 @@ pub(super) static SAMPLES: [Sample; 11] = [
         "bake.lower_reflectance",
         "layer = [{ type = 'dielectric', ior = 2, alpha = 0.1 }, { type = 'conductor', ior = { n = 0.5, k = 1.5 }, alpha = 0.2 }]\nbake = { model = 'elek', lower_reflectance = @ }",
         &["'in-place'", "'in-air'"],
+    ),
+    sample(
+        "bake.lower_cosine",
+        "bake.lower_cosine",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.2 }, { type = 'conductor', ior = 'cu', alpha = 0.3 }]\nbake = { model = 'elek', lower_cosine = @ }",
+        &["'outside'", "'inside'"],
     ),
     sample(
         "bake.color",

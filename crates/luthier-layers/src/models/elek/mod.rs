@@ -18,7 +18,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, ShadingModel};
+use luthier_model::{InternalReflection, LowerCosine, ShadingModel};
 use luthier_optics::masking::v_cavity;
 
 use crate::formulas::facets::Lobe;
@@ -46,16 +46,19 @@ pub(crate) const ROOM: Room = Room {
 pub struct Elek {
     /// Form of internal reflection: the light from below that interfaces let out.
     pub internal_reflection: InternalReflection,
+    /// Cosine of the light on interfaces below the first.
+    pub lower_cosine: LowerCosine,
 }
 
 impl Elek {
     /// The model with the parts that a material chooses.
-    fn of(Parts { internal_reflection, .. }: Parts) -> Self {
-        Self { internal_reflection }
+    fn of(Parts { internal_reflection, lower_cosine, .. }: Parts) -> Self {
+        Self { internal_reflection, lower_cosine }
     }
 
     /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. It is zero if either direction is at or below the horizon, and
-    /// finite for all unit directions. With T_12 and T_21 at the half vector every factor of eq. 2 is symmetric, so the model is reciprocal.
+    /// finite for all unit directions. With T_12 and T_21 at the half vector every factor of eq. 2 is symmetric, so the model is reciprocal; with
+    /// [`LowerCosine::Inside`] it is not.
     pub fn eval_with<const C: usize>(
         &self,
         layers: &[Layer<C>],
@@ -102,6 +105,10 @@ impl PathModel for Elek {
 
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2] {
         [cos_theta_i, 1.0]
+    }
+
+    fn lower_cosine(&self) -> LowerCosine {
+        self.lower_cosine
     }
 
     /// A layer has the greatest slope parameter of itself and those above: it is never smoother than one above it.

@@ -21,6 +21,9 @@ struct LuthierPath {
     //? flakes
     /// Normal below the next interface, in its frame: that of the flakes.
     normal_below: vec3<f32>,
+    //? inner_cosine
+    /// Cosine of the light outside.
+    outer_cosine: f32,
 }
 
 /// A path in the frame of an interface's own normal, closed where the interface turns away from either direction. The light that falls on it
@@ -96,6 +99,10 @@ fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
+    //? inner_cosine
+    let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y)
+        * select(1.0, cosines.x / path.outer_cosine, layer.inner_cosine);
+    //? else
     let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
     //? fluorescent
     next.total = path.total + path.throughput * path.lit * fresnel * geometry;

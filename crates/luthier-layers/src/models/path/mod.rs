@@ -5,7 +5,7 @@ pub(in crate::models) mod eval;
 use std::array::from_fn;
 
 use glam::DVec3;
-use luthier_model::InternalReflection;
+use luthier_model::{InternalReflection, LowerCosine};
 
 use crate::formulas::facets::Lobe;
 use crate::formulas::oren_nayar;
@@ -26,6 +26,11 @@ pub(crate) trait PathModel {
 
     /// Two factors whose product is the cosine of the light outside: on light that falls in, and on light that an interface or the base returns.
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2];
+
+    /// Cosine of the light on interfaces below the first.
+    fn lower_cosine(&self) -> LowerCosine {
+        LowerCosine::Outside
+    }
 
     /// The lobe of the last layer for `wi` and `wo`. Layers above may bound its slope parameter.
     fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe>;
@@ -110,8 +115,12 @@ pub(crate) fn walk<const C: usize>(
         }
         let Some(lobe) = model.facets(&layers[..=i], terms, wi_local, wo_local) else { break };
         let reflected = terms.fresnel(i, lobe.cos_theta_d);
+        let brighter = match model.lower_cosine() {
+            LowerCosine::Inside if i > 0 => wi_local.z / wi.z,
+            _ => 1.0,
+        };
         for c in 0..C {
-            interfaces[c] += model.sent(passed[c], returning / wi_local.z, reflected[c], lobe.value);
+            interfaces[c] += model.sent(passed[c], returning / wi_local.z, reflected[c], lobe.value * brighter);
         }
 
         let Below::Dielectric { optical_depth, .. } = layer.below else { break };

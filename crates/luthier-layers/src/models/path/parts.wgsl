@@ -13,6 +13,8 @@ fn luthier_path_part(
     part.energy = path.throughput * path.lit * fresnel * (index * index);
     //? else
     part.energy = path.throughput * fresnel * (index * index);
+    //? inner_cosine
+    part.energy *= select(1.0, path.wi_local.z / path.outer_cosine, layer.inner_cosine);
     part.alpha = alpha;
     part.axis = axis;
     //? cavities
