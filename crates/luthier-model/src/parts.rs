@@ -85,10 +85,10 @@ luthier_lut::named! {
     #[derive(Default, Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum LowerCosine("lower cosine") {
-        /// That outside, as light falls on the surface: f cos_theta_i of Elek 2010, eq. 2.
+        /// Cosine outside, as light falls on the surface: f cos_theta_i of Elek 2010, eq. 2.
         #[default]
         Outside = "outside",
-        /// That of the refracted direction, as the code of Elek 2010 has it (Algorithm 1, line 21, and appendix B). Light is not kept: at grazing
+        /// Cosine of the refracted direction, as the code of Elek 2010 has it (Algorithm 1, line 21, and appendix B). Light is not kept: at grazing
         /// incidence lower interfaces are too bright by the ratio of both cosines.
         Inside = "inside",
     }
