@@ -329,7 +329,7 @@ pub(crate) struct ReportOptions {
     /// Exit with 1 when the largest relative error of a shader exceeds this, or the error of a table that misses what its bake aimed at
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
-    /// Exit with 1 when the absolute error of a table, as the report measures it, exceeds this
+    /// Exit with 1 when the absolute error of a table, as the report measures it or the manifest states it, exceeds this
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_abs: Option<f64>,
     /// Exit with 1 when a colour difference (CIEDE2000, daylight) of a shader exceeds this

@@ -19,8 +19,7 @@ pub trait Device {
     fn identity(&self) -> String;
 
     /// Whether it has a shader of a form. That of the form `baked` is always there.
-    fn has(&self, form: Form) -> bool {
-        let _ = form;
+    fn has(&self, _form: Form) -> bool {
         true
     }
 

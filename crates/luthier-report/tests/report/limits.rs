@@ -13,6 +13,8 @@ fn a_limit_is_held_up_to_what_was_found() {
     crate::page::filled(&mut report);
     let bytes = report.tables.iter().map(|t| t.texel_bytes).sum::<u64>();
     let (table, ..) = report.worst_table().unwrap();
+    // Neither the points of the baker nor those of the judge are passed over.
+    assert!(report.tables.iter().flat_map(|t| &t.tiles).all(|tile| tile.baker.max_abs_err <= table));
     let (seen, _) = report.worst_seen(SeenLight::Daylight).unwrap();
     let lobe = report.worst_model().unwrap().1.lobe_err;
     assert!(table > 0.0 && seen > 0.0 && lobe > 0.0);

@@ -343,7 +343,7 @@ fn axis(quantity: &str, min: f64, max: f64, size: u32, mapping: Mapping) -> Axis
     Axis { quantity: quantity.to_owned(), unit: String::new(), min, max, size, mapping }
 }
 
-/// What is composed of a set.
+/// Kind of a text of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Part {
     Snippet,

@@ -141,7 +141,10 @@ impl Model for Elek {
         ModelInfo {
             name: ShadingModel::Elek.name(),
             kind: Kind::Layered,
-            claims: Claims::RECIPROCAL,
+            claims: match self.lower_cosine {
+                LowerCosine::Outside => Claims::RECIPROCAL,
+                LowerCosine::Inside => Claims::NONE,
+            },
             source: "Elek 2010, eq. 2-4 and Algorithm 1",
             domain: "any number of isotropic interfaces above a conductor or a diffuse base; alpha from 1e-3",
             leaves_out: "bounces between layers, 1/n^2, blur by refraction (stood for by the roughness clamp)",
@@ -212,6 +215,22 @@ mod tests {
             let found = Elek::default().eval(&Monochrome::new(&stack, wavelength, channel), wi, wo);
             assert!((found - rgb[channel]).abs() < 1e-15 + 1e-13 * found, "{found} {}", rgb[channel]);
         }
+    }
+
+    /// By hand: swapped directions swap the cosine by which the lower layer counts, and its ratio to that outside.
+    #[test]
+    fn the_inner_cosine_is_not_reciprocal() {
+        let stack = Monochrome::new(&lacquer(), 550.0, 0);
+        let mut bare = stack.clone();
+        bare.layers.truncate(1);
+        let at = |theta: f64| DVec3::new(theta.sin(), 0.0, theta.cos());
+        let (wi, wo) = (at(1.1), at(-0.4));
+        let ratio = |w: DVec3| (1.0 - (1.0 - w.z * w.z) / 2.25).sqrt() / w.z;
+        let model = Elek { lower_cosine: LowerCosine::Inside, ..Elek::default() };
+        let below = |wi: DVec3, wo| (model.eval(&stack, wi, wo) - model.eval(&bare, wi, wo)) / wi.z;
+        let apart = below(wi, wo) / below(wo, wi) * ratio(wo) / ratio(wi);
+        assert!((apart - 1.0).abs() < 1e-9 && ratio(wi) > 1.5 * ratio(wo), "{apart}");
+        assert_eq!((model.info().claims, Elek::default().info().claims), (Claims::NONE, Claims::RECIPROCAL));
     }
 
     #[test]
