@@ -223,7 +223,7 @@ mod tests {
         let stack = Monochrome::new(&lacquer(), 550.0, 0);
         let mut bare = stack.clone();
         bare.layers.truncate(1);
-        let at = |theta: f64| DVec3::new(theta.sin(), 0.0, theta.cos());
+        let at = |theta: f64| DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
         let (wi, wo) = (at(1.1), at(-0.4));
         let ratio = |w: DVec3| (1.0 - (1.0 - w.z * w.z) / 2.25).sqrt() / w.z;
         let model = Elek { lower_cosine: LowerCosine::Inside, ..Elek::default() };
