@@ -286,7 +286,17 @@ def oren_nayar(rho, sigma):
     return value
 
 
-def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=False, own_cosine=False):
+def blinn_phong(alpha, i, o):
+    e = 2 / alpha**2 - 2
+    return (e + 2) / (8 * PI) * half(i, o)[2] ** e
+
+
+def phong_lobe(alpha, i, o):
+    e = (2 / alpha**2 - 2) / 4
+    return (e + 2) / (2 * PI) * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e
+
+
+def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=False, own_cosine=False, cavities=None, lower=None, beside=None):
     """The recursion of Weidlich and Wilkie, eq. 3.1 to 3.3, in Elek's form: surfaces are (eta, alpha, optical depth, distribution, index below over vacuum)."""
 
     def value(i, o):
@@ -295,9 +305,12 @@ def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=Fal
             least = max(least, alpha) if clamp else alpha
             h = half(wi, wo)
             cos_d = dot(wi, h)
-            f, g = fresnel(index, cos_d, 1.0 if in_air else above), v_cavity(wi, wo, h)
+            f, g = fresnel(index, cos_d, 1.0 if in_air else above), (cavities or v_cavity)(wi, wo, h)
             seen = wi[2] / i[2] if own_cosine else 1
-            total += seen * through * f * distribution(least)(h) * g / (4 * wi[2] * wo[2])
+            facets = distribution(least)(h) * g / (4 * wi[2] * wo[2])
+            if lower and above > 1:
+                facets, g = lower(least, wi, wo), 1
+            total += seen * through * f * facets
             if depth is None:
                 return total * i[2]
             eta = index / above
@@ -309,6 +322,14 @@ def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=Fal
                 through *= (1 - fresnel(index, wi[2], above)) * (1 - fresnel(index, wo[2], above))
             through *= math.exp(-depth * (1 / ti[2] + 1 / to[2]))
             wi, wo, above = ti, to, index
+        if beside:
+            # Line 22 of Algorithm 1: a metal of this F0, and (1 - F2) of the diffuse part, in one layer.
+            f0, alpha, distribution = beside
+            least = max(least, alpha) if clamp else alpha
+            h = half(wi, wo)
+            f = schlick(f0, dot(wi, h))
+            total += through * f * distribution(least)(h) * v_cavity(wi, wo, h) / (4 * wi[2] * wo[2])
+            through *= 1 - f
         return (total + through * base(wi, wo) / wi[2]) * i[2]
 
     return value
@@ -610,6 +631,16 @@ def compare():
     values(ELEK, "elek: F2 as in air", "algorithm 1, line 21", chosen, "elek", layers(below_two, none, clamp=True, in_air=True))
     chosen = f'{two}[bake]\nmodel = "elek"\nlower_cosine = "inside"\n'
     values(ELEK, "elek: NdotL' of the lower layer", "algorithm 1, line 21; appendix B", chosen, "elek", layers(below_two, none, clamp=True, own_cosine=True))
+
+    of_both = coat(COAT, "alpha = 0.2\ndistribution = \"beckmann\"\n", DEPTH) + '[[layer]]\ntype = "dielectric"\nf0 = 0.6\nalpha = 0.3\n' + matte(0.6, 0.5)
+    for paper, model, clamp in [(ELEK, "elek", True), (COURSE, "weidlich-wilkie", False)]:
+        part = f'[bake]\nmodel = "{model}"\n'
+        values(paper, f"{model}: G left out after Kelemen", "section 3.1", f'{three}{part}masking = "kelemen"\n', model, layers(below_three, none, clamp=clamp, cavities=kelemen))
+        values(paper, f"{model}: Phong's lobe below a coat", "section 3.1" if clamp else "section 3.4.1", f'{three}{part}lower_facets = "phong"\n', model, layers(below_three, none, clamp=clamp, lower=phong_lobe))
+        values(paper, f"{model}: Blinn and Phong's lobe below a coat", "section 3.1" if clamp else "section 3.4.1", f'{three}{part}lower_facets = "blinn-phong"\n', model, layers(below_three, none, clamp=clamp, lower=blinn_phong))
+        beside = layers([(COAT, 0.2, DEPTH, beckmann)], oren_nayar(0.6, 0.5), clamp=clamp, beside=(0.6, 0.3, ggx))
+        values(paper, f"{model}: metal and diffuse in one lower layer", "algorithm 1, lines 21 and 22" if clamp else "eq. 3.1", f'{of_both}{part}diffuse_part = "beside"\n', model, beside)
+    values(COURSE, "weidlich-wilkie: base as rough as its coat", "slides, type f", f'{three}[bake]\nmodel = "weidlich-wilkie"\nlower_alpha = "at-least-above"\n', "weidlich-wilkie", layers(below_three, none, clamp=True))
 
     # Granier and Heidrich.
     thin = film(*soap) + metal(rough)

@@ -3,9 +3,7 @@
 use luthier_layers::layers::ALPHA_MIN;
 use luthier_layers::layers::{Below, Layers};
 use luthier_manifest::ModelPart;
-use luthier_manifest::{
-    InternalReflection, LayerKind, LayerRecord, LowerCosine, LowerReflectance, Masking, Reflectance, ReflectanceCurve,
-};
+use luthier_manifest::{LayerKind, LayerRecord, LowerReflectance, Masking, PathParts, Reflectance, ReflectanceCurve};
 use luthier_material::Material;
 use luthier_model::INDEX_MAX;
 use luthier_optics::color::Color;
@@ -31,9 +29,8 @@ const DEPTH_MAX: f64 = 1e4;
 pub(crate) struct Parts {
     pub(crate) masking: Masking,
     pub(crate) reflectance: Reflectance,
-    pub(crate) internal_reflection: InternalReflection,
     pub(crate) lower_reflectance: LowerReflectance,
-    pub(crate) lower_cosine: LowerCosine,
+    pub(crate) path: PathParts,
     pub(crate) color: Color,
 }
 
@@ -41,12 +38,12 @@ impl Parts {
     /// The parts of a material.
     pub(crate) fn of(material: &Material) -> Self {
         let (model, bake) = (material.model(), &material.bake);
+        let path = bake.path_parts(model);
         Self {
-            masking: bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default(),
+            masking: bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or(path.masking),
             reflectance: bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default(),
-            internal_reflection: bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default(),
             lower_reflectance: bake.lower_reflectance.filter(|_| model.is_path()).unwrap_or_default(),
-            lower_cosine: bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine)).unwrap_or_default(),
+            path,
             color: material.color(),
         }
     }
@@ -54,7 +51,7 @@ impl Parts {
     /// Writes the choices, and the curve of an approximate reflectance, into the record of an interface.
     fn write(&self, interface: &Interface, record: &mut LayerRecord) {
         (record.masking, record.reflectance) = (self.masking, self.reflectance);
-        record.internal_reflection = self.internal_reflection;
+        record.internal_reflection = self.path.internal_reflection;
         let curves = match self.reflectance {
             Reflectance::Table | Reflectance::Exact => return,
             Reflectance::Approximate => interface.sampled(&self.color).schlick(),
@@ -71,8 +68,9 @@ impl Parts {
 /// The records of a stack, without tiles.
 pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) -> Vec<LayerRecord> {
     let nodes = Color::ThreeWavelengths(wavelengths_nm).nodes();
-    Layers::isotropic_rgb(stack)
-        .layers
+    let layers = Layers::isotropic_rgb(stack).layers;
+    let is_base = |i: usize| layers.get(i).is_some_and(|layer| matches!(layer.below, Below::Diffuse { .. }));
+    layers
         .iter()
         .enumerate()
         .map(|(i, layer)| {
@@ -101,7 +99,13 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
             if let Some(interface) = Interface::of(stack, i) {
                 record.f0 = interface.below.f0();
                 if i > 0 {
-                    (record.lower_reflectance, record.lower_cosine) = (parts.lower_reflectance, parts.lower_cosine);
+                    record.lower_reflectance = parts.lower_reflectance;
+                    record.lower_cosine = parts.path.lower_cosine;
+                    record.lower_facets = parts.path.lower_facets;
+                    record.lower_alpha = parts.path.lower_alpha;
+                }
+                if is_base(i + 1) {
+                    record.diffuse_part = parts.path.diffuse_part;
                 }
                 parts.write(&interface, &mut record);
                 for (c, node) in nodes.iter().enumerate() {

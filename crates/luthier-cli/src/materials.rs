@@ -2,9 +2,7 @@
 
 use luthier::refusals::{misses, of_function, of_parts};
 use luthier::{Files, Source, Sources, SurfaceSource, refuse, source_hash};
-use luthier_manifest::{
-    Form, FunctionGroup, Manifest, MaterialEntry, ModelPart, Reflectance, ShadingModel, SurfaceEntry,
-};
+use luthier_manifest::{Form, FunctionGroup, Manifest, MaterialEntry, Reflectance, ShadingModel, SurfaceEntry};
 use luthier_material::{Diagnostic, Material};
 use luthier_optics::stack::Base;
 use luthier_terminal::{Broken, Failure, Outcome, complain, print_diagnostics, valid};
@@ -111,7 +109,7 @@ pub(crate) fn is_shaded_by(material: &Material, model: ShadingModel, asked: &[Sh
 pub(crate) fn is_baked_as(material: &mut Material, entry: &MaterialEntry) -> Outcome<bool> {
     let (masking, reflectance) = entry.parts();
     material.bake.model = Some(entry.model);
-    material.bake.masking = entry.model.takes(ModelPart::Masking).then_some(masking);
+    material.bake.masking = Some(masking).filter(|masking| entry.model.takes_masking(*masking));
     material.bake.reflectance = Some(reflectance);
     Ok(source_hash(material)? == entry.source_hash)
 }

@@ -1,7 +1,8 @@
 //! Materials of a bake.
 
 use luthier_model::{
-    Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, Reach, Reflectance, ShadingModel,
+    DiffusePart, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
+    PathParts, Reach, Reflectance, ShadingModel,
 };
 use serde::{Deserialize, Serialize};
 
@@ -66,17 +67,39 @@ impl MaterialEntry {
 
     /// Reflectance of the interfaces below the first.
     pub fn lower_reflectance(&self) -> LowerReflectance {
-        self.layers
-            .iter()
-            .map(|layer| layer.lower_reflectance)
-            .find(|lower| *lower != LowerReflectance::default())
-            .unwrap_or_default()
+        chosen(self.layers.iter().map(|layer| layer.lower_reflectance))
     }
 
     /// Cosine of the light on the interfaces below the first.
     pub fn lower_cosine(&self) -> LowerCosine {
-        let is_inside = self.layers.iter().any(|layer| layer.lower_cosine == LowerCosine::Inside);
-        if is_inside { LowerCosine::Inside } else { LowerCosine::Outside }
+        chosen(self.layers.iter().map(|layer| layer.lower_cosine))
+    }
+
+    /// The parts of a model that goes down a path.
+    pub fn path_parts(&self) -> PathParts {
+        PathParts {
+            masking: self.parts().0,
+            internal_reflection: self.internal_reflection(),
+            lower_cosine: self.lower_cosine(),
+            lower_facets: self.lower_facets(),
+            lower_alpha: self.lower_alpha(),
+            diffuse_part: self.diffuse_part(),
+        }
+    }
+
+    /// Reflection of the interfaces below the first.
+    pub fn lower_facets(&self) -> LowerFacets {
+        chosen(self.layers.iter().map(|layer| layer.lower_facets))
+    }
+
+    /// Slope parameters of the interfaces below the first.
+    pub fn lower_alpha(&self) -> LowerAlpha {
+        chosen(self.layers.iter().map(|layer| layer.lower_alpha))
+    }
+
+    /// Place of the diffuse base.
+    pub fn diffuse_part(&self) -> DiffusePart {
+        chosen(self.layers.iter().map(|layer| layer.diffuse_part))
     }
 
     /// Whether `luthier_environment` shows its lobes: the model is fitted, and the first layer is an interface.
@@ -117,6 +140,11 @@ impl MaterialEntry {
             is_shown.then_some((layer, map.slot))
         })
     }
+}
+
+/// The choice of a material, of those of its layers: the first that is not the default.
+fn chosen<T: Default + PartialEq>(mut choices: impl Iterator<Item = T>) -> T {
+    choices.find(|choice| *choice != T::default()).unwrap_or_default()
 }
 
 /// A slope parameter under a light of an angular radius: see [`MaterialEntry::widened`].

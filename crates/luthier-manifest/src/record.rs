@@ -3,7 +3,10 @@
 use std::f64::consts::{FRAC_1_PI, LOG2_E};
 
 use luthier_lut::{TableKind, refracted_cosine};
-use luthier_model::{InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
+use luthier_model::{
+    DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking, Reflectance,
+    ReflectanceCurve,
+};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +100,7 @@ pub struct LayerRecord {
     /// interfaces with total reflection. Else 0.
     #[serde(default)]
     pub critical_cot_sq: f64,
-    /// Masking of the model `microfacet`; absent where it is the default.
+    /// Masking of the models `microfacet`, `elek` and `weidlich-wilkie`; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub masking: Masking,
     /// Computation of the reflectance of the interface; absent where it is the default.
@@ -115,6 +118,15 @@ pub struct LayerRecord {
     /// Cosine of the light on the interface, of the model `elek`; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub lower_cosine: LowerCosine,
+    /// Reflection of the interface if it is not the first, of the models `elek` and `weidlich-wilkie`; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub lower_facets: LowerFacets,
+    /// Slope parameter of the interface below others, of the model `weidlich-wilkie`; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub lower_alpha: LowerAlpha,
+    /// Place of the diffuse base that follows the interface, of the models `elek` and `weidlich-wilkie`; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub diffuse_part: DiffusePart,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
     #[serde(flatten)]
     pub tiles: Tiles,
@@ -150,10 +162,13 @@ impl LayerRecord {
     /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
     /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation; of abc b and c, of sgd 1 / alpha and p in x and y |
-    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking and 128 times that of the internal reflection (0 facets, 1 none, 2 directions), alpha, eta, sigma |
+    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking and 128 times that of the internal reflection (0 facets, 1 none, 2 directions), 512 with the cosine of the refracted direction, 1,024 times the number of the lower facets (0 torrance-sparrow, 1 blinn-phong, 2 phong), 4,096 with a slope parameter of at least those above, alpha, eta, sigma |
     ///
     /// Masking is numbered 0 smith, 1 smith-separable, 2 schlick-smith, 3 v-cavity, 4 kelemen, 5 implicit. An interface with a curve ([`ReflectanceCurve`])
     /// has no film.
+    ///
+    /// An interface with its diffuse base beside it ([`DiffusePart::Beside`]) has the words of one that neither bends, absorbs nor reflects
+    /// inward: its eta is 1, its optical depth 0 and its internal reflection none.
     ///
     /// A fluorescent base has the rows of its re-radiation matrix over pi in words 4, 5 and 6, red, green and blue, and 1 in x of word 8.
     ///
@@ -167,10 +182,15 @@ impl LayerRecord {
             LayerKind::Conductor => 1,
             LayerKind::Diffuse => 2,
         };
+        let is_beside = self.diffuse_part == DiffusePart::Beside;
+        let internal_reflection = if is_beside { InternalReflection::None } else { self.internal_reflection };
+        let (eta, optical_depth) = if is_beside { (1.0, [0.0; 3]) } else { (self.eta, self.optical_depth) };
         let parts = 4 * self.reflectance.number()
             + 16 * self.masking.number()
-            + 128 * self.internal_reflection.number()
-            + 512 * self.lower_cosine as u32;
+            + 128 * internal_reflection.number()
+            + 512 * self.lower_cosine as u32
+            + 1024 * self.lower_facets.number()
+            + 4096 * self.lower_alpha.number();
         let [first, second, third] = match self.curve {
             Some(ReflectanceCurve { f0, weight, exponent }) => [f0, weight, exponent],
             None => [self.film_ior_n, self.film_ior_k, self.film_thickness_waves],
@@ -193,11 +213,11 @@ impl LayerRecord {
             Distribution::Sgd(shape) => [reciprocal(shape.parameters()[0]), shape.parameters()[1]],
             _ => self.alpha_xy,
         };
-        let grazing_cos_sq = (self.eta - 1.0) * (self.eta + 1.0) / (self.eta * self.eta).max(f64::MIN_POSITIVE);
+        let grazing_cos_sq = (eta - 1.0) * (eta + 1.0) / (eta * eta).max(f64::MIN_POSITIVE);
         let numbers = [
-            vec4([sharpness * unit, sharpness * 0.25 * FRAC_1_PI, reciprocal(self.eta)], grazing_cos_sq),
+            vec4([sharpness * unit, sharpness * 0.25 * FRAC_1_PI, reciprocal(eta)], grazing_cos_sq),
             [0.0; 4],
-            vec4(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
+            vec4(optical_depth.map(|depth| depth * LOG2_E), 0.0),
             vec4(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
             vec4(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm),
             vec4(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm),
@@ -205,7 +225,7 @@ impl LayerRecord {
             vec4(second, self.critical_cot_sq),
             vec4(third, 0.0),
             vec4([tangent, bitangent, libm::cos(self.rotation)], libm::sin(self.rotation)),
-            [whole(kind + parts as usize), self.alpha as f32, self.eta as f32, self.sigma as f32],
+            [whole(kind + parts as usize), self.alpha as f32, eta as f32, self.sigma as f32],
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
         words[..numbers.len()].copy_from_slice(&numbers);
@@ -272,6 +292,9 @@ mod tests {
             internal_reflection: InternalReflection::Facets,
             lower_reflectance: LowerReflectance::InPlace,
             lower_cosine: LowerCosine::Outside,
+            lower_facets: LowerFacets::TorranceSparrow,
+            lower_alpha: LowerAlpha::Own,
+            diffuse_part: DiffusePart::Below,
             tiles: Tiles::default().with([
                 (TableKind::Fresnel, Some(27)),
                 (TableKind::Distribution, Some(28)),
@@ -338,7 +361,8 @@ mod tests {
         assert_eq!(schlick.words()[4..6], [[0.25, 0.5, 0.75, 25.0], [-1.0, -1.0, -1.0, 26.0]]);
     }
 
-    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3, no internal reflection 128, the inner cosine 512.
+    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3, no internal reflection 128, the inner cosine 512, Phong's
+    /// lobe 2,048, slope parameters of those above 4,096.
     #[test]
     fn chosen_parts_lie_where_the_documentation_says() {
         let plain = numbered(LayerKind::Conductor);
@@ -350,21 +374,48 @@ mod tests {
             internal_reflection: InternalReflection::None,
             lower_reflectance: LowerReflectance::InAir,
             lower_cosine: LowerCosine::Inside,
+            lower_facets: LowerFacets::Phong,
+            lower_alpha: LowerAlpha::AtLeastAbove,
             ..plain.clone()
         };
         let words = chosen.words();
         assert_eq!(words[6..9], [[0.1, 0.2, 0.3, 33.0], [1.1, 1.2, 1.3, 35.0], [6.1, 6.2, 6.3, 34.0]]);
-        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3 + 128 + 512);
+        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3 + 128 + 512 + 1024 * 2 + 4096);
         let json = serde_json::to_value(&chosen).unwrap();
         assert_eq!((&json["masking"], &json["reflectance"]), (&"v-cavity".into(), &"lazanyi".into()));
         assert_eq!(serde_json::from_value::<LayerRecord>(json).unwrap(), chosen);
         let json = serde_json::to_value(plain).unwrap();
         assert!(
-            ["masking", "reflectance", "curve", "internal_reflection", "lower_reflectance", "lower_cosine"]
-                .iter()
-                .all(|key| json.get(key).is_none()),
+            [
+                "masking",
+                "reflectance",
+                "curve",
+                "internal_reflection",
+                "lower_reflectance",
+                "lower_cosine",
+                "lower_facets",
+                "lower_alpha",
+                "diffuse_part"
+            ]
+            .iter()
+            .all(|key| json.get(key).is_none()),
             "{json}"
         );
+    }
+
+    /// By hand: an interface beside its base is that of an eta of 1 without absorption, and 128 for no internal reflection.
+    #[test]
+    fn beside_its_base_an_interface_does_not_bend() {
+        let below = LayerRecord { optical_depth: [0.5; 3], ..numbered(LayerKind::Dielectric) };
+        let unbent = LayerRecord {
+            eta: 1.0,
+            optical_depth: [0.0; 3],
+            internal_reflection: InternalReflection::None,
+            ..below.clone()
+        };
+        let words = LayerRecord { diffuse_part: DiffusePart::Beside, ..below }.words();
+        assert_eq!(words, unbent.words());
+        assert_eq!((words[0][2], words[0][3], words[2], words[10][2]), (1.0, 0.0, [0.0, 0.0, 0.0, -1.0], 1.0));
     }
 
     #[test]

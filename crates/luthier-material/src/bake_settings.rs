@@ -2,7 +2,8 @@
 
 use luthier_lut::{TableKind, TexelFormat, named};
 use luthier_manifest::{
-    ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+    ColorMode, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
+    ModelPart, PathParts, Reflectance, ShadingModel,
 };
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
@@ -50,7 +51,7 @@ named! {
 pub struct BakeSettings {
     /// The reflectance model of the shader.
     pub model: Option<ShadingModel>,
-    /// Masking of the model `microfacet`.
+    /// Masking of the models `microfacet`, `elek` and `weidlich-wilkie`.
     pub masking: Option<Masking>,
     /// Computation of reflectances, of models that have a choice.
     pub reflectance: Option<Reflectance>,
@@ -60,6 +61,12 @@ pub struct BakeSettings {
     pub lower_reflectance: Option<LowerReflectance>,
     /// Cosine of the light on these interfaces, of the model `elek`.
     pub lower_cosine: Option<LowerCosine>,
+    /// Reflection of these interfaces, of the models `elek` and `weidlich-wilkie`.
+    pub lower_facets: Option<LowerFacets>,
+    /// Their slope parameters, of the model `weidlich-wilkie`.
+    pub lower_alpha: Option<LowerAlpha>,
+    /// Place of the diffuse base, of the models `elek` and `weidlich-wilkie`.
+    pub diffuse_part: Option<DiffusePart>,
     /// Numbers of the model `granier-heidrich`.
     pub beams: Option<Beams>,
     /// Kinds of tables to bake beside those that the shader reads.
@@ -103,6 +110,21 @@ impl BakeSettings {
     /// The three wavelengths, by default [`DEFAULT_WAVELENGTHS_NM`].
     pub fn wavelengths_nm(&self) -> [f64; 3] {
         self.wavelengths_nm.unwrap_or(DEFAULT_WAVELENGTHS_NM)
+    }
+
+    /// The parts of a model that goes down a path, as far as it offers a choice.
+    pub fn path_parts(&self, model: ShadingModel) -> PathParts {
+        if !model.is_path() {
+            return PathParts::default();
+        }
+        PathParts {
+            masking: self.masking.filter(|masking| *masking == Masking::Kelemen).unwrap_or_default(),
+            internal_reflection: self.internal_reflection.unwrap_or_default(),
+            lower_cosine: self.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine)).unwrap_or_default(),
+            lower_facets: self.lower_facets.filter(|_| model.takes(ModelPart::LowerFacets)).unwrap_or_default(),
+            lower_alpha: self.lower_alpha.filter(|_| model.takes(ModelPart::LowerAlpha)).unwrap_or_default(),
+            diffuse_part: self.diffuse_part.filter(|_| model.takes(ModelPart::DiffusePart)).unwrap_or_default(),
+        }
     }
 
     /// Whether the file asks for tables of a kind, even if the shader does not read them: `tables` names the kind, or the kind has settings.

@@ -73,11 +73,14 @@ impl Material {
     /// Sets the model, and drops parts of other models that the file chooses: for comparisons of models.
     pub fn shade_by(&mut self, model: ShadingModel) {
         self.bake.model = Some(model);
-        self.bake.masking = self.bake.masking.filter(|_| model.takes(ModelPart::Masking));
+        self.bake.masking = self.bake.masking.filter(|masking| model.takes_masking(*masking));
         self.bake.reflectance = self.bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance));
         self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.is_path());
         self.bake.lower_reflectance = self.bake.lower_reflectance.filter(|_| model.is_path());
         self.bake.lower_cosine = self.bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine));
+        self.bake.lower_facets = self.bake.lower_facets.filter(|_| model.takes(ModelPart::LowerFacets));
+        self.bake.lower_alpha = self.bake.lower_alpha.filter(|_| model.takes(ModelPart::LowerAlpha));
+        self.bake.diffuse_part = self.bake.diffuse_part.filter(|_| model.takes(ModelPart::DiffusePart));
         if !model.takes(ModelPart::Beams) {
             self.bake.beams = None;
             self.layers.iter_mut().for_each(|layer| layer.exponents = None);

@@ -5,7 +5,7 @@ use luthier_lut::TableKind;
 use crate::domain::COMMON;
 use crate::facts::{Facts, Family, Shows};
 use crate::rows::row;
-use crate::{DefaultFor, Feature, Form, Limit, ModelPart, ShadingModel};
+use crate::{DefaultFor, Feature, Form, Limit, Masking, ModelPart, ShadingModel};
 
 impl ShadingModel {
     /// Its number in the material buffer.
@@ -60,6 +60,12 @@ impl ShadingModel {
     /// Whether a material may choose a part of it.
     pub fn takes(self, part: ModelPart) -> bool {
         self.facts().takes(part)
+    }
+
+    /// Whether a material may choose a masking of it: any of a model of facets alone, V-cavities or Kelemen's of one that goes down a path.
+    pub fn takes_masking(self, masking: Masking) -> bool {
+        let is_of_path = matches!(masking, Masking::VCavity | Masking::Kelemen);
+        self.takes(ModelPart::Masking) || is_of_path && self.takes(ModelPart::CavityMasking)
     }
 
     /// Whether its `baked` shader reads a kind of table for some interface.

@@ -16,6 +16,14 @@ pub enum ModelPart {
     LowerReflectance,
     /// Cosine of the light on interfaces below the first, by [`LowerCosine`].
     LowerCosine,
+    /// Masking of the cavities of a path, by [`Masking`]: V-cavities, or Kelemen's.
+    CavityMasking,
+    /// Reflection of interfaces below the first, by [`LowerFacets`].
+    LowerFacets,
+    /// Slope parameters of interfaces below the first, by [`LowerAlpha`].
+    LowerAlpha,
+    /// Place of the diffuse base, by [`DiffusePart`].
+    DiffusePart,
     /// Exponents, weights and a lean of the inner boundary of a film.
     Beams,
 }
@@ -95,6 +103,50 @@ luthier_lut::named! {
 }
 
 luthier_lut::named! {
+    /// Reflection of the interfaces below the first, of the models `elek` and `weidlich-wilkie`. Each is times the reflectance F of the interface, and
+    /// lobes of a power hide nothing: G is 1 in the term of internal reflection.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum LowerFacets("lower facets") {
+        /// Facets of Torrance and Sparrow, D G / (4 cos_theta_i cos_theta_o).
+        #[default]
+        TorranceSparrow = "torrance-sparrow",
+        /// Lobe of Blinn and Phong about the normal, (e + 2) / (8 pi) cos_theta_h^e with e = 2 / alpha^2 - 2: a distribution of Blinn's with implicit
+        /// masking.
+        BlinnPhong = "blinn-phong",
+        /// Phong's lobe about the mirrored direction, (e + 2) / (2 pi) cos^e, with a quarter of Blinn's exponent.
+        Phong = "phong",
+    }
+}
+
+luthier_lut::named! {
+    /// Slope parameters of the interfaces below the first, of the model `weidlich-wilkie`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum LowerAlpha("lower alpha") {
+        /// Those of the file.
+        #[default]
+        Own = "own",
+        /// At least the greatest above, for the blur by refraction: the rough base of type f in the slides of the course, and Elek 2010, Algorithm 1,
+        /// line 21.
+        AtLeastAbove = "at-least-above",
+    }
+}
+
+luthier_lut::named! {
+    /// Place of a diffuse base, of the models `elek` and `weidlich-wilkie`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum DiffusePart("diffuse part") {
+        /// Below the last interface, which light crosses both ways.
+        #[default]
+        Below = "below",
+        /// Of the layer of the last interface: (1 - F) times its BRDF, unbent (Elek 2010, Algorithm 1, line 22).
+        Beside = "beside",
+    }
+}
+
+luthier_lut::named! {
     /// Light from below that an interface lets out, of the models `elek` and `weidlich-wilkie` (the term t of Elek 2010, eq. 4).
     #[derive(Default, Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
@@ -106,6 +158,40 @@ luthier_lut::named! {
         None = "none",
         /// `t = T_21`, with T_12 at the angle of the light and T_21 at that of the eye, where both are taken at the half vector else.
         Directions = "directions",
+    }
+}
+
+/// Parts of a model that goes down a path, as far as a material chooses them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PathParts {
+    /// Masking: Kelemen's; else that of V-cavities, whatever it says.
+    pub masking: Masking,
+    /// Light from below that interfaces let out.
+    pub internal_reflection: InternalReflection,
+    /// Cosine of the light on interfaces below the first.
+    pub lower_cosine: LowerCosine,
+    /// Reflection of interfaces below the first.
+    pub lower_facets: LowerFacets,
+    /// Slope parameters of interfaces below the first.
+    pub lower_alpha: LowerAlpha,
+    /// Place of the diffuse base.
+    pub diffuse_part: DiffusePart,
+}
+
+impl PathParts {
+    /// The parts of a material that chooses none.
+    pub const PLAIN: Self = Self {
+        masking: Masking::Smith,
+        internal_reflection: InternalReflection::Facets,
+        lower_cosine: LowerCosine::Outside,
+        lower_facets: LowerFacets::TorranceSparrow,
+        lower_alpha: LowerAlpha::Own,
+        diffuse_part: DiffusePart::Below,
+    };
+
+    /// Masking of the path: [`Masking::Kelemen`] or [`Masking::VCavity`].
+    pub fn cavity_masking(self) -> Masking {
+        if self.masking == Masking::Kelemen { Masking::Kelemen } else { Masking::VCavity }
     }
 }
 
@@ -177,6 +263,47 @@ impl LowerCosine {
     }
 }
 
+impl LowerFacets {
+    /// Formula and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::TorranceSparrow => "D G / (4 cos_theta_i cos_theta_o) (Torrance and Sparrow 1967)",
+            Self::BlinnPhong => "(e + 2) / (8 pi) cos_theta_h^e (Blinn 1977)",
+            Self::Phong => "(e + 2) / (2 pi) cos^e about the mirrored direction (Phong 1975)",
+        }
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
+impl LowerAlpha {
+    /// Rule, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Own => "their own",
+            Self::AtLeastAbove => "at least the greatest above",
+        }
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
+impl DiffusePart {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Below => "below the last interface",
+            Self::Beside => "of the layer of the last interface (Elek 2010, Algorithm 1, line 22)",
+        }
+    }
+}
+
 impl InternalReflection {
     /// Formula and source, for headers and messages.
     pub fn title(self) -> &'static str {
@@ -215,6 +342,8 @@ mod tests {
         assert_eq!(InternalReflection::default().number(), 0);
         assert_eq!(LowerReflectance::default(), LowerReflectance::ALL[0]);
         assert_eq!(LowerCosine::default(), LowerCosine::ALL[0]);
+        assert_eq!((LowerFacets::default().number(), LowerAlpha::default().number()), (0, 0));
+        assert_eq!(DiffusePart::default(), DiffusePart::ALL[0]);
         // Two bits and three of a word: see `LayerRecord::words`.
         assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
         assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));

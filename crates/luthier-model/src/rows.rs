@@ -45,12 +45,18 @@ const ONE_LAYER: &str = "One layer";
 const ELEK_AND_GRANIER: &str = "Elek, Granier and Heidrich";
 const STATISTICS: &str = "Statistics of light";
 
-/// Parts of models that go down a path.
-const PATH_PARTS: &[ModelPart] = &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance];
-
-/// Parts of Elek's model.
-const ELEK_PARTS: &[ModelPart] =
-    &[ModelPart::Reflectance, ModelPart::InternalReflection, ModelPart::LowerReflectance, ModelPart::LowerCosine];
+/// Parts of models that go down a path, and one of its own.
+const fn path_parts(own: ModelPart) -> [ModelPart; 7] {
+    [
+        ModelPart::Reflectance,
+        ModelPart::InternalReflection,
+        ModelPart::LowerReflectance,
+        ModelPart::CavityMasking,
+        ModelPart::LowerFacets,
+        ModelPart::DiffusePart,
+        own,
+    ]
+}
 
 /// Tolerances of models that go down a path.
 const PATH_TOLERANCES: Tolerances =
@@ -80,7 +86,7 @@ const ELEK: Facts = Facts {
         full: &[],
     },
     tables: FACET_TABLES,
-    parts: ELEK_PARTS,
+    parts: &path_parts(ModelPart::LowerCosine),
     domain: &[BRIGHT],
     tolerances: PATH_TOLERANCES,
     default_for: &[(DefaultFor::Closed, 0)],
@@ -101,7 +107,7 @@ const WEIDLICH_WILKIE: Facts = Facts {
         full: &[],
     },
     tables: FACET_TABLES,
-    parts: PATH_PARTS,
+    parts: &path_parts(ModelPart::LowerAlpha),
     domain: &[BRIGHT],
     tolerances: PATH_TOLERANCES,
     default_for: &[(DefaultFor::Closed, 1)],

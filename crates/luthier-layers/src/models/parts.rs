@@ -1,8 +1,8 @@
-//! Parts of a model that a material chooses: the masking of `microfacet`, the source of reflectances, the term of internal reflection, and the
-//! numbers of `granier-heidrich`.
+//! Parts of a model that a material chooses: the masking of `microfacet`, the source of reflectances, the parts of a path, and the numbers of
+//! `granier-heidrich`.
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, LowerCosine, Masking, Reflectance};
+use luthier_model::{Masking, PathParts, Reflectance};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
@@ -25,10 +25,8 @@ pub struct Parts {
     pub masking: Masking,
     /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`.
     pub reflectance: Reflectance,
-    /// Internal reflection of `elek` and `weidlich-wilkie`.
-    pub internal_reflection: InternalReflection,
-    /// Cosine of the light on lower interfaces of `elek`.
-    pub lower_cosine: LowerCosine,
+    /// Parts of `elek` and `weidlich-wilkie`.
+    pub path: PathParts,
     /// Numbers of `granier-heidrich`.
     pub beams: GranierHeidrich,
 }
@@ -38,8 +36,7 @@ impl Parts {
     pub const PLAIN: Self = Self {
         masking: Masking::Smith,
         reflectance: Reflectance::Table,
-        internal_reflection: InternalReflection::Facets,
-        lower_cosine: LowerCosine::Outside,
+        path: PathParts::PLAIN,
         beams: GranierHeidrich::PLAIN,
     };
 

@@ -94,8 +94,10 @@ fn the_corrected_model_keeps_energy_through_two_smooth_coats() {
 #[test]
 fn the_faithful_model_lacks_one_over_n_squared() {
     let stack = Monochrome::bare(&[coat(0.0), (ggx(0.1), WHITE)]);
-    let directions =
-        WeidlichWilkie { internal_reflection: InternalReflection::Directions, ..WeidlichWilkie::default() };
+    let directions = WeidlichWilkie {
+        parts: PathParts { internal_reflection: InternalReflection::Directions, ..PathParts::PLAIN },
+        ..WeidlichWilkie::default()
+    };
     close(albedo(&directions, &stack, at(0.0)), 1.968, 1e-3);
     close(compressed(&directions, &stack, 0.0), 0.897, 1e-3);
     close(albedo(&WeidlichWilkie::default(), &stack, at(0.0)), 1.9807, 5e-4);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::layers::{ALPHA_MIN, Below, Layer, Layers};
-use luthier_layers::luthier_model::InternalReflection;
+use luthier_layers::luthier_model::{InternalReflection, PathParts};
 use luthier_layers::models::elek::Elek;
 use luthier_layers::terms::Terms;
 use luthier_layers::twins::terms::Exact;
@@ -109,7 +109,12 @@ fn internal_reflection_is_a_factor_on_what_lies_below() {
             [(InternalReflection::Facets, (1.0 - g) + (1.0 - f) * g), (InternalReflection::None, 1.0)]
         {
             let layers = [coat(0.3, 1.0, [0.0; 3]), LAMBERT];
-            let coated = Elek { internal_reflection, ..Elek::default() }.eval_with(&layers, &Plain([f]), wi, wo);
+            let coated = Elek { parts: PathParts { internal_reflection, ..PathParts::PLAIN } }.eval_with(
+                &layers,
+                &Plain([f]),
+                wi,
+                wo,
+            );
             for (found, bare) in coated.into_iter().zip(bare) {
                 assert!((found - (1.0 - f) * t * bare).abs() <= 1e-13 * bare, "{found} {bare} {t}");
             }

@@ -2,7 +2,8 @@
 
 use luthier_lut::{TableKind, TexelFormat};
 use luthier_manifest::{
-    Budget, ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+    Budget, ColorMode, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance,
+    Masking, Reflectance, ShadingModel,
 };
 
 use crate::bake_settings::{
@@ -24,6 +25,9 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
         internal_reflection: at.text("internal_reflection").and_then(InternalReflection::from_name),
         lower_reflectance: at.text("lower_reflectance").and_then(LowerReflectance::from_name),
         lower_cosine: at.text("lower_cosine").and_then(LowerCosine::from_name),
+        lower_facets: at.text("lower_facets").and_then(LowerFacets::from_name),
+        lower_alpha: at.text("lower_alpha").and_then(LowerAlpha::from_name),
+        diffuse_part: at.text("diffuse_part").and_then(DiffusePart::from_name),
         beams: at.section("granier-heidrich").map(|at| beams(&at, sink)),
         tables: at.texts("tables").iter().filter_map(|name| TableKind::from_name(name)).collect(),
         color: at.text("color").and_then(ColorMode::from_name),

@@ -2,7 +2,8 @@
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+    ColorMode, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
+    Reflectance, ShadingModel,
 };
 
 use super::table::{ANY, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
@@ -39,7 +40,7 @@ pub(super) static BAKE: Table = Table {
             "masking",
             Kind::Choice(Masking::NAMES),
             "\"smith\"",
-            "Masking and shadowing of the model microfacet.",
+            "Masking and shadowing of the model microfacet; of elek and weidlich-wilkie v-cavity, their default, or kelemen.",
         ),
         Key::with_default(
             "reflectance",
@@ -67,6 +68,27 @@ pub(super) static BAKE: Table = Table {
             Kind::Choice(LowerCosine::NAMES),
             "\"outside\"",
             "Cosine of the light on the interfaces below the first, in the model elek: outside, or of the refracted direction, as in the code of \
+             Elek's Algorithm 1.",
+        ),
+        Key::with_default(
+            "lower_facets",
+            Kind::Choice(LowerFacets::NAMES),
+            "\"torrance-sparrow\"",
+            "Reflection of the interfaces below the first, in the models elek and weidlich-wilkie: by facets, or by a lobe of Blinn and Phong or of \
+             Phong, times the reflectance.",
+        ),
+        Key::with_default(
+            "lower_alpha",
+            Kind::Choice(LowerAlpha::NAMES),
+            "\"own\"",
+            "Slope parameters of the interfaces below the first, in the model weidlich-wilkie: their own, or at least the greatest above, for the blur \
+             by refraction.",
+        ),
+        Key::with_default(
+            "diffuse_part",
+            Kind::Choice(DiffusePart::NAMES),
+            "\"below\"",
+            "Place of the diffuse base under the last interface, in the models elek and weidlich-wilkie: below it, or of the same layer, as in line 22 of \
              Elek's Algorithm 1.",
         ),
         Key::optional(

@@ -66,8 +66,7 @@ impl References {
 /// The parts of a model that a material chooses.
 pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     let (masking, reflectance) = material.parts();
-    let (internal_reflection, lower_cosine) = (material.internal_reflection(), material.lower_cosine());
-    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
+    let parts = Parts { masking, reflectance, path: material.path_parts(), ..Parts::PLAIN };
     material.constants.beams.map_or(parts, |beams| {
         let weights = [beams.specular_weight, beams.diffuse_weight];
         parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)

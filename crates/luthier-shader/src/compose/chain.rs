@@ -19,15 +19,15 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
     vec![text(steps, features), text(&eval(set, model, features), features)]
 }
 
-/// Whether a model clamps slope parameters in this set. Models with one slope parameter do, if some interface is smoother than one above it.
-/// Otherwise their path is that of models with two.
+/// Whether a model clamps slope parameters in this set. Models with one slope parameter do, if some interface is smoother than one above it;
+/// models with two, if a material asks for it. Otherwise they share a path.
 fn is_clamped(model: ShadingModel, features: &Features) -> bool {
-    model.facts().is_isotropic && features.has(Feature::Clamped)
+    features.has(if model.facts().is_isotropic { Feature::Clamped } else { Feature::RougherBelow })
 }
 
 /// The function of a model that adds an interface to a `LuthierPath`.
 fn interface(model: ShadingModel, features: &Features) -> String {
-    let owner = if is_clamped(model, features) { model.name() } else { "add" };
+    let owner = if is_clamped(model, features) { model.name().replace('-', "_") } else { "add".to_owned() };
     format!("luthier_{owner}_interface")
 }
 
@@ -230,6 +230,9 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
     let is_isotropic = model.facts().is_isotropic;
     let (alpha, axis) = match () {
         () if is_isotropic && is_clamped => ("vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)"),
+        () if features.has(Feature::RougherBelow) => {
+            ("max(layer.alpha_xy, vec2<f32>(select(0.0, path.alpha_above, layer.rougher_below)))", "layer.rotation")
+        }
         () if !is_isotropic && features.has(Feature::Anisotropic) => ("layer.alpha_xy", "layer.rotation"),
         () => ("vec2<f32>(layer.alpha)", "vec2<f32>(1.0, 0.0)"),
     };

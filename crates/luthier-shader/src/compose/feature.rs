@@ -87,6 +87,14 @@ luthier_lut::named! {
         OwnAngles = "own_angles",
         /// A material chooses the cosine of the refracted direction for lower interfaces.
         InnerCosine = "inner_cosine",
+        /// A material of a path chooses Kelemen's masking.
+        KelemenCavities = "kelemen_cavities",
+        /// A material chooses lobes of a power for lower interfaces.
+        PowerFacets = "power_facets",
+        /// A material chooses slope parameters of lower interfaces that are at least those above.
+        RougherBelow = "rougher_below",
+        /// Words of a layer have parts beyond its internal reflection.
+        Beyond = "beyond",
         /// A table has a format that no sampler filters.
         Bilinear = "bilinear",
         /// The axis of a look-up is an angle.

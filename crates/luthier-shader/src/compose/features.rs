@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, LowerCosine, MapSlot,
-    Masking, MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
+    DiffusePart, Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, LowerAlpha,
+    LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy,
+    VaryingFactor,
 };
 use luthier_model::{Family, Reach};
 
@@ -164,22 +165,33 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
     let is_chain_over = features.has(Feature::Chain) && features.has(Feature::Below);
     let (mut is_packed, mut is_whole, mut is_own, mut is_inside) = (false, false, false, false);
+    let (mut is_power, mut is_kelemen) = (false, false);
+    for material in set.materials.iter() {
+        is_kelemen |= material.model.is_path() && material.records().any(|record| record.masking == Masking::Kelemen);
+    }
     for record in set.materials.iter().flat_map(MaterialEntry::records) {
         is_packed |= (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
         is_whole |= record.internal_reflection != InternalReflection::default();
+        is_whole |= record.diffuse_part == DiffusePart::Beside;
+        is_power |= record.lower_facets != LowerFacets::default();
         is_own |= record.internal_reflection == InternalReflection::Directions;
         is_inside |= record.lower_cosine == LowerCosine::Inside;
     }
+    let is_rougher = features.has(Feature::RougherBelow);
+    let is_beyond = is_inside || is_power || is_rougher;
     let words = [
         (Feature::Rows, is_read),
         (Feature::Computed, is_computed),
         (Feature::SeveralReflectances, sources > 1),
         (Feature::Masked, is_masked),
         (Feature::SeveralMaskings, maskings.len() > 1),
-        (Feature::Packed, is_whole || is_packed || is_inside),
+        (Feature::Packed, is_whole || is_packed || is_beyond),
+        (Feature::Beyond, is_beyond),
         (Feature::Internal, is_whole && is_chain_over),
         (Feature::OwnAngles, is_own && is_chain_over),
         (Feature::InnerCosine, is_inside && is_chain_over),
+        (Feature::PowerFacets, is_power && is_chain_over),
+        (Feature::KelemenCavities, is_kelemen && features.has(Feature::Chain)),
     ];
     let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
@@ -326,6 +338,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             }
             if facts.is_isotropic && gets_smoother(layers) {
                 names.insert(Feature::Clamped);
+            }
+            if layers.iter().any(|layer| layer.lower_alpha == LowerAlpha::AtLeastAbove) {
+                names.extend([Feature::RougherBelow, Feature::Clamped]);
             }
             // These models and `lobes` alone have layers below the first interface that flakes tilt and patina covers.
             if material.constants.flakes.is_some() && names.contains(&Feature::Below) {

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
 use luthier_manifest::{
-    BindingEntry, InternalReflection, LowerCosine, LowerReflectance, Masking, MaterialEntry, MaterialTexture,
-    Reflectance, ShadingModel,
+    BindingEntry, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
+    MaterialEntry, MaterialTexture, Reflectance, ShadingModel,
 };
 
 use super::Part;
@@ -130,6 +130,13 @@ fn parts(set: &MaterialSet<'_>) -> Vec<String> {
     texts.extend(part(set, "Reflectance of lower interfaces", in_air.title(), |m| m.lower_reflectance() == in_air));
     let inside = LowerCosine::Inside;
     texts.extend(part(set, "Light on lower interfaces", inside.title(), |m| m.lower_cosine() == inside));
+    for facets in LowerFacets::ALL.into_iter().skip(1) {
+        texts.extend(part(set, "Reflection of lower interfaces", facets.title(), |m| m.lower_facets() == facets));
+    }
+    let rougher = LowerAlpha::AtLeastAbove;
+    texts.extend(part(set, "Slope parameters of lower interfaces", rougher.title(), |m| m.lower_alpha() == rougher));
+    let beside = DiffusePart::Beside;
+    texts.extend(part(set, "Diffuse base", beside.title(), |m| m.diffuse_part() == beside));
     let own = "its own, in words 1 and 2 of its header";
     texts.extend(part(set, "Exponents, weights and inner boundary", own, |m| m.constants.beams.is_some()));
     texts

@@ -43,6 +43,12 @@ struct LuthierLayer {
     //? inner_cosine
     /// Whether its light counts by the cosine of the refracted direction.
     inner_cosine: bool,
+    //? power_facets
+    /// Reflection below another interface: 0 facets, 1 Blinn and Phong's lobe, 2 Phong's.
+    lower_facets: u32,
+    //? rougher_below
+    /// Whether it is never smoother than an interface above it.
+    rougher_below: bool,
     /// Reflectance at normal incidence, where it is a curve.
     f0: vec3<f32>,
     /// Weight of the curve's correction.
@@ -110,10 +116,16 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     var layer: LuthierLayer;
     //? packed
     {
+        //? beyond
+        let chosen = luthier_whole(numbers.x);
         //? inner_cosine
-        layer.inner_cosine = luthier_whole(numbers.x) >= 512u;
-        //? inner_cosine
-        let kind = luthier_whole(numbers.x) & 511u;
+        layer.inner_cosine = (chosen & 512u) != 0u;
+        //? power_facets
+        layer.lower_facets = (chosen >> 10u) & 3u;
+        //? rougher_below
+        layer.rougher_below = chosen >= 4096u;
+        //? beyond
+        let kind = chosen & 511u;
         //? else
         let kind = luthier_whole(numbers.x);
         layer.kind = kind & 3u;

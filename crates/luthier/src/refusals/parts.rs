@@ -4,7 +4,8 @@ use luthier_layers::models::parts::Parts;
 use luthier_lut::TableKind;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
-    BeamsRecord, Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+    BeamsRecord, DiffusePart, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, Reflectance, ShadingModel,
 };
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_model::Reach;
@@ -29,6 +30,9 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let lower = material.bake.lower_reflectance;
     doubts.extend(lower.and_then(|lower| of_lower_reflectance(material, model, lower)));
     doubts.extend(material.bake.lower_cosine.and_then(|lower| of_lower_cosine(material, model, lower)));
+    doubts.extend(material.bake.lower_facets.and_then(|lower| of_lower_facets(material, model, lower)));
+    doubts.extend(material.bake.lower_alpha.and_then(|lower| of_lower_alpha(material, model, lower)));
+    doubts.extend(material.bake.diffuse_part.and_then(|part| of_diffuse_part(material, model, part)));
     doubts
 }
 
@@ -37,9 +41,7 @@ pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let bake = &material.bake;
     let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
     let reflectance = bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default();
-    let internal_reflection = bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default();
-    let lower_cosine = bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine)).unwrap_or_default();
-    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
+    let parts = Parts { masking, reflectance, path: bake.path_parts(model), ..Parts::PLAIN };
     let beams = material.beams().filter(|_| model.takes(ModelPart::Beams));
     beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
         parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
@@ -57,6 +59,9 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("internal_reflection", material.bake.internal_reflection.is_some()),
         ("lower_reflectance", material.bake.lower_reflectance.is_some()),
         ("lower_cosine", material.bake.lower_cosine.is_some()),
+        ("lower_facets", material.bake.lower_facets.is_some()),
+        ("lower_alpha", material.bake.lower_alpha.is_some()),
+        ("diffuse_part", material.bake.diffuse_part.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
     let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
@@ -142,11 +147,26 @@ fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnosti
 
 fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Option<Diagnostic> {
     let (name, key) = (masking.name(), "bake.masking");
-    if !model.takes(ModelPart::Masking) {
-        let message =
-            format!("the masking `{name}` is a part of the model `microfacet`, and this material has `{model}`");
-        let hint = "leave it out, or write `[bake] model = \"microfacet\"`".to_owned();
-        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    if !model.takes_masking(masking) {
+        let (message, hint) = if model.takes(ModelPart::CavityMasking) {
+            (
+                format!("the model `{model}` of this material has no masking `{name}`"),
+                "take `v-cavity`, its default, or `kelemen`, or write `[bake] model = \"microfacet\"`",
+            )
+        } else {
+            (
+                format!("the masking `{name}` is a part of the model `microfacet`, and this material has `{model}`"),
+                "leave it out, or write `[bake] model = \"microfacet\"`",
+            )
+        };
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint.to_owned())));
+    }
+    if model.takes(ModelPart::CavityMasking) {
+        let message = "the masking `kelemen` leaves G out, and does not depend on the roughness: in mirror directions it is 1, as of V-cavities, and \
+                       away from them facets hide more of each other";
+        let hint = "`v-cavity`, the default, is the masking of the papers".to_owned();
+        let doubt = material.diagnostic(Severity::Warning, key, message, Some(hint));
+        return (masking == Masking::Kelemen).then_some(doubt);
     }
     // Of a perfect mirror, alpha 0.5, at 0 and 85 degrees, by `luthier eval --furnace`.
     let effect = match masking {
@@ -272,8 +292,7 @@ fn of_lower_cosine(material: &Material, model: ShadingModel, lower: LowerCosine)
     if lower == LowerCosine::Outside {
         return None;
     }
-    let layers = material.stack.layers.iter().skip(1);
-    let effect = if layers.clone().all(|layer| matches!(layer.base, Base::Diffuse(_))) {
+    let effect = if !has_lower_interface(material) {
         "changes nothing here: no interface lies below the first"
     } else {
         // By hand: cos(asin(sin 75 / 1.5)) / cos 75.
@@ -282,6 +301,84 @@ fn of_lower_cosine(material: &Material, model: ShadingModel, lower: LowerCosine)
     let message = format!("the lower cosine `{name}` {effect}");
     let hint = "`outside`, the default, is that of the light on the surface".to_owned();
     Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+/// The error for a part that only models of a path have.
+fn of_paths(material: &Material, model: ShadingModel, key: &str, what: &str, models: &str) -> Diagnostic {
+    let message = format!("the model `{model}` of this material has no {what}");
+    let hint = format!("leave it out, or write `[bake] model = {models}");
+    material.diagnostic(Severity::Error, key, message, Some(hint))
+}
+
+fn of_lower_facets(material: &Material, model: ShadingModel, lower: LowerFacets) -> Option<Diagnostic> {
+    let (name, key) = (lower.name(), "bake.lower_facets");
+    if !model.takes(ModelPart::LowerFacets) {
+        let what = format!("lower facets `{name}`");
+        return Some(of_paths(material, model, key, &what, "\"elek\"` or `\"weidlich-wilkie\"`"));
+    }
+    let effect = match lower {
+        LowerFacets::TorranceSparrow => return None,
+        _ if !has_lower_interface(material) => "change nothing here: no interface lies below the first",
+        LowerFacets::BlinnPhong => {
+            "are a lobe that is dark at grazing angles: of a mirror, one of alpha 0.3 has the albedo 0.84 at 0 degrees and 0.06 at 85"
+        }
+        LowerFacets::Phong => {
+            "are a lobe that the horizon cuts: of a mirror, one of alpha 0.3 has the albedo 1.00 at 0 degrees and 0.22 at 85"
+        }
+    };
+    let message = format!("the lower facets `{name}` {effect}");
+    let hint = "`torrance-sparrow`, the default, are the facets of the papers".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+fn of_lower_alpha(material: &Material, model: ShadingModel, lower: LowerAlpha) -> Option<Diagnostic> {
+    let (name, key) = (lower.name(), "bake.lower_alpha");
+    if !model.takes(ModelPart::LowerAlpha) {
+        return Some(of_paths(material, model, key, &format!("lower alpha `{name}`"), "\"weidlich-wilkie\"`"));
+    }
+    if lower == LowerAlpha::Own || has_smoother_below(material) {
+        return None;
+    }
+    let message = format!("the lower alpha `{name}` changes nothing here: no interface is smoother than one above it");
+    let hint = "leave it out".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+fn of_diffuse_part(material: &Material, model: ShadingModel, part: DiffusePart) -> Option<Diagnostic> {
+    let (name, key) = (part.name(), "bake.diffuse_part");
+    if !model.takes(ModelPart::DiffusePart) {
+        let what = format!("diffuse part `{name}`");
+        return Some(of_paths(material, model, key, &what, "\"elek\"` or `\"weidlich-wilkie\"`"));
+    }
+    let layers = &material.stack.layers;
+    let is_base = layers.len() > 1 && layers.last().is_some_and(|last| matches!(last.base, Base::Diffuse(_)));
+    let effect = match part {
+        DiffusePart::Below => return None,
+        DiffusePart::Beside if is_base => {
+            "lets light through the last interface once, unbent and unabsorbed, where it crosses both ways"
+        }
+        DiffusePart::Beside => "changes nothing here: no diffuse base lies below an interface",
+    };
+    let message = format!("the diffuse part `{name}` {effect}");
+    let hint = "`below`, the default, is a base below the interface".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+/// Whether an interface lies below the first.
+fn has_lower_interface(material: &Material) -> bool {
+    material.stack.layers.iter().skip(1).any(|layer| !matches!(layer.base, Base::Diffuse(_)))
+}
+
+/// Whether an interface may be smoother than one above it: maps of slopes leave it open.
+fn has_smoother_below(material: &Material) -> bool {
+    let of_interfaces = material.stack.layers.iter().filter(|layer| !matches!(layer.base, Base::Diffuse(_)));
+    let alphas: Vec<[f64; 2]> = of_interfaces.map(|layer| [layer.surface.alpha_x, layer.surface.alpha_y]).collect();
+    let mut above = 0.0;
+    alphas.into_iter().any(|[x, y]| {
+        let is_smoother = x.min(y) < above;
+        above = f64::max(above, (x * y).sqrt());
+        is_smoother
+    }) || !material.images().is_empty()
 }
 
 /// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.

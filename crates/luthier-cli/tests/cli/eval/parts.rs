@@ -72,9 +72,7 @@ fn of_beams(parts: Parts, beams: &BeamsRecord) -> Parts {
 fn parts(material: &Material) -> (Parts, Reflectance) {
     let (masking, reflectance) =
         (material.bake.masking.unwrap_or_default(), material.bake.reflectance.unwrap_or_default());
-    let internal_reflection = material.bake.internal_reflection.unwrap_or_default();
-    let lower_cosine = material.bake.lower_cosine.unwrap_or_default();
-    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
+    let parts = Parts { masking, reflectance, path: material.bake.path_parts(material.model()), ..Parts::PLAIN };
     (material.beams().map_or(parts, |beams| of_beams(parts, &beams)), reflectance)
 }
 
@@ -248,6 +246,35 @@ fn lower_cosines_are_those_of_the_twin() {
     let below = |set: &[Material], i: usize| value(&set[i], 2) - value(&set[i], 1);
     assert!((below(&inside, 0) / below(&plain, 0) - 1.885).abs() < 5e-4, "{}", below(&inside, 0) / below(&plain, 0));
     assert_eq!(below(&inside, 1), below(&plain, 1));
+}
+
+/// Choices of interfaces below the first, and of all, alone, beside each other and beside materials without them: the shader against the twin.
+#[test]
+fn lower_layers_are_those_of_the_twin() {
+    let chosen = [
+        "masking = \"kelemen\"",
+        "lower_facets = \"phong\"",
+        "lower_facets = \"blinn-phong\"\ninternal_reflection = \"directions\"",
+        "diffuse_part = \"beside\"",
+        "diffuse_part = \"beside\"\ninternal_reflection = \"directions\"",
+    ];
+    let (mut worst, mut all) = (0.0, passing(""));
+    for (i, choice) in chosen.into_iter().enumerate() {
+        let mut set = passing(choice);
+        compare(&set, &mut worst);
+        compare(&set[set.len() - 1..], &mut worst);
+        set.iter_mut().for_each(|material| material.name.push_str(&format!("-{i}")));
+        all.append(&mut set);
+    }
+    let of_course = |bake: &str| passing(bake).into_iter().filter(|material| material.name.starts_with("weidlich"));
+    let rougher: Vec<Material> = of_course("lower_alpha = \"at-least-above\"").collect();
+    compare(&rougher, &mut worst);
+    let both = of_course("lower_alpha = \"at-least-above\"\nlower_facets = \"phong\"");
+    for (i, set) in [rougher, both.collect()].into_iter().enumerate() {
+        all.extend(set.into_iter().map(|one| Material { name: format!("{}-rougher-{i}", one.name), ..one }));
+    }
+    compare(&all, &mut worst);
+    eprintln!("lower layers: at most {worst:.1e}");
 }
 
 /// Films, slabs and metals with numbers of Granier and Heidrich's model; some alike, some not.

@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 12] = [
+pub(super) static SAMPLES: [Sample; 15] = [
     sample(
         "bake.model",
         "bake.model",
@@ -38,6 +38,24 @@ pub(super) static SAMPLES: [Sample; 12] = [
         "bake.lower_cosine",
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.2 }, { type = 'conductor', ior = 'cu', alpha = 0.3 }]\nbake = { model = 'elek', lower_cosine = @ }",
         &["'outside'", "'inside'"],
+    ),
+    sample(
+        "bake.lower_facets",
+        "bake.lower_facets",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.1 }, { type = 'conductor', ior = 'cu', alpha = 0.3 }]\nbake = { model = 'elek', lower_facets = @ }",
+        &["'torrance-sparrow'", "'blinn-phong'", "'phong'"],
+    ),
+    sample(
+        "bake.lower_alpha",
+        "bake.lower_alpha",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.4 }, { type = 'conductor', ior = 'cu', alpha = 0.1 }]\nbake = { model = 'weidlich-wilkie', lower_alpha = @ }",
+        &["'own'", "'at-least-above'"],
+    ),
+    sample(
+        "bake.diffuse_part",
+        "bake.diffuse_part",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.1 }, { type = 'dielectric', f0 = [0.6, 0.4, 0.2], alpha = 0.3 }, { type = 'diffuse', albedo = 0.5 }]\nbake = { model = 'elek', diffuse_part = @ }",
+        &["'below'", "'beside'"],
     ),
     sample(
         "bake.color",

@@ -18,8 +18,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, LowerCosine, ShadingModel};
-use luthier_optics::masking::v_cavity;
+use luthier_model::{LowerCosine, LowerFacets, Masking, PathParts, ShadingModel};
+use luthier_optics::masking::{kelemen, v_cavity};
 
 use crate::formulas::facets::Lobe;
 use crate::formulas::refraction::refract;
@@ -27,7 +27,7 @@ use crate::frame::half_vector;
 use crate::layers::{ALPHA_MIN, Layer, Layers};
 use crate::model::{Claims, Input, Kind, Model, ModelInfo};
 use crate::models::parts::Parts;
-use crate::models::path::{PathModel, Tilts, eval, walk};
+use crate::models::path::{PathModel, Tilts, eval, power_lobe, walk};
 use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
@@ -44,16 +44,14 @@ pub(crate) const ROOM: Room = Room {
 /// directions. In colour, one index bends the directions of all channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Elek {
-    /// Form of internal reflection: the light from below that interfaces let out.
-    pub internal_reflection: InternalReflection,
-    /// Cosine of the light on interfaces below the first.
-    pub lower_cosine: LowerCosine,
+    /// The parts that a material chooses.
+    pub parts: PathParts,
 }
 
 impl Elek {
     /// The model with the parts that a material chooses.
-    fn of(Parts { internal_reflection, lower_cosine, .. }: Parts) -> Self {
-        Self { internal_reflection, lower_cosine }
+    fn of(parts: Parts) -> Self {
+        Self { parts: parts.path }
     }
 
     /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. It is zero if either direction is at or below the horizon, and
@@ -99,16 +97,12 @@ impl Elek {
 }
 
 impl PathModel for Elek {
-    fn internal_reflection(&self) -> InternalReflection {
-        self.internal_reflection
+    fn parts(&self) -> PathParts {
+        self.parts
     }
 
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2] {
         [cos_theta_i, 1.0]
-    }
-
-    fn lower_cosine(&self) -> LowerCosine {
-        self.lower_cosine
     }
 
     /// A layer has the greatest slope parameter of itself and those above: it is never smoother than one above it.
@@ -116,9 +110,16 @@ impl PathModel for Elek {
         let (wh, cos_theta_d) = half_vector(wi, wo)?;
         let (last, above) = layers.split_last()?;
         let alpha = layers.iter().map(|layer| layer.surface.alpha_x).fold(ALPHA_MIN, f64::max);
+        let own = if above.is_empty() { LowerFacets::TorranceSparrow } else { self.parts.lower_facets };
+        if let Some(value) = power_lobe(own, alpha, wi, wo) {
+            return Some(Lobe { cos_theta_d, masking: 1.0, value });
+        }
         let sin_theta_h_sq = wh.x * wh.x + wh.y * wh.y;
         let scaled = terms.distribution(above.len(), last.surface.distribution, alpha, wh.z, sin_theta_h_sq);
-        let masking = v_cavity(wi.z, wo.z, wh.z, cos_theta_d);
+        let masking = match self.parts.cavity_masking() {
+            Masking::Kelemen => kelemen(wi.z, wo.z, cos_theta_d),
+            _ => v_cavity(wi.z, wo.z, wh.z, cos_theta_d),
+        };
         let value = scaled / (PI * alpha * alpha) * masking / (4.0 * wi.z * wo.z);
         Some(Lobe { cos_theta_d, masking, value })
     }
@@ -141,7 +142,7 @@ impl Model for Elek {
         ModelInfo {
             name: ShadingModel::Elek.name(),
             kind: Kind::Layered,
-            claims: match self.lower_cosine {
+            claims: match self.parts.lower_cosine {
                 LowerCosine::Outside => Claims::RECIPROCAL,
                 LowerCosine::Inside => Claims::NONE,
             },
@@ -226,7 +227,7 @@ mod tests {
         let at = |theta: f64| DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
         let (wi, wo) = (at(1.1), at(-0.4));
         let ratio = |w: DVec3| (1.0 - (1.0 - w.z * w.z) / 2.25).sqrt() / w.z;
-        let model = Elek { lower_cosine: LowerCosine::Inside, ..Elek::default() };
+        let model = Elek { parts: PathParts { lower_cosine: LowerCosine::Inside, ..PathParts::PLAIN } };
         let below = |wi: DVec3, wo| (model.eval(&stack, wi, wo) - model.eval(&bare, wi, wo)) / wi.z;
         let apart = below(wi, wo) / below(wo, wi) * ratio(wo) / ratio(wi);
         assert!((apart - 1.0).abs() < 1e-9 && ratio(wi) > 1.5 * ratio(wo), "{apart}");

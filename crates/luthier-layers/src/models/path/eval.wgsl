@@ -66,6 +66,20 @@ fn luthier_add_diffuse(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
     return next;
 }
 
+//? power_facets
+/// BRDF of a lower interface that reflects all light, as a lobe of Blinn and Phong about the normal or of Phong about the mirrored direction.
+fn luthier_power_facets(layer: LuthierLayer, path: LuthierPath, bisector: vec3<f32>, length_sq: f32) -> f32 {
+    let of_blinn = 2.0 / (layer.alpha * layer.alpha) - 2.0;
+    if layer.lower_facets == 1u {
+        let sine_sq = dot(bisector.xy, bisector.xy) / length_sq;
+        let away = sine_sq / (1.0 + bisector.z * inverseSqrt(length_sq));
+        return (of_blinn + 2.0) * luthier_power_lobe(away, of_blinn) / (8.0 * LUTHIER_PI);
+    }
+    let exponent = 0.25 * of_blinn;
+    let apart = vec3<f32>(bisector.xy, path.wi_local.z - path.wo_local.z);
+    return (exponent + 2.0) * luthier_power_lobe(0.5 * dot(apart, apart), exponent) / (2.0 * LUTHIER_PI);
+}
+
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
 fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
@@ -98,12 +112,30 @@ fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath
     //? else
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
+    //? kelemen_cavities|power_facets
+    var masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
+    //? else
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
-    //? inner_cosine
-    let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y)
-        * select(1.0, cosines.x / path.outer_cosine, layer.inner_cosine);
+    //? kelemen_cavities
+    {
+        // Kelemen and Szirmay-Kalos: cos_theta_i cos_theta_o / cos_theta_d^2.
+        if layer.masking == 4u {
+            masking = min(cosines.x * cosines.y * (secant_d * secant_d), 1.0);
+        }
+    }
+    //? inner_cosine|power_facets
+    var geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
     //? else
     let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
+    //? power_facets
+    {
+        if layer.lower_facets > 0u {
+            masking = 1.0;
+            geometry = luthier_power_facets(layer, path, bisector, length_sq);
+        }
+    }
+    //? inner_cosine
+    geometry *= select(1.0, cosines.x / path.outer_cosine, layer.inner_cosine);
     //? fluorescent
     next.total = path.total + path.throughput * path.lit * fresnel * geometry;
     //? else

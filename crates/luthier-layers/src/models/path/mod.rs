@@ -3,14 +3,16 @@
 pub(in crate::models) mod eval;
 
 use std::array::from_fn;
+use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, LowerCosine};
+use luthier_model::{DiffusePart, InternalReflection, LowerCosine, LowerFacets, PathParts};
 
 use crate::formulas::facets::Lobe;
-use crate::formulas::oren_nayar;
+use crate::formulas::{normals, oren_nayar};
 use crate::frame::{self, off, onto};
 use crate::layers::{Below, Layer};
+use crate::models::phong::lobe;
 use crate::terms::Terms;
 
 /// Kernels of the walk.
@@ -21,16 +23,11 @@ pub const PARTS: &str = include_str!("parts.wgsl");
 
 /// Steps in which walking models differ. Each model multiplies its factors in an order of its own.
 pub(crate) trait PathModel {
-    /// Form of internal reflection: the light from below that interfaces let out.
-    fn internal_reflection(&self) -> InternalReflection;
+    /// The parts that a material chooses.
+    fn parts(&self) -> PathParts;
 
     /// Two factors whose product is the cosine of the light outside: on light that falls in, and on light that an interface or the base returns.
     fn cosines(&self, cos_theta_i: f64) -> [f64; 2];
-
-    /// Cosine of the light on interfaces below the first.
-    fn lower_cosine(&self) -> LowerCosine {
-        LowerCosine::Outside
-    }
 
     /// The lobe of the last layer for `wi` and `wo`. Layers above may bound its slope parameter.
     fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe>;
@@ -43,6 +40,22 @@ pub(crate) trait PathModel {
 
     /// Share of light that crosses an interface and its slab, and back.
     fn kept(&self, entered: f64, left: f64, absorbed: f64) -> f64;
+}
+
+/// BRDF of a lower interface that reflects all light, as a lobe of a power; `None` for facets. `alpha` is the isotropic slope parameter.
+pub(crate) fn power_lobe(facets: LowerFacets, alpha: f64, wi: DVec3, wo: DVec3) -> Option<f64> {
+    let of_blinn = normals::exponent(alpha);
+    match facets {
+        LowerFacets::TorranceSparrow => None,
+        LowerFacets::BlinnPhong => {
+            let (wh, _) = frame::half_vector(wi, wo)?;
+            Some((of_blinn + 2.0) / (8.0 * PI) * lobe(wh, DVec3::Z, of_blinn))
+        }
+        LowerFacets::Phong => {
+            let exponent = 0.25 * of_blinn;
+            Some((exponent + 2.0) / (2.0 * PI) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, exponent))
+        }
+    }
 }
 
 /// Normals of interfaces that are not those of the surface, all unit.
@@ -100,6 +113,7 @@ pub(crate) fn walk<const C: usize>(
     if wi.z <= 0.0 || wo.z <= 0.0 {
         return Walked { interfaces, base: None };
     }
+    let parts = model.parts();
     let (mut wi_local, mut wo_local) = (wi, wo);
     let [falling, returning] = model.cosines(wi.z);
     let (mut passed, mut down, mut up) = ([falling; C], [1.0; C], [1.0; C]);
@@ -115,7 +129,7 @@ pub(crate) fn walk<const C: usize>(
         }
         let Some(lobe) = model.facets(&layers[..=i], terms, wi_local, wo_local) else { break };
         let reflected = terms.fresnel(i, lobe.cos_theta_d);
-        let brighter = match model.lower_cosine() {
+        let brighter = match parts.lower_cosine {
             LowerCosine::Inside if i > 0 => wi_local.z / wi.z,
             _ => 1.0,
         };
@@ -124,7 +138,10 @@ pub(crate) fn walk<const C: usize>(
         }
 
         let Below::Dielectric { optical_depth, .. } = layer.below else { break };
-        let Some([mut wi_below, mut wo_below]) = model.refracted(layer.eta(), wi_local, wo_local) else { break };
+        let is_beside = parts.diffuse_part == DiffusePart::Beside
+            && layers.get(i + 1).is_some_and(|next| matches!(next.below, Below::Diffuse { .. }));
+        let (eta, optical_depth) = if is_beside { (1.0, [0.0; C]) } else { (layer.eta(), optical_depth) };
+        let Some([mut wi_below, mut wo_below]) = model.refracted(eta, wi_local, wo_local) else { break };
         if i == 0 && tilts.below != DVec3::Z {
             (wi_below, wo_below) = (frame::local(tilts.below, wi_below), frame::local(tilts.below, wo_below));
             if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
@@ -134,7 +151,8 @@ pub(crate) fn walk<const C: usize>(
         let Some((wi_below, wo_below, facing)) = off(normal, wi_below, wo_below) else { break };
         let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
         let transmitted = reflected.map(|reflected| 1.0 - reflected);
-        let (entered, left) = match model.internal_reflection() {
+        let (entered, left) = match parts.internal_reflection {
+            _ if is_beside => (transmitted, [1.0; C]),
             InternalReflection::Facets => {
                 (transmitted, transmitted.map(|transmitted| (1.0 - lobe.masking) + transmitted * lobe.masking))
             }

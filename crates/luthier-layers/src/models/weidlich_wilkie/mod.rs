@@ -19,14 +19,15 @@ pub mod corrected;
 pub mod sampling;
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, Masking, ShadingModel};
+use luthier_model::{InternalReflection, LowerAlpha, LowerFacets, PathParts, ShadingModel};
 
 use crate::formulas::facets::{Facets, Lobe};
 use crate::formulas::refraction::{refract, refract_at};
+use crate::frame::half_vector;
 use crate::layers::{Layer, Layers};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::models::parts::Parts;
-use crate::models::path::{PathModel, Tilts, eval, walk};
+use crate::models::path::{PathModel, Tilts, eval, power_lobe, walk};
 use crate::models::room::{Kernels, Room};
 use crate::monochrome::Monochrome;
 use crate::terms::Terms;
@@ -34,13 +35,13 @@ use corrected::WeidlichWilkieCorrected;
 
 /// The room of the model.
 pub(crate) const ROOM: Room = Room {
-    kernels: Kernels::NONE,
+    kernels: Kernels { eval: include_str!("eval.wgsl"), ..Kernels::NONE },
     twin: |given| eval::twin(WeidlichWilkie::of(given.parts), Layers::rgb(given.stack)),
     models: || {
         vec![
             Box::new(WeidlichWilkie::default()),
             Box::new(WeidlichWilkie {
-                internal_reflection: InternalReflection::Directions,
+                parts: PathParts { internal_reflection: InternalReflection::Directions, ..PathParts::PLAIN },
                 ..WeidlichWilkie::default()
             }),
             Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
@@ -66,20 +67,20 @@ pub enum Refraction {
 pub struct WeidlichWilkie {
     /// Normal at which directions are refracted.
     pub refraction: Refraction,
-    /// Form of internal reflection: the light from below that interfaces let out.
-    pub internal_reflection: InternalReflection,
+    /// The parts that a material chooses.
+    pub parts: PathParts,
 }
 
 impl WeidlichWilkie {
     /// The model with the parts that a material chooses.
-    fn of(Parts { internal_reflection, .. }: Parts) -> Self {
-        Self { internal_reflection, ..Self::default() }
+    fn of(parts: Parts) -> Self {
+        Self { parts: parts.path, ..Self::default() }
     }
 }
 
 impl PathModel for WeidlichWilkie {
-    fn internal_reflection(&self) -> InternalReflection {
-        self.internal_reflection
+    fn parts(&self) -> PathParts {
+        self.parts
     }
 
     /// The cosine is a factor on returned light. Interfaces get it over that of the medium above, because lobes carry the cosine of their own medium.
@@ -89,7 +90,17 @@ impl PathModel for WeidlichWilkie {
 
     fn facets<const C: usize>(&self, layers: &[Layer<C>], terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let (last, above) = layers.split_last()?;
-        Facets::new(&last.surface).lobe_of(terms, above.len(), Masking::VCavity, wi, wo)
+        let mut surface = last.surface;
+        if self.parts.lower_alpha == LowerAlpha::AtLeastAbove {
+            let rougher = above.iter().map(|layer| layer.surface.alpha_isotropic()).fold(0.0, f64::max);
+            (surface.alpha_x, surface.alpha_y) = (surface.alpha_x.max(rougher), surface.alpha_y.max(rougher));
+        }
+        let own = if above.is_empty() { LowerFacets::TorranceSparrow } else { self.parts.lower_facets };
+        if let Some(value) = power_lobe(own, surface.alpha_isotropic(), wi, wo) {
+            let (_, cos_theta_d) = half_vector(wi, wo)?;
+            return Some(Lobe { cos_theta_d, masking: 1.0, value: value * wi.z });
+        }
+        Facets::new(&surface).lobe_of(terms, above.len(), self.parts.cavity_masking(), wi, wo)
     }
 
     fn refracted(&self, eta: f64, wi: DVec3, wo: DVec3) -> Option<[DVec3; 2]> {
@@ -114,7 +125,7 @@ impl PathModel for WeidlichWilkie {
 
 impl Model for WeidlichWilkie {
     fn info(&self) -> ModelInfo {
-        let at_directions = self.internal_reflection == InternalReflection::Directions;
+        let at_directions = self.parts.internal_reflection == InternalReflection::Directions;
         let (name, domain) = match (self.refraction, at_directions) {
             (Refraction::Surface, false) => {
                 (ShadingModel::WeidlichWilkie.name(), "any stack; refraction at the surface normal; alpha from 1e-4")
