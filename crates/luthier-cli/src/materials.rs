@@ -67,14 +67,14 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
         return Ok(());
     }
     Err(Failure::Usage(anyhow::anyhow!(
-        "`--functions environment` is for interfaces of the model `lobes` in the form `baked`, and there is none: leave it out, or write \
-         `--model lobes`"
+        "`--functions environment` is for materials with an interface, of the model `lobes` in the form `baked`, and there is none: leave it out"
     )))
 }
 
-/// True where the form `baked` of a material shows a blurred environment.
-pub(crate) fn shows_environment(material: &Material) -> bool {
-    material.model().is_fitted() && material.stack.layers.iter().any(|layer| !matches!(layer.base, Base::Diffuse(_)))
+/// True where one of some forms of a material shows a blurred environment.
+pub(crate) fn shows_environment(material: &Material, forms: &[Form]) -> bool {
+    let has_form = material.model().facts().forms.iter().any(|form| forms.contains(form));
+    has_form && material.stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)))
 }
 
 /// Makes a model shade a material for a comparison of models. The model keeps the chosen parts that it has, from the file or the command line.

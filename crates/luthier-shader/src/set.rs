@@ -141,12 +141,11 @@ impl<'a> MaterialSet<'a> {
         ShadingModel::ALL.into_iter().filter(|&model| self.materials.iter().any(|m| m.model == model))
     }
 
-    /// Whether shaders of a form show the environment: they were asked to, and some material has lobes.
+    /// Whether shaders of a form show the environment: they were asked to, and some material with an interface has the form.
     pub(crate) fn shows_environment(&self, form: Form) -> bool {
-        let mut fitted = self.materials.iter().filter(|material| material.model.is_fitted()).flat_map(|m| &m.layers);
-        form == Form::Baked
-            && self.functions.has(FunctionGroup::Environment)
-            && fitted.any(|layer| layer.kind != LayerKind::Diffuse)
+        let mut shown = self.materials.iter().filter(|material| material.model.facts().forms.contains(&form));
+        self.functions.has(FunctionGroup::Environment)
+            && shown.any(|material| material.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse))
     }
 
     /// Words of the material buffer.

@@ -19,7 +19,7 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     }
     let found = Files::read(&options.sources.paths)?;
     let (materials, surfaces) = bakeable_with_surfaces(found, &options.shading.in_forms(&[options.form]), false)?;
-    let is_shown = materials.iter().any(shows_environment) && options.form == Form::Baked;
+    let is_shown = materials.iter().any(|material| shows_environment(material, &[options.form]));
     refuse_environment(&options.functions, is_shown)?;
     let mut manifest = outline(&materials, &Options::default(), store()?)?;
     manifest.surfaces = surfaces;

@@ -50,6 +50,7 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         }
     }
     if features.has(Feature::Environment) {
+        modules.push(include_str!("../wgsl/face/surroundings.wgsl").to_owned());
         modules.push(include_str!("../wgsl/face/environment.wgsl").to_owned());
     }
     if set.functions.has(FunctionGroup::Albedo) {
@@ -216,8 +217,8 @@ fn albedo(features: &Features, parts: usize) -> String {
     out
 }
 
-/// Words in the modules of drawn directions, each with statements for every part in its place.
-fn unrolled(parts: usize, features: &Features) -> [(&'static str, String); 7] {
+/// Words in the modules of drawn directions and of the environment, each with statements for every part in its place.
+fn unrolled(parts: usize, features: &Features) -> [(&'static str, String); 8] {
     let spilled = if features.has(Feature::Visible) { parts } else { 0 };
     let spill = each(spilled, |i| format!("    chance += luthier_spill(prepared.parts[{i}]);\n"));
     let density = each(parts, |i| {
@@ -245,7 +246,10 @@ fn unrolled(parts: usize, features: &Features) -> [(&'static str, String); 7] {
     let is_whole = features.has(Feature::Lobes) && !features.has(Feature::Several);
     let proposals = if is_whole { 1 } else { parts + 1 };
     let end = format!("    if choice >= below {{\n        drawn.part = {parts}u;\n    }}\n");
+    let shown =
+        each(parts, |i| format!("    light += luthier_environment_part(prepared.parts[{i}], prepared.wo, frame);\n"));
     [
+        ("    $each_shown\n", shown),
         ("    $each_spill\n", spill),
         ("    $each_density\n", density),
         ("    $each_total\n", total),

@@ -4,8 +4,10 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{Image, TableKind};
-use luthier_manifest::{FunctionGroup, material_buffer};
+use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
+use luthier_optics::fresnel;
 use luthier_shader::{Form, MaterialSet, Target, emit};
+use num_complex::Complex64;
 
 use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
@@ -84,6 +86,59 @@ fn prepared_materials_give_the_light_of_eval() {
 }
 
 /// A surface whose normal leans, and directions that lean with it: the same densities, and draws that lean with it.
+/// Oracle: Algorithm 1 of Elek 2010, lines 28 and 29, by the f64 function of the same lines: what the first interface mirrors, from where the eye is
+/// mirrored, for both forms; and the light of a diffuse base, which does not see the mirrored half.
+#[test]
+fn the_first_interface_mirrors_the_environment() {
+    let of = |layers: Vec<LayerRecord>, model| {
+        vec![MaterialEntry { name: "one".to_owned(), model, layers, ..MaterialEntry::default() }]
+    };
+    let kind = LayerKind::Conductor;
+    let metal = LayerRecord {
+        kind,
+        alpha: 0.2,
+        alpha_xy: [0.2; 2],
+        ior_n: [0.2; 3],
+        ior_k: [3.0; 3],
+        ..LayerRecord::default()
+    };
+    let coat = LayerRecord { alpha: 0.1, alpha_xy: [0.1; 2], eta: 1.5, ior_n: [1.5; 3], ..LayerRecord::default() };
+    let base = LayerRecord { kind: LayerKind::Diffuse, eta: 1.0, albedo: [0.5; 3], ..LayerRecord::default() };
+    let mut map = Image::zeros(2, 1, 3);
+    map.texel_mut(0, 0).fill(2.0);
+    let mut white = Image::zeros(1, 1, 3);
+    white.texel_mut(0, 0).fill(1.0);
+    let maps = [("luthier_environment_map", map), ("luthier_irradiance_map", white)];
+    let textures: BTreeMap<String, Image> = maps.map(|(name, map)| (name.to_owned(), map)).into();
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::Microfacet] {
+        for (layers, n) in [
+            (vec![metal.clone()], Complex64::new(0.2, 3.0)),
+            (vec![coat.clone(), base.clone()], Complex64::new(1.5, 0.0)),
+        ] {
+            let materials = of(layers, model);
+            let functions = [FunctionGroup::Environment].into_iter().collect();
+            let set = MaterialSet { functions, ..MaterialSet::new(&materials, Vec::new()) };
+            let text = emit(&set, Form::Full, Target::Wgsl).unwrap();
+            let machine = Machine::new(&text, &material_buffer(&materials), textures.clone());
+            for (x, light) in [(0.6, 2.0), (-0.6, 0.0)] {
+                let prepared = machine.call("luthier_prepare", vec![Value::U(0), single([x, 0.0, 0.8])]);
+                let wide = |prepared: &Value| {
+                    machine.call("luthier_environment", vec![prepared.clone(), frame(), Value::F(0.0)]).floats()
+                };
+                let dark = machine.call("luthier_prepare", vec![Value::U(0), single([-0.6, 0.0, 0.8])]);
+                let expected = light * fresnel::interface(Complex64::new(1.0, 0.0), n, 0.8).unpolarised();
+                let found = wide(&prepared)[1] - wide(&dark)[1];
+                assert!((f64::from(found) - expected).abs() < 2e-6, "{model} {n} {x}: {found} {expected}");
+            }
+        }
+    }
+}
+
+/// The frame of a surface that faces +z.
+fn frame() -> Value {
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(single).into_iter().collect()
+}
+
 #[test]
 fn draws_lean_with_the_normal_of_a_place() {
     let lean = glam::DQuat::from_rotation_arc(glam::DVec3::Z, glam::DVec3::new(0.12, -0.09, 1.0).normalize());

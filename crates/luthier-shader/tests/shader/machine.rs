@@ -258,6 +258,11 @@ impl Machine {
             }
             Expression::ImageSample { image, coordinate, .. } => {
                 let (image, at) = (self.image(frame, image), self.get(frame, coordinate).floats());
+                // Of a cube, the left half of an image stands for directions of negative x, the right one for the others.
+                if let [x, _, _] = at[..] {
+                    let texel = image.texel(if x < 0.0 { 0 } else { image.width - 1 }, 0);
+                    return vector(&[texel[0], texel[1], texel[2], 1.0]);
+                }
                 let position = [f64::from(at[0]) * f64::from(image.width), f64::from(at[1]) * f64::from(image.height)];
                 vector(&bilinear(image, position, WeightBits::Exact).map(|v| v as f32))
             }
@@ -370,6 +375,7 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
         (Op::Subtract, F(a), F(b)) => F(a - b),
         (Op::Multiply, F(a), F(b)) => F(a * b),
         (Op::Divide, F(a), F(b)) => F(a / b),
+        (Op::NotEqual, F(a), F(b)) => B(a != b),
         (Op::Add, U(a), U(b)) => U(a.wrapping_add(*b)),
         (Op::Subtract, U(a), U(b)) => U(a.wrapping_sub(*b)),
         (Op::Multiply, U(a), U(b)) => U(a.wrapping_mul(*b)),

@@ -87,7 +87,7 @@ impl<'a> Begun<'a> {
         let told = sources.materials.iter().flat_map(Source::diagnostics).cloned().collect();
         let surfaces = valid_surfaces(&sources.surfaces)?;
         let materials = shading.shaded(valid(sources.materials, options.quiet)?);
-        let is_shown = materials.iter().any(shows_environment) && forms != [Form::Full];
+        let is_shown = materials.iter().any(|material| shows_environment(material, &forms));
         refuse_environment(&options.emission.functions, is_shown)?;
         if forms == [Form::Full] && !options.limits.options().budget.is_empty() {
             return Err(Failure::Usage(anyhow::anyhow!(

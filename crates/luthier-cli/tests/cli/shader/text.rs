@@ -71,22 +71,28 @@ fn functions_are_asked_for() {
     assert!(refusal.contains("possible values: eval, light, sample, propose, albedo"), "{refusal}");
 }
 
-/// What no shader has is refused, not left out: the environment of other models, of a base alone, of the form `full`.
+/// What no shader has is refused, not left out: the environment of a base alone, of `lobes` in the form `full`.
 #[test]
 fn an_environment_that_nothing_shows_is_refused() {
     let workshop = sets();
     for arguments in [
-        &["shader", "gold", "--model", "elek"][..],
-        &["shader", "matte", "--model", "lobes"],
-        &["shader", "gold", "--form", "full"],
-        &["bake", "gold", "-q", "--no-fit"],
+        &["shader", "matte", "--model", "lobes"][..],
+        &["shader", "matte", "--model", "elek"],
+        &["bake", "matte", "-q", "--no-fit"],
     ] {
         let refusal = workshop.run(&[arguments, &["--functions", "environment"]].concat()).exits(2).stderr;
-        assert!(refusal.contains("`--model lobes`"), "{arguments:?}: {refusal}");
+        assert!(refusal.contains("there is none: leave it out"), "{arguments:?}: {refusal}");
     }
     assert!(!workshop.path("out").exists());
-    let text = workshop.run(&["shader", "gold", "--model", "lobes", "--functions", "environment"]).exits(0).stdout;
-    assert!(text.contains("fn luthier_environment("));
+    for (model, form, lobe) in [
+        ("lobes", "baked", "luthier_environment_lobes("),
+        ("elek", "baked", "luthier_environment_outside("),
+        ("elek", "full", "luthier_environment_outside("),
+    ] {
+        let arguments = ["shader", "gold", "--model", model, "--form", form, "--functions", "environment"];
+        let text = workshop.run(&arguments).exits(0).stdout;
+        assert!(text.contains("fn luthier_environment(") && text.contains(lobe), "{model} {form}");
+    }
 }
 
 /// A set mentions the tables that it needs, and no other.
