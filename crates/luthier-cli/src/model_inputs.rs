@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::textured::{TextureSample, Textured};
-use luthier_layers::model::{Input, Inputs, Model};
+use luthier_layers::model::{Input, Inputs, Model, WEIGHTS_MOST};
 use luthier_layers::registry::models;
 use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
 use luthier_material::{Effects, Material, PictureRef, TexelUse, left_out};
@@ -38,6 +38,10 @@ pub(crate) struct ModelInputs {
     /// Normal of the inner boundary of the film (granier-heidrich)
     #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true)]
     inner_normal: Option<Angles>,
+    /// Weights of the layers from the top in a mixture of their densities, each at least 0, over their sum; in proportion to their light unless given
+    /// (density-layers-local)
+    #[arg(long, value_name = "W,...", value_delimiter = ',', value_parser = not_negative)]
+    pub(crate) weights: Vec<f64>,
     /// A second material; without it both are the same (heterogeneous and its kind)
     #[arg(long, value_name = "FILE")]
     pub(crate) other: Option<PathBuf>,
@@ -90,6 +94,24 @@ impl ModelInputs {
 
     pub(crate) fn inner_normal(&self) -> Option<DVec3> {
         self.inner_normal.map(Angles::direction)
+    }
+
+    /// The weights of the layers, if there are any.
+    fn layer_weights(&self) -> Option<[f64; WEIGHTS_MOST]> {
+        let mut weights = [0.0; WEIGHTS_MOST];
+        weights.iter_mut().zip(&self.weights).for_each(|(weight, given)| *weight = *given);
+        (!self.weights.is_empty()).then_some(weights)
+    }
+
+    /// Refuses weights that are not one for each layer of a material, or that are all 0.
+    pub(crate) fn check_weights(&self, material: &Material) -> Outcome {
+        let (given, layers) = (self.weights.len(), material.stack.layers.len());
+        if given == 0 || given == layers && given <= WEIGHTS_MOST && self.weights.iter().any(|weight| *weight > 0.0) {
+            return Ok(());
+        }
+        Err(Failure::Usage(anyhow::anyhow!(
+            "--weights has {given} numbers: give one for each of the {layers} layers, at most {WEIGHTS_MOST}, and one of them above 0"
+        )))
     }
 
     pub(crate) fn has_normal(&self) -> bool {
@@ -176,6 +198,7 @@ impl ModelInputs {
             (Input::Extent, self.extent.is_some()),
             (Input::Map, self.map.is_some()),
             (Input::InnerNormal, self.inner_normal.is_some()),
+            (Input::Weights, !self.weights.is_empty()),
             (Input::OtherStack, self.other.is_some()),
             (Input::Environment, environment),
             (Input::Matrix, self.matrix.is_some()),
@@ -229,6 +252,7 @@ impl ModelInputs {
             extent: self.extent,
             map: self.map,
             inner_normal: self.inner_normal(),
+            weights: self.layer_weights(),
             samples: self.samples,
             seed: self.seed,
         };

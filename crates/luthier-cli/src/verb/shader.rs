@@ -4,7 +4,6 @@ use std::path::Path;
 
 use luthier::{Files, outline};
 use luthier_bake::Options;
-use luthier_manifest::Form;
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
 use luthier_terminal::{Failure, Outcome, STDOUT, files, print_bytes};
 

@@ -2,6 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
+/// Number of layers that may have weights of their own.
+pub const WEIGHTS_MOST: usize = 16;
+
 /// An input that a model takes, for listings and for telling which model takes which.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Input {
@@ -15,6 +18,8 @@ pub enum Input {
     Map,
     /// [`Inputs::inner_normal`].
     InnerNormal,
+    /// [`Inputs::weights`].
+    Weights,
     /// A second stack, see [`Model::stack_index`](crate::model::Model::stack_index).
     OtherStack,
     /// The light of an environment ([`elek::environment`](crate::models::elek::environment)).
@@ -38,6 +43,7 @@ impl Input {
             Self::Extent => "extent",
             Self::Map => "map",
             Self::InnerNormal => "inner-normal",
+            Self::Weights => "weights",
             Self::OtherStack => "other",
             Self::Environment => "environment",
             Self::Matrix => "matrix",
@@ -61,6 +67,8 @@ pub struct Inputs {
     pub map: Option<f64>,
     /// Normal of the inner boundary of a film, unit, in the surface's frame.
     pub inner_normal: Option<DVec3>,
+    /// Weights of the layers from the top in a mixture of their densities, each at least 0; they count over their sum.
+    pub weights: Option<[f64; WEIGHTS_MOST]>,
     /// Random samples per value of an estimate.
     pub samples: Option<u64>,
     /// Seed of the random numbers of an estimate.

@@ -8,7 +8,7 @@ use luthier_model::ShadingModel;
 use luthier_optics::Rgb;
 
 pub use estimate::Estimate;
-pub use inputs::{Input, Inputs};
+pub use inputs::{Input, Inputs, WEIGHTS_MOST};
 
 use crate::monochrome::Monochrome;
 

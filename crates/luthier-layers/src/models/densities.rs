@@ -9,7 +9,7 @@ use luthier_optics::sampling::{CosineHemisphere, Mixture, Sampler as DirectionSa
 use luthier_optics::stack::Surface;
 
 use crate::formulas::facets::ALPHA_MIN;
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::model::{Claims, Input, Inputs, Kind, Model, ModelInfo, WEIGHTS_MOST};
 use crate::models::weidlich_wilkie::sampling::Sampler;
 use crate::monochrome::Monochrome;
 
@@ -43,7 +43,10 @@ impl Model for Density {
             }
             Self::Mixture => ("density-mixture", "half cosine, half visible normals; Veach and Guibas 1995"),
             Self::LocalLayers => ("density-layers-local", "Weidlich and Wilkie 2009, section 3.2.4, eq. 3.6"),
-            Self::GlobalLayers => ("density-layers-global", "Weidlich and Wilkie 2009, section 3.2.2"),
+            Self::GlobalLayers => (
+                "density-layers-global",
+                "Weidlich and Wilkie 2009, section 3.2.2: the sum over layers, each of which integrates to 1",
+            ),
         };
         let (domain, leaves_out) = match self {
             Self::Cosine => ("any stack", "what the surface looks like"),
@@ -53,7 +56,8 @@ impl Model for Density {
             Self::LocalLayers | Self::GlobalLayers => ("any stack; alpha from 1e-4", "blur by refraction"),
         };
         let claims = Claims::NONE;
-        ModelInfo { name, kind: Kind::Density, claims, source, domain, leaves_out, inputs: &[] }
+        let inputs: &[Input] = if *self == Self::LocalLayers { &[Input::Weights] } else { &[] };
+        ModelInfo { name, kind: Kind::Density, claims, source, domain, leaves_out, inputs }
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
@@ -70,6 +74,30 @@ impl Model for Density {
             Self::LocalLayers => Sampler::new(stack, wo).pdf_solid_angle(wi),
             Self::GlobalLayers => Sampler::new(stack, wo).sum_of_densities(wi),
         }
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        let weights = inputs.weights.filter(|_| *self == Self::LocalLayers)?;
+        Some(Box::new(WeightedLayers { weights }))
+    }
+}
+
+/// The local method with weights that one chooses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct WeightedLayers {
+    weights: [f64; WEIGHTS_MOST],
+}
+
+impl Model for WeightedLayers {
+    fn info(&self) -> ModelInfo {
+        Density::LocalLayers.info()
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z <= 0.0 || wo.z <= 0.0 || (wi + wo).length() == 0.0 {
+            return 0.0;
+        }
+        Sampler::new(stack, wo).weighted(&self.weights).pdf_solid_angle(wi)
     }
 }
 
@@ -108,6 +136,24 @@ mod tests {
         assert!((mixture - 0.5 * (cosine + normals)).abs() < 2e-4, "{mixture}");
         assert!((local - 1.0).abs() < 2e-3, "{local}");
         assert!((global - 2.0).abs() < 4e-3, "{global}");
+    }
+
+    /// By hand: all weight on the Lambertian base, whose density is the cosine over pi; and half on each layer.
+    #[test]
+    fn weights_of_layers_can_be_chosen() {
+        let stack = varnished();
+        let (wi, wo) = (DVec3::new(0.2, 0.5, 0.8).normalize(), DVec3::new(-0.3, 0.1, 0.7).normalize());
+        let weighted = |first: f64, second: f64| {
+            let mut weights = [0.0; WEIGHTS_MOST];
+            (weights[0], weights[1]) = (first, second);
+            let model = Density::LocalLayers.with_inputs(&Inputs { weights: Some(weights), ..Inputs::default() });
+            model.unwrap().eval(&stack, wi, wo)
+        };
+        let base = wi.z / std::f64::consts::PI;
+        assert!((weighted(0.0, 3.0) / base - 1.0).abs() < 1e-12, "{} {base}", weighted(0.0, 3.0));
+        let sum = Density::GlobalLayers.eval(&stack, wi, wo);
+        assert!((weighted(2.0, 2.0) / (0.5 * sum) - 1.0).abs() < 1e-12);
+        assert!((weighted(1.0, 0.0) + base - sum).abs() < 1e-12);
     }
 
     /// Oracle: the facets of this crate, which are another road to the same.

@@ -144,6 +144,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         let text = "a furnace and an environment have no place: leave the maps of layers out with `--no-effects`";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
+    inputs.check_weights(&materials[0])?;
     let mut model = inputs.give(known);
 
     // Without another material, the first is everywhere.

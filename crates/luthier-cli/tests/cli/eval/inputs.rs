@@ -30,6 +30,9 @@ ior = \"cu\"
 roughness = 0.4
 ";
 
+/// A coat over what follows.
+const COAT: &str = "schema = 1\nname = \"b\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.3\n";
+
 /// The value, and the name of the material that it is of.
 fn eval(workshop: &Workshop, file: &str, model: &str, more: &[&str]) -> (f64, String) {
     let args = [&["eval", file, "--model", model, "--json"], &PAIR[..], more].concat();
@@ -149,6 +152,18 @@ fn estimates_take_samples_and_a_seed() {
         .fails(2, &["1.."]);
 }
 
+/// By hand: with all weight on its base, the density of a surface is the cosine over pi.
+#[test]
+fn layers_are_drawn_by_weights_of_ones_own() {
+    let workshop = workshop();
+    workshop.write("b.toml", format!("{COAT}[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n"));
+    let of = |weights: &[&str]| eval(&workshop, "b.toml", "density-layers-local", weights).0;
+    let base = libm::cos(30.0_f64.to_radians()) / std::f64::consts::PI;
+    assert!((of(&["--weights", "0,2"]) / base - 1.0).abs() < 1e-12);
+    let (half, coat) = (of(&["--weights", "3,3"]), of(&["--weights", "1,0"]));
+    assert!((half - 0.5 * (base + coat)).abs() < 1e-12 && (half / of(&[]) - 1.0).abs() > 1e-3);
+}
+
 #[test]
 fn what_models_do_not_take_is_refused() {
     let workshop = workshop();
@@ -162,6 +177,10 @@ fn what_models_do_not_take_is_refused() {
     refuses("elek", &["--inner-normal", "1,0"], &["--inner-normal", "granier-heidrich"]);
     refuses("elek", &["--other", "m.toml"], &["--other", "heterogeneous"]);
     refuses("elek", &["--samples", "9"], &["--samples", "layered-mc"]);
+    refuses("elek", &["--weights", "1,1"], &["--weights", "density-layers-local"]);
+    refuses("density-layers-local", &["--weights", "1"], &["--weights has 1 numbers", "each of the"]);
+    refuses("density-layers-local", &["--weights", "0,0,0,0"], &["--weights has 4 numbers"]);
+    refuses("density-layers-local", &["--weights=-1,1"], &["from 0 up"]);
     refuses("flakes", &["--uv", "0.1"], &["texture coordinate"]);
     refuses("flakes", &["--uv", "0.1,x"], &["texture coordinate"]);
     refuses("flakes", &["--distance=-1"], &["from 0 up"]);

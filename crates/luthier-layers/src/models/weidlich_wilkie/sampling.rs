@@ -100,6 +100,19 @@ impl Sampler {
         Self { layers }
     }
 
+    /// [`Self::new`] with weights that one chooses (eq. 3.6: "constant values w"), over their sum. Layers beyond them are not drawn; without a weight
+    /// above 0 all are drawn alike.
+    #[must_use]
+    pub fn weighted(mut self, weights: &[f64]) -> Self {
+        let count = self.layers.len() as f64;
+        let sum: f64 = weights.iter().take(self.layers.len()).sum();
+        for (k, layer) in self.layers.iter_mut().enumerate() {
+            let weight = weights.get(k).copied().unwrap_or(0.0);
+            layer.weight = if sum > 0.0 { weight / sum } else { 1.0 / count };
+        }
+        self
+    }
+
     /// Number of layers to sample.
     pub fn count(&self) -> usize {
         self.layers.len()
