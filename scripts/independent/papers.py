@@ -7,6 +7,7 @@ and nothing of luthier is read but its output.
 """
 
 import cmath
+import importlib
 import json
 import math
 import os
@@ -389,16 +390,16 @@ def film(index, thickness):
 # What is compared.
 
 
-def ask(text, *arguments, beside=None):
-    """What `eval` prints of layers, or of a surface file with its materials beside it."""
+def ask(text, *arguments, beside=None, colour=("--wavelength", str(NM))):
+    """What `eval` prints of layers, or of a surface file with its materials beside it; pictures may stand beside either."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "m.toml")
-        files = {"m.toml": text if beside else f'schema = 1\nname = "m"\n{text}', **(beside or {})}
+        files = {"m.toml": text if text.startswith("surface") else f'schema = 1\nname = "m"\n{text}', **(beside or {})}
         for name, content in files.items():
-            with open(os.path.join(folder, name), "w") as file:
-                file.write(content)
-        command = [PROGRAM, "eval", path, "--json", "--wavelength", str(NM), *arguments]
-        run = subprocess.run(command, capture_output=True, text=True)
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(content if isinstance(content, bytes) else content.encode())
+        command = [PROGRAM, "eval", path, "--json", *colour, *arguments]
+        run = subprocess.run(command, capture_output=True, text=True, cwd=folder)
         if run.returncode != 0:
             sys.exit(f"{run.stdout}{run.stderr}\n{text}{' '.join(command)}")
         return json.loads(run.stdout)
@@ -646,6 +647,10 @@ def corrected(n, rho):
 
 def main():
     compare()
+    # The rows of the other files take the functions of this one, as `papers`.
+    sys.modules["papers"] = sys.modules["__main__"]
+    for name in ("closed_forms", "places", "spreads", "tables", "requirements"):
+        importlib.import_module(name).compare()
     failed = [r for r in ROWS if not r[4] <= r[5]]
     print("# Elements of the papers by hand\n")
     print(
@@ -660,4 +665,5 @@ def main():
     sys.exit(1 if failed else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()
