@@ -56,7 +56,7 @@ def elek():
     text = coat(COAT, "alpha = 0.3\n") + matte(0.2)
     told = ask(text, "--model", "elek", "--environment", "--angles", "0,45,70")["environment"]
     pairs = [(fresnel(COAT, math.cos(math.radians(entry["theta_o_deg"]))), entry["environment"]) for entry in told]
-    row(ELEK, "elek: share of the surroundings", "algorithm 1, line 28", pairs, 1e-9)
+    row(ELEK, "elek: share of the surroundings", "algorithm 1, line 28, F exact", pairs, 1e-9)
 
 
 def granier_heidrich():

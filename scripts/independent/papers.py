@@ -3,7 +3,13 @@
     python3 scripts/independent/papers.py [PROGRAM] >docs/pages/by-hand.md
 
 PROGRAM is `target/release/luthier` unless given. It ends with 1 where an element differs by more than the row allows. Nothing but Python 3 is needed,
-and nothing of luthier is read but its output.
+and nothing of luthier is read but its output. It takes two minutes. Files beside it have more rows, by what they need:
+
+    closed_forms.py   one function of two directions
+    places.py         textures, flakes, patina, cells
+    spreads.py        statistics of light, with random walks for energies
+    tables.py         texels of baked files
+    requirements.py   laws, integrals, and colours of spectra
 """
 
 import cmath
@@ -654,9 +660,11 @@ def main():
     failed = [r for r in ROWS if not r[4] <= r[5]]
     print("# Elements of the papers by hand\n")
     print(
-        "`scripts/independent/papers.py` made this page. It works each element out from its formula, in Python and without luthier, and compares it with what"
-        " `luthier eval` prints. The wavelength is 550 nm. A value is for three pairs of directions, three or four angles, or forty places of a surface: the first by hand stands here, and the largest"
-        " relative difference of all. *Where* is the place of the formula, in the paper or, where the paper only names it, in its own source. *Allowed* is the precision of the calculation by hand: closed forms, quadrature, or the noise of a simulation.\n"
+        "`scripts/independent/papers.py` and the files beside it made this page. They work each element out from its formula, in Python and without luthier, and compare it with what"
+        " `luthier eval` prints, or with the texels that `luthier bake` and `luthier table` write. The wavelength is 550 nm, or that of each channel. A value is for three pairs of directions, three or four angles,"
+        " or some places of a surface: the first by hand stands here, and the largest relative difference of all. Differences of texels are relative to the largest of their table."
+        " *Where* is the place of the formula, in the paper or, where the paper only names it, in its own source. *Allowed* is the precision of the calculation by hand: closed forms, numbers of single precision in textures,"
+        " the steps of a texel format, quadrature, or the noise of random walks and of a simulation.\n"
     )
     print(f"{len(ROWS)} elements, {len(failed)} of them further off than allowed.\n")
     print("| paper | element | where | by hand | difference | allowed |\n|---|---|---|--:|--:|--:|")

@@ -337,6 +337,11 @@ def channels():
     # In colour, no surface is smoother than this.
     parts = [layer(2.2, 0.001, 0, 0, [0.0, 0.3, 1.5]), layer(ALL, (0.1, 0.3))]
     surfaces = [surface for _, surface in parts]
+    # A channel by itself, with its own spread, is another value.
+    blue = [layer(2.2, 0.001, 1.5)[1], surfaces[1]]
+    i, o = direction(30, 0), direction(45, 140)
+    [alone], [_, _, shared] = added(blue, covariance)(i, o), added(surfaces, covariance, 3)(i, o)
+    assert alone / shared > 1.2, (alone, shared)
     got = []
     for ti, pi, to, po in AWAY:
         told = ask(parts[0][0] + parts[1][0], "--model", "yamaguchi", "--wi", f"{ti},{pi}", "--wo", f"{to},{po}", colour=CHANNELS)
