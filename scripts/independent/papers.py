@@ -3,10 +3,17 @@
     python3 scripts/independent/papers.py [PROGRAM] >docs/pages/by-hand.md
 
 PROGRAM is `target/release/luthier` unless given. It ends with 1 where an element differs by more than the row allows. Nothing but Python 3 is needed,
-and nothing of luthier is read but its output.
+and nothing of luthier is read but its output. It takes two minutes. Files beside it have more rows, by what they need:
+
+    closed_forms.py   one function of two directions
+    places.py         textures, flakes, patina, cells
+    spreads.py        statistics of light, with random walks for energies
+    tables.py         texels of baked files
+    requirements.py   laws, integrals, and colours of spectra
 """
 
 import cmath
+import importlib
 import json
 import math
 import os
@@ -410,16 +417,16 @@ def film(index, thickness):
 # What is compared.
 
 
-def ask(text, *arguments, beside=None):
-    """What `eval` prints of layers, or of a surface file with its materials beside it."""
+def ask(text, *arguments, beside=None, colour=("--wavelength", str(NM))):
+    """What `eval` prints of layers, or of a surface file with its materials beside it; pictures may stand beside either."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "m.toml")
-        files = {"m.toml": text if beside else f'schema = 1\nname = "m"\n{text}', **(beside or {})}
+        files = {"m.toml": text if text.startswith("surface") else f'schema = 1\nname = "m"\n{text}', **(beside or {})}
         for name, content in files.items():
-            with open(os.path.join(folder, name), "w") as file:
-                file.write(content)
-        command = [PROGRAM, "eval", path, "--json", "--wavelength", str(NM), *arguments]
-        run = subprocess.run(command, capture_output=True, text=True)
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(content if isinstance(content, bytes) else content.encode())
+        command = [PROGRAM, "eval", path, "--json", *colour, *arguments]
+        run = subprocess.run(command, capture_output=True, text=True, cwd=folder)
         if run.returncode != 0:
             sys.exit(f"{run.stdout}{run.stderr}\n{text}{' '.join(command)}")
         return json.loads(run.stdout)
@@ -677,12 +684,18 @@ def corrected(n, rho):
 
 def main():
     compare()
+    # The rows of the other files take the functions of this one, as `papers`.
+    sys.modules["papers"] = sys.modules["__main__"]
+    for name in ("closed_forms", "places", "spreads", "tables", "requirements"):
+        importlib.import_module(name).compare()
     failed = [r for r in ROWS if not r[4] <= r[5]]
     print("# Elements of the papers by hand\n")
     print(
-        "`scripts/independent/papers.py` made this page. It works each element out from its formula, in Python and without luthier, and compares it with what"
-        " `luthier eval` prints. The wavelength is 550 nm. A value is for three pairs of directions, three or four angles, or forty places of a surface: the first by hand stands here, and the largest"
-        " relative difference of all. *Where* is the place of the formula, in the paper or, where the paper only names it, in its own source. *Allowed* is the precision of the calculation by hand: closed forms, quadrature, or the noise of a simulation.\n"
+        "`scripts/independent/papers.py` and the files beside it made this page. They work each element out from its formula, in Python and without luthier, and compare it with what"
+        " `luthier eval` prints, or with the texels that `luthier bake` and `luthier table` write. The wavelength is 550 nm, or that of each channel. A value is for three pairs of directions, three or four angles,"
+        " or some places of a surface: the first by hand stands here, and the largest relative difference of all. Differences of texels are relative to the largest of their table."
+        " *Where* is the place of the formula, in the paper or, where the paper only names it, in its own source. *Allowed* is the precision of the calculation by hand: closed forms, numbers of single precision in textures,"
+        " the steps of a texel format, quadrature, or the noise of random walks and of a simulation.\n"
     )
     print(f"{len(ROWS)} elements, {len(failed)} of them further off than allowed.\n")
     print("| paper | element | where | by hand | difference | allowed |\n|---|---|---|--:|--:|--:|")
@@ -691,4 +704,5 @@ def main():
     sys.exit(1 if failed else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -19,7 +19,7 @@
 //! | `tolerance` | the largest difference of device and f64, 2e-5 unless given |
 //! | `page`, `says` | instead of values: a generated page, and a text on it |
 //! | `function`, `table`, `figure` | the function of the shader, the kind of table that it reads, a picture |
-//! | `hand` | the row of `docs/pages/by-hand.md` |
+//! | `hand` | the row of `docs/pages/by-hand.md`, or `none` with the reason why the element has no formula |
 //!
 //! A cell that begins with `open` is a gap, `none` says that the paper or the method has no such thing.
 
@@ -42,8 +42,19 @@ pub(super) struct Paper {
     pub(super) elements: Vec<Element>,
 }
 
+/// Standing of an element's formula.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// A calculation by hand agrees with luthier.
+    Recomputed,
+    /// The element has no formula, or none that one could work out.
+    NoFormula,
+    /// A column is still a gap, or the formula was not recomputed.
+    Open,
+}
+
 /// Keys that may stand in an element.
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 26] = [
     "name",
     "where",
     "key",
@@ -69,11 +80,15 @@ const KEYS: [&str; 25] = [
     "function",
     "table",
     "figure",
+    "hand",
 ];
+
+/// Files of the papers, in the order of the page.
+pub(super) const FILES: [&str; 5] = ["elek", "granier-heidrich", "yamaguchi", "lecture", "course"];
 
 /// The papers, in the order of the page.
 pub(super) fn papers() -> Vec<Paper> {
-    ["elek", "granier-heidrich", "yamaguchi", "lecture", "course"].map(read).into_iter().collect()
+    FILES.map(read).into_iter().collect()
 }
 
 fn read(file: &str) -> Paper {
@@ -114,8 +129,23 @@ impl Element {
     }
 
     /// Whether a column is still a gap.
-    pub(super) fn is_open(&self) -> bool {
+    fn has_gap(&self) -> bool {
         ["key", "function", "table", "figure"].iter().any(|key| self.cell(key).starts_with("open"))
+    }
+
+    /// Standing of its formula.
+    pub(super) fn standing(&self) -> Standing {
+        match self.get("hand") {
+            _ if self.has_gap() => Standing::Open,
+            None => Standing::Open,
+            Some(reason) if reason.starts_with("none") => Standing::NoFormula,
+            Some(_) => Standing::Recomputed,
+        }
+    }
+
+    /// The row of the calculation by hand; `None` without one.
+    pub(super) fn by_hand(&self) -> Option<&str> {
+        self.get("hand").filter(|hand| !hand.starts_with("none"))
     }
 
     /// Whether it has a number; some gaps have none.
@@ -154,7 +184,7 @@ impl Element {
     /// Refuses keys that nothing reads, and files that are not there.
     pub(super) fn check(&self) {
         for (key, _) in &self.table {
-            assert!(KEYS.contains(&key) || key == "hand", "{}: `{key}` is no key of an element", self.name());
+            assert!(KEYS.contains(&key), "{}: `{key}` is no key of an element", self.name());
         }
         for key in ["name", "where", "key", "model", "function", "table", "figure"] {
             self.cell(key);
@@ -167,7 +197,10 @@ impl Element {
             "{}: {figure}",
             self.name()
         );
-        assert!(self.is_open() || self.is_measured(), "{}: no values", self.name());
+        assert!(self.has_gap() || self.is_measured(), "{}: no values", self.name());
+        if let Some(reason) = self.get("hand").and_then(|hand| hand.strip_prefix("none")) {
+            assert!(reason.starts_with(": ") && reason.len() > 4, "{}: no reason for `none`", self.name());
+        }
     }
 }
 

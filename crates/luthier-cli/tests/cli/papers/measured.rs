@@ -223,7 +223,7 @@ fn in_f64(element: &Element, with: bool) -> Vec<f64> {
             .collect();
         return (0..PAIRS.len()).flat_map(|pair| channels.iter().map(move |channel| channel[pair])).collect();
     }
-    if !extra.contains(&"--wavelength") {
+    if !["--wavelength", "--rgb"].iter().any(|option| extra.contains(option)) {
         arguments.push("--three-wavelengths");
     }
     listed(&workshop, &[&arguments[..], &extra].concat())

@@ -2,21 +2,19 @@
 
 mod element;
 mod measured;
+mod out_of_scope;
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use element::{Element, Paper, papers};
+use element::{Element, Paper, Standing, papers};
 use luthier_gpu::Gpu;
 use luthier_workshop::root;
 use measured::{GPU, Number, measured};
 use rayon::prelude::*;
 
-/// Gaps that are known: columns of elements that still begin with `open`. The number may fall only.
+/// Elements that are known to be open. The number may fall only.
 const OPEN: usize = 0;
-
-/// Elements without a gap, and with a number of their own.
-const ALL: usize = 124;
 
 const HEAD: &str = "\
 # Elements of the papers
@@ -25,8 +23,9 @@ A test of the command made this page, and compares it with every run: `LUTHIER_A
 `tests/papers/`. Each has a material file, which the test bakes. *In a file* is the key, or the option, that asks for the element. *Function* is a
 function of the emitted shader that has it, *table* the kind of table that its form `baked` reads. *With* and *without* are f cos theta_i by `luthier eval`, for the same
 file and for one that lacks the element alone, where they differ most over three pairs of directions and three channels. *Device* is the largest
-difference between the shader and `luthier eval` that the test allows, relative to the brightest channel. *By hand* is the row of [by-hand.md](by-hand.md), a calculation in
-another language. **Open** is a gap; *none* says that the paper has no such figure, or that the element needs no table.
+difference between the shader and `luthier eval` that the test allows, relative to the brightest channel. *By hand* is the row of [by-hand.md](by-hand.md), where the document's
+formula is worked out in another language and agrees with luthier to what that page allows. **Open** is a gap, or a formula that was not recomputed. *None* says that the paper has no such
+figure, that the element needs no table, or why it has no formula: it is a time, a picture, or words.
 
 ";
 
@@ -55,16 +54,16 @@ fn measure(step: usize) {
             "{}: measured as another element is",
             element.name()
         );
-        if let Some(hand) = element.get("hand") {
+        if let Some(hand) = element.by_hand() {
             assert!(by_hand.contains(&format!("| {hand} |")), "{}: no row `{hand}`", element.name());
         }
     }
-    let all: Vec<&Element> = papers.iter().flat_map(|paper| &paper.elements).collect();
-    let open = all.iter().filter(|element| element.is_open()).count();
-    assert_eq!((all.len(), open), (ALL, OPEN), "elements, and those with a gap");
+    let elements = papers.iter().flat_map(|paper| &paper.elements);
+    let open: Vec<&str> = elements.filter(|e| e.standing() == Standing::Open).map(Element::name).collect();
+    assert_eq!(open.len(), OPEN, "open elements: {open:?}");
     let Some(gpu) = &*GPU else { return };
     let is_accepted = std::env::var_os("LUTHIER_ACCEPT").is_some();
-    let page = page(&papers, open, gpu, if is_accepted { 1 } else { step });
+    let page = page(&papers, gpu, if is_accepted { 1 } else { step });
     let path = root().join("docs/pages/papers.md");
     if is_accepted {
         std::fs::write(&path, &page).unwrap();
@@ -89,14 +88,11 @@ fn is_alike(known: &str, found: &str) -> bool {
 }
 
 /// The page, with the numbers of one element of `step`.
-fn page(papers: &[Paper], open: usize, gpu: &Gpu, step: usize) -> String {
+fn page(papers: &[Paper], gpu: &Gpu, step: usize) -> String {
     let mut page = HEAD.to_owned();
-    let all = papers.iter().map(|paper| paper.elements.len()).sum::<usize>();
-    writeln!(page, "{all} elements, {} of them without a gap.", all - open).unwrap();
+    writeln!(page, "{}", counted(papers.iter().flat_map(|paper| &paper.elements))).unwrap();
     for paper in papers {
-        let whole = paper.elements.iter().filter(|element| !element.is_open()).count();
-        writeln!(page, "\n## {}\n\n{whole} of {} elements without a gap.\n", paper.title, paper.elements.len())
-            .unwrap();
+        writeln!(page, "\n## {}\n\n{}\n", paper.title, counted(&paper.elements)).unwrap();
         page.push_str(
             "| element | where | in a file | model | function | table | figure | with | without | device | by hand |\n\
              |---|---|---|---|---|---|---|--:|--:|---|---|\n",
@@ -107,7 +103,18 @@ fn page(papers: &[Paper], open: usize, gpu: &Gpu, step: usize) -> String {
             row(&mut page, element, number);
         }
     }
-    page
+    page + &out_of_scope::section()
+}
+
+/// How many elements there are, and how they stand.
+fn counted<'a>(elements: impl IntoIterator<Item = &'a Element>) -> String {
+    let standings: Vec<Standing> = elements.into_iter().map(Element::standing).collect();
+    let [recomputed, without, open] = [Standing::Recomputed, Standing::NoFormula, Standing::Open]
+        .map(|standing| standings.iter().filter(|found| **found == standing).count());
+    let all = standings.len();
+    format!(
+        "{all} elements: {recomputed} with their formula recomputed by hand, {without} without a formula, {open} open."
+    )
 }
 
 fn row(page: &mut String, element: &Element, number: Number) {
@@ -140,7 +147,7 @@ fn row(page: &mut String, element: &Element, number: Number) {
         code(element.cell("key")),
         element.get("f64_model").unwrap_or(element.cell("model")),
         code(element.cell("function")),
-        element.get("hand").unwrap_or("-"),
+        element.get("hand").unwrap_or("**open**"),
     )
     .unwrap();
 }
