@@ -13,6 +13,9 @@ use toml_edit::DocumentMut;
 
 use super::element::FILES;
 
+/// Names of the papers, in the order of their files.
+const NAMES: [&str; 5] = ["Elek", "Granier and Heidrich", "Yamaguchi", "lecture", "course"];
+
 /// The section of the page, a row for each element, in the order of the papers.
 pub(super) fn section() -> String {
     let path = root().join("tests/papers/out-of-scope.toml");
@@ -25,7 +28,7 @@ pub(super) fn section() -> String {
             .to_owned();
     let mut last = 0;
     for table in tables {
-        let cells = ["name", "paper", "where", "reason"].map(|key| {
+        let mut cells = ["name", "paper", "where", "reason"].map(|key| {
             let text = table.get(key).and_then(|item| item.as_str()).unwrap_or_default().trim();
             assert!(!text.is_empty(), "{}: `{key}` is empty:\n{table}", path.display());
             text
@@ -35,6 +38,7 @@ pub(super) fn section() -> String {
         let place = place.unwrap_or_else(|| panic!("{}: `{}` is no paper", path.display(), cells[1]));
         assert!(place >= last, "{}: `{}` is after a later paper", path.display(), cells[0]);
         last = place;
+        cells[1] = NAMES[place];
         writeln!(section, "| {} |", cells.join(" | ")).unwrap();
     }
     section
