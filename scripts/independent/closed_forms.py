@@ -205,6 +205,8 @@ def densities(surfaces):
 
     values(COURSE, "densities of the global method", "section 3.2.2", text, "density-layers-global", lambda i, o: sum(proposed(i, o)))
     values(COURSE, "density of the local method", "section 3.2.4, eq. 3.6", text, "density-layers-local", local)
+    own = lambda i, o: sum(a * p for a, p in zip((0.2, 0.8), proposed(i, o)))
+    values(COURSE, "density of the local method, weights of one's own", "section 3.2.4, eq. 3.6", text, "density-layers-local", own, extra=("--weights", "0.2,0.8"))
 
 
 def fluorescent():
