@@ -353,7 +353,8 @@ impl Scene {
             (TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)"),
         ]
         .map(|(kind, call)| if self.reads(kind) { call } else { "vec3<f32>(0.0)" });
-        let shown = if self.bindings.has_surroundings() {
+        let has_lobes = self.manifest.materials.iter().any(MaterialEntry::shows_lobes);
+        let shown = if self.bindings.has_surroundings() && has_lobes {
             let place = if self.has_places() { "surface, " } else { "" };
             format!(
                 "luthier_environment_lobes(luthier_prepare_lobes({place}material, vec3<f32>(wo.xy, max(wo.z, 1e-4))), frame, turn)"

@@ -87,7 +87,9 @@ pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<
     for (i, layer) in stack.layers.iter().enumerate() {
         let at = &At { places, layer: i };
         let is_last = i + 1 == stack.layers.len();
-        smoother_than_above(layer, roughest, model, at, sink);
+        if bake.lower_alpha.is_none() {
+            smoother_than_above(layer, roughest, model, at, sink);
+        }
         films(layer, at, sink);
         match &layer.base {
             Base::Dielectric { ior, slab } => {
@@ -164,7 +166,9 @@ fn smoother_than_above(layer: &Layer, roughest: f64, model: ShadingModel, at: &A
         }
         ShadingModel::WeidlichWilkie => (
             "the model `weidlich-wilkie` shows it as sharp as if it were bare",
-            "`belcour` follows the light through the rougher layer: write `[bake] model = \"belcour\"`".to_owned(),
+            "`belcour` follows the light through the rougher layer: write `[bake] model = \"belcour\"`; `lower_alpha = \"at-least-above\"` makes it as \
+             rough as that"
+                .to_owned(),
         ),
         _ => return,
     };

@@ -58,6 +58,11 @@ fn a_base_smoother_than_its_coat() {
     assert!(by("elek").contains("`elek` raises it"));
     assert!(by("weidlich-wilkie").contains("as sharp as if it were bare"));
     assert_eq!(by("belcour"), "");
+    let chosen = |lower: &str| {
+        let bake = format!("[bake]\nmodel = \"weidlich-wilkie\"\nlower_alpha = \"{lower}\"\n");
+        warnings(&(stack("alpha = 0.3", "alpha = 0.1") + &bake))
+    };
+    assert_eq!((chosen("own"), chosen("at-least-above")), (String::new(), String::new()));
 }
 
 #[test]
