@@ -32,6 +32,6 @@ lines, and the bytes of the SPIR-V library. Made by `scripts/shader-size.sh`.
 HEAD
 row 'one metal: `polished-gold`' materials/polished-gold.toml
 row 'a coat over a diffuse base: `red-lacquer` of the papers' materials/papers/red-lacquer.toml
-row 'the 17 materials of the papers' materials/papers
+row 'the 19 materials of the papers' materials/papers
 row 'the 12 other materials, without fits' materials --no-fit
 row 'the same, shaded by `phong`' materials --model phong

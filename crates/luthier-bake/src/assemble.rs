@@ -1,6 +1,6 @@
 //! Assembly of tiles into atlases.
 
-use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat, Tile};
+use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat, Tile, Values};
 use luthier_manifest::{Budget, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
@@ -220,11 +220,18 @@ fn atlas(
             input_hash: key.to_string(),
             error: data.error.clone(),
             aim,
+            largest: largest(kind, &data.truth),
         });
         results.forget(*key);
     }
     let texels = format.decode(width, height, &bytes).unwrap_or_else(|_| unreachable!("the bytes are those of tiles"));
     Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }
+}
+
+/// The largest magnitude in a tile whose channels are all values of one function.
+fn largest(kind: TableKind, truth: &Image) -> Option<f64> {
+    let is_one_function = matches!(kind.facts().values, Values::Positive | Values::Signed);
+    is_one_function.then(|| truth.data.iter().fold(0.0, |largest: f64, value| largest.max(f64::from(value.abs()))))
 }
 
 /// Copies the bytes of a tile that is `across` texels wide into those of an atlas of this width, a row of texels or

@@ -83,11 +83,11 @@ impl Package {
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = files.add("materials.bin".to_owned(), bytes);
         manifest.shaders.clear();
-        for Shader { form, target, bytes, interface } in &self.shaders {
+        for Shader { form, target, bytes, interface, checks } in &self.shaders {
             let file = files.add(format!("shaders/{form}.{}", target.extension()), bytes.clone());
             let (target, form, interface) = (*target, *form, Some(interface.clone()));
             let materials = manifest.partial(form);
-            manifest.shaders.push(ShaderEntry { target, form, file, materials, interface });
+            manifest.shaders.push(ShaderEntry { target, form, file, materials, interface, checks: checks.clone() });
         }
         Ok(Encoded { manifest, files: files.0 })
     }

@@ -1,7 +1,7 @@
 //! A package: the result of a bake, in memory.
 
 use luthier_lut::{Image, Picture, TableKind};
-use luthier_manifest::{Form, Interface, Manifest, MapSlot, MaterialEntry, Target};
+use luthier_manifest::{Check, Form, Interface, Manifest, MapSlot, MaterialEntry, Target};
 use luthier_texture::Texture;
 
 use crate::PackageError;
@@ -73,6 +73,8 @@ pub struct Shader {
     pub bytes: Vec<u8>,
     /// Functions, structures and bindings for a program around it.
     pub interface: Interface,
+    /// Judges that it passed when it was emitted; empty for a text that was not emitted by luthier.
+    pub checks: Vec<Check>,
 }
 
 /// A map of a material.
@@ -104,10 +106,10 @@ pub struct Map {
 }
 
 impl Shader {
-    /// A shader in WGSL, whose interface is read from it.
+    /// A shader in WGSL, whose interface is read from it, and which no judge has read.
     pub fn wgsl(form: Form, text: String) -> Self {
         let interface = Interface::read(&text);
-        Self { form, target: Target::Wgsl, bytes: text.into_bytes(), interface }
+        Self { form, target: Target::Wgsl, bytes: text.into_bytes(), interface, checks: Vec::new() }
     }
 
     /// The text; empty for SPIR-V.

@@ -34,6 +34,8 @@ pub struct Scene {
     pub(crate) render: [[OnceLock<wgpu::ComputePipeline>; 2]; 2],
     /// Simulations of pairs, then of pictures; each first with one facet, then with walks.
     pub(crate) simulations: [OnceLock<wgpu::ComputePipeline>; 4],
+    /// Kernels that are timed: with evaluations, then without.
+    pub(crate) timed: [OnceLock<wgpu::ComputePipeline>; 2],
     pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
@@ -67,6 +69,7 @@ impl Scene {
             lookups: Default::default(),
             render: Default::default(),
             simulations: Default::default(),
+            timed: Default::default(),
             grounded: Mutex::default(),
         })
     }
@@ -97,6 +100,7 @@ impl Scene {
             lookups: self.lookups.clone(),
             render: self.render.clone(),
             simulations: self.simulations.clone(),
+            timed: self.timed.clone(),
             grounded: Mutex::default(),
         }))
     }

@@ -35,7 +35,7 @@ impl Scene {
     ) -> Result<Stopwatch<'_>, GpuError> {
         self.layers(material)?;
         let kernel = if is_empty { KERNEL.replace("+= luthier_eval(", "+= kernel_empty(") } else { KERNEL.to_owned() };
-        let pipeline = self.compile(&kernel)?;
+        let pipeline = self.pipeline(&self.timed[usize::from(is_empty)], &kernel)?.clone();
         let words = pair_words(material, pairs);
         let workgroups = evaluations.div_ceil(PER_THREAD * WORKGROUP as u32).clamp(1, 65_535);
         let outputs = workgroups as usize * WORKGROUP;

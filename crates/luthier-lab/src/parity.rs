@@ -109,7 +109,13 @@ fn case(n: u32, material: &Material) -> ParityCase {
 
 /// The subject of a judgement: the tables of a package as they ship, and the surfaces that its materials describe.
 pub(crate) fn subject(package: &Package, stacks: Vec<Stack>) -> Outcome<Subject<'_>> {
-    Ok(Subject { manifest: &package.manifest, textures: package.textures()?, stacks, maps: surface_maps(package) })
+    Ok(Subject {
+        manifest: &package.manifest,
+        textures: package.textures()?,
+        stacks,
+        maps: surface_maps(package),
+        films: Vec::new(),
+    })
 }
 
 /// The command line that makes the page.

@@ -142,13 +142,26 @@ pub struct Tile {
     /// Largest error as sampled that the bake aimed at; absent if a budget, or a size or format in a material file, decided instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aim: Option<f64>,
+    /// Largest magnitude of the function at the nodes, in any channel; absent from earlier bakes, and where the channels are not one quantity (lobes,
+    /// thickness).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest: Option<f64>,
 }
+
+/// Part of the largest value of a tile beyond which its error is told, whatever the bake aimed at: the function is hardly recognised then.
+pub const COARSE: f64 = 0.1;
 
 impl Tile {
     /// The error as sampled and the aim, if the error is larger.
     pub fn miss(&self) -> Option<(f64, f64)> {
         let difference = (self.error.worst.expected - self.error.worst.sampled).abs();
         self.aim.filter(|aim| difference > *aim).map(|aim| (difference, aim))
+    }
+
+    /// The error and the largest value of the tile, if the error is more than [`COARSE`] of that value.
+    pub fn coarse(&self) -> Option<(f64, f64)> {
+        let error = self.error.max_abs_err;
+        self.largest.filter(|largest| error > COARSE * largest).map(|largest| (error, largest))
     }
 }
 

@@ -24,7 +24,7 @@ mod picture;
 mod sampler;
 pub mod srgb;
 
-pub use atlas::{Atlas, AtlasLayout, Tile, read};
+pub use atlas::{Atlas, AtlasLayout, COARSE, Tile, read};
 pub use axis::{Axis, Mapping};
 pub use balance::balance;
 pub use base::{RowBase, SchlickBase};

@@ -10,7 +10,7 @@ use crate::file::FileEntry;
 use crate::limits::MaterialTexture;
 use crate::material::MaterialEntry;
 use crate::search::Search;
-use crate::shader::{Functions, Interface};
+use crate::shader::{Check, Functions, Interface};
 use crate::surface::SurfaceEntry;
 use crate::target::Target;
 
@@ -87,6 +87,9 @@ pub struct ShaderEntry {
     /// Functions, structures and bindings for a program around it; absent from earlier bakes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<Interface>,
+    /// Judges that it passed when it was emitted; absent from earlier bakes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checks: Vec<Check>,
 }
 
 /// One binding of group 0.
@@ -343,6 +346,7 @@ mod tests {
                 file: file("shaders/baked.wgsl"),
                 materials: None,
                 interface: Some(Interface::default()),
+                checks: vec![Check { by: "naga 30".into(), read: Target::Wgsl, capabilities: Some(Vec::new()) }],
             }],
             functions: Functions::default(),
             bindings: vec![BindingEntry {

@@ -41,8 +41,7 @@
 //!
 //! `audit`, `certificate` and `picture` stand beside these and use the first row alone.
 //!
-//! Simplifications: the judge checks only the range and the normalisation of thickness maps, which follow from the stack; the maps themselves are noise
-//! functions or images that only the baker has. The estimate of albedos uses the walks and the quadrature of `luthier-optics`, as the baker does, but
+//! Simplifications: without [`FilmMap`]s the judge checks only the range and the normalisation of thickness tiles. The estimate of albedos uses the walks and the quadrature of `luthier-optics`, as the baker does, but
 //! with other seeds, numbers and colour treatment.
 
 mod audit;
@@ -63,7 +62,8 @@ pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Stat
 pub use certificate::{Certificate, ErrorMap};
 pub use error::ReportError;
 pub use judge::evidence::{
-    Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShapeCost, StabilitySummary,
+    Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShaderTime, ShaderVerdict, ShapeCost,
+    StabilitySummary, Times,
 };
 pub use judge::exceptions::Exception;
 pub use judge::limits::{Asked, FileBudget, Limit, limits};
@@ -80,7 +80,7 @@ pub use measure::seen::{Seen, SeenLight, picture_color_difference};
 pub use measure::statistics::{
     DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Spread, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
 };
-pub use measure::subject::{Subject, SurfaceMap};
+pub use measure::subject::{FilmMap, FilmSource, Subject, SurfaceMap};
 pub use measure::table_terms::{TableTerms, Weights};
 pub use models::{
     AgainstReference, MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, PHI_DEG, Quantity,

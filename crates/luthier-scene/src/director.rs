@@ -290,7 +290,7 @@ fn table_errors(
 ) -> Result<Vec<SceneError>, SceneFailure> {
     let (manifest, textures) = (&package.manifest, package.textures()?);
     let stacks = materials.iter().map(|material| material.stack.clone()).collect();
-    let subject = Subject { manifest, textures, stacks, maps: Vec::new() };
+    let subject = Subject { manifest, textures, stacks, maps: Vec::new(), films: Vec::new() };
     let errors = (0..materials.len()).map(|number| {
         let terms = TableTerms::new(&subject, number, Weights::EightBit)?;
         Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))

@@ -48,4 +48,4 @@ pub use library::library;
 pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, Within, bindings, identifier, surface_identifier};
 pub use style::style_name;
-pub use validate::validate;
+pub use validate::{checks, validate};

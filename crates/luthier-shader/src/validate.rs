@@ -1,9 +1,36 @@
 //! WGSL through naga: parsed, and validated for core WebGPU.
 
+use luthier_manifest::Check;
 use naga::Module;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
-use crate::ShaderError;
+use crate::{ShaderError, Target};
+
+/// naga and its version, as the lock file of this repository has it.
+const NAGA: &str = "naga 30.0.1";
+
+/// Capabilities beyond core WebGPU that shaders may use: none.
+const CAPABILITIES: Capabilities = Capabilities::empty();
+
+/// The judges that each shader in a language has passed once it is emitted. naga reads WGSL alone here: of a shader in another language it has validated
+/// the module from which the shader was translated. The lint reads the texts of HLSL and MSL themselves. No judge has read GLSL and SPIR-V.
+///
+/// ```
+/// use luthier_shader::{Target, checks};
+///
+/// let [naga, lint] = &checks(Target::Hlsl)[..] else { panic!("two judges") };
+/// assert!(naga.by.starts_with("naga ") && naga.read == Target::Wgsl && lint.read == Target::Hlsl);
+/// ```
+pub fn checks(target: Target) -> Vec<Check> {
+    let capabilities = Some(CAPABILITIES.iter_names().map(|(name, _)| name.to_owned()).collect());
+    let naga = Check { by: NAGA.to_owned(), read: Target::Wgsl, capabilities };
+    let lint = concat!("lint of luthier-shader ", env!("CARGO_PKG_VERSION"));
+    let lint = Check { by: lint.to_owned(), read: target, capabilities: None };
+    match target {
+        Target::Hlsl | Target::Msl => vec![naga, lint],
+        Target::Wgsl | Target::Glsl450 | Target::GlslEs300 | Target::SpirV => vec![naga],
+    }
+}
 
 /// Parses WGSL and validates it for core WebGPU.
 ///
@@ -24,7 +51,7 @@ pub fn validate(wgsl: &str) -> Result<(), ShaderError> {
 /// The module of a WGSL text, validated for core WebGPU.
 pub(crate) fn module(wgsl: &str) -> Result<(Module, ModuleInfo), ShaderError> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| ShaderError::Invalid(e.emit_to_string(wgsl)))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
     let info = validator.validate(&module).map_err(|e| ShaderError::Invalid(e.emit_to_string(wgsl)))?;
     Ok((module, info))
 }

@@ -13,6 +13,8 @@ pub struct Shaders {
     name: String,
     /// The adapter, and a hash of the texts of the shaders.
     identity: String,
+    /// Whether the adapter is a program on the CPU.
+    is_software: bool,
     baked: Scene,
     /// None where the package has no such shader.
     full: Option<Scene>,
@@ -28,7 +30,13 @@ impl Shaders {
         let full = has_full.then(|| gpu.scene(package, Form::Full)).transpose()?;
         let texts: Vec<u8> = package.shaders.iter().flat_map(|shader| shader.bytes.iter().copied()).collect();
         let identity = format!("{} {}", adapter_label(gpu), sha256(&texts));
-        Ok(Self { name: adapter_label(gpu), identity, baked: gpu.scene(package, Form::Baked)?, full })
+        let baked = gpu.scene(package, Form::Baked)?;
+        Ok(Self { name: adapter_label(gpu), identity, is_software: gpu.is_software(), baked, full })
+    }
+
+    /// Whether the adapter is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.is_software
     }
 
     /// The pipelines of a form, if the bake has it.

@@ -361,6 +361,10 @@ pub(crate) struct ReportOptions {
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "N", default_value_t = 144, value_parser = clap::value_parser!(u32).range(0..=512))]
     pub(crate) picture_size: u32,
+    /// Time the shaders on the adapter, too; reports of the same bake then differ from run to run
+    #[cfg(feature = "gpu")]
+    #[arg(long, conflicts_with = "no_device")]
+    pub(crate) times: bool,
     /// Pairs of directions in every set of every material
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) pairs: u32,

@@ -150,7 +150,8 @@ impl Folder {
         let shaders = texts
             .map(|entry| {
                 let read = Shader::wgsl(entry.form, self.text(&entry.file)?);
-                Ok(Shader { interface: entry.interface.clone().unwrap_or(read.interface), ..read })
+                let interface = entry.interface.clone().unwrap_or(read.interface);
+                Ok(Shader { interface, checks: entry.checks.clone(), ..read })
             })
             .collect::<Result<_, PackageError>>()?;
         let mut package = Package::from_parts(manifest.clone(), tables, shaders)?;

@@ -9,7 +9,14 @@ use crate::{Folder, sha256};
 /// A generation of files: a manifest that names one shader, whose text is given.
 fn generation(path: &str, text: &str) -> Vec<(String, Vec<u8>)> {
     let file = FileEntry { path: path.to_owned(), sha256: sha256(text.as_bytes()) };
-    let shaders = vec![ShaderEntry { target: Target::Wgsl, form: Form::Baked, file, materials: None, interface: None }];
+    let shaders = vec![ShaderEntry {
+        target: Target::Wgsl,
+        form: Form::Baked,
+        file,
+        materials: None,
+        interface: None,
+        checks: Vec::new(),
+    }];
     let manifest = Manifest { shaders, ..Manifest::new("luthier test", Vec::new(), Vec::new()) };
     vec![(path.to_owned(), text.as_bytes().to_vec()), (MANIFEST.to_owned(), manifest.to_json().unwrap().into_bytes())]
 }

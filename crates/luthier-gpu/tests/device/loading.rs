@@ -38,7 +38,14 @@ fn bake(change: impl FnOnce(&mut Manifest)) -> TempDir {
     let mut manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], std::slice::from_ref(&table));
     let texture = ktx2::encode(&texels(std::slice::from_ref(&table))[0].texture).unwrap();
     manifest.tables[0].texture = write(folder.path(), "tables/fresnel.ktx2", &texture);
-    let shader = |target, file| ShaderEntry { target, form: Form::Baked, file, materials: None, interface: None };
+    let shader = |target, file| ShaderEntry {
+        target,
+        form: Form::Baked,
+        file,
+        materials: None,
+        interface: None,
+        checks: Vec::new(),
+    };
     let missing = FileEntry { path: "shaders/none.glsl".to_owned(), sha256: String::new() };
     manifest.shaders = vec![
         shader(Target::Glsl450, missing),

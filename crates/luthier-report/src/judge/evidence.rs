@@ -1,6 +1,6 @@
 //! Evidence that a report shows beside the judgement of a bake, and its origin.
 
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{Check, Form, ShadingModel, Target};
 use serde::{Deserialize, Serialize};
 
 use crate::stability::{Stability, Verdict};
@@ -48,6 +48,36 @@ pub struct ShapeCost {
     pub full: Option<u32>,
     /// Whether the surface is only similar, because none with layers of these kinds was compiled.
     pub is_of_similar: bool,
+}
+
+/// Measured times of the shaders on the adapter of a report.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    /// The adapter.
+    pub device: String,
+    /// Whether the adapter is a program on the CPU: its times are those of the CPU, and say nothing of a GPU.
+    pub is_software: bool,
+    /// `device` for timestamp queries; `host` where the adapter has none, and submission and waiting are part of the times.
+    pub clock: String,
+    /// Evaluations of one run.
+    pub evaluations: u32,
+    /// Runs of each shader.
+    pub repeats: u32,
+    /// One for each material and form.
+    pub rows: Vec<ShaderTime>,
+}
+
+/// Time of one shader, without the loop around it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShaderTime {
+    /// Name of the material.
+    pub material: String,
+    /// Form of the shader.
+    pub form: Form,
+    /// Nanoseconds per evaluation, median of the runs less that of the same kernel without an evaluation.
+    pub net_ns: f64,
+    /// Median absolute deviation of the runs.
+    pub mad_ns: f64,
 }
 
 /// Number and seed of the paths of a reference.
@@ -117,6 +147,19 @@ impl StabilitySummary {
             not_finite: suite.not_finite().count() as u64,
         }
     }
+}
+
+/// A shader of a bake, and the judges that it passed when it was emitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShaderVerdict {
+    /// Its language.
+    pub target: Target,
+    /// Its form.
+    pub form: Form,
+    /// The file, relative to the manifest.
+    pub path: String,
+    /// The judges, by the manifest; empty for earlier bakes.
+    pub checks: Vec<Check>,
 }
 
 /// Exhibits of the page that are not part of the JSON.

@@ -9,12 +9,14 @@ pub(crate) mod report;
 use std::fmt;
 
 use luthier_layers::layers::{Below, Layer};
-use luthier_manifest::{ColorMode, Form, LayerKind, LayerRecord, Manifest, ShadingModel};
+use luthier_lut::TexelFormat;
+use luthier_manifest::{ColorMode, Form, LayerKind, LayerRecord, Manifest, ShaderEntry, ShadingModel};
 use luthier_optics::Rgb;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use crate::error::ReportError;
+use crate::judge::evidence::ShaderVerdict;
 use crate::judge::exceptions::{Exception, exception};
 use crate::judge::profile::{AngleProfile, Exceedance};
 use crate::judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report};
@@ -30,6 +32,7 @@ use crate::measure::statistics::{FLOOR, Statistics, TARGET_MAX_REL_ERR, UNCERTAI
 use crate::measure::subject::Subject;
 use crate::measure::table_terms::{TableTerms, Weights};
 use crate::places::{AtPlaces, PLACES_SEED, SimulatedErrors, SimulatedSettings, at_places, simulated};
+use crate::stability::{Shipped, Stressed, shipped};
 use crate::text::format;
 
 /// Factor by which the judge's largest table error may exceed the baker's before it is a finding. Both scan finitely many points, so that
@@ -146,7 +149,7 @@ pub fn judge(
     for (index, (inputs, gathered)) in materials.into_iter().enumerate() {
         let entry = &manifest.materials[index];
         let inputs = json!([inputs, device_weights]);
-        let Judged { comparisons, exceptions: own, at_places } = match remembered.recall(JUDGED, &inputs) {
+        let Judged { comparisons, exceptions: own, stability, at_places } = match remembered.recall(JUDGED, &inputs) {
             Some(judged) => judged,
             None => {
                 let gathered = gathered.map_or_else(|| bench.gather(index), Ok)?;
@@ -167,6 +170,7 @@ pub fn judge(
             comparisons,
             against_reference: Vec::new(),
             at_places,
+            stability,
             alone: Vec::new(),
             picture: None,
             shape_cost: None,
@@ -178,6 +182,8 @@ pub fn judge(
     table_findings(&tables, &mut findings);
     value_findings(&materials, &mut findings);
     place_findings(&materials, &mut findings);
+    stability_findings(&materials, &mut findings);
+    filter_findings(&materials, &tables, &mut findings);
     Ok(Report {
         schema: REPORT_SCHEMA,
         generator: manifest.generator.clone(),
@@ -196,16 +202,24 @@ pub fn judge(
         costs: None,
         reference: None,
         stability: None,
+        times: None,
+        shaders: manifest.shaders.iter().map(verdict).collect(),
         tables,
         materials,
     })
 }
 
-/// Judgement of a material, as a memory keeps it: comparisons, exceptions, and errors at places.
+fn verdict(shader: &ShaderEntry) -> ShaderVerdict {
+    let ShaderEntry { target, form, file, checks, .. } = shader;
+    ShaderVerdict { target: *target, form: *form, path: file.path.clone(), checks: checks.clone() }
+}
+
+/// Judgement of a material, as a memory keeps it: comparisons, exceptions, values where methods fail, and errors at places.
 #[derive(Serialize, Deserialize)]
 struct Judged {
     comparisons: Vec<Comparison>,
     exceptions: Vec<Exception>,
+    stability: Option<Shipped>,
     at_places: Option<AtPlaces>,
 }
 
@@ -281,8 +295,10 @@ impl Bench<'_> {
             let comparison = gathered.comparisons.iter().find(|comparison| comparison.compared == compared);
             exceptions.extend(comparison.and_then(|comparison| exception(name, comparison, &misses, &factors)));
         }
+        let model = self.subject.manifest.materials[index].model;
+        let stability = Some(shipped(index as u32, model, reference, &read, self.device)?);
         let at_places = at_places_of(self.subject, index, self.device.zip(weights), self.settings)?;
-        Ok(Judged { comparisons: gathered.comparisons, exceptions, at_places })
+        Ok(Judged { comparisons: gathered.comparisons, exceptions, stability, at_places })
     }
 }
 
@@ -403,6 +419,11 @@ fn table_findings(tables: &[TableReport], findings: &mut Vec<String>) {
                 let (found, aim) = (format::error(found), format::error(aim));
                 findings.push(format!("{name}: off by up to {found} as sampled, where the bake aimed at {aim}."));
             }
+            if let Some((error, largest)) = tile.coarse() {
+                let (error, largest) = (format::error(error), format::number(largest));
+                findings
+                    .push(format!("{name}: off by up to {error}, more than a tenth of its largest value, {largest}."));
+            }
             if tile.users.is_empty() {
                 findings.push(format!("{name}: no layer reads it."));
             }
@@ -456,5 +477,57 @@ fn place_findings(materials: &[MaterialReport], findings: &mut Vec<String>) {
             worst.words(),
             at.simulated.as_ref().map_or(0, |s| s.views.len())
         ));
+    }
+}
+
+fn stability_findings(materials: &[MaterialReport], findings: &mut Vec<String>) {
+    for material in materials {
+        let Some(stability) = &material.stability else { continue };
+        for Stressed { level, directions, values, not_finite, negative, .. } in &stability.stressed {
+            let at = format!("{}, {} at {} directions", material.name, level.shipped_name(), directions.name());
+            if *not_finite > 0 {
+                findings.push(format!("{at}: {not_finite} of {values} values are not finite."));
+            }
+            if *negative > 0.0 {
+                let size = format::error(*negative);
+                findings.push(format!("{at}: light at or below the horizon, or negative light, of up to {size}."));
+            }
+        }
+        for albedo in &stability.albedos {
+            if albedo.albedo.is_none() {
+                let (level, angle) = (albedo.level.shipped_name(), albedo.theta_deg);
+                findings.push(format!("{}, {level}: the albedo at {angle} degrees is not finite.", material.name));
+            }
+        }
+        for gain in stability.gains() {
+            let (level, angle) = (gain.level.shipped_name(), gain.theta_deg);
+            let albedo = format::number(gain.albedo.unwrap_or(0.0));
+            let model = material.model.name();
+            findings.push(format!(
+                "{}, {level}: the albedo at {angle} degrees is {albedo}, and {model} claims to return no more light than falls in.",
+                material.name
+            ));
+        }
+    }
+}
+
+/// Materials whose tables have codes of 8 bits, and whose shader is far from f64 on the same tables: the adapter rounds filtered values to such codes.
+fn filter_findings(materials: &[MaterialReport], tables: &[TableReport], findings: &mut Vec<String>) {
+    for material in materials {
+        let Some(arithmetic) = material.comparison(Compared::Arithmetic).map(Comparison::max_error) else { continue };
+        let read = tables.iter().find(|table| {
+            table.format == TexelFormat::Rgba8Unorm && table.tiles.iter().any(|tile| tile.is_read_by(&material.name))
+        });
+        if let Some(table) = read.filter(|_| arithmetic > TARGET_MAX_REL_ERR) {
+            findings.push(format!(
+                "{}: the baked shader is up to {} from f64 on the same tables. It reads the table {} as {}, and an adapter may round what it filters to codes of 8 bits, as \
+                 llvmpipe does: half a code is {:.0e}, of values that may be small.",
+                material.name,
+                format::error(arithmetic),
+                table.kind.name(),
+                table.format,
+                0.5 / 255.0
+            ));
+        }
     }
 }

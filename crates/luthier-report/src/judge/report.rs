@@ -5,7 +5,7 @@ use luthier_manifest::{ColorMode, Search, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
-use crate::judge::evidence::{Costs, PictureErrors, ReferencePaths, ShapeCost, StabilitySummary};
+use crate::judge::evidence::{Costs, PictureErrors, ReferencePaths, ShaderVerdict, ShapeCost, StabilitySummary, Times};
 use crate::judge::exceptions::Exception;
 use crate::judge::limits::Limit;
 use crate::judge::profile::{AngleProfile, Exceedance};
@@ -16,6 +16,7 @@ use crate::measure::statistics::Statistics;
 use crate::measure::table_terms::Weights;
 use crate::models::AgainstReference;
 use crate::places::AtPlaces;
+use crate::stability::Shipped;
 use crate::text::json;
 
 /// Version of the report's shape.
@@ -59,6 +60,12 @@ pub struct Report {
     pub reference: Option<ReferencePaths>,
     /// A run of the stability suite, if one was given.
     pub stability: Option<StabilitySummary>,
+    /// Measured times of the shaders, if they were asked for.
+    #[serde(default)]
+    pub times: Option<Times>,
+    /// The shaders, with the judges that they passed when they were emitted.
+    #[serde(default)]
+    pub shaders: Vec<ShaderVerdict>,
     /// The tables, in binding order.
     pub tables: Vec<TableReport>,
     /// The materials, in the order of the manifest.
@@ -89,6 +96,9 @@ pub struct MaterialReport {
     /// Shader, tables and lobes at random places of its maps; `None` for a material that is the same everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_places: Option<AtPlaces>,
+    /// Tables and shaders of it where methods fail: values at grazing, mirrored, equal and opposite directions, and albedos; `None` in earlier reports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<Shipped>,
     /// Searches for this material alone, by the baker's figures.
     pub alone: Vec<Search>,
     /// Differences between its pictures.
@@ -189,11 +199,12 @@ impl Report {
     /// [`crate::FLOOR`]). A limit is compared with this figure.
     ///
     /// It covers both shaders on the device against their f64 references, or, without a device, the tables read with 8-bit weights; and errors at
-    /// places. It is infinite if one of these samples, or a read of the table scans, is not finite.
+    /// places. It is infinite if one of these samples, a read of the table scans, or a value at the directions of [`Shipped`] is not finite.
     pub fn max_error(&self) -> f64 {
         let reads = self.tables.iter().flat_map(|t| &t.tiles).any(|t| t.not_finite > 0);
+        let stressed = self.materials.iter().filter_map(|m| m.stability.as_ref()).any(|s| s.not_finite() > 0);
         let at_places = self.worst_place().map_or(0.0, |(_, at)| at.max_error());
-        if reads { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error).max(at_places) }
+        if reads || stressed { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error).max(at_places) }
     }
 
     /// The material with the largest error of shader or tables at places.

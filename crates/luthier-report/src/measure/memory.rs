@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use crate::measure::device::Device;
-use crate::measure::readers::{tiles, users};
+use crate::measure::readers::{bare_users, tiles, users};
 use crate::measure::references::References;
-use crate::measure::subject::Subject;
+use crate::measure::subject::{FilmMap, FilmSource, Subject};
 
 /// Store of results of earlier judgements. It may forget at any time.
 pub trait Memory: Sync {
@@ -133,10 +133,16 @@ impl<'a> Remembered<'a> {
             return Value::Null;
         }
         let users = users(subject, kind, tile).into_iter();
+        let films = subject.films.iter().filter(|_| kind == TableKind::Thickness).map(film);
+        let films: Vec<Value> = films.collect();
         let users = users.map(|(number, layer)| {
             json!([nameless(&subject.manifest.materials[number]), subject.stacks[number], layer])
         });
-        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users.collect::<Vec<_>>(), "pairs": pairs_per_set })
+        let bare = bare_users(subject, kind, tile).into_iter();
+        let bare =
+            bare.map(|number| json!([nameless(&subject.manifest.materials[number]), subject.stacks[number], "bare"]));
+        let users: Vec<Value> = users.chain(bare).collect();
+        json!({ "kind": kind.name(), "tile": self.hash(kind, tile), "users": users, "films": films, "pairs": pairs_per_set })
     }
 
     /// A material by its content: its record, its stack, and the texels of the tiles that it reads.
@@ -161,6 +167,19 @@ impl<'a> Remembered<'a> {
         let tiles = self.tiles.iter().find(|(known, _)| *known == kind).map_or(&[][..], |(_, tiles)| tiles);
         tiles.get(tile as usize).map_or("", String::as_str)
     }
+}
+
+/// A film's map by its content.
+fn film(map: &FilmMap) -> Value {
+    let source = match &map.source {
+        FilmSource::Noise { seed, frequency, octaves } => json!([seed, frequency, octaves]),
+        FilmSource::Image(image) => {
+            let mut hash = Sha256::new();
+            image.data.iter().for_each(|value| hash.update(value.to_bits().to_le_bytes()));
+            json!([image.width, image.height, hex(&hash.finalize())])
+        }
+    };
+    json!([map.material, map.layer, map.extent_um, source])
 }
 
 /// A record without its names and the numbers of its tiles.

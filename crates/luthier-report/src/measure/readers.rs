@@ -37,3 +37,10 @@ pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<Us
     }
     out
 }
+
+/// The materials whose bare layers under a patina read a tile.
+pub(crate) fn bare_users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<usize> {
+    let materials = subject.manifest.materials.iter().enumerate();
+    let reads = |m: &MaterialEntry| m.constants.patina.as_ref().is_some_and(|p| p.bare.tiles[kind] == Some(tile));
+    materials.filter(|(_, material)| reads(material)).map(|(number, _)| number).collect()
+}

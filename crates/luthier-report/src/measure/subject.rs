@@ -19,6 +19,37 @@ pub struct Subject<'a> {
     pub stacks: Vec<Stack>,
     /// The maps of the materials. Materials with maps are judged at places.
     pub maps: Vec<SurfaceMap>,
+    /// Maps of films that vary, as the material files describe them. Thickness tiles of other films are held to their range alone.
+    pub films: Vec<FilmMap>,
+}
+
+/// Map of a film that varies in thickness.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilmMap {
+    /// Number of the material.
+    pub material: u32,
+    /// Number of the layer.
+    pub layer: u32,
+    /// Source of the map.
+    pub source: FilmSource,
+    /// Width of one repeat on the surface.
+    pub extent_um: f64,
+}
+
+/// Source of a film's map: 0 is the thinnest, 1 the thickest.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FilmSource {
+    /// Fractal Perlin noise on a torus, stretched to 0..1 over the nodes of the tile.
+    Noise {
+        /// Seed of the noise.
+        seed: u32,
+        /// Cells of the first octave in a repeat.
+        frequency: f64,
+        /// Octaves.
+        octaves: u32,
+    },
+    /// A picture of one channel that repeats.
+    Image(Image),
 }
 
 /// A map of a material as it ships.

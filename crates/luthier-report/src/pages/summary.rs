@@ -5,6 +5,7 @@ use std::fmt::Write;
 use crate::judge::report::{Compared, Report};
 use crate::measure::seen::SeenLight;
 use crate::places::SimulatedAt;
+use crate::stability::Level;
 use crate::text::format::{bytes, error, none, number};
 
 /// Findings listed by name.
@@ -33,10 +34,11 @@ pub(crate) fn markdown(report: &Report) -> String {
     levels(&mut out, report);
     materials(&mut out, report);
     places(&mut out, report);
+    stability(&mut out, report);
     if let Some(s) = &report.stability {
         let _ = writeln!(
             out,
-            "Stability: {} cells, {} hold, {} degrade, {} fail, {} unexplained, {} not finite.\n",
+            "The suite of stability: {} cells, {} hold, {} degrade, {} fail, {} unexplained, {} not finite.\n",
             s.cells, s.holds, s.degrades, s.fails, s.unexplained, s.not_finite
         );
     }
@@ -169,6 +171,42 @@ fn places(out: &mut String, report: &Report) {
             line(&material.name),
             at.varies.join(", "),
             simulated.join(" | ")
+        );
+    }
+    out.push('\n');
+}
+
+/// Tables and shaders at the directions where methods fail, the worst of all materials.
+fn stability(out: &mut String, report: &Report) {
+    let all = || report.materials.iter().filter_map(|m| Some((m, m.stability.as_ref()?)));
+    if all().next().is_none() {
+        return;
+    }
+    out.push_str(
+        "| where methods fail | values | not finite | negative | largest error | f32 arithmetic | largest albedo |\n|---|--:|--:|--:|--:|--:|--:|\n",
+    );
+    for level in [Level::Table, Level::Device, Level::F32] {
+        let here = || all().flat_map(|(m, s)| s.stressed.iter().map(move |s| (m, s))).filter(|(_, s)| s.level == level);
+        let Some((material, worst)) = here().max_by(|a, b| a.1.error.total_cmp(&b.1.error)) else { continue };
+        let values: u64 = here().map(|(_, s)| s.values).sum();
+        let not_finite: u64 = here().map(|(_, s)| s.not_finite).sum();
+        let negative = here().map(|(_, s)| s.negative).fold(0.0, f64::max);
+        let arithmetic = if level == Level::F32 {
+            Some(worst.error)
+        } else {
+            here().filter_map(|(_, s)| s.arithmetic).reduce(f64::max)
+        };
+        let albedos = all().flat_map(|(m, s)| s.albedos.iter().filter_map(move |a| Some((m, a, a.albedo?))));
+        let albedo = albedos.filter(|(_, a, _)| a.level == level).max_by(|a, b| a.2.total_cmp(&b.2));
+        let _ = writeln!(
+            out,
+            "| {} | {values} | {not_finite} | {} | {}, {} | {} | {} |",
+            level.shipped_name(),
+            error(negative),
+            error(worst.error),
+            line(&material.name),
+            arithmetic.map_or_else(none, error),
+            albedo.map_or_else(none, |(m, a, albedo)| format!("{albedo:.3} at {}°, {}", a.theta_deg, line(&m.name)))
         );
     }
     out.push('\n');

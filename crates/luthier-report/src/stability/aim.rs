@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use luthier_layers::layers::Layer;
+use serde::{Deserialize, Serialize};
 
 use crate::measure::directions::{Pair, direction, down, halton, log_uniform, mirrored, rounded};
 use crate::parity::ParitySet;
@@ -13,7 +14,8 @@ pub(super) const COS_MIN: f64 = 1e-7;
 const PAIRS: u32 = 96;
 
 /// Set of directions of a case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Aim {
     /// Uniform directions, and directions near the mirror direction of every lobe.
     Ordinary,
@@ -29,7 +31,7 @@ pub enum Aim {
 
 impl Aim {
     /// The name in identifiers.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Ordinary => "ordinary",
             Self::Grazing => "grazing",

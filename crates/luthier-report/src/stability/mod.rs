@@ -16,6 +16,8 @@
 //! *Formulations* ([`formulas`]) complement the cases: ways to write or to store one function, shipped or rejected, each with its error against a named
 //! truth.
 //!
+//! [`Shipped`] is the part of it that a report has: the levels of one material of a bake at the directions of the suite, and the light that they return.
+//!
 //! Everything that does not hold has an [`explain::Explanation`], with a limit: an error beyond it is unexplained.
 //!
 //! Out of scope: maps and places (flakes, patina and glitter as shaders), whose inner normals no case tilts.
@@ -28,6 +30,7 @@ mod formulas;
 mod models;
 mod page;
 mod shaders;
+mod shipped;
 mod svg;
 
 use serde::{Deserialize, Serialize};
@@ -41,6 +44,8 @@ pub use domains::{DomainRange, derived};
 pub use formulas::{FormulaResult, PITFALLS, formulas};
 pub use models::model_cells;
 pub use shaders::shader_cells;
+pub(crate) use shipped::shipped;
+pub use shipped::{Shipped, ShippedAlbedo, Stressed};
 pub use svg::heat_map_svg;
 
 /// Error of a shader (relative, see [`crate::FLOOR`]) up to which it holds: the goal of 1%.
@@ -72,6 +77,16 @@ luthier_lut::named! {
 }
 
 impl Level {
+    /// The part of a bake that runs at this level, as reports call it.
+    pub fn shipped_name(self) -> &'static str {
+        match self {
+            Self::F64 => "model",
+            Self::Table => "tables",
+            Self::F32 => "full shader",
+            Self::Device => "baked shader",
+        }
+    }
+
     /// Whether the code of this level ships.
     pub fn ships(self) -> bool {
         self != Self::F64

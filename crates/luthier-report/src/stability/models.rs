@@ -34,7 +34,7 @@ const ESTIMATOR_SAMPLES: u64 = 32;
 const ESTIMATOR_STRIDE: usize = 8;
 
 /// Excess of an albedo over 1 that counts as the error of the quadrature.
-const QUADRATURE: f64 = 2e-3;
+pub(super) const QUADRATURE: f64 = 2e-3;
 
 /// All models on all cases that they apply to. `progress` is called after every case.
 pub fn model_cells(cases: &[StressCase], progress: &(dyn Fn() + Sync)) -> Vec<Cell> {
@@ -62,7 +62,7 @@ pub fn model_cells(cases: &[StressCase], progress: &(dyn Fn() + Sync)) -> Vec<Ce
         .collect()
 }
 
-fn eye(theta_deg: f64) -> DVec3 {
+pub(super) fn eye(theta_deg: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(theta_deg.to_radians());
     DVec3::new(sin, 0.0, cos)
 }
@@ -176,28 +176,34 @@ fn albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> Albedo {
 /// Points on each side of the mirror direction.
 const POINTS: [usize; 2] = [20, 28];
 
-/// The integral of `f cos_theta_i`, for an eye at azimuth 0. Points crowd at the mirror direction. Isotropic stacks are integrated over one half.
+/// The integral of `f cos_theta_i`, for an eye at azimuth 0.
 fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
-    let rule = gauss_legendre(points);
-    let theta_o = libm::atan2(wo.x, wo.z);
     let is_isotropic = stack.layers.iter().all(|layer| layer.surface.alpha_x == layer.surface.alpha_y);
-    let mut phis = crowded(&rule, PI, -PI);
+    let directions = crowded_directions(wo, &gauss_legendre(points), is_isotropic).into_iter();
+    directions.map(|(wi, weight)| weight * model.eval(stack, wi, wo)).sum()
+}
+
+/// Directions and weights of a quadrature over the hemisphere, for an eye at azimuth 0. Points crowd at the mirror direction. Isotropic surfaces are
+/// integrated over one half.
+pub(super) fn crowded_directions(wo: DVec3, rule: &[(f64, f64)], is_isotropic: bool) -> Vec<(DVec3, f64)> {
+    let theta_o = libm::atan2(wo.x, wo.z);
+    let mut phis = crowded(rule, PI, -PI);
     if is_isotropic {
         phis.iter_mut().for_each(|(_, weight)| *weight *= 2.0);
     } else {
-        phis.extend(crowded(&rule, PI, PI));
+        phis.extend(crowded(rule, PI, PI));
     }
-    let mut sum = 0.0;
-    let thetas = [-theta_o, FRAC_PI_2 - theta_o].into_iter().flat_map(|length| crowded(&rule, theta_o, length));
+    let thetas = [-theta_o, FRAC_PI_2 - theta_o].into_iter().flat_map(|length| crowded(rule, theta_o, length));
+    let mut out = Vec::new();
     for (theta, d_theta) in thetas {
         let (sin_theta, cos_theta) = libm::sincos(theta);
         for &(phi, d_phi) in &phis {
             let (sin_phi, cos_phi) = libm::sincos(phi);
             let wi = DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
-            sum += d_theta * sin_theta * d_phi * model.eval(stack, wi, wo);
+            out.push((wi, d_theta * sin_theta * d_phi));
         }
     }
-    sum
+    out
 }
 
 /// Points and weights of a rule over an interval, which by the fifth power crowd at its start.

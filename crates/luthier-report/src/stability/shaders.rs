@@ -16,7 +16,7 @@ use crate::measure::subject::Subject;
 use crate::measure::table_terms::{TableTerms, Weights};
 
 /// Size below which a negative channel is rounding.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// Values of a case in f64: on exact terms for the form with tables and for the form without, and on the tables.
 struct Expected {
@@ -73,30 +73,50 @@ pub fn shader_cells(
 }
 
 fn cell(level: Level, method: &str, case: &StressCase, pairs: &[Pair], found: &[Rgb], truth: &[Rgb]) -> Cell {
-    let mut worst = 0.0_f64;
-    let mut below = 0.0_f64;
-    for ((&(wi, wo), found), truth) in pairs.iter().zip(found).zip(truth) {
-        if found.iter().any(|value| !value.is_finite()) {
-            return Cell::new(level, method, &case.id, Some(Fault::NotFinite), 0.0);
-        }
-        let is_lit = wi[2] > 0.0 && wo[2] > 0.0;
-        let bright = brightest(truth);
-        for (value, expected) in found.iter().zip(truth) {
-            if !is_lit {
-                below = below.max(value.abs());
-            } else if *value < -ROUNDING && *expected >= 0.0 {
-                below = below.max(-value);
-            }
-            let error = relative_error(*value, *expected, bright, FLOOR);
-            // NaN in the truth counts as an infinite error: it must not pass for agreement.
-            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
-        }
+    let Stress { not_finite, negative, error } = Stress::of(pairs, found, truth);
+    if not_finite > 0 {
+        return Cell::new(level, method, &case.id, Some(Fault::NotFinite), 0.0);
     }
-    let fault = (below > ROUNDING * bright_floor(truth)).then_some(Fault::Negative);
-    Cell::new(level, method, &case.id, fault, if fault.is_some() { below } else { worst })
+    let fault = (negative > ROUNDING * bright_floor(truth)).then_some(Fault::Negative);
+    Cell::new(level, method, &case.id, fault, if fault.is_some() { negative } else { error })
+}
+
+/// Values at stressed directions against the truth there.
+pub(super) struct Stress {
+    /// Values that are NaN or infinite. The rest is of the others.
+    pub(super) not_finite: u64,
+    /// Largest magnitude of a negative value where the truth is not negative, and of light at or below the horizon.
+    pub(super) negative: f64,
+    /// Largest relative error; infinite where the truth is NaN.
+    pub(super) error: f64,
+}
+
+impl Stress {
+    pub(super) fn of(pairs: &[Pair], found: &[Rgb], truth: &[Rgb]) -> Self {
+        let mut out = Self { not_finite: 0, negative: 0.0, error: 0.0 };
+        for ((&(wi, wo), found), truth) in pairs.iter().zip(found).zip(truth) {
+            let is_lit = wi[2] > 0.0 && wo[2] > 0.0;
+            let bright = brightest(truth);
+            for (value, expected) in found.iter().zip(truth) {
+                if !value.is_finite() {
+                    out.not_finite += 1;
+                    continue;
+                }
+                if !is_lit {
+                    out.negative = out.negative.max(value.abs());
+                } else if *value < -ROUNDING && *expected >= 0.0 {
+                    out.negative = out.negative.max(-value);
+                }
+                let error = relative_error(*value, *expected, bright, FLOOR);
+                // NaN in the truth counts as an infinite error: it must not pass for agreement.
+                out.error = if error.is_nan() { f64::INFINITY } else { out.error.max(error) };
+            }
+        }
+        out
+    }
 }
 
 /// The divisor of rounding errors: the brightest value, at least 1.
-fn bright_floor(values: &[Rgb]) -> f64 {
+pub(super) fn bright_floor(values: &[Rgb]) -> f64 {
     values.iter().map(brightest).fold(1.0, f64::max)
 }

@@ -194,6 +194,7 @@ impl Bake {
             textures: self.textures.clone(),
             stacks: self.stacks.clone(),
             maps: Vec::new(),
+            films: Vec::new(),
         }
     }
 
@@ -330,6 +331,7 @@ pub(crate) fn table(
             points: 1,
         },
         aim: None,
+        largest: None,
     };
     let entry = TableEntry {
         kind,

@@ -7,7 +7,7 @@ use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, FilmThickness, Slab};
-use luthier_report::{Report, Settings, TableTerms, TileReport, Weights, judge};
+use luthier_report::{FilmMap, FilmSource, Report, Settings, Subject, TableTerms, TileReport, Weights, judge};
 
 use crate::fixture::{Bake, WAVELENGTHS_NM, axis, table};
 
@@ -173,6 +173,36 @@ fn thickness_maps_are_held_to_their_film() {
     assert!(thick.contains("150 to 450 nm, the film is 100 to 300 nm"), "{thick}");
     let [tilted] = &findings([0.4, 3.0, 4.0, 1.0])[..] else { panic!() };
     assert!(tilted.contains("in 6 texels"), "{tilted}");
+}
+
+/// A picture of two texels, 0 and 1, has 1/2, 0, 1/2 and 1 at the quarters of its repeat, and is linear between them.
+#[test]
+fn thickness_tiles_are_held_to_the_map_of_the_file() {
+    let held = |planted: f32, source: FilmSource| {
+        let mut bake = Bake::new();
+        let thickness = FilmThickness { min_nm: 100.0, max_nm: 300.0 };
+        bake.stacks[1].layers[0].films = vec![Film { ior: Ior::constant(1.5, 0.0).unwrap(), thickness }];
+        bake.manifest.materials[1].layers[0].tiles[TableKind::Thickness] = Some(0);
+        let [x, y] = ["u", "v"].map(|name| axis(name, 0.0, 1.0, 4, Mapping::Periodic));
+        let layout = AtlasLayout { x, y: Some(y), apron: 1, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero };
+        // The apron repeats the last column before the first, and the first behind the last.
+        let nm = [300.0, 200.0, 100.0, 200.0, 300.0, 200.0_f32];
+        bake.add(TableKind::Thickness, layout, |_, x, _| {
+            [nm[x as usize] / 600.0 + if x == 2 { planted } else { 0.0 }, 0.0, 0.0, 1.0]
+        });
+        let films = vec![FilmMap { material: 1, layer: 0, source, extent_um: 1e9 }];
+        let subject = Subject { films, ..bake.subject() };
+        let report = judge(&subject, None, &Settings { pairs_per_set: 20, ..Settings::default() }).unwrap();
+        tiles(&report, TableKind::Thickness)[0].judge.clone().unwrap()
+    };
+    let picture = || FilmSource::Image(Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] });
+    // Weights of 8 bits, half floats.
+    assert!(held(0.0, picture()).max_abs_err < 5e-4);
+    let found = held(0.1, picture());
+    assert!((found.max_abs_err - 0.1).abs() < 5e-4 && found.worst.channel == 0, "{found:?}");
+    assert!((found.worst.at[0] - 0.25).abs() < 1e-9, "{found:?}");
+    // Another map is another film.
+    assert!(held(0.0, FilmSource::Noise { seed: 1, frequency: 2.0, octaves: 2 }).max_abs_err > 0.05);
 }
 
 #[test]

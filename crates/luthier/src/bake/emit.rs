@@ -34,7 +34,7 @@ fn shader(set: &MaterialSet, form: Form, interface: &Interface, target: Target) 
         Target::SpirV => luthier_shader::emit_spirv(set, form),
         _ => luthier_shader::emit(set, form, target).map(String::into_bytes),
     };
-    Ok(Shader { form, target, bytes: bytes?, interface: interface.clone() })
+    Ok(Shader { form, target, bytes: bytes?, interface: interface.clone(), checks: luthier_shader::checks(target) })
 }
 
 /// A package of some materials of another, by number: with all tables, without surfaces, and with shaders for these materials alone, in the forms that some of

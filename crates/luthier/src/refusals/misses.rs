@@ -1,4 +1,4 @@
-//! Warnings about tables that miss the aim of a bake.
+//! Warnings about tables that miss the aim of a bake, or a tenth of their largest value.
 
 use luthier_lut::TableKind;
 use luthier_manifest::Manifest;
@@ -6,7 +6,8 @@ use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::pictures::read_image;
 
-/// Warnings for layers of a bake whose tiles miss their aim, each at the line of its layer. Materials are found by name.
+/// Warnings for layers of a bake whose tiles miss their aim, or are off by more than a tenth of their largest value, each at the line of its layer.
+/// Materials are found by name.
 pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
     for table in &manifest.tables {
@@ -14,9 +15,8 @@ pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
             let Some(material) = materials.iter().find(|material| material.name == entry.name) else { continue };
             for (layer, record) in entry.layers.iter().enumerate() {
                 let tile = record.tiles[table.kind].and_then(|tile| table.tiles.get(tile as usize));
-                if let Some((error, aim)) = tile.and_then(|tile| tile.miss()) {
-                    warnings.push(diagnostic(material, layer, table.kind, error, aim));
-                }
+                let told = tile.and_then(|tile| off(tile.miss(), tile.coarse()));
+                warnings.extend(told.map(|off| diagnostic(material, layer, table.kind, &off)));
             }
         }
     }
@@ -27,13 +27,21 @@ pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
 pub fn foreseen_misses(material: &Material) -> Vec<Diagnostic> {
     // Other functions report why a material cannot be baked.
     let rows = luthier_bake::kinked_rows(material, &read_image).unwrap_or_default().into_iter();
-    rows.map(|(layer, error)| diagnostic(material, layer, TableKind::Fresnel, error, luthier_bake::AIM)).collect()
+    let told = rows.filter_map(|(layer, error)| Some((layer, off(Some((error, luthier_bake::AIM)), None)?)));
+    told.map(|(layer, off)| diagnostic(material, layer, TableKind::Fresnel, &off)).collect()
 }
 
-fn diagnostic(material: &Material, layer: usize, kind: TableKind, error: f64, aim: f64) -> Diagnostic {
-    let name = kind.name();
-    let message =
-        format!("the {name} table of layer {layer} is off by up to {error:.1e}, where a bake aims at {aim:.1e}");
+/// The error of a tile in words, with the aim that it misses and the largest value of which it is more than a tenth; `None` for a tile that does neither.
+fn off(missed: Option<(f64, f64)>, coarse: Option<(f64, f64)>) -> Option<String> {
+    let (error, _) = missed.or(coarse)?;
+    let part = coarse
+        .map_or(String::new(), |(_, largest)| format!(", more than a tenth of its largest value ({largest:.1e})"));
+    let aim = missed.map_or(String::new(), |(_, aim)| format!(", where a bake aims at {aim:.1e}"));
+    Some(format!("off by up to {error:.1e}{part}{aim}"))
+}
+
+fn diagnostic(material: &Material, layer: usize, kind: TableKind, off: &str) -> Diagnostic {
+    let message = format!("the {} table of layer {layer} is {off}", kind.name());
     let hint =
         "shaders of the form `full` read no tables; `max_abs` under `[budget]` limits the error of tables".to_owned();
     material.diagnostic(Severity::Warning, &format!("layer.{layer}.ior"), message, Some(hint))

@@ -49,6 +49,10 @@ impl Kind for Table {
         Ok(Some(Arc::new(FilmJob { interface, thickness, color: site.color, axes, format })))
     }
 
+    fn has_aim(&self) -> bool {
+        true
+    }
+
     fn candidates(&self, plan: &Plan, _: &Results, colors: bool) -> Option<Found> {
         search::candidates(plan, colors)
     }

@@ -36,7 +36,7 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
     }
     // Only this material is evaluated.
     let stacks = vec![material.reflecting_stack().into_owned(); manifest.materials.len()];
-    let judged = Judged { manifest, textures, stacks, maps: Vec::new() };
+    let judged = Judged { manifest, textures, stacks, maps: Vec::new(), films: Vec::new() };
     let rows = Rows::at(&judged, number, &subject.place, Weights::Exact).map_err(Failure::input)?;
     let found: Vec<Vec<Estimate>> = pairs
         .par_iter()

@@ -4,14 +4,18 @@ mod evidence;
 mod memory;
 #[cfg(feature = "gpu")]
 mod pictures;
+#[cfg(feature = "gpu")]
+mod times;
 
 use std::path::Path;
 
 use luthier::Source;
 use luthier_export::{Folder, GENERATOR, REPORT_FILES, label, origin, publish_beside, shared};
 use luthier_manifest::Manifest;
-use luthier_material::{Material, Parsed};
-use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, SurfaceMap, judge, limits};
+use luthier_material::{Material, Parsed, VariationSource};
+use luthier_report::{
+    Asked, Device, Exhibits, FileBudget, FilmMap, FilmSource, Report, Settings, Subject, SurfaceMap, judge, limits,
+};
 use luthier_scene::{LeaveOut, simplified};
 use luthier_terminal::{Bar, Failure, Outcome, print};
 
@@ -33,7 +37,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let device = device(&folder, options)?;
     drop(lock);
     let stacks = materials.iter().map(|m| m.reflecting_stack().into_owned()).collect();
-    let subject = Subject { manifest, textures, stacks, maps };
+    let subject = Subject { manifest, textures, stacks, maps, films: films(&materials)? };
     let bar = Bar::new("judging");
     let judgements = memory::Judgements(store()?);
     let settings = Settings {
@@ -53,6 +57,10 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     }
 
     evidence::add(&mut report, &given, options, manifest, &materials)?;
+    #[cfg(feature = "gpu")]
+    if options.times {
+        report.times = device.as_ref().map(|shaders| times::measure(shaders, &subject)).transpose()?;
+    }
     let pictures = pictures(&mut report, device.as_ref(), &subject, options)?;
     let budgets: Vec<FileBudget> =
         (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: m.budget }).collect();
@@ -77,6 +85,31 @@ fn maps(folder: &Folder) -> Outcome<Vec<SurfaceMap>> {
         Ok(SurfaceMap { material, slot: map.slot, layer: map.layer, picture })
     })
     .collect()
+}
+
+/// The maps of films that vary, read again from the material files.
+fn films(materials: &[Material]) -> Outcome<Vec<FilmMap>> {
+    let layers = (0..)
+        .zip(materials)
+        .flat_map(|(number, m)| (0..).zip(&m.layers).map(move |(layer, extras)| (number, m, layer, extras)));
+    let varying =
+        layers.filter_map(|(number, m, layer, extras)| Some((number, m, layer, extras.film_variation.as_ref()?)));
+    varying
+        .map(|(material, m, layer, variation)| {
+            let source = match &variation.source {
+                VariationSource::Noise { seed, frequency, octaves } => {
+                    FilmSource::Noise { seed: *seed, frequency: *frequency, octaves: *octaves }
+                }
+                VariationSource::Image(picture) => {
+                    let image = luthier::read_image(&m.source, picture);
+                    FilmSource::Image(
+                        image.map_err(|reason| Failure::Input(anyhow::anyhow!("{}: {reason}", picture.path)))?,
+                    )
+                }
+            };
+            Ok(FilmMap { material, layer, source, extent_um: variation.extent_um })
+        })
+        .collect()
 }
 
 /// Facts that identify the run.
@@ -109,6 +142,7 @@ fn command(options: &ReportOptions) -> String {
         words.extend(options.max_flip.map(|limit| format!("--max-flip {limit:e}")));
         words.extend(options.adapter.as_ref().map(|adapter| format!("--adapter {adapter}")));
         words.push(format!("--picture-size {}", options.picture_size));
+        words.extend(options.times.then(|| "--times".to_owned()));
     }
     words.join(" ")
 }

@@ -49,3 +49,61 @@ fn a_row_that_misses_its_aim_is_named_by_check_and_bake_and_breaks_the_report() 
         report.stdout
     );
 }
+
+/// A film whose row of phases has far too few texels for its fringes. Line 15 has the index of the layer that it is on.
+const FRINGES: &str = "schema = 1
+name = \"fringes\"
+
+[[layer]]
+type = \"thin-film\"
+ior = 1.4
+
+[layer.thickness_nm]
+min = 100
+max = 1500
+extent_um = 1000
+map = { noise = { seed = 1, frequency = 1, octaves = 1 } }
+
+[[layer]]
+type = \"dielectric\"
+ior = 1.8
+alpha = 0.2
+
+[bake]
+model = \"granier-heidrich\"
+color = \"three-wavelengths\"
+thickness = { size = 16 }
+phase = { size = SIZE }
+";
+
+/// No aim applies to a table whose size the file states. One that is off by more than a tenth of its largest value is named nevertheless.
+#[test]
+fn a_table_that_is_off_by_a_tenth_of_its_largest_value_is_named_by_bake_and_report() {
+    let workshop = Workshop::new();
+    for (size, is_coarse) in [("12", true), ("512", false)] {
+        workshop.write("fringes.toml", FRINGES.replace("SIZE", size));
+        let bake = workshop.run(&["bake", "fringes.toml", "--out", "out"]).exits(0);
+        let words = "the phase table of layer 0 is off by up to";
+        assert_eq!(bake.stderr.contains(words), is_coarse, "{}", bake.stderr);
+        // The function is 2 cos x: its largest value is 2.
+        assert_eq!(
+            bake.stderr.contains("more than a tenth of its largest value (2.0e0)"),
+            is_coarse,
+            "{}",
+            bake.stderr
+        );
+        let tile = workshop.json("out/manifest.json")["tables"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find_map(|table| (table["kind"] == "phase").then(|| table["tiles"][0].clone()));
+        let tile = tile.unwrap();
+        let (largest, error) = (tile["largest"].as_f64().unwrap(), tile["error"]["max_abs_err"].as_f64().unwrap());
+        assert!((1.9..=2.0).contains(&largest) && tile["aim"].is_null(), "{tile}");
+        assert_eq!(error > 0.1 * largest, is_coarse, "{tile}");
+        workshop.run(&["report", "--out", "out", "--no-device", "--pairs", "64"]).exits(0);
+        let findings = workshop.json("out/report/report.json")["findings"].clone();
+        let is_found = |f: &Value| f.as_str().is_some_and(|f| f.contains("phase tile fringes/0: off by up to"));
+        assert_eq!(findings.as_array().unwrap().iter().any(is_found), is_coarse, "{findings}");
+    }
+}

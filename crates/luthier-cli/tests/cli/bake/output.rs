@@ -247,3 +247,33 @@ fn names_are_free() {
     workshop.write("m/id.toml", matte("words-id"));
     workshop.run(&["check", "m"]).exits(1).says(&["`words` and `words-id`", "LUTHIER_MATERIAL_WORDS_ID"]);
 }
+
+/// The version is that of the lock file, by which the program was built.
+#[test]
+fn shaders_name_the_judges_that_they_passed() {
+    let workshop = Workshop::with(&[("m/chalk.toml", &matte("chalk"))]);
+    workshop.run(&["bake", "m", "--target", "wgsl,glsl450,glsl-es300,hlsl,msl,spirv", "--quiet"]).exits(0);
+    let lock = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock");
+    let lock = std::fs::read_to_string(lock).unwrap();
+    let version = lock.split("name = \"naga\"\nversion = \"").nth(1).unwrap().split('"').next().unwrap();
+    let shaders = workshop.json("out/manifest.json")["shaders"].as_array().unwrap().clone();
+    assert_eq!(shaders.len(), 12);
+    for shader in &shaders {
+        let checks = shader["checks"].as_array().unwrap();
+        let naga = serde_json::json!({"by": format!("naga {version}"), "read": "wgsl", "capabilities": []});
+        assert_eq!(checks[0], naga, "{shader}");
+        // The lint reads the text itself.
+        let target = shader["target"].as_str().unwrap();
+        let has_lint = ["hlsl", "msl"].contains(&target);
+        assert_eq!(checks.len(), if has_lint { 2 } else { 1 }, "{shader}");
+        assert!(!has_lint || (checks[1]["read"] == target && checks[1]["by"].as_str().unwrap().starts_with("lint ")));
+    }
+    // The report has them, too.
+    workshop.run(&["report", "--no-device", "--pairs", "8"]).exits(0);
+    let report = workshop.json("out/report/report.json");
+    assert_eq!(report["shaders"].as_array().unwrap().len(), 12);
+    assert_eq!(report["shaders"][0]["checks"], shaders[0]["checks"]);
+    let page = workshop.text("out/report/index.html");
+    assert!(page.contains(&format!("naga {version} on this text, no capability beyond core WebGPU")), "{version}");
+    assert!(page.contains("on the wgsl that it was translated from"), "{version}");
+}

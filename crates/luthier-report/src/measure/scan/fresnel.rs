@@ -2,14 +2,22 @@
 
 use luthier_layers::terms::Terms;
 use luthier_layers::twins::terms::Exact;
-use luthier_lut::incident_cosine;
+use luthier_lut::{TableKind, incident_cosine};
+use luthier_manifest::LayerRecord;
+use luthier_optics::Rgb;
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::Stack;
 
 use super::{Measured, Scan, User, coordinate, coordinates};
 use crate::error::ReportError;
+use crate::measure::readers::bare_users;
 use crate::measure::scan::report::{Curves, ReflectanceCurve};
-use crate::measure::subject::{Subject, Table};
+use crate::measure::subject::{Subject, Table, color};
 use crate::measure::table_terms::{AngleAxis, Weights};
 use crate::text::format::rounded;
+
+/// Reflectance of an interface over the cosine.
+type Reflectance<'a> = Box<dyn Fn(f64) -> Rgb + 'a>;
 
 /// Points in every cell of a row.
 const POINTS_PER_CELL: u32 = 8;
@@ -18,7 +26,7 @@ const GRAZING_POINTS: u32 = 256;
 /// Degrees between the points of a drawn curve.
 const CURVE_STEP_DEG: f64 = 1.5;
 
-/// Compares a Fresnel row with every interface that reads it. A row that two different interfaces share is wrong for one of them.
+/// Compares a Fresnel row with every interface that reads it, those of bare layers under a patina among them. A row that two different interfaces share is wrong for one of them.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -32,13 +40,26 @@ pub(super) fn scan(
     let grazing = (0..GRAZING_POINTS).map(|n| 1e-6 * libm::pow(1e5, coordinate(n, GRAZING_POINTS)));
     let cosines: Vec<f64> = regular.chain(grazing).map(|c| c.clamp(0.0, 1.0)).collect();
     let mut scan = Scan::default();
-    for &(material, layer) in users {
-        let record = &subject.manifest.materials[material].layers[layer];
+    let materials = &subject.manifest.materials;
+    let layers = users.iter().map(|&(material, layer)| {
+        let expected: Reflectance<'_> = Box::new(move |c| exact[material].fresnel(layer, c));
+        (&materials[material].layers[layer], expected)
+    });
+    let bare = bare_users(subject, TableKind::Fresnel, tile).into_iter().filter_map(|material| {
+        let (entry, stack) = (&materials[material], &subject.stacks[material]);
+        // What no patina covers meets the light without the first layer.
+        let uncovered = Stack { exterior: stack.exterior.clone(), layers: stack.layers.get(1..)?.to_vec() };
+        let interface = Interface::of(&uncovered, 0)?.sampled(&color(entry));
+        let expected: Reflectance<'_> = Box::new(move |c| interface.rgb(c));
+        Some((&entry.constants.patina.as_ref()?.bare, expected))
+    });
+    let readers: Vec<(&LayerRecord, Reflectance<'_>)> = layers.chain(bare).collect();
+    for (record, expected) in &readers {
         // Rows over the cosine below the interface are also read at their nodes.
         let inside = cosines.iter().map(|&c| incident_cosine(record.critical_cot_sq, c));
         let inside = inside.filter(|_| record.critical_cot_sq > 0.0);
         for cos_theta in cosines.iter().copied().chain(inside) {
-            let expected = exact[material].fresnel(layer, cos_theta);
+            let expected = expected(cos_theta);
             let value = angle.value_at(record.row_cosine(cos_theta));
             let sampled = table.read(tile, [value, 0.0], Weights::EightBit);
             for channel in 0..3 {
@@ -46,7 +67,7 @@ pub(super) fn scan(
             }
         }
     }
-    let first = users.first().map(|&(material, layer)| &subject.manifest.materials[material].layers[layer]);
+    let first = readers.first().map(|(record, _)| *record);
     let steps = (90.0 / CURVE_STEP_DEG) as u32;
     let rgb = (0..=steps).map(|n| {
         let cos_theta = libm::cos((CURVE_STEP_DEG * f64::from(n)).to_radians());

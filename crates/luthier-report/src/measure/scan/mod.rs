@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
 use crate::measure::memory::Remembered;
-use crate::measure::readers::{User, tiles, users};
+use crate::measure::readers::{User, bare_users, tiles, users};
 use crate::measure::references::References;
 use crate::measure::scan::report::{Curves, TableReport, TileReport};
 use crate::measure::statistics::summarise;
@@ -69,7 +69,7 @@ pub(crate) fn scan(
             let measured = match kind {
                 TableKind::Thickness => {
                     findings.extend(thickness::doubts(&table, number, &users, subject));
-                    None
+                    if known.is_some() { None } else { thickness::scan(&table, number, &users, subject) }
                 }
                 _ if known.is_some() => None,
                 TableKind::Fresnel => Some(fresnel::scan(&table, number, &users, subject, exact)?),
@@ -80,7 +80,7 @@ pub(crate) fn scan(
                 TableKind::Film => film::scan(&table, number, &users, subject),
                 TableKind::Lobes => lobes::scan(&table, number, &users, subject, exact),
             };
-            let Found { judge, not_finite, curves, uncertainty } = known.unwrap_or_else(|| {
+            let Found { judge, not_finite, curves, uncertainty, largest } = known.unwrap_or_else(|| {
                 let found = Found::from(measured.unwrap_or_default());
                 remembered.keep(TILE, &remembered.tile(subject, kind, number, pairs_per_set), &found);
                 found
@@ -93,6 +93,7 @@ pub(crate) fn scan(
                 aim: tile.aim,
                 uncertainty,
                 judge,
+                largest: largest.or(tile.largest),
                 not_finite,
                 curves,
             });
@@ -116,10 +117,8 @@ fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     let layers = materials.iter().flat_map(|m| m.layers.iter().enumerate().map(move |(l, layer)| (m, l, layer)));
     let layers = layers
         .filter(|(m, _, layer)| layer.tiles[kind].is_some_and(|first| (first..first + tiles(m, kind)).contains(&tile)));
-    let bare = materials
-        .iter()
-        .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| patina.bare.tiles[kind] == Some(tile)));
-    layers.map(|(m, l, _)| format!("{}/{l}", m.name)).chain(bare.map(|m| format!("{}/bare", m.name))).collect()
+    let bare = bare_users(subject, kind, tile).into_iter().map(|number| format!("{}/bare", materials[number].name));
+    layers.map(|(m, l, _)| format!("{}/{l}", m.name)).chain(bare).collect()
 }
 
 /// Raw results of the scan of a tile.
@@ -138,13 +137,15 @@ struct Found {
     not_finite: u64,
     curves: Curves,
     uncertainty: Option<f64>,
+    largest: Option<f64>,
 }
 
 impl From<Measured> for Found {
     fn from(Measured { scan, curves, uncertainty }: Measured) -> Self {
-        let not_finite = scan.not_finite;
+        let (not_finite, largest) = (scan.not_finite, scan.largest);
         let judge = scan.stats();
-        Self { uncertainty: uncertainty.filter(|_| judge.is_some()), judge, not_finite, curves }
+        let largest = judge.as_ref().map(|_| largest);
+        Self { uncertainty: uncertainty.filter(|_| judge.is_some()), judge, not_finite, curves, largest }
     }
 }
 
@@ -152,6 +153,8 @@ impl From<Measured> for Found {
 struct Scan {
     errors: Vec<f64>,
     worst: Option<(f64, Worst)>,
+    /// Largest magnitude of the function at a point.
+    largest: f64,
     not_finite: u64,
 }
 
@@ -164,6 +167,7 @@ impl Scan {
             return false;
         }
         self.errors.push(error);
+        self.largest = self.largest.max(expected.abs());
         let is_worst = self.worst.as_ref().is_none_or(|(worst, _)| error > *worst);
         if is_worst {
             self.worst = Some((error, Worst { at: at.to_vec(), channel: channel as u32, expected, sampled }));

@@ -1,6 +1,6 @@
 //! Figures of a scan, as reports have them.
 
-use luthier_lut::{AtlasLayout, ErrorStats, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, COARSE, ErrorStats, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
 
 use crate::measure::statistics::UNCERTAINTY_MARGIN;
@@ -35,14 +35,17 @@ pub struct TileReport {
     pub users: Vec<String>,
     /// Its error as the baker measured it.
     pub baker: ErrorStats,
-    /// Its error as measured here from the shipped texels, with 8-bit weights if a sampler filters the format. `None` for thickness maps, whose truth
-    /// only the baker has, and for tiles that no layer reads.
+    /// Its error as measured here from the shipped texels, with 8-bit weights if a sampler filters the format. `None` for tiles that no layer reads, and for
+    /// thickness tiles whose maps the subject lacks.
     pub judge: Option<ErrorStats>,
     /// Standard error of the reference at the worst point of `judge`, if the reference is an estimate.
     pub uncertainty: Option<f64>,
     /// The error of sampled reads that the baker aimed at, if nothing else was asked for.
     #[serde(default)]
     pub aim: Option<f64>,
+    /// Largest magnitude of the function at the points of `judge`; without one, the largest at the nodes, by the baker.
+    #[serde(default)]
+    pub largest: Option<f64>,
     /// Reads that were not finite; they are not part of `judge`.
     pub not_finite: u64,
     /// Curves of the tile, for charts.
@@ -67,6 +70,12 @@ impl TileReport {
         let doubt = UNCERTAINTY_MARGIN * self.uncertainty.unwrap_or(0.0);
         let found = self.judge.as_ref().map_or(0.0, |judge| judge.max_abs_err - doubt).max(stated);
         self.aim.filter(|aim| found > *aim).map(|aim| (found, aim))
+    }
+
+    /// The error of the tile and its largest value, if the error is more than [`COARSE`] of that value.
+    pub fn coarse(&self) -> Option<(f64, f64)> {
+        let error = self.max_abs_err();
+        self.largest.filter(|largest| error > COARSE * largest).map(|largest| (error, largest))
     }
 }
 

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as STANDARD;
 
+use luthier_manifest::Form;
+
 use super::summary::shown;
 use super::trade::{FAMILY, of_shaders};
 use super::{anchor, of_material};
@@ -12,7 +14,7 @@ use crate::judge::evidence::Exhibits;
 use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::pages::chart;
 use crate::svg::{Spot, field, legend};
-use crate::text::format::{bytes, error, escape, none, number};
+use crate::text::format::{bytes, error, escape, none, number, rounded};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     facts(out, report);
@@ -85,6 +87,7 @@ fn facts(out: &mut String, report: &Report) {
             (format!("{} cycles", number(median)), range)
         },
     );
+    let fast = (fast.0, [fast.1, timed(report)].concat());
     let (samples, not_finite) = samples(report);
     let large = format!("{} tables for {} materials", report.tables.len(), report.materials.len());
     let boxes = [
@@ -99,6 +102,19 @@ fn facts(out: &mut String, report: &Report) {
         let _ = write!(out, "<div><dt>{name}</dt><dd>{figure}</dd><dd class=\"sub\">{note}</dd></div>");
     }
     out.push_str("</dl>\n");
+}
+
+/// Measured times, behind the cycles; empty where none were asked for.
+fn timed(report: &Report) -> String {
+    let Some(times) = &report.times else { return String::new() };
+    let of = |form| spread(times.rows.iter().filter(|row| row.form == form).map(|row| row.net_ns).collect());
+    let words = [Form::Baked, Form::Full].into_iter().filter_map(|form| {
+        let [_, median, _] = of(form)?;
+        Some(format!("{} {form}", number(rounded(median, 3))))
+    });
+    let kind = if times.is_software { "a program on the CPU" } else { "this GPU" };
+    let words: Vec<String> = words.collect();
+    format!("; timed on {kind}, median ns: {}", words.join(", "))
 }
 
 /// Number of compared values, and number of values that are not finite.
@@ -146,7 +162,7 @@ fn chart(out: &mut String, report: &Report) {
     } else {
         (
             "bytes of the tables that a material reads".to_owned(),
-            "The best materials are at the lower left. No cost of shaders was given (luthier report --cost), and the report measures no times.",
+            "The best materials are at the lower left. No cost of shaders was given (luthier report --cost); luthier report --times measures times.",
         )
     };
     out.push_str("<figure class=\"field\">");

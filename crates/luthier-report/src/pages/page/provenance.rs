@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use luthier_manifest::Target;
+
 use crate::judge::report::Report;
 use crate::text::format::escape;
 
@@ -37,8 +39,14 @@ pub(super) fn write(out: &mut String, report: &Report) {
         let adapter = stability.device.as_deref().unwrap_or("no adapter");
         row(out, ["stability", &stability.generator, adapter, "fixed by case"]);
     }
+    if let Some(times) = &report.times {
+        let clock = format!("{}, clock of the {}", times.device, times.clock);
+        row(out, ["times", "this run", &clock, "none; times differ from run to run"]);
+    }
+    out.push_str("</tbody></table></div>");
+    shaders(out, report);
     out.push_str(
-        "</tbody></table></div><details><summary>Sources</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>file</th><th>SHA-256 of the file \
+        "<details><summary>Sources</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>file</th><th>SHA-256 of the file \
          and of the files that it names</th></tr></thead><tbody>",
     );
     for m in &report.materials {
@@ -51,6 +59,46 @@ pub(super) fn write(out: &mut String, report: &Report) {
     }
     out.push_str("</tbody></table></div></details>\n");
     super::end_fold(out);
+}
+
+/// The shaders, with the judges that each passed when it was emitted.
+fn shaders(out: &mut String, report: &Report) {
+    if report.shaders.is_empty() {
+        return;
+    }
+    out.push_str(
+        "<h3 id=\"shaders\">Shaders</h3><div class=\"scroll\"><table><thead><tr><th>file</th><th>language</th><th>form</th><th>passed when it was emitted</th><th>ran in this \
+         report</th></tr></thead><tbody>",
+    );
+    for shader in &report.shaders {
+        let checks = shader.checks.iter().map(|check| {
+            let of = if check.is_of_text(shader.target) {
+                "this text".to_owned()
+            } else {
+                format!("the {} that it was translated from", check.read)
+            };
+            let capabilities = match check.capabilities.as_deref() {
+                None => String::new(),
+                Some([]) => ", no capability beyond core WebGPU".to_owned(),
+                Some(all) => format!(", with {}", all.join(", ")),
+            };
+            format!("{} on {of}{capabilities}", check.by)
+        });
+        let checks: Vec<String> = checks.collect();
+        let checks = if checks.is_empty() { "not in the manifest".to_owned() } else { checks.join("; ") };
+        let ran = if report.device.is_some() && shader.target == Target::Wgsl { "yes" } else { "no" };
+        let _ = write!(
+            out,
+            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td><td>{ran}</td></tr>",
+            escape(&shader.path),
+            shader.target,
+            shader.form,
+            escape(&checks)
+        );
+    }
+    out.push_str(
+        "</tbody></table></div><p class=\"note\">naga reads WGSL here. No judge of this bake reads GLSL and SPIR-V themselves: glslang and spirv-val do in the tests of luthier, on shaders like these.</p>",
+    );
 }
 
 fn row(out: &mut String, cells: [&str; 4]) {

@@ -110,8 +110,8 @@ fn how(table: &TableReport, points: u32) -> String {
             )
         }
         TableKind::Thickness => {
-            "These are the baker's own figures, because only the baker has the map; here the range, and the \
-                                 normalisation against the slopes, are checked, and what does not fit is a finding."
+            "“Here” is the map of the material file, evaluated anew between nodes and at nodes: thickness over twice the largest one, slopes, and the factor that normalises them. The \
+             range of the film and that factor are checked in every texel, too; what does not fit is a finding."
                 .to_owned()
         }
         _ => here.to_owned(),

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use luthier_lut::{Axis, RowBase, TableKind};
-use luthier_manifest::{Budget, Candidate, CandidateForm, Search};
+use luthier_manifest::{Budget, Candidate, CandidateForm, Form, Search};
 
 use super::cell;
 use crate::judge::evidence::{Costs, ShaderCost};
 use crate::judge::report::{Compared, MaterialReport, Report};
 use crate::svg::{Choice, Mark, Price, Series, legend, pareto};
-use crate::text::format::{axis, bytes, error, escape, none, number};
+use crate::text::format::{axis, bytes, error, escape, none, number, rounded};
 
 /// The instruction set in charts. Tables list all.
 pub(super) const FAMILY: &str = "rdna2";
@@ -28,7 +28,47 @@ pub(super) fn write(out: &mut String, report: &Report) {
     };
     super::fold(out, "trade", "Cost and bytes against error", &says);
     searches(out, report);
+    times(out, report);
     super::end_fold(out);
+}
+
+/// Measured times of all shaders.
+fn times(out: &mut String, report: &Report) {
+    out.push_str("<h3 id=\"times\">Times</h3>");
+    let Some(times) = &report.times else {
+        out.push_str(
+            "<p>None: <code>luthier report --times</code> times the shaders on the adapter, and names it.</p>\n",
+        );
+        return;
+    };
+    let kind = if times.is_software {
+        "This adapter is a program on the CPU: the times compare shaders with each other there, and say nothing of a GPU."
+    } else {
+        "This adapter is a GPU."
+    };
+    let _ = write!(
+        out,
+        "<p>Nanoseconds per evaluation on {}, by the clock of the {}: median of {} runs of {} evaluations, less that of the same kernel without an evaluation; ± is the median \
+         absolute deviation. {kind}</p><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th class=\"n\">baked</th><th class=\"n\">full</th><th class=\"n\">full / \
+         baked</th></tr></thead><tbody>",
+        escape(&times.device),
+        escape(&times.clock),
+        times.repeats,
+        times.evaluations
+    );
+    for material in &report.materials {
+        let of = |form| times.rows.iter().find(|row| row.material == material.name && row.form == form);
+        let [baked, full] = [Form::Baked, Form::Full].map(of);
+        let cells = [baked, full].map(|row| {
+            cell(&row.map_or_else(none, |row| {
+                format!("{} ± {}", number(rounded(row.net_ns, 3)), number(rounded(row.mad_ns, 2)))
+            }))
+        });
+        let ratio = baked.zip(full).map_or_else(none, |(baked, full)| number(rounded(full.net_ns / baked.net_ns, 3)));
+        let of = super::of_material(&material.name);
+        let _ = write!(out, "<tr{of}><th>{}</th>{}{}</tr>", escape(&material.name), cells.concat(), cell(&ratio));
+    }
+    out.push_str("</tbody></table></div>\n");
 }
 
 fn searches(out: &mut String, report: &Report) {
