@@ -48,8 +48,8 @@ pub use file::FileEntry;
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_model::{
-    Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, ModelPart, Reflectance,
-    ReflectanceCurve, ShadingModel,
+    DiffuseTerm, Feature, Form, InternalReflection, LobeHeight, LowerCosine, LowerReflectance, Masking, ModelPart,
+    Reflectance, ReflectanceCurve, ShadingModel,
 };
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{BindingEntry, MANIFEST_SCHEMA, Manifest, ShaderEntry, TableEntry};

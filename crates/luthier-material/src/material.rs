@@ -7,7 +7,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::{BeamsRecord, Budget, ColorMode, LowerReflectance, MapSlot, ShadingModel};
+use luthier_manifest::{BeamsRecord, Budget, ColorMode, DiffuseTerm, LowerReflectance, MapSlot, ShadingModel};
 
 use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
@@ -78,10 +78,16 @@ impl Material {
         self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.is_path());
         self.bake.lower_reflectance = self.bake.lower_reflectance.filter(|_| model.is_path());
         self.bake.lower_cosine = self.bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine));
+        self.bake.diffuse_term = self.bake.diffuse_term.filter(|_| model.takes(ModelPart::DiffuseTerm));
         if !model.takes(ModelPart::Beams) {
             self.bake.beams = None;
             self.layers.iter_mut().for_each(|layer| layer.exponents = None);
         }
+    }
+
+    /// Whether the light of its diffuse base is added to that of the first interface, which its model reads alone.
+    pub fn adds_base(&self) -> bool {
+        self.bake.diffuse_term == Some(DiffuseTerm::Added)
     }
 
     /// The colour of its tables: spectral, unless its file asks otherwise.
@@ -102,7 +108,8 @@ impl Material {
 
     /// Numbers of the model `granier-heidrich`, if the file gives some that differ from [`BeamsRecord::PLAIN`].
     pub fn beams(&self) -> Option<BeamsRecord> {
-        let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth } = self.bake.beams.unwrap_or_default();
+        let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth, lobe_height } =
+            self.bake.beams.unwrap_or_default();
         let exponents = self.layers.first().and_then(|first| first.exponents);
         let (sin, cos) = (libm::sin(inner_tilt), libm::cos(inner_tilt));
         let beams = BeamsRecord {
@@ -110,6 +117,7 @@ impl Material {
             specular_weight,
             diffuse_weight,
             inner_normal: [sin * libm::cos(inner_azimuth), sin * libm::sin(inner_azimuth), cos],
+            lobe_height,
         };
         (beams != BeamsRecord::PLAIN).then_some(beams)
     }

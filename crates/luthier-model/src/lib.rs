@@ -21,6 +21,9 @@ pub use domain::{INDEX_MAX, Limit, Quantity};
 pub use facts::{Facts, Family, Reach, ReadWhen, Shows, TableRead};
 pub use feature::Feature;
 pub use form::Form;
-pub use parts::{InternalReflection, LowerCosine, LowerReflectance, Masking, ModelPart, Reflectance, ReflectanceCurve};
+pub use parts::{
+    DiffuseTerm, InternalReflection, LobeHeight, LowerCosine, LowerReflectance, Masking, ModelPart, Reflectance,
+    ReflectanceCurve,
+};
 pub use rows::ShadingModel;
 pub use tolerance::{Tolerance, Tolerances};

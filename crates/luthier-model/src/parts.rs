@@ -18,6 +18,8 @@ pub enum ModelPart {
     LowerCosine,
     /// Exponents, weights and a lean of the inner boundary of a film.
     Beams,
+    /// Light of a diffuse base beside that of the first interface, by [`DiffuseTerm`].
+    DiffuseTerm,
 }
 
 luthier_lut::named! {
@@ -91,6 +93,34 @@ luthier_lut::named! {
         /// Cosine of the refracted direction, as the code of Elek 2010 has it (Algorithm 1, line 21, and appendix B). Light is not kept: at grazing
         /// incidence lower interfaces are too bright by the ratio of both cosines.
         Inside = "inside",
+    }
+}
+
+luthier_lut::named! {
+    /// Light of the diffuse base in the model `microfacet`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum DiffuseTerm("diffuse term") {
+        /// None: what the first interface lets through is lost.
+        #[default]
+        None = "none",
+        /// The base as if no interface lay above it: `albedo / pi` beside `F D G / (4 cos_theta_i cos_theta_o)`, as shaders of engines add both. It returns
+        /// more light than falls in where albedo and reflectance sum to more than 1.
+        Added = "added",
+    }
+}
+
+luthier_lut::named! {
+    /// Height of the lobes of the model `granier-heidrich`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum LobeHeight("lobe height") {
+        /// Each lobe carries its coefficient: `(e + 1) / (2 pi)`, and in the film `cos_theta_i / (n^2 cos_theta_t)` more.
+        #[default]
+        Scaled = "scaled",
+        /// Height one, as printed (Granier and Heidrich 2003, eq. 6 and 10). A lobe carries `2 pi / (e + 1)` of its coefficient, more than all of it where
+        /// e is below 5.28.
+        One = "one",
     }
 }
 
@@ -177,6 +207,31 @@ impl LowerCosine {
     }
 }
 
+impl DiffuseTerm {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Added => "the diffuse base as if no interface lay above it",
+        }
+    }
+}
+
+impl LobeHeight {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Scaled => "each lobe carries its coefficient",
+            Self::One => "lobes of height one (Granier and Heidrich 2003, eq. 6 and 10)",
+        }
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
 impl InternalReflection {
     /// Formula and source, for headers and messages.
     pub fn title(self) -> &'static str {
@@ -215,6 +270,8 @@ mod tests {
         assert_eq!(InternalReflection::default().number(), 0);
         assert_eq!(LowerReflectance::default(), LowerReflectance::ALL[0]);
         assert_eq!(LowerCosine::default(), LowerCosine::ALL[0]);
+        assert_eq!(DiffuseTerm::default(), DiffuseTerm::ALL[0]);
+        assert_eq!((LobeHeight::default(), LobeHeight::default().number()), (LobeHeight::ALL[0], 0));
         // Two bits and three of a word: see `LayerRecord::words`.
         assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
         assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));

@@ -225,7 +225,7 @@ const MICROFACET: Facts = Facts {
         full: &[],
     },
     tables: FACET_TABLES,
-    parts: &[ModelPart::Masking, ModelPart::Reflectance],
+    parts: &[ModelPart::Masking, ModelPart::Reflectance, ModelPart::DiffuseTerm],
     domain: &[],
     tolerances: Tolerances { table: LOBE_TABLE, baked: LOBE_READ, full: LAYERS_IN_F32, filtered: FILTERED_BY_HARDWARE },
     default_for: &[],

@@ -2,7 +2,7 @@
 //! numbers of `granier-heidrich`.
 
 use glam::DVec3;
-use luthier_model::{InternalReflection, LowerCosine, Masking, Reflectance};
+use luthier_model::{DiffuseTerm, InternalReflection, LobeHeight, LowerCosine, Masking, Reflectance};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
@@ -29,6 +29,8 @@ pub struct Parts {
     pub internal_reflection: InternalReflection,
     /// Cosine of the light on lower interfaces of `elek`.
     pub lower_cosine: LowerCosine,
+    /// Light of the diffuse base of `microfacet`.
+    pub diffuse_term: DiffuseTerm,
     /// Numbers of `granier-heidrich`.
     pub beams: GranierHeidrich,
 }
@@ -40,17 +42,31 @@ impl Parts {
         reflectance: Reflectance::Table,
         internal_reflection: InternalReflection::Facets,
         lower_cosine: LowerCosine::Outside,
+        diffuse_term: DiffuseTerm::None,
         beams: GranierHeidrich::PLAIN,
     };
 
     /// The parts with numbers of `granier-heidrich`: the ratio of the slope parameters of inner and outer boundary, the weights of the specular and
-    /// the diffuse part, and the normal of the inner boundary.
+    /// the diffuse part, the normal of the inner boundary, and the height of both lobes.
     #[must_use]
-    pub fn with_beams(self, inner_alpha_ratio: f64, weights: [f64; 2], inner_normal: [f64; 3]) -> Self {
+    pub fn with_beams(
+        self,
+        inner_alpha_ratio: f64,
+        weights: [f64; 2],
+        inner_normal: [f64; 3],
+        lobe_height: LobeHeight,
+    ) -> Self {
         let [specular_weight, diffuse_weight] = weights;
         let inner_normal = DVec3::from_array(inner_normal);
-        let beams =
-            GranierHeidrich { inner_normal, exponents: None, inner_alpha_ratio, specular_weight, diffuse_weight };
+        let exponents = None;
+        let beams = GranierHeidrich {
+            inner_normal,
+            exponents,
+            inner_alpha_ratio,
+            specular_weight,
+            diffuse_weight,
+            lobe_height,
+        };
         Self { beams, ..self }
     }
 
@@ -61,7 +77,7 @@ impl Parts {
             Reflectance::Approximate => Fresnel::ComplexF0,
             Reflectance::Lazanyi => Fresnel::Lazanyi,
         };
-        Components { masking: self.masking, fresnel, ..Components::PLAIN }
+        Components { masking: self.masking, fresnel, diffuse_term: self.diffuse_term, ..Components::PLAIN }
     }
 }
 

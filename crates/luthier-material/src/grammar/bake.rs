@@ -2,7 +2,8 @@
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    ColorMode, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+    ColorMode, DiffuseTerm, InternalReflection, LobeHeight, LowerCosine, LowerReflectance, Masking, Reflectance,
+    ShadingModel,
 };
 
 use super::table::{ANY, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
@@ -40,6 +41,12 @@ pub(super) static BAKE: Table = Table {
             Kind::Choice(Masking::NAMES),
             "\"smith\"",
             "Masking and shadowing of the model microfacet.",
+        ),
+        Key::with_default(
+            "diffuse_term",
+            Kind::Choice(DiffuseTerm::NAMES),
+            "\"none\"",
+            "Light of the diffuse base in the model microfacet: none, or added to that of the first interface as if none lay above.",
         ),
         Key::with_default(
             "reflectance",
@@ -152,6 +159,12 @@ static BEAMS: Table = Table {
             Kind::Number(ANY),
             "0",
             "Azimuth to which the normal of the inner boundary leans, in degrees from the tangent; with inner_tilt_deg.",
+        ),
+        Key::with_default(
+            "lobe_height",
+            Kind::Choice(LobeHeight::NAMES),
+            "\"scaled\"",
+            "Height of both lobes: such that each carries its coefficient, or one, as printed in eq. 6 and 10.",
         ),
     ],
     exactly_one: None,

@@ -67,10 +67,11 @@ impl References {
 pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     let (masking, reflectance) = material.parts();
     let (internal_reflection, lower_cosine) = (material.internal_reflection(), material.lower_cosine());
-    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
+    let diffuse_term = material.constants.diffuse_term;
+    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, diffuse_term, ..Parts::PLAIN };
     material.constants.beams.map_or(parts, |beams| {
         let weights = [beams.specular_weight, beams.diffuse_weight];
-        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal, beams.lobe_height)
     })
 }
 

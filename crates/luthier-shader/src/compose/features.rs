@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, LowerCosine, MapSlot,
-    Masking, MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
+    DiffuseTerm, Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobeHeight, LobesRecord,
+    LowerCosine, MapSlot, Masking, MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy, VaryingFactor,
 };
 use luthier_model::{Family, Reach};
 
@@ -303,7 +303,16 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     }
     let (has_interface, has_diffuse) = (names.contains(&Feature::Interface), names.contains(&Feature::Diffuse));
     match facts.family {
-        Family::Facets if has_interface => names.insert(Feature::Smith),
+        Family::Facets if has_interface => {
+            let added = material.layers.last().filter(|last| is_diffuse(last));
+            if let (DiffuseTerm::Added, Some(base)) = (material.constants.diffuse_term, added) {
+                names.extend([Feature::MicrofacetBase, Feature::Diffuse]);
+                if base.sigma != 0.0 {
+                    names.insert(Feature::OrenNayar);
+                }
+            }
+            names.insert(Feature::Smith)
+        }
         Family::Lobes if has_interface => {
             if material.constants.flakes.is_some() && has_coat(material) {
                 names.extend([Feature::Flakes, Feature::LobesTilted]);
@@ -350,6 +359,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
                 names.insert(Feature::GranierOwn);
                 if beams.inner_normal[2] < 1.0 {
                     names.insert(Feature::GranierTilted);
+                }
+                if beams.lobe_height == LobeHeight::One {
+                    names.insert(Feature::GranierHeight);
                 }
             }
             match first.kind {

@@ -1,7 +1,11 @@
-//! Errors about numbers of the model `granier-heidrich`: the material has another model, or lacks the part that a number describes.
+//! Errors about numbers of the model `granier-heidrich`: the material has another model, or lacks the part that a number describes. A warning about
+//! lobes that do not carry their light.
 
+use std::f64::consts::PI;
+
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_manifest::ModelPart;
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{LobeHeight, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::Base;
 
@@ -15,12 +19,12 @@ pub(crate) fn keys(material: &Material) -> impl Iterator<Item = &'static str> {
     given.into_iter().filter(|(_, is_given)| *is_given).map(|(key, _)| key)
 }
 
-/// Errors for a material that `model` shades.
+/// Errors and warnings for a material that `model` shades.
 pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnostic> {
     if !model.takes(ModelPart::Beams) {
         return keys(material).map(|key| of_other_model(material, model, key)).collect();
     }
-    let mut errors = Vec::new();
+    let mut errors: Vec<_> = of_height(material).into_iter().collect();
     let Some(first) = material.stack.layers.first() else { return errors };
     let has_inner = !first.films.is_empty() || matches!(first.base, Base::Dielectric { .. });
     let tilt = format!("{TABLE}.inner_tilt_deg");
@@ -42,6 +46,26 @@ pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnost
         errors.push(error(material, &weight, message, "leave it out, or add a layer of type `diffuse`"));
     }
     errors
+}
+
+/// The warning about lobes of height one, with the share of its light at the normal that each carries.
+fn of_height(material: &Material) -> Option<Diagnostic> {
+    (material.bake.beams?.lobe_height == LobeHeight::One).then_some(())?;
+    let [outer, inner] = exponents(material)?.map(|e| 2.0 * PI / (e + 1.0));
+    let message = format!(
+        "lobes of height one carry 2 pi / (e + 1) of their light at the normal: {outer:.3} of it outside, and {inner:.3} n^2 of it from an inner \
+         boundary"
+    );
+    let hint = "`scaled`, the default, has each lobe carry all of it".to_owned();
+    Some(material.diagnostic(Severity::Warning, &format!("{TABLE}.lobe_height"), message, Some(hint)))
+}
+
+/// The exponents of both lobes; `None` without a surface.
+fn exponents(material: &Material) -> Option<[f64; 2]> {
+    let first = material.stack.layers.first().filter(|first| !matches!(first.base, Base::Diffuse(_)))?;
+    let alpha = first.surface.alpha_isotropic().max(ALPHA_MIN);
+    let of_surface = 2.0 / (alpha * alpha) - 2.0;
+    Some(material.layers.first().and_then(|given| given.exponents).unwrap_or([of_surface; 2]))
 }
 
 /// The error for a key of beams in a material of a model without beams.

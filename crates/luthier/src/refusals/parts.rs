@@ -4,7 +4,8 @@ use luthier_layers::models::parts::Parts;
 use luthier_lut::TableKind;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
-    BeamsRecord, Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance, ShadingModel,
+    BeamsRecord, DiffuseTerm, Feature, Form, InternalReflection, LowerCosine, LowerReflectance, Masking, Reflectance,
+    ShadingModel,
 };
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_model::Reach;
@@ -29,6 +30,7 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let lower = material.bake.lower_reflectance;
     doubts.extend(lower.and_then(|lower| of_lower_reflectance(material, model, lower)));
     doubts.extend(material.bake.lower_cosine.and_then(|lower| of_lower_cosine(material, model, lower)));
+    doubts.extend(material.bake.diffuse_term.and_then(|term| of_diffuse_term(material, model, term)));
     doubts
 }
 
@@ -39,11 +41,15 @@ pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let reflectance = bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default();
     let internal_reflection = bake.internal_reflection.filter(|_| model.is_path()).unwrap_or_default();
     let lower_cosine = bake.lower_cosine.filter(|_| model.takes(ModelPart::LowerCosine)).unwrap_or_default();
-    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, ..Parts::PLAIN };
+    let diffuse_term = bake.diffuse_term.filter(|_| model.takes(ModelPart::DiffuseTerm)).unwrap_or_default();
+    let parts = Parts { masking, reflectance, internal_reflection, lower_cosine, diffuse_term, ..Parts::PLAIN };
     let beams = material.beams().filter(|_| model.takes(ModelPart::Beams));
-    beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
-        parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
-    })
+    beams.map_or(
+        parts,
+        |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal, lobe_height }| {
+            parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal, lobe_height)
+        },
+    )
 }
 
 /// Cosines at which a curve is compared with the reflectance.
@@ -57,6 +63,7 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("internal_reflection", material.bake.internal_reflection.is_some()),
         ("lower_reflectance", material.bake.lower_reflectance.is_some()),
         ("lower_cosine", material.bake.lower_cosine.is_some()),
+        ("diffuse_term", material.bake.diffuse_term.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
     let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
@@ -281,6 +288,31 @@ fn of_lower_cosine(material: &Material, model: ShadingModel, lower: LowerCosine)
     };
     let message = format!("the lower cosine `{name}` {effect}");
     let hint = "`outside`, the default, is that of the light on the surface".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+fn of_diffuse_term(material: &Material, model: ShadingModel, term: DiffuseTerm) -> Option<Diagnostic> {
+    let (name, key) = (term.name(), "bake.diffuse_term");
+    if !model.takes(ModelPart::DiffuseTerm) {
+        let message = format!("the model `{model}` of this material has no diffuse term `{name}`");
+        let hint = "leave it out, or write `[bake] model = \"microfacet\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if term == DiffuseTerm::None {
+        return None;
+    }
+    let effect = match (Interface::of(&material.stack, 0), material.stack.layers.last().map(|last| &last.base)) {
+        (Some(first), Some(Base::Diffuse(base))) => {
+            let mirrored = first.sampled(&material.color()).rgb(1.0);
+            let [r, g, b] = [0, 1, 2].map(|c: usize| base.albedo[c] + mirrored[c]);
+            format!(
+                "adds the base as if nothing lay above it: albedo and reflectance at the normal sum to {r:.3}, {g:.3}, {b:.3}"
+            )
+        }
+        _ => "changes nothing here: no interface lies above a diffuse base".to_owned(),
+    };
+    let message = format!("the diffuse term `{name}` {effect}");
+    let hint = "models such as `lobes` follow the light of the base through the interface".to_owned();
     Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 
