@@ -646,6 +646,17 @@ def compare():
     painted = slab + 'maps = { albedo = "map.png" }\n'
     values(GRANIER, "granier-heidrich: diffuse part as a texture", "section 6", painted, "granier-heidrich", granier(COAT, None, a, 0.6 * 51 / 255), 1e-6, ("--uv", "0.3,0.4"), png((51, 51, 51)))
 
+    texel = (153, 140, 252)
+    x, y, z = (2 * c / 255 - 1 for c in texel)
+    lean = (math.degrees(math.atan2(math.hypot(x, y), z)), math.degrees(math.atan2(y, x)))
+    leaning = coat(COAT, rough + 'maps = { lean = "map.png" }') + matte(0.6)
+    values(GRANIER, "granier-heidrich: lean as a texture", "sections 3.2 and 7.3", leaning, "granier-heidrich", granier(COAT, None, a, 0.6, lean), 1e-6, ("--uv", "0.3,0.4"), png(texel))
+
+    level = coat(1.49, "alpha = 0.2") + metal("alpha = 0.3\n")
+    for model in ("belcour", "yamaguchi"):
+        chosen = f'{level}[bake]\nmodel = "{model}"\nreflectance = "exact"\n'
+        values(YAMAGUCHI, f"{model}: FGD by Unity's approximation", "section 3, after StackLit", chosen, model, added(1.49, 0.2, METAL, 0.3))
+
     # Albedos of smooth stacks.
     clear, mirror = coat(COAT, smooth) + matte(0.5), coat(COAT, smooth, DEPTH) + metal(smooth)
     # Almost smooth: the highlight of a Gaussian has no tail into the directions that are compared.
@@ -660,6 +671,26 @@ def compare():
 def draws(model):
     """Enough samples for four standard errors within a hundredth."""
     return ("--samples", "200000") if model == "layered-mc" else ()
+
+
+def added(n_top, alpha, n_base, alpha_base):
+    """Two interfaces by adding (Belcour 2018; eq. 1 to 3 of Yamaguchi et al.), whose energies are Fresnel's at the mean direction, as in StackLit of Unity."""
+    variance = lambda a: a**1.1 / (1 - a**1.1)
+    slope = lambda s: min((s / (1 + s)) ** (1 / 1.1), 1)
+    lobe = lambda a: facets(ggx(a), smith(lambda_ggx, a), lambda cos: 1)
+
+    def value(i, o):
+        cos = o[2]
+        inside = math.sqrt(1 - (1 - cos * cos) / (n_top * n_top))
+        first, second = fresnel(n_top, cos), fresnel(n_base, inside, n_top)
+        wider = n_top * inside / cos
+        enters, leaves = (variance(0.5 * abs(1 - x) * alpha) for x in (1 / wider, wider))
+        echo = first * second
+        between = (variance(alpha_base) + variance(alpha)) * echo / (1 - echo)
+        spread = leaves + (enters + variance(alpha_base) + between) * wider
+        return first * lobe(alpha)(i, o) + (1 - first) ** 2 * second / (1 - echo) * lobe(slope(spread))(i, o)
+
+    return value
 
 
 def corrected(n, rho):

@@ -81,7 +81,7 @@ impl Material {
         self.bake.diffuse_term = self.bake.diffuse_term.filter(|_| model.takes(ModelPart::DiffuseTerm));
         if !model.takes(ModelPart::Beams) {
             self.bake.beams = None;
-            self.layers.iter_mut().for_each(|layer| layer.exponents = None);
+            self.layers.iter_mut().for_each(|layer| (layer.exponents, layer.maps.lean) = (None, None));
         }
     }
 
@@ -210,6 +210,8 @@ pub struct Maps {
     pub base_color: Option<PictureRef>,
     /// Multiplies how metallic it is.
     pub metallic: Option<PictureRef>,
+    /// Normals of the inner boundary of the film or slab.
+    pub lean: Option<PictureRef>,
 }
 
 /// A map of a layer with its key in the file.
@@ -227,7 +229,7 @@ impl NamedMap<'_> {
     /// Meaning of its texels.
     pub fn texels(&self) -> TexelUse {
         match self.slot {
-            MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal => TexelUse::Normal,
+            MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean => TexelUse::Normal,
             MapSlot::Tangent => TexelUse::Direction,
             MapSlot::Albedo | MapSlot::BaseColor => TexelUse::Color,
             _ => TexelUse::Number,
@@ -250,6 +252,7 @@ impl Maps {
             ("albedo", MapSlot::Albedo, &self.albedo),
             ("base_color", MapSlot::BaseColor, &self.base_color),
             ("metallic", MapSlot::Metallic, &self.metallic),
+            ("lean", MapSlot::Lean, &self.lean),
         ]
         .into_iter()
         .filter_map(|(key, slot, picture)| Some(NamedMap { key, slot, picture: picture.as_ref()? }))

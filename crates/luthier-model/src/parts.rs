@@ -53,7 +53,8 @@ luthier_lut::named! {
 }
 
 luthier_lut::named! {
-    /// Computation of the reflectance of interfaces, of the models `elek`, `weidlich-wilkie` and `microfacet`.
+    /// Computation of the reflectance of interfaces, of the models `elek`, `weidlich-wilkie` and `microfacet`. In `belcour` and `yamaguchi` the table is
+    /// that of FGD-infinity; the others take facets as level, as Unity's StackLit does (section 3 of Yamaguchi et al. 2019).
     #[derive(Default, Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum Reflectance("reflectance") {

@@ -25,7 +25,7 @@ const FACET_TABLES: &[TableRead] = &[
 
 /// Tables of models that follow statistics of lobes.
 const STATISTICS_TABLES: &[TableRead] =
-    &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
+    &[read(TableKind::Fgd, ReadWhen::Tabled), read(TableKind::Escape, ReadWhen::DenserCoat)];
 
 /// Layers below the first, and what slabs absorb.
 const STACK: &[Feature] = &[InnerInterface, Base, Absorption, BaseAbsorption];
@@ -117,7 +117,7 @@ const GRANIER_HEIDRICH: Facts = Facts {
     is_isotropic: true,
     forms: &[Form::Baked, Form::Full],
     shows: Shows {
-        always: &[&[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter]],
+        always: &[&[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter, LeanMap]],
         baked: &[],
         full: &[],
     },
@@ -154,7 +154,7 @@ const BELCOUR: Facts = Facts {
         full: &[FilmVariation],
     },
     tables: STATISTICS_TABLES,
-    parts: &[],
+    parts: &[ModelPart::Reflectance],
     domain: &[],
     tolerances: STATISTICS_TOLERANCES,
     default_for: &[(DefaultFor::Stack, 1)],
@@ -175,7 +175,7 @@ const YAMAGUCHI: Facts = Facts {
         full: &[FilmVariation],
     },
     tables: STATISTICS_TABLES,
-    parts: &[],
+    parts: &[ModelPart::Reflectance],
     domain: &[],
     tolerances: STATISTICS_TOLERANCES,
     default_for: &[(DefaultFor::Stack, 2)],

@@ -23,7 +23,7 @@ use crate::terms::Terms;
 pub struct Parts {
     /// Masking of `microfacet`.
     pub masking: Masking,
-    /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`.
+    /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`, and energies of `belcour` and `yamaguchi`.
     pub reflectance: Reflectance,
     /// Internal reflection of `elek` and `weidlich-wilkie`.
     pub internal_reflection: InternalReflection,
@@ -155,11 +155,18 @@ impl Terms for Chosen<'_> {
 
 impl Energy<3> for Chosen<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
-        self.terms.fgd(layer, cos_theta_i, alpha)
+        match self.reflectances.0.get(layer) {
+            // Facets as level.
+            Some(Some(own)) => own.rgb(cos_theta_i).map(|energy| energy.clamp(0.0, 1.0)),
+            _ => self.terms.fgd(layer, cos_theta_i, alpha),
+        }
     }
 
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
-        self.terms.escaping(layer, cos_theta_i, alpha, eta)
+        match self.reflectances.0.get(layer) {
+            Some(Some(_)) => 1.0,
+            _ => self.terms.escaping(layer, cos_theta_i, alpha, eta),
+        }
     }
 }
 

@@ -53,7 +53,8 @@ pub(super) static BAKE: Table = Table {
             Kind::Choice(Reflectance::NAMES),
             "\"table\"",
             "How the models elek, weidlich-wilkie and microfacet come by the reflectance of an interface: rows of a table, Fresnel's equations, \
-             Schlick's form with the F0 of n and k, or Lazanyi's correction of it.",
+             Schlick's form with the F0 of n and k, or Lazanyi's correction of it. In belcour and yamaguchi the table is that of the energies of rough \
+             interfaces, and the others take facets as level.",
         ),
         Key::with_default(
             "internal_reflection",

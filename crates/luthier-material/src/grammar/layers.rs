@@ -202,16 +202,32 @@ const TANGENT_MAP: Key = Key::optional(
     "A map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
 );
 
+const LEAN_MAP: Key = Key::optional(
+    "lean",
+    PICTURE,
+    "A tangent-space normal map of the inner boundary of the film or slab, for the model granier-heidrich.",
+);
+
 static DIELECTRIC_MAPS: Table = Table {
     name: "dielectric-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
+    keys: &[
+        NORMAL_MAP,
+        ROUGHNESS_MAP,
+        THICKNESS_MAP,
+        BUMPS,
+        ALPHA_MAP,
+        ALPHA_X_MAP,
+        ALPHA_Y_MAP,
+        TANGENT_MAP,
+        LEAN_MAP,
+    ],
     exactly_one: None,
 };
 static CONDUCTOR_MAPS: Table = Table {
     name: "conductor-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP, LEAN_MAP],
     exactly_one: None,
 };
 static DIFFUSE_MAPS: Table = Table {

@@ -153,6 +153,8 @@ luthier_lut::named! {
         Coat = "coat",
         /// A material of `lobes` is a base alone.
         LobesDiffuse = "lobes_diffuse",
+        /// Facets of a material of `belcour` or `yamaguchi` count as level.
+        Level = "level",
         /// No material of the set has more than one lobe.
         OneLobe = "one_lobe",
         /// No material of the set has more than two lobes.

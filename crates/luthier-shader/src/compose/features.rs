@@ -34,6 +34,7 @@ impl Features {
                     MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
                     MapSlot::Albedo => &[Feature::BaseColor],
                     MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
+                    MapSlot::Lean => &[],
                     MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals],
                     MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
                     MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],
@@ -345,7 +346,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             }
             names.insert(Feature::Chain)
         }
-        Family::Statistics if has_interface => names.insert(Feature::Statistics),
+        Family::Statistics if has_interface => {
+            if layers.iter().any(|layer| !is_diffuse(layer) && layer.reflectance != Reflectance::Table) {
+                names.insert(Feature::Level);
+            }
+            names.insert(Feature::Statistics)
+        }
         Family::Beams => {
             let first = &material.layers[0];
             let has_film = first.film_ior_n[0] > 0.0;

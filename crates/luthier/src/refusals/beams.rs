@@ -11,11 +11,14 @@ use luthier_optics::stack::Base;
 
 const TABLE: &str = "bake.granier-heidrich";
 const EXPONENTS: &str = "layer.0.exponents";
+const LEAN: &str = "layer.0.maps.lean";
 
-/// The keys of the model's numbers that a material has: exponents of the first layer, and the table of `[bake]`.
+/// The keys of the model's numbers that a material has: exponents and the lean of the first layer, and the table of
+/// `[bake]`.
 pub(crate) fn keys(material: &Material) -> impl Iterator<Item = &'static str> {
     let has_exponents = material.layers.first().is_some_and(|first| first.exponents.is_some());
-    let given = [(EXPONENTS, has_exponents), (TABLE, material.bake.beams.is_some())];
+    let has_lean = material.layers.first().is_some_and(|first| first.maps.lean.is_some());
+    let given = [(EXPONENTS, has_exponents), (LEAN, has_lean), (TABLE, material.bake.beams.is_some())];
     given.into_iter().filter(|(_, is_given)| *is_given).map(|(key, _)| key)
 }
 
@@ -31,6 +34,10 @@ pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnost
     if !has_inner && material.bake.beams.is_some_and(|beams| beams.inner_tilt != 0.0) {
         let message = "the first interface has neither film nor slab, so that no inner boundary could lean".to_owned();
         errors.push(error(material, &tilt, message, "leave it out, or put a film or a dielectric on top"));
+    }
+    if !has_inner && material.layers.first().is_some_and(|first| first.maps.lean.is_some()) {
+        let message = "the first interface has neither film nor slab, so that no inner boundary could lean".to_owned();
+        errors.push(error(material, LEAN, message, "leave it out, or put a film or a dielectric on top"));
     }
     if let (false, Some([outer, inner])) = (has_inner, material.layers.first().and_then(|first| first.exponents)) {
         let message = format!(
@@ -73,6 +80,7 @@ fn of_other_model(material: &Material, model: ShadingModel, key: &str) -> Diagno
     let name = key.rsplit_once('.').map_or(key, |(_, name)| name);
     let (what, hint) = match key {
         TABLE => ("numbers", "leave the table out, or write `[bake] model = \"granier-heidrich\"`"),
+        LEAN => ("a lean", "leave the map out, or write `[bake] model = \"granier-heidrich\"`"),
         _ => ("lobes", "write `alpha` or `roughness`, or `[bake] model = \"granier-heidrich\"`"),
     };
     let message = format!("`{name}` gives {what} of the model `granier-heidrich`, and this material has `{model}`");

@@ -186,6 +186,13 @@ fn of_reflectance(material: &Material, model: ShadingModel, reflectance: Reflect
             "leave it out, or write `[bake] model = \"elek\"`, `\"weidlich-wilkie\"` or `\"microfacet\"`".to_owned();
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
     }
+    if model.is_statistical() && reflectance == Reflectance::Exact {
+        let message = format!(
+            "the reflectance `{name}` takes facets as level: rough interfaces lack what tilted facets reflect, and nothing of a lobe is totally reflected"
+        );
+        let hint = "`table`, the default, has FGD-infinity, with all bounces between facets".to_owned();
+        return Some(material.diagnostic(Severity::Warning, key, message, Some(hint)));
+    }
     if !reflectance.is_fitted() {
         return None;
     }

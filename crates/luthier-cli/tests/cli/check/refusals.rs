@@ -197,6 +197,21 @@ fn parts_that_a_model_does_not_have() {
             ["model `weidlich-wilkie` of this material has", "no lower cosine `inside`", "x.toml:15:16"],
         ),
         (
+            format!("{coat}maps = {{ lean = \"maps/grey.png\" }}\n{metal}"),
+            "model = \"elek\"",
+            ["`lean` gives a lean of the model `granier-heidrich`", "this material has `elek`", "x.toml:8:17"],
+        ),
+        (
+            format!("{metal}maps = {{ lean = \"maps/grey.png\" }}\n"),
+            "model = \"granier-heidrich\"",
+            ["neither film nor slab", "no inner boundary could lean", "x.toml:8:17"],
+        ),
+        (
+            format!("{coat}{metal}maps = {{ lean = \"maps/grey.png\" }}\n"),
+            "model = \"granier-heidrich\"",
+            ["a lean is that of the inner boundary", "the first interface's film or slab", "x.toml:12:17"],
+        ),
+        (
             format!("{coat}{metal}"),
             "model = \"elek\"\ndiffuse_term = \"added\"",
             ["model `elek` of this material has", "no diffuse term `added`", "x.toml:15:16"],

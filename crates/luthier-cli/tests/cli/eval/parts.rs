@@ -251,6 +251,45 @@ fn lower_cosines_are_those_of_the_twin() {
     assert_eq!(below(&inside, 1), below(&plain, 1));
 }
 
+/// Energies of level facets beside those of the table, in sets and alone.
+#[test]
+fn energies_of_level_facets_are_those_of_the_twin() {
+    let mut materials = Vec::new();
+    for model in ["belcour", "yamaguchi"] {
+        for reflectance in ["exact", "approximate", "lazanyi"] {
+            let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\nthickness_um = 1\nabsorption_per_um = [0.1, 0.3, 0.6]\n";
+            let layers = format!("{coat}{COPPER}alpha_x = 0.3\nalpha_y = 0.1\n");
+            let bake = format!("model = \"{model}\"\nreflectance = \"{reflectance}\"");
+            materials.push(material(&format!("{model}-{reflectance}"), &layers, &bake));
+        }
+    }
+    let mut worst = 0.0;
+    compare(&materials, &mut worst);
+    let plain = material(
+        "plain",
+        &format!("{COAT}alpha = 0.3\n{COPPER}alpha = 0.3\n"),
+        "model = \"belcour\"\nfgd = { size = [12, 12] }",
+    );
+    let table = material("table", &format!("{COAT}alpha = 0.3\n{COPPER}alpha = 0.3\n"), "model = \"elek\"");
+    compare(&[materials[0].clone(), materials[4].clone(), table], &mut worst);
+    materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("level facets: at most {worst:.1e}");
+    // Beside a material that reads the table, the baked shader still computes these.
+    let set = [materials[0].clone(), plain];
+    let package = Bake::wgsl(&[Form::Baked]).package(&set, &MemoryStore::default()).unwrap();
+    let entry = &package.manifest.materials[0];
+    assert!(entry.layers.iter().all(|layer| layer.tiles[luthier_lut::TableKind::Fgd].is_none()));
+    let Some(gpu) = gpu() else { return };
+    let scene = gpu.scene(&package, Form::Baked).unwrap();
+    let nm = set[0].bake.wavelengths_nm();
+    let (parts, color) = (parts(&set[0]).0, Color::ThreeWavelengths(nm));
+    let twin = Shaded::with(ShadingModel::Belcour, &set[0].stack, nm, color, &Place::NONE, parts).unwrap();
+    for (&(wi, wo), found) in pairs().iter().zip(scene.evaluate(0, &pairs()).unwrap()) {
+        let expected = twin.eval(wide(wi), wide(wo));
+        assert!(error(found, expected) < TOLERANCE, "{wi:?} {wo:?}: {found:?}, {expected:?}");
+    }
+}
+
 /// Bases beside the facets of the first interface, in sets with materials that add none. By hand: the values differ by `albedo cos / pi` of a Lambertian
 /// base, whatever lies above it.
 #[test]

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 const OPEN: usize = 0;
 
 /// Elements without a gap, and with a number of their own.
-const ALL: usize = 123;
+const ALL: usize = 125;
 
 const HEAD: &str = "\
 # Elements of the papers
