@@ -17,9 +17,11 @@ import importlib
 import json
 import math
 import os
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 PROGRAM = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "target/release/luthier")
 NM = 550.0
@@ -351,20 +353,22 @@ def phong_of_metal(n, alpha):
     return lambda i, o: f0_of(n) * (e + 1) / (2 * PI) * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e
 
 
-def granier(n, thickness, alpha, rho, lean=(0.0, 0.0), exponents=None, weights=(1.0, 1.0)):
-    """Eq. 3 to 18 of Granier and Heidrich, each lobe times (e + 1) / (2 pi), that of the film over solid angles in it; no thickness, no interference."""
+def granier(n, thickness, alpha, rho, lean=(0.0, 0.0), exponents=None, weights=(1.0, 1.0), printed=False):
+    """Eq. 3 to 18 of Granier and Heidrich, each lobe times (e + 1) / (2 pi), that of the film over solid angles in it; no thickness, no interference. Lobes have height one if printed."""
     e0, e1 = exponents or (2 / alpha**2 - 2,) * 2
     f = f0_of(n)
     inner = direction(*lean)
 
     def value(i, o):
         fi = schlick(f, i[2])
-        r = (e0 + 1) / (2 * PI) * fi * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e0
+        r = fi * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e0
         ti, to = refracted(i, n), refracted(o, n)
         along = dot(ti, inner)
         mirrored = tuple(2 * along * m - x for m, x in zip(inner, ti))
         t = (1 - fi) * (1 - schlick(f, to[2])) * max(0.0, dot(mirrored, to)) ** e1
-        t *= (e1 + 1) / (2 * PI) * i[2] / (n * n * ti[2])
+        if not printed:
+            r *= (e0 + 1) / (2 * PI)
+            t *= (e1 + 1) / (2 * PI) * i[2] / (n * n * ti[2])
         rd = (21 * (n * n + 1) - 38 * n) / (21 * (n + 1) ** 2)
         phase = lambda cosines: 0 if thickness is None else 2 * math.cos(2 * PI * n * thickness / NM * cosines)
         diffuse = max(0.0, 1 + phase(2) * math.sqrt(rd * (1 - rd)))
@@ -432,6 +436,13 @@ def ask(text, *arguments, beside=None, colour=("--wavelength", str(NM))):
         return json.loads(run.stdout)
 
 
+def png(texel):
+    """A picture of one texel, RGB of eight bits."""
+    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    head, row_of = struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0), bytes([0, *texel])
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(row_of)) + chunk(b"IEND", b"")
+
+
 ROWS = []
 
 
@@ -441,10 +452,10 @@ def row(paper, element, where, pairs, allowed):
     ROWS.append((paper, element, where, pairs[0][0], worst, allowed))
 
 
-def values(paper, element, where, text, model, by_hand, allowed=1e-9, extra=()):
+def values(paper, element, where, text, model, by_hand, allowed=1e-9, extra=(), picture=None):
     got = []
     for ti, pi, to, po in PAIRS:
-        [value] = ask(text, "--model", model, "--wi", f"{ti},{pi}", "--wo", f"{to},{po}", *extra)["values"][0]["value"]
+        [value] = ask(text, "--model", model, "--wi", f"{ti},{pi}", "--wo", f"{to},{po}", *extra, beside={"map.png": picture} if picture else None)["values"][0]["value"]
         got.append((by_hand(direction(ti, pi), direction(to, po)), value))
     row(paper, element, where, got, allowed)
 
@@ -609,6 +620,12 @@ def compare():
     # Bases.
     values(LECTURE, "Lambert", "slides on diffuse light", matte(0.6), "lambert", lambert(0.6))
     values(COURSE, "Oren and Nayar", "section 2.1.2", matte(0.6, 0.5), "oren-nayar", oren_nayar(0.6, 0.5))
+    glossy = coat(COAT, rough) + matte(0.6) + '[bake]\nmodel = "microfacet"\ndiffuse_term = "added"\n'
+    one, other = facets(*ggx_smith, lambda cos: fresnel(COAT, cos)), lambert(0.6)
+    values(LECTURE, "Lambert beside facets on one surface", "slides on diffuse light; implementation overview", glossy, "microfacet", lambda i, o: one(i, o) + other(i, o))
+    for name, f in [("copper", 0.638), ("glass", 0.0425)]:
+        preset = f'[[layer]]\ntype = "conductor"\nf0 = "{name}"\n{rough}[bake]\nmodel = "microfacet"\n'
+        values(LECTURE, f"F0 of {name} by name", "tables of F0", preset, "microfacet", facets(*ggx_smith, lambda cos, f=f: schlick(f, cos)))
     values(ELEK, "Phong", "table 1", base, "phong", phong_of_metal(METAL, a))
 
     f0, c = 0.04 + 0.5 * (0.638 - 0.04), 0.5 * 0.638
@@ -658,6 +675,22 @@ def compare():
     own = film(*soap) + coat(1.8, "exponents = [90, 170]\n") + matte(0.6)
     own += '[bake]\nmodel = "granier-heidrich"\n[bake.granier-heidrich]\nspecular_weight = 0.9\ndiffuse_weight = 0.5\ninner_tilt_deg = 14\ninner_azimuth_deg = 30\n'
     values(GRANIER, "granier-heidrich: exponents, weights and lean", "eq. 6 and 10; section 7", own, "granier-heidrich", granier(*soap, a, 0.6, (14, 30), (90, 170), (0.9, 0.5)))
+    high = film(*soap) + coat(1.8, "exponents = [9, 17]\n") + matte(0.6) + '[bake]\nmodel = "granier-heidrich"\n[bake.granier-heidrich]\nlobe_height = "one"\n'
+    values(GRANIER, "granier-heidrich: lobes of height one", "eq. 5, 6 and 10", high, "granier-heidrich", granier(*soap, a, 0.6, exponents=(9, 17), printed=True))
+
+    painted = slab + 'maps = { albedo = "map.png" }\n'
+    values(GRANIER, "granier-heidrich: diffuse part as a texture", "section 6", painted, "granier-heidrich", granier(COAT, None, a, 0.6 * 51 / 255), 1e-6, ("--uv", "0.3,0.4"), png((51, 51, 51)))
+
+    texel = (153, 140, 252)
+    x, y, z = (2 * c / 255 - 1 for c in texel)
+    lean = (math.degrees(math.atan2(math.hypot(x, y), z)), math.degrees(math.atan2(y, x)))
+    leaning = coat(COAT, rough + 'maps = { lean = "map.png" }') + matte(0.6)
+    values(GRANIER, "granier-heidrich: lean as a texture", "sections 3.2 and 7.3", leaning, "granier-heidrich", granier(COAT, None, a, 0.6, lean), 1e-6, ("--uv", "0.3,0.4"), png(texel))
+
+    level = coat(1.49, "alpha = 0.2") + metal("alpha = 0.3\n")
+    for model in ("belcour", "yamaguchi"):
+        chosen = f'{level}[bake]\nmodel = "{model}"\nreflectance = "exact"\n'
+        values(YAMAGUCHI, f"{model}: FGD by Unity's approximation", "section 3, after StackLit", chosen, model, added(1.49, 0.2, METAL, 0.3))
 
     # Albedos of smooth stacks.
     clear, mirror = coat(COAT, smooth) + matte(0.5), coat(COAT, smooth, DEPTH) + metal(smooth)
@@ -673,6 +706,26 @@ def compare():
 def draws(model):
     """Enough samples for four standard errors within a hundredth."""
     return ("--samples", "200000") if model == "layered-mc" else ()
+
+
+def added(n_top, alpha, n_base, alpha_base):
+    """Two interfaces by adding (Belcour 2018; eq. 1 to 3 of Yamaguchi et al.), whose energies are Fresnel's at the mean direction, as in StackLit of Unity."""
+    variance = lambda a: a**1.1 / (1 - a**1.1)
+    slope = lambda s: min((s / (1 + s)) ** (1 / 1.1), 1)
+    lobe = lambda a: facets(ggx(a), smith(lambda_ggx, a), lambda cos: 1)
+
+    def value(i, o):
+        cos = o[2]
+        inside = math.sqrt(1 - (1 - cos * cos) / (n_top * n_top))
+        first, second = fresnel(n_top, cos), fresnel(n_base, inside, n_top)
+        wider = n_top * inside / cos
+        enters, leaves = (variance(0.5 * abs(1 - x) * alpha) for x in (1 / wider, wider))
+        echo = first * second
+        between = (variance(alpha_base) + variance(alpha)) * echo / (1 - echo)
+        spread = leaves + (enters + variance(alpha_base) + between) * wider
+        return first * lobe(alpha)(i, o) + (1 - first) ** 2 * second / (1 - echo) * lobe(slope(spread))(i, o)
+
+    return value
 
 
 def corrected(n, rho):

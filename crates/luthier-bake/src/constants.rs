@@ -27,6 +27,11 @@ pub(crate) fn constants(
         upward_loss,
         lobes,
         beams: material.beams().filter(|_| material.model().takes(ModelPart::Beams)),
+        diffuse_term: material
+            .bake
+            .diffuse_term
+            .filter(|_| material.model().takes(ModelPart::DiffuseTerm))
+            .unwrap_or_default(),
         flakes: flakes(&material.effects),
         patina: bare.and_then(|bare| patina(&material.effects, bare)),
         glitter: glitter(&material.effects),

@@ -57,9 +57,9 @@ pub fn hidden_maps(entry: &MaterialEntry) -> impl Iterator<Item = (u32, MapSlot)
     entry.shown_layer_maps(Form::Baked).filter(|(layer, slot)| place(Some(*layer), *slot).is_none())
 }
 
-/// Place of a map in `view.glsl`, if the page shows it: a map of the whole surface, or the albedo of the base.
+/// Place of a map in `view.glsl`, if the page shows it: a map of the whole surface, the albedo of the base, or a lean.
 fn place(layer: Option<u32>, map: MapSlot) -> Option<usize> {
-    let is_own = map != MapSlot::Albedo && layer.is_some_and(|layer| map.layer_feature(layer).is_some());
+    let is_own = layer.is_some_and(|layer| map.is_of_layer_place(layer));
     slot(map).filter(|_| !is_own)
 }
 
@@ -81,6 +81,7 @@ fn slot(slot: MapSlot) -> Option<usize> {
         MapSlot::Patina => Some(3),
         MapSlot::FlakeNormal => Some(4),
         MapSlot::Albedo => Some(5),
+        MapSlot::Lean => Some(6),
         _ => None,
     }
 }

@@ -135,6 +135,7 @@ impl PageShader {
             (" luthier_patina_amount(", "VIEW_PATINA"),
             (" luthier_glitter_normal(", "VIEW_GLITTER"),
             ("vec3 base_color;", "VIEW_COLORS"),
+            ("vec3 inner_normal;", "VIEW_LEANS"),
             (" luthier_lookup_fresnel(", "VIEW_FRESNEL"),
             (" luthier_lookup_fgd(", "VIEW_FGD"),
             (" luthier_lookup_film(", "VIEW_FILM"),

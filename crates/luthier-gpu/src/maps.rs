@@ -7,7 +7,7 @@ use crate::context::word;
 use crate::{GpuError, Map, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
-pub(crate) const MAP_WORDS: usize = 8;
+pub(crate) const MAP_WORDS: usize = 9;
 
 /// Texels of a map that a picture is made with: 2048 x 2048 take 64 MiB of the buffer.
 const TEXELS_MAX: usize = 1 << 22;
@@ -22,7 +22,7 @@ impl Scene {
         let mut texels = Vec::new();
         let behind = first + headers.len();
         for map in self.maps.iter().filter(|map| map.material as usize == material) {
-            let own = map.layer.filter(|&layer| map.slot != MapSlot::Albedo && map.slot.layer_feature(layer).is_some());
+            let own = map.layer.filter(|&layer| map.slot.is_of_layer_place(layer));
             let number = match own {
                 None => slot_word(map.slot),
                 Some(layer) => MAP_WORDS + OWN_WORDS * layer as usize + own_word(map.slot),
@@ -63,11 +63,11 @@ impl Scene {
     /// Number of layers that have a place of their own in the shader.
     pub(crate) fn layer_places(&self) -> usize {
         let shown = self.manifest.materials.iter().flat_map(|entry| entry.shown_layer_maps(self.form()));
-        let shown = shown.filter(|(_, slot)| *slot != MapSlot::Albedo);
+        let shown = shown.filter(|(layer, slot)| slot.is_of_layer_place(*layer));
         shown.map(|(layer, _)| layer as usize + 1).max().unwrap_or(0)
     }
 
-    /// Whether a material has maps of single layers or of its albedo. The blurred environment does not show these.
+    /// Whether a material has maps of single layers, of its albedo or of a lean. The blurred environment does not show these.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`](crate::GpuError::NoMaterial).
@@ -166,6 +166,15 @@ impl Scene {
                  surface.base_color = shading_bilinear(albedo, maps.uv).xyz;\n    }",
             );
         }
+        if self.interface.fills("LuthierPlace", "inner_normal") {
+            // Slopes add up.
+            fill.push(
+                "let lean = shading_map_header(material, 8u);\n    if lean.y > 0u {\n        \
+                 let n = 2.0 * shading_bilinear(lean, maps.uv).xyz - 1.0;\n        \
+                 let own = vec3<f32>(n.xy, max(n.z, 1e-3));\n        let film = surface.inner_normal;\n        \
+                 surface.inner_normal = normalize(vec3<f32>(film.xy * own.z + own.xy * film.z, film.z * own.z));\n    }",
+            );
+        }
         let below = if self.interface.fills("LuthierPlace", "flake_normal") {
             "surface.flake_normal"
         } else {
@@ -198,6 +207,7 @@ fn slot_word(slot: MapSlot) -> usize {
         MapSlot::Patina => 3,
         MapSlot::FlakeNormal => 4,
         MapSlot::Albedo => 7,
+        MapSlot::Lean => 8,
         // No whole surface has these.
         MapSlot::Bumps
         | MapSlot::Alpha

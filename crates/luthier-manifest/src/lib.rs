@@ -48,8 +48,8 @@ pub use file::FileEntry;
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_model::{
-    DiffusePart, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
-    ModelPart, PathParts, Reflectance, ReflectanceCurve, ShadingModel,
+    DiffusePart, DiffuseTerm, Feature, Form, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, ModelPart, PathParts, Reflectance, ReflectanceCurve, ShadingModel,
 };
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{BindingEntry, MANIFEST_SCHEMA, Manifest, ShaderEntry, TableEntry};

@@ -36,6 +36,8 @@ luthier_lut::named! {
         BaseColor = "base-color",
         /// Factor on how metallic such a surface is.
         Metallic = "metallic",
+        /// Tangent-space normal of the inner boundary of the film or slab, RGB as for [`MapSlot::Normal`].
+        Lean = "lean",
     }
 }
 
@@ -75,9 +77,15 @@ impl MapSlot {
             Self::Tangent => Some(Feature::Tangents),
             Self::Albedo => Some(Feature::AlbedoMap),
             Self::BaseColor | Self::Metallic => Some(Feature::MetallicMap),
+            Self::Lean => Some(Feature::LeanMap),
             Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
             Self::Normal | Self::Roughness | Self::Patina | Self::FlakeNormal => None,
         }
+    }
+
+    /// Whether a map of a layer is a value of `LuthierLayerPlace`; the albedo of a base and a lean are values of the whole `LuthierPlace`.
+    pub fn is_of_layer_place(self, layer: u32) -> bool {
+        self.layer_feature(layer).is_some() && !matches!(self, Self::Albedo | Self::Lean)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Materials of a bake.
 
 use luthier_model::{
-    DiffusePart, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
-    PathParts, Reach, Reflectance, ShadingModel,
+    DiffusePart, DiffuseTerm, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, PathParts, Reach, Reflectance, ShadingModel,
 };
 use serde::{Deserialize, Serialize};
 
@@ -135,7 +135,8 @@ impl MaterialEntry {
             let layer = map.layer?;
             let feature = map.slot.layer_feature(layer)?;
             // Models of the first interface may have the base, which is the last layer.
-            let is_base = map.slot == MapSlot::Albedo && self.model.honours(Feature::Base, form);
+            let has_base = self.model.honours(Feature::Base, form) || self.constants.diffuse_term == DiffuseTerm::Added;
+            let is_base = map.slot == MapSlot::Albedo && has_base;
             let is_shown = (layer == 0 || reads_all || is_base) && self.model.honours(feature, form);
             is_shown.then_some((layer, map.slot))
         })

@@ -21,6 +21,7 @@ fn is_met(when: ReadWhen, layers: &[LayerRecord], number: usize) -> bool {
     let has_film = layer.film_ior_n[0] > 0.0;
     match when {
         ReadWhen::Always => true,
+        ReadWhen::Tabled => is_tabled,
         ReadWhen::Steady => is_tabled && !layer.varies(),
         ReadWhen::Varying => is_tabled && layer.varies(),
         ReadWhen::FirstVarying => layer.varies() && number == 0,
@@ -28,7 +29,7 @@ fn is_met(when: ReadWhen, layers: &[LayerRecord], number: usize) -> bool {
         ReadWhen::BareConductor => !has_film && layer.kind == LayerKind::Conductor,
         ReadWhen::DenserCoat => {
             let is_below = layers.get(number + 1).is_some_and(|below| below.kind != LayerKind::Diffuse);
-            layer.kind == LayerKind::Dielectric && layer.eta > 1.0 && is_below
+            is_tabled && layer.kind == LayerKind::Dielectric && layer.eta > 1.0 && is_below
         }
     }
 }
@@ -55,6 +56,9 @@ mod tests {
             let layers = [computed(layer(LayerKind::Dielectric, 1.5)), computed(layer(LayerKind::Conductor, 1.0))];
             for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
                 assert_eq!([0, 1].map(|number| read_by(model, &layers, number)), ["distribution"; 2]);
+            }
+            for model in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
+                assert_eq!([0, 1].map(|number| read_by(model, &layers, number)), [""; 2]);
             }
         }
         let film = LayerRecord { reflectance: Reflectance::Exact, ..varying() };

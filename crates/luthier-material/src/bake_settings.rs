@@ -2,8 +2,8 @@
 
 use luthier_lut::{TableKind, TexelFormat, named};
 use luthier_manifest::{
-    ColorMode, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
-    ModelPart, PathParts, Reflectance, ShadingModel,
+    ColorMode, DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, ModelPart, PathParts, Reflectance, ShadingModel,
 };
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
@@ -67,6 +67,8 @@ pub struct BakeSettings {
     pub lower_alpha: Option<LowerAlpha>,
     /// Place of the diffuse base, of the models `elek` and `weidlich-wilkie`.
     pub diffuse_part: Option<DiffusePart>,
+    /// Light of the diffuse base, of the model `microfacet`.
+    pub diffuse_term: Option<DiffuseTerm>,
     /// Numbers of the model `granier-heidrich`.
     pub beams: Option<Beams>,
     /// Kinds of tables to bake beside those that the shader reads.
@@ -98,11 +100,19 @@ pub struct Beams {
     pub inner_tilt: f64,
     /// Azimuth to which its normal leans, in radians.
     pub inner_azimuth: f64,
+    /// Height of both lobes.
+    pub lobe_height: LobeHeight,
 }
 
 impl Default for Beams {
     fn default() -> Self {
-        Self { specular_weight: 1.0, diffuse_weight: 1.0, inner_tilt: 0.0, inner_azimuth: 0.0 }
+        Self {
+            specular_weight: 1.0,
+            diffuse_weight: 1.0,
+            inner_tilt: 0.0,
+            inner_azimuth: 0.0,
+            lobe_height: LobeHeight::Scaled,
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Features of a material that its model leaves out.
 
-use luthier_manifest::{Feature, Form, ShadingModel};
+use luthier_manifest::{Feature, Form, ModelPart, ShadingModel};
 use luthier_optics::stack::{Base, Distribution, Film, Layer};
 
 use crate::material::Material;
@@ -34,8 +34,10 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
     let mut asked = Vec::new();
     let layers = &material.stack.layers;
     let mut is_told = false;
+    let adds_base = material.adds_base() && model.takes(ModelPart::DiffuseTerm);
     for (number, layer) in layers.iter().enumerate() {
-        if number > 0 && !missing(model, feature_of(layer)).is_empty() {
+        let is_added = adds_base && feature_of(layer) == Feature::Base;
+        if number > 0 && !is_added && !missing(model, feature_of(layer)).is_empty() {
             if !is_told {
                 asked.push((feature_of(layer), format!("layer.{number}.type")));
             }
@@ -44,7 +46,8 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
         // Whether light of interfaces, and of a base, comes up through the slab.
         let [lights_of_interfaces, light_of_base] = [Feature::InnerInterface, Feature::Base].map(|kind| {
-            missing(model, kind).is_empty() && layers[number + 1..].iter().any(|below| feature_of(below) == kind)
+            let is_shown = missing(model, kind).is_empty() || adds_base && kind == Feature::Base;
+            is_shown && layers[number + 1..].iter().any(|below| feature_of(below) == kind)
         });
         let film = layer.films.first();
         let varies = film.is_some_and(Film::varies);

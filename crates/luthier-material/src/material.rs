@@ -7,7 +7,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::{BeamsRecord, Budget, ColorMode, LowerReflectance, MapSlot, ShadingModel};
+use luthier_manifest::{BeamsRecord, Budget, ColorMode, DiffuseTerm, LowerReflectance, MapSlot, ShadingModel};
 
 use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
@@ -81,10 +81,16 @@ impl Material {
         self.bake.lower_facets = self.bake.lower_facets.filter(|_| model.takes(ModelPart::LowerFacets));
         self.bake.lower_alpha = self.bake.lower_alpha.filter(|_| model.takes(ModelPart::LowerAlpha));
         self.bake.diffuse_part = self.bake.diffuse_part.filter(|_| model.takes(ModelPart::DiffusePart));
+        self.bake.diffuse_term = self.bake.diffuse_term.filter(|_| model.takes(ModelPart::DiffuseTerm));
         if !model.takes(ModelPart::Beams) {
             self.bake.beams = None;
-            self.layers.iter_mut().for_each(|layer| layer.exponents = None);
+            self.layers.iter_mut().for_each(|layer| (layer.exponents, layer.maps.lean) = (None, None));
         }
+    }
+
+    /// Whether the light of its diffuse base is added to that of the first interface, which its model reads alone.
+    pub fn adds_base(&self) -> bool {
+        self.bake.diffuse_term == Some(DiffuseTerm::Added)
     }
 
     /// The colour of its tables: spectral, unless its file asks otherwise.
@@ -105,7 +111,8 @@ impl Material {
 
     /// Numbers of the model `granier-heidrich`, if the file gives some that differ from [`BeamsRecord::PLAIN`].
     pub fn beams(&self) -> Option<BeamsRecord> {
-        let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth } = self.bake.beams.unwrap_or_default();
+        let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth, lobe_height } =
+            self.bake.beams.unwrap_or_default();
         let exponents = self.layers.first().and_then(|first| first.exponents);
         let (sin, cos) = (libm::sin(inner_tilt), libm::cos(inner_tilt));
         let beams = BeamsRecord {
@@ -113,6 +120,7 @@ impl Material {
             specular_weight,
             diffuse_weight,
             inner_normal: [sin * libm::cos(inner_azimuth), sin * libm::sin(inner_azimuth), cos],
+            lobe_height,
         };
         (beams != BeamsRecord::PLAIN).then_some(beams)
     }
@@ -205,6 +213,8 @@ pub struct Maps {
     pub base_color: Option<PictureRef>,
     /// Multiplies how metallic it is.
     pub metallic: Option<PictureRef>,
+    /// Normals of the inner boundary of the film or slab.
+    pub lean: Option<PictureRef>,
 }
 
 /// A map of a layer with its key in the file.
@@ -222,7 +232,7 @@ impl NamedMap<'_> {
     /// Meaning of its texels.
     pub fn texels(&self) -> TexelUse {
         match self.slot {
-            MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal => TexelUse::Normal,
+            MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean => TexelUse::Normal,
             MapSlot::Tangent => TexelUse::Direction,
             MapSlot::Albedo | MapSlot::BaseColor => TexelUse::Color,
             _ => TexelUse::Number,
@@ -245,6 +255,7 @@ impl Maps {
             ("albedo", MapSlot::Albedo, &self.albedo),
             ("base_color", MapSlot::BaseColor, &self.base_color),
             ("metallic", MapSlot::Metallic, &self.metallic),
+            ("lean", MapSlot::Lean, &self.lean),
         ]
         .into_iter()
         .filter_map(|(key, slot, picture)| Some(NamedMap { key, slot, picture: picture.as_ref()? }))

@@ -103,6 +103,8 @@ pub struct TableRead {
 pub enum ReadWhen {
     /// All interfaces that the model reaches.
     Always,
+    /// Interfaces with a tabulated reflectance.
+    Tabled,
     /// Interfaces with a tabulated reflectance, and without a film that varies.
     Steady,
     /// Interfaces with a tabulated reflectance, and with a film that varies.
@@ -113,6 +115,7 @@ pub enum ReadWhen {
     Filmed,
     /// Conductors without a film.
     BareConductor,
-    /// Coats that are denser than the medium above, over another interface: part of the light from below is totally reflected there.
+    /// Coats with a tabulated reflectance that are denser than the medium above, over another interface: part of the light from below is totally
+    /// reflected there.
     DenserCoat,
 }

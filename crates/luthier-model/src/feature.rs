@@ -60,6 +60,8 @@ luthier_lut::named! {
         Reradiation = "re-radiation",
         /// A distribution of slopes that has no walks in closed form: `blinn`, `abc`, `sgd`.
         Distribution = "the distribution of slopes",
+        /// A map of the lean of a film's inner boundary.
+        LeanMap = "the lean map",
     }
 }
 
@@ -81,14 +83,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.######.########"),
-            (ShadingModel::WeidlichWilkie, "#####b##################"),
-            (ShadingModel::Belcour, "#####bf#..###.#.###..#.."),
-            (ShadingModel::Yamaguchi, "#####bf##.###.#####..#.."),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#...#.."),
-            (ShadingModel::Phong, "###.##....##.........#.."),
-            (ShadingModel::Microfacet, "....#b######..##.##..#.#"),
-            (ShadingModel::Lobes, "#############....#.###.."),
+            (ShadingModel::Elek, "#####b##.######.########."),
+            (ShadingModel::WeidlichWilkie, "#####b##################."),
+            (ShadingModel::Belcour, "#####bf#..###.#.###..#..."),
+            (ShadingModel::Yamaguchi, "#####bf##.###.#####..#..."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#...#..#"),
+            (ShadingModel::Phong, "###.##....##.........#..."),
+            (ShadingModel::Microfacet, "....#b######..##.##..#.#."),
+            (ShadingModel::Lobes, "#############....#.###..."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

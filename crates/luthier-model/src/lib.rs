@@ -22,8 +22,8 @@ pub use facts::{Facts, Family, Reach, ReadWhen, Shows, TableRead};
 pub use feature::Feature;
 pub use form::Form;
 pub use parts::{
-    DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking, ModelPart,
-    PathParts, Reflectance, ReflectanceCurve,
+    DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance,
+    Masking, ModelPart, PathParts, Reflectance, ReflectanceCurve,
 };
 pub use rows::ShadingModel;
 pub use tolerance::{Tolerance, Tolerances};

@@ -26,6 +26,8 @@ pub enum ModelPart {
     DiffusePart,
     /// Exponents, weights and a lean of the inner boundary of a film.
     Beams,
+    /// Light of a diffuse base beside that of the first interface, by [`DiffuseTerm`].
+    DiffuseTerm,
 }
 
 luthier_lut::named! {
@@ -59,7 +61,8 @@ luthier_lut::named! {
 }
 
 luthier_lut::named! {
-    /// Computation of the reflectance of interfaces, of the models `elek`, `weidlich-wilkie` and `microfacet`.
+    /// Computation of the reflectance of interfaces, of the models `elek`, `weidlich-wilkie` and `microfacet`. In `belcour` and `yamaguchi` the table is
+    /// that of FGD-infinity; the others take facets as level, as Unity's StackLit does (section 3 of Yamaguchi et al. 2019).
     #[derive(Default, Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
     pub enum Reflectance("reflectance") {
@@ -158,6 +161,34 @@ luthier_lut::named! {
         None = "none",
         /// `t = T_21`, with T_12 at the angle of the light and T_21 at that of the eye, where both are taken at the half vector else.
         Directions = "directions",
+    }
+}
+
+luthier_lut::named! {
+    /// Light of the diffuse base in the model `microfacet`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum DiffuseTerm("diffuse term") {
+        /// None: what the first interface lets through is lost.
+        #[default]
+        None = "none",
+        /// The base as if no interface lay above it: `albedo / pi` beside `F D G / (4 cos_theta_i cos_theta_o)`, as shaders of engines add both. It returns
+        /// more light than falls in where albedo and reflectance sum to more than 1.
+        Added = "added",
+    }
+}
+
+luthier_lut::named! {
+    /// Height of the lobes of the model `granier-heidrich`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum LobeHeight("lobe height") {
+        /// Each lobe carries its coefficient: `(e + 1) / (2 pi)`, and in the film `cos_theta_i / (n^2 cos_theta_t)` more.
+        #[default]
+        Scaled = "scaled",
+        /// Height one, as printed (Granier and Heidrich 2003, eq. 6 and 10). A lobe carries `2 pi / (e + 1)` of its coefficient, more than all of it where
+        /// e is below 5.28.
+        One = "one",
     }
 }
 
@@ -304,6 +335,31 @@ impl DiffusePart {
     }
 }
 
+impl DiffuseTerm {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Added => "the diffuse base as if no interface lay above it",
+        }
+    }
+}
+
+impl LobeHeight {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Scaled => "each lobe carries its coefficient",
+            Self::One => "lobes of height one (Granier and Heidrich 2003, eq. 6 and 10)",
+        }
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
 impl InternalReflection {
     /// Formula and source, for headers and messages.
     pub fn title(self) -> &'static str {
@@ -344,6 +400,8 @@ mod tests {
         assert_eq!(LowerCosine::default(), LowerCosine::ALL[0]);
         assert_eq!((LowerFacets::default().number(), LowerAlpha::default().number()), (0, 0));
         assert_eq!(DiffusePart::default(), DiffusePart::ALL[0]);
+        assert_eq!(DiffuseTerm::default(), DiffuseTerm::ALL[0]);
+        assert_eq!((LobeHeight::default(), LobeHeight::default().number()), (LobeHeight::ALL[0], 0));
         // Two bits and three of a word: see `LayerRecord::words`.
         assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
         assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));

@@ -25,7 +25,7 @@ const FACET_TABLES: &[TableRead] = &[
 
 /// Tables of models that follow statistics of lobes.
 const STATISTICS_TABLES: &[TableRead] =
-    &[read(TableKind::Fgd, ReadWhen::Always), read(TableKind::Escape, ReadWhen::DenserCoat)];
+    &[read(TableKind::Fgd, ReadWhen::Tabled), read(TableKind::Escape, ReadWhen::DenserCoat)];
 
 /// Layers below the first, and what slabs absorb.
 const STACK: &[Feature] = &[InnerInterface, Base, Absorption, BaseAbsorption];
@@ -123,7 +123,7 @@ const GRANIER_HEIDRICH: Facts = Facts {
     is_isotropic: true,
     forms: &[Form::Baked, Form::Full],
     shows: Shows {
-        always: &[&[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter]],
+        always: &[&[Base, Films, FilmVariation, NormalMap, RoughnessMap, LayerAlpha, AlbedoMap, Glitter, LeanMap]],
         baked: &[],
         full: &[],
     },
@@ -160,7 +160,7 @@ const BELCOUR: Facts = Facts {
         full: &[FilmVariation],
     },
     tables: STATISTICS_TABLES,
-    parts: &[],
+    parts: &[ModelPart::Reflectance],
     domain: &[],
     tolerances: STATISTICS_TOLERANCES,
     default_for: &[(DefaultFor::Stack, 1)],
@@ -181,7 +181,7 @@ const YAMAGUCHI: Facts = Facts {
         full: &[FilmVariation],
     },
     tables: STATISTICS_TABLES,
-    parts: &[],
+    parts: &[ModelPart::Reflectance],
     domain: &[],
     tolerances: STATISTICS_TOLERANCES,
     default_for: &[(DefaultFor::Stack, 2)],
@@ -231,7 +231,7 @@ const MICROFACET: Facts = Facts {
         full: &[],
     },
     tables: FACET_TABLES,
-    parts: &[ModelPart::Masking, ModelPart::Reflectance],
+    parts: &[ModelPart::Masking, ModelPart::Reflectance, ModelPart::DiffuseTerm],
     domain: &[],
     tolerances: Tolerances { table: LOBE_TABLE, baked: LOBE_READ, full: LAYERS_IN_F32, filtered: FILTERED_BY_HARDWARE },
     default_for: &[],

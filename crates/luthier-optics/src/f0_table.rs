@@ -76,6 +76,49 @@ pub const DIELECTRIC_F0: [DielectricF0; 4] = [
     DielectricF0 { name: "Diamond-like", linear: [0.100, 0.200], srgb: [90, 124] },
 ];
 
+/// Names of the substances of both tables, those of [`F0_TABLE`] first. A class of two substances has two names.
+pub const F0_NAMES: [&str; 18] = [
+    "titanium",
+    "chromium",
+    "iron",
+    "nickel",
+    "platinum",
+    "copper",
+    "palladium",
+    "zinc",
+    "gold",
+    "aluminum",
+    "silver",
+    "silicon",
+    "water",
+    "plastic",
+    "glass",
+    "crystalware",
+    "gems",
+    "diamond-like",
+];
+
+/// The F0 as printed of a substance, by its name in [`F0_NAMES`]; the middle of the range where a range is printed. Gold's red is above 1.
+///
+/// ```
+/// use luthier_optics::f0_table::printed_f0;
+///
+/// assert_eq!(printed_f0("copper"), Some([0.955, 0.638, 0.538]));
+/// assert_eq!(printed_f0("diamond-like"), Some([0.15; 3]));
+/// ```
+pub fn printed_f0(name: &str) -> Option<Rgb> {
+    let number = F0_NAMES.iter().position(|known| *known == name)?;
+    let class = match number.checked_sub(F0_TABLE.len()) {
+        None => return Some(F0_TABLE[number].linear),
+        Some(0) => 0,
+        Some(1 | 2) => 1,
+        Some(3 | 4) => 2,
+        Some(_) => 3,
+    };
+    let [least, greatest] = DIELECTRIC_F0[class].linear;
+    Some([0.5 * (least + greatest); 3])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,6 +169,29 @@ mod tests {
                 assert!(encode(linear).abs_diff(byte) <= 1, "{}: {}", class.name, encode(linear));
             }
         }
+    }
+
+    /// Bytes of the slides, of each substance by its name: least and greatest of each channel.
+    #[test]
+    fn substances_have_the_bytes_of_the_slides() {
+        for (name, bytes) in F0_NAMES.iter().zip(F0_TABLE.iter().map(|entry| entry.srgb.map(|byte| [byte; 2])).chain(
+            ["water", "plastic", "glass", "crystalware", "gems", "diamond-like"].map(|name| {
+                let range = match name {
+                    "water" => [39, 39],
+                    "plastic" | "glass" => [56, 60],
+                    "crystalware" | "gems" => [63, 80],
+                    _ => [90, 124],
+                };
+                [range; 3]
+            }),
+        )) {
+            for (linear, [least, greatest]) in printed_f0(name).unwrap().into_iter().zip(bytes) {
+                let found = encode(linear);
+                assert!(found + 1 >= least && found <= greatest + u8::from(greatest < 255), "{name}: {found}");
+            }
+        }
+        assert!(F0_TABLE.iter().zip(F0_NAMES).all(|(entry, name)| entry.name.to_lowercase() == name));
+        assert_eq!(printed_f0("Gold"), None);
     }
 
     #[test]

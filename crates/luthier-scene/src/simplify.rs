@@ -176,6 +176,11 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 found |= maps.albedo.take().is_some();
             }
         }
+        Feature::LeanMap => {
+            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
+                found |= maps.lean.take().is_some();
+            }
+        }
         Feature::MetallicMap => {
             for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
                 found |= maps.base_color.take().is_some() | maps.metallic.take().is_some();

@@ -140,7 +140,7 @@ pub(crate) struct Shading {
     /// Simulate nothing: files that ask for no model take a closed form, `elek` for most. Those that ask for `lobes` are refused
     #[arg(long, conflicts_with = "model")]
     pub(crate) no_fit: bool,
-    /// How the models `elek`, `weidlich-wilkie` and `microfacet` come by the reflectance of an interface, in place of what material files say:
+    /// How models come by the reflectance of an interface, all but `granier-heidrich`, `phong` and `lobes`, in place of what material files say:
     /// `table` reads rows, `exact` is Fresnel's equations, `approximate` Schlick's form with the F0 of n and k (Elek 2010), `lazanyi` has a
     /// correction of that
     #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]

@@ -132,12 +132,12 @@ ViewLayer view_layer(uint material, uint index) {
 }
 
 #ifdef VIEW_PLACES
-// Textures of the material one below the other: normals, roughness, thickness, patina, flakes, albedo. First row, columns, rows; no columns
+// Textures of the material one below the other: normals, roughness, thickness, patina, flakes, albedo, lean. First row, columns, rows; no columns
 // where there is none.
 uniform highp sampler2D view_textures;
-uniform ivec3 view_slots[6];
+uniform ivec3 view_slots[7];
 // Two rows for each, which make its texture coordinates of the surface's.
-uniform highp vec3 view_turns[12];
+uniform highp vec3 view_turns[14];
 
 vec2 view_uv(int map, vec2 uv) {
     return vec2(dot(view_turns[2 * map], vec3(uv, 1.0)), dot(view_turns[2 * map + 1], vec3(uv, 1.0)));
@@ -192,6 +192,15 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
 #ifdef VIEW_GLITTER
     vec3 glitter = luthier_glitter_normal(material, uv);
     place.normal = glitter.z < 1.0 ? glitter : place.normal;
+#endif
+#ifdef VIEW_LEANS
+    if (view_slots[6].y > 0) {
+        // Slopes add up.
+        vec3 n = 2.0 * view_bilinear(6, uv).xyz - 1.0;
+        n.z = max(n.z, 1e-3);
+        vec3 film = place.inner_normal;
+        place.inner_normal = normalize(vec3(film.xy * n.z + n.xy * film.z, film.z * n.z));
+    }
 #endif
 #ifdef VIEW_COLORS
     if (view_slots[5].y > 0) {

@@ -2,7 +2,7 @@
 //! `granier-heidrich`.
 
 use glam::DVec3;
-use luthier_model::{Masking, PathParts, Reflectance};
+use luthier_model::{DiffuseTerm, LobeHeight, Masking, PathParts, Reflectance};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
@@ -23,10 +23,12 @@ use crate::terms::Terms;
 pub struct Parts {
     /// Masking of `microfacet`.
     pub masking: Masking,
-    /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`.
+    /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`, and energies of `belcour` and `yamaguchi`.
     pub reflectance: Reflectance,
     /// Parts of `elek` and `weidlich-wilkie`.
     pub path: PathParts,
+    /// Light of the diffuse base of `microfacet`.
+    pub diffuse_term: DiffuseTerm,
     /// Numbers of `granier-heidrich`.
     pub beams: GranierHeidrich,
 }
@@ -37,17 +39,31 @@ impl Parts {
         masking: Masking::Smith,
         reflectance: Reflectance::Table,
         path: PathParts::PLAIN,
+        diffuse_term: DiffuseTerm::None,
         beams: GranierHeidrich::PLAIN,
     };
 
     /// The parts with numbers of `granier-heidrich`: the ratio of the slope parameters of inner and outer boundary, the weights of the specular and
-    /// the diffuse part, and the normal of the inner boundary.
+    /// the diffuse part, the normal of the inner boundary, and the height of both lobes.
     #[must_use]
-    pub fn with_beams(self, inner_alpha_ratio: f64, weights: [f64; 2], inner_normal: [f64; 3]) -> Self {
+    pub fn with_beams(
+        self,
+        inner_alpha_ratio: f64,
+        weights: [f64; 2],
+        inner_normal: [f64; 3],
+        lobe_height: LobeHeight,
+    ) -> Self {
         let [specular_weight, diffuse_weight] = weights;
         let inner_normal = DVec3::from_array(inner_normal);
-        let beams =
-            GranierHeidrich { inner_normal, exponents: None, inner_alpha_ratio, specular_weight, diffuse_weight };
+        let exponents = None;
+        let beams = GranierHeidrich {
+            inner_normal,
+            exponents,
+            inner_alpha_ratio,
+            specular_weight,
+            diffuse_weight,
+            lobe_height,
+        };
         Self { beams, ..self }
     }
 
@@ -58,7 +74,7 @@ impl Parts {
             Reflectance::Approximate => Fresnel::ComplexF0,
             Reflectance::Lazanyi => Fresnel::Lazanyi,
         };
-        Components { masking: self.masking, fresnel, ..Components::PLAIN }
+        Components { masking: self.masking, fresnel, diffuse_term: self.diffuse_term, ..Components::PLAIN }
     }
 }
 
@@ -136,11 +152,18 @@ impl Terms for Chosen<'_> {
 
 impl Energy<3> for Chosen<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
-        self.terms.fgd(layer, cos_theta_i, alpha)
+        match self.reflectances.0.get(layer) {
+            // Facets as level.
+            Some(Some(own)) => own.rgb(cos_theta_i).map(|energy| energy.clamp(0.0, 1.0)),
+            _ => self.terms.fgd(layer, cos_theta_i, alpha),
+        }
     }
 
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
-        self.terms.escaping(layer, cos_theta_i, alpha, eta)
+        match self.reflectances.0.get(layer) {
+            Some(Some(_)) => 1.0,
+            _ => self.terms.escaping(layer, cos_theta_i, alpha, eta),
+        }
     }
 }
 

@@ -6,7 +6,8 @@ use glam::DVec3;
 use luthier_layers::formulas::normals::exponent;
 use luthier_layers::model::Model;
 use luthier_layers::models::granier_heidrich::{Film, GranierHeidrich};
-use luthier_layers::monochrome::Monochrome;
+use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_model::LobeHeight;
 use luthier_optics::fresnel::FilmLayer;
 use num_complex::Complex64;
 
@@ -154,6 +155,31 @@ fn slope_parameters_of_both_boundaries_are_their_exponents() {
         let (specular, whole) = (value(&own, 0.0), value(&own, 0.5));
         close(value(&weighed, 0.5), 0.3 * specular + 0.2 * (whole - specular), 1e-12);
     }
+}
+
+/// Oracle: eq. 5 as printed, by the film alone, for both beams in phase, in between, and without interference.
+#[test]
+fn lobes_of_height_one_are_those_of_eq_5() {
+    let model = GranierHeidrich {
+        exponents: Some([90.0, 170.0]),
+        lobe_height: LobeHeight::One,
+        specular_weight: 0.4,
+        ..GranierHeidrich::default()
+    };
+    for waves in [None, Some(0.0), Some(0.3)] {
+        let mut stack = Monochrome::bare(&[(ggx(0.1), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.0))]);
+        stack.layers[0].films =
+            waves.map(|waves| FilmLayer { ior: Complex64::new(1.5, 0.0), waves: waves / 1.5 }).into_iter().collect();
+        for (theta_i, theta_o) in [(0.0, 0.0), (30.0, 35.0), (80.0, 75.0)] {
+            let (wi, wo) = (at(theta_i), mirrored(at(theta_o)));
+            let expected = film(1.5, waves).specular(wi, wo);
+            assert!(expected > 1e-3);
+            close(model.eval(&stack, wi, wo), 0.4 * expected, 1e-12);
+        }
+    }
+    let metal = Monochrome::bare(&[(ggx(0.1), MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) })]);
+    let peak = GranierHeidrich { specular_weight: 1.0, ..model }.eval(&metal, DVec3::Z, DVec3::Z);
+    close(peak, (0.8f64.powi(2) + 9.0) / (1.2f64.powi(2) + 9.0), 1e-12);
 }
 
 /// Slopes of heights add up: a boundary of slope 0.25 that leans by 0.1 more at a place, and by 0.3 across.

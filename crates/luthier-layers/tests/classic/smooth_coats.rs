@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_layers::formulas::facets::Facets;
 use luthier_layers::formulas::oren_nayar;
-use luthier_layers::luthier_model::{InternalReflection, Masking};
+use luthier_layers::luthier_model::{InternalReflection, Masking, PathParts};
 use luthier_layers::model::Model;
 use luthier_layers::models::elek::Elek;
 use luthier_layers::models::microfacet::{Components, Microfacet};

@@ -4,6 +4,7 @@ mod beams;
 
 use std::f64::consts::FRAC_1_PI;
 
+use luthier_model::DiffuseTerm;
 use serde::{Deserialize, Serialize};
 
 pub use self::beams::BeamsRecord;
@@ -39,12 +40,19 @@ pub struct MaterialConstants {
     /// Numbers of the model `granier-heidrich`, if its material has some of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beams: Option<BeamsRecord>,
+    /// Light of the diffuse base in the model `microfacet`; left out where it is the default.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub diffuse_term: DiffuseTerm,
     /// Flakes in the coat.
     pub flakes: Option<FlakesRecord>,
     /// Patina: the first layer has grown over the others in places.
     pub patina: Option<PatinaRecord>,
     /// Cells of the surface that glitter.
     pub glitter: Option<GlitterRecord>,
+}
+
+fn is_none(term: &DiffuseTerm) -> bool {
+    *term == DiffuseTerm::None
 }
 
 /// Numbers of the model `lobes` that hold at all views.
@@ -258,8 +266,8 @@ impl MaterialConstants {
     ///
     /// | header word | x, y, z, w |
     /// |---|---|
-    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, 0 |
-    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of beams the normal of the inner boundary, 1 |
+    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, number of the lobes' height |
+    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of beams the normal of the inner boundary, 1; of `microfacet` with an added diffuse term 1 in w |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
@@ -273,6 +281,9 @@ impl MaterialConstants {
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);
         words[1] = vec4(self.phong_specular, 0.0);
         words[2] = vec4(self.internal_reflectance, self.upward_loss);
+        if self.diffuse_term == DiffuseTerm::Added {
+            words[1][3] = 1.0;
+        }
         if let Some(lobes) = self.lobes {
             let LobesRecord { index, falloff: [a, b], integral, .. } = lobes;
             words[0] = vec4(lobes.varying(), lobes.critical_plain_share);
@@ -310,6 +321,8 @@ impl MaterialConstants {
 
 #[cfg(test)]
 mod tests {
+    use luthier_model::LobeHeight;
+
     use super::*;
 
     /// The table in the documentation of `words`, filled in by hand.
@@ -335,6 +348,7 @@ mod tests {
             upward_loss: 30.0,
             lobes: None,
             beams: None,
+            diffuse_term: DiffuseTerm::None,
             flakes: Some(flakes),
             patina: Some(patina),
             glitter: Some(glitter),
@@ -359,9 +373,12 @@ mod tests {
             specular_weight: 0.75,
             diffuse_weight: 0.25,
             inner_normal: [0.0, 0.6, 0.8],
+            lobe_height: LobeHeight::One,
         };
         let of_beams = MaterialConstants { beams: Some(beams), ..constants.clone() }.words();
-        assert_eq!(of_beams[..3], [[0.5, 0.75, 0.25, 0.0], [0.0, 0.6, 0.8, 1.0], [27.0, 28.0, 29.0, 30.0]]);
+        assert_eq!(of_beams[..3], [[0.5, 0.75, 0.25, 1.0], [0.0, 0.6, 0.8, 1.0], [27.0, 28.0, 29.0, 30.0]]);
+        let added = MaterialConstants { diffuse_term: DiffuseTerm::Added, ..constants.clone() }.words();
+        assert_eq!(added[1], [23.0, 24.0, 25.0, 1.0]);
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);
         let lobes = LobesRecord {
             index: 1.25,

@@ -2,8 +2,8 @@
 
 use luthier_lut::{TableKind, TexelFormat};
 use luthier_manifest::{
-    Budget, ColorMode, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance,
-    Masking, Reflectance, ShadingModel,
+    Budget, ColorMode, DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, Reflectance, ShadingModel,
 };
 
 use crate::bake_settings::{
@@ -24,6 +24,7 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
         reflectance: at.text("reflectance").and_then(Reflectance::from_name),
         internal_reflection: at.text("internal_reflection").and_then(InternalReflection::from_name),
         lower_reflectance: at.text("lower_reflectance").and_then(LowerReflectance::from_name),
+        diffuse_term: at.text("diffuse_term").and_then(DiffuseTerm::from_name),
         lower_cosine: at.text("lower_cosine").and_then(LowerCosine::from_name),
         lower_facets: at.text("lower_facets").and_then(LowerFacets::from_name),
         lower_alpha: at.text("lower_alpha").and_then(LowerAlpha::from_name),
@@ -89,6 +90,7 @@ fn beams(at: &Section<'_>, sink: &mut Sink<'_>) -> Beams {
         diffuse_weight: at.number("diffuse_weight").unwrap_or(plain.diffuse_weight),
         inner_tilt: at.number("inner_tilt_deg").map_or(plain.inner_tilt, f64::to_radians),
         inner_azimuth: at.number("inner_azimuth_deg").map_or(plain.inner_azimuth, f64::to_radians),
+        lobe_height: at.text("lobe_height").and_then(LobeHeight::from_name).unwrap_or_default(),
     }
 }
 

@@ -55,7 +55,7 @@ pub(super) fn decode(
                 ior::check_clear(&ior, at, "ior", sink);
                 Base::Dielectric { ior, slab: slab(at) }
             }
-            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at) },
+            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, sink) },
             "conductor" => Base::Conductor { ior: index(at, read, sink, sources) },
             "metallic-roughness" => {
                 let (interface, diffuse) = schlick::metallic_roughness(at, above, sink);

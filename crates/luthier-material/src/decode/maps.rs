@@ -20,6 +20,7 @@ pub(super) fn decode(at: &Section<'_>) -> Maps {
         albedo: picture::under(&maps, "albedo"),
         base_color: picture::under(&maps, "base_color"),
         metallic: picture::under(&maps, "metallic"),
+        lean: picture::under(&maps, "lean"),
     }
 }
 
@@ -40,6 +41,10 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
             };
             sink.error(maps.value_span(name), message, Some(hint));
         }
+    }
+    if number > 0 && maps.has("lean") {
+        let message = "a lean is that of the inner boundary of the first interface's film or slab";
+        sink.error(maps.value_span("lean"), message, Some("move it to the first layer, or write `bumps`".to_owned()));
     }
     check_metallic(at, &maps, sink);
     for map in decode(at).named() {

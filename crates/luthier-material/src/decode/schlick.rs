@@ -1,6 +1,7 @@
 //! Decoder of interfaces that reflect by Schlick's formula: an F0 in place of an index, and the surface of engines.
 
 use luthier_optics::Rgb;
+use luthier_optics::f0_table::printed_f0;
 use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::schlick::index_of_f0;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
@@ -14,14 +15,14 @@ use crate::section::Section;
 use crate::suggest::short;
 
 /// The opaque medium of a conductor with an `f0`.
-pub(super) fn conductor(at: &Section<'_>) -> Ior {
-    Ior::vacuum().with_f0(f0(at))
+pub(super) fn conductor(at: &Section<'_>, sink: &mut Sink<'_>) -> Ior {
+    Ior::vacuum().with_f0(f0(at, sink))
 }
 
 /// The medium of a dielectric with an `f0`: of the index that the file gives beside it, or else of the one whose reflectance against the
 /// medium above is the mean of the three numbers.
 pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink: &mut Sink<'_>) -> Ior {
-    let f0 = f0(at);
+    let f0 = f0(at, sink);
     let Some(ior) = given else {
         let mean = f0.iter().sum::<f64>() / 3.0;
         let found = relative(above, index_of_f0(mean));
@@ -116,8 +117,17 @@ pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Si
     }
 }
 
-fn f0(at: &Section<'_>) -> Rgb {
-    at.reflectance("f0").unwrap_or([0.0; 3])
+/// The F0 of an interface, as numbers or by the name of a substance. The gold of the lecture has a red above 1, which counts as 1.
+fn f0(at: &Section<'_>, sink: &mut Sink<'_>) -> Rgb {
+    let Some(printed) = at.text("f0").and_then(printed_f0) else {
+        return at.reflectance("f0").unwrap_or([0.0; 3]);
+    };
+    if let Some(most) = printed.into_iter().find(|value| *value > 1.0) {
+        let message =
+            format!("`f0` is {} as the lecture prints it, more light than falls in: it is read as 1", short(most));
+        sink.warn(at.value_span("f0"), message, Some("gold by its index is `ior = \"au\"`".to_owned()));
+    }
+    printed.map(|value| value.min(1.0))
 }
 
 /// The largest real index of a medium.

@@ -2,8 +2,8 @@
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    ColorMode, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
-    Reflectance, ShadingModel,
+    ColorMode, DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, Reflectance, ShadingModel,
 };
 
 use super::table::{ANY, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
@@ -43,11 +43,18 @@ pub(super) static BAKE: Table = Table {
             "Masking and shadowing of the model microfacet; of elek and weidlich-wilkie v-cavity, their default, or kelemen.",
         ),
         Key::with_default(
+            "diffuse_term",
+            Kind::Choice(DiffuseTerm::NAMES),
+            "\"none\"",
+            "Light of the diffuse base in the model microfacet: none, or added to that of the first interface as if none lay above.",
+        ),
+        Key::with_default(
             "reflectance",
             Kind::Choice(Reflectance::NAMES),
             "\"table\"",
             "How the models elek, weidlich-wilkie and microfacet come by the reflectance of an interface: rows of a table, Fresnel's equations, \
-             Schlick's form with the F0 of n and k, or Lazanyi's correction of it.",
+             Schlick's form with the F0 of n and k, or Lazanyi's correction of it. In belcour and yamaguchi the table is that of the energies of rough \
+             interfaces, and the others take facets as level.",
         ),
         Key::with_default(
             "internal_reflection",
@@ -174,6 +181,12 @@ static BEAMS: Table = Table {
             Kind::Number(ANY),
             "0",
             "Azimuth to which the normal of the inner boundary leans, in degrees from the tangent; with inner_tilt_deg.",
+        ),
+        Key::with_default(
+            "lobe_height",
+            Kind::Choice(LobeHeight::NAMES),
+            "\"scaled\"",
+            "Height of both lobes: such that each carries its coefficient, or one, as printed in eq. 6 and 10.",
         ),
     ],
     exactly_one: None,

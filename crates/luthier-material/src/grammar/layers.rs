@@ -1,5 +1,7 @@
 //! Grammar of layers: types, indices, micro-surfaces, slabs, maps.
 
+use luthier_optics::f0_table::F0_NAMES;
+
 use super::picture::{CHANNEL, PICTURE, SCALE, SRGB, TRANSFORM};
 use super::table::{
     ANY, Alternatives, Key, Kind, NOT_NEGATIVE, NOT_NEGATIVE_RGB, PATH, POSITIVE, Range, Table, TextForm, UNIT,
@@ -92,9 +94,17 @@ static OPAQUE: Alternatives = REFLECTANCE;
 /// The index of a medium that light enters bends directions beside an F0, too.
 static TRANSPARENT: Alternatives = Alternatives { together: true, ..REFLECTANCE };
 
-const F0_DOC: &str = "Reflectance at normal incidence, for Schlick's formula in place of an index: a number, or one for each of R, G, B \
-                      (linear Rec.709).";
-const F0: Key = Key::optional("f0", UNIT_RGB, F0_DOC);
+const F0_DOC: &str = "Reflectance at normal incidence, for Schlick's formula in place of an index: a number, one for each of R, G, B \
+                      (linear Rec.709), or a substance of the lecture's tables.";
+const F0: Key = Key::optional(
+    "f0",
+    Kind::OneOf(&[
+        Kind::Number(UNIT),
+        Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 },
+        Kind::Choice(&F0_NAMES),
+    ]),
+    F0_DOC,
+);
 
 const TYPE_DOC: &str = "What the layer is.";
 const ROUGHNESS: Key =
@@ -192,16 +202,32 @@ const TANGENT_MAP: Key = Key::optional(
     "A map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
 );
 
+const LEAN_MAP: Key = Key::optional(
+    "lean",
+    PICTURE,
+    "A tangent-space normal map of the inner boundary of the film or slab, for the model granier-heidrich.",
+);
+
 static DIELECTRIC_MAPS: Table = Table {
     name: "dielectric-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
+    keys: &[
+        NORMAL_MAP,
+        ROUGHNESS_MAP,
+        THICKNESS_MAP,
+        BUMPS,
+        ALPHA_MAP,
+        ALPHA_X_MAP,
+        ALPHA_Y_MAP,
+        TANGENT_MAP,
+        LEAN_MAP,
+    ],
     exactly_one: None,
 };
 static CONDUCTOR_MAPS: Table = Table {
     name: "conductor-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP, LEAN_MAP],
     exactly_one: None,
 };
 static DIFFUSE_MAPS: Table = Table {

@@ -66,10 +66,11 @@ impl References {
 /// The parts of a model that a material chooses.
 pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     let (masking, reflectance) = material.parts();
-    let parts = Parts { masking, reflectance, path: material.path_parts(), ..Parts::PLAIN };
+    let diffuse_term = material.constants.diffuse_term;
+    let parts = Parts { masking, reflectance, path: material.path_parts(), diffuse_term, ..Parts::PLAIN };
     material.constants.beams.map_or(parts, |beams| {
         let weights = [beams.specular_weight, beams.diffuse_weight];
-        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+        parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal, beams.lobe_height)
     })
 }
 

@@ -73,7 +73,7 @@ impl Places {
         let mut numbers = numbers(seed, n);
         let mut place = PlaceValues::NONE;
         let constants = &self.entry.constants;
-        let (mut color, mut metal) = (None, None);
+        let (mut color, mut metal, mut lean) = (None, None, UP);
         for (slot, layer, range) in &self.ranges {
             let drawn = range.map(|range| numbers.between(range));
             let [r, g, _] = drawn.map(|value| value as f32);
@@ -97,6 +97,7 @@ impl Places {
                 MapSlot::Albedo => place.base_color = Some(rgb),
                 MapSlot::BaseColor => color = Some(rgb),
                 MapSlot::Metallic => metal = Some(r),
+                MapSlot::Lean => lean = normal([drawn[0], drawn[1]]),
                 MapSlot::Bumps
                 | MapSlot::Alpha
                 | MapSlot::AlphaX
@@ -120,6 +121,12 @@ impl Places {
         }
         if let Some([factor, x, y]) = self.film.map(|film| film.map(|range| numbers.between(range))) {
             place.film_factor = factor as f32;
+            place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
+        }
+        if lean != UP {
+            // Slopes add up.
+            let [film, own] = [place.inner_normal, lean].map(|n| n.map(f64::from));
+            let [x, y] = [0, 1].map(|i: usize| film[i] / film[2] + own[i] / own[2]);
             place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
         }
         let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);

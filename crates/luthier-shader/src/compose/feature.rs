@@ -135,6 +135,8 @@ luthier_lut::named! {
         Smith = "smith",
         /// A material of `microfacet` is a base alone.
         MicrofacetDiffuse = "microfacet_diffuse",
+        /// A material of `microfacet` adds the light of its base.
+        MicrofacetBase = "microfacet_base",
         /// A material has the model `phong`.
         Phong = "phong",
         /// A material has the model `granier-heidrich`.
@@ -153,10 +155,14 @@ luthier_lut::named! {
         GranierOwn = "granier_own",
         /// The inner boundary of a material of `granier-heidrich` leans.
         GranierTilted = "granier_tilted",
+        /// Lobes of a material of `granier-heidrich` have height one.
+        GranierHeight = "granier_height",
         /// A material of `lobes` has an interface.
         Coat = "coat",
         /// A material of `lobes` is a base alone.
         LobesDiffuse = "lobes_diffuse",
+        /// Facets of a material of `belcour` or `yamaguchi` count as level.
+        Level = "level",
         /// No material of the set has more than one lobe.
         OneLobe = "one_lobe",
         /// No material of the set has more than two lobes.

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    DiffusePart, Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, LowerAlpha,
-    LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord, Reflectance, ShadingModel, SwitchBy,
-    VaryingFactor,
+    DiffusePart, DiffuseTerm, Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobeHeight,
+    LobesRecord, LowerAlpha, LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord, Reflectance,
+    ShadingModel, SwitchBy, VaryingFactor,
 };
 use luthier_model::{Family, Reach};
 
@@ -35,6 +35,7 @@ impl Features {
                     MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
                     MapSlot::Albedo => &[Feature::BaseColor],
                     MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
+                    MapSlot::Lean => &[],
                     MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals],
                     MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
                     MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],
@@ -315,7 +316,16 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     }
     let (has_interface, has_diffuse) = (names.contains(&Feature::Interface), names.contains(&Feature::Diffuse));
     match facts.family {
-        Family::Facets if has_interface => names.insert(Feature::Smith),
+        Family::Facets if has_interface => {
+            let added = material.layers.last().filter(|last| is_diffuse(last));
+            if let (DiffuseTerm::Added, Some(base)) = (material.constants.diffuse_term, added) {
+                names.extend([Feature::MicrofacetBase, Feature::Diffuse]);
+                if base.sigma != 0.0 {
+                    names.insert(Feature::OrenNayar);
+                }
+            }
+            names.insert(Feature::Smith)
+        }
         Family::Lobes if has_interface => {
             if material.constants.flakes.is_some() && has_coat(material) {
                 names.extend([Feature::Flakes, Feature::LobesTilted]);
@@ -351,7 +361,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             }
             names.insert(Feature::Chain)
         }
-        Family::Statistics if has_interface => names.insert(Feature::Statistics),
+        Family::Statistics if has_interface => {
+            if layers.iter().any(|layer| !is_diffuse(layer) && layer.reflectance != Reflectance::Table) {
+                names.insert(Feature::Level);
+            }
+            names.insert(Feature::Statistics)
+        }
         Family::Beams => {
             let first = &material.layers[0];
             let has_film = first.film_ior_n[0] > 0.0;
@@ -365,6 +380,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
                 names.insert(Feature::GranierOwn);
                 if beams.inner_normal[2] < 1.0 {
                     names.insert(Feature::GranierTilted);
+                }
+                if beams.lobe_height == LobeHeight::One {
+                    names.insert(Feature::GranierHeight);
                 }
             }
             match first.kind {

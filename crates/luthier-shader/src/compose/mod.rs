@@ -21,7 +21,7 @@ use luthier_layers::models::path;
 use luthier_layers::models::room;
 use luthier_layers::models::room::Kernels;
 use luthier_lut::TableKind;
-use luthier_manifest::{MapSlot, MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_manifest::{MaterialTexture, SIDE, ShadingModel, material_buffer};
 use luthier_model::Family;
 
 use self::blocks::prune;
@@ -119,7 +119,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
 /// The module of places, with the number of layers that have values of their own.
 fn place(set: &MaterialSet<'_>, form: Form) -> String {
     let shown = set.materials.iter().flat_map(|material| material.shown_layer_maps(form));
-    let shown = shown.filter(|(_, slot)| *slot != MapSlot::Albedo);
+    let shown = shown.filter(|(layer, slot)| slot.is_of_layer_place(*layer));
     let count = shown.map(|(layer, _)| layer + 1).max().unwrap_or(0);
     let each: String = (0..count).map(|i| format!("    place.layers[{i}] = luthier_layer_place();\n")).collect();
     let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
 use luthier_manifest::{
-    BindingEntry, DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking,
-    MaterialEntry, MaterialTexture, Reflectance, ShadingModel,
+    BindingEntry, DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,
+    LowerReflectance, Masking, MaterialEntry, MaterialTexture, Reflectance, ShadingModel,
 };
 
 use super::Part;
@@ -139,6 +139,11 @@ fn parts(set: &MaterialSet<'_>) -> Vec<String> {
     texts.extend(part(set, "Diffuse base", beside.title(), |m| m.diffuse_part() == beside));
     let own = "its own, in words 1 and 2 of its header";
     texts.extend(part(set, "Exponents, weights and inner boundary", own, |m| m.constants.beams.is_some()));
+    let added = DiffuseTerm::Added;
+    texts.extend(part(set, "Diffuse term", added.title(), |m| m.constants.diffuse_term == added));
+    let one = LobeHeight::One;
+    let has_one = |m: &MaterialEntry| m.constants.beams.is_some_and(|beams| beams.lobe_height == one);
+    texts.extend(part(set, "Lobes", one.title(), has_one));
     texts
 }
 

@@ -242,6 +242,11 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Albedo, 1), form);
             moved(&shader().at("base_color", vector(&[0.9, 0.1, 0.5])), &shader())
         }
+        Feature::LeanMap if model != ShadingModel::GranierHeidrich => return None,
+        Feature::LeanMap => {
+            let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Lean, 0), form);
+            moved(&shader().at("inner_normal", tilted()), &shader())
+        }
         Feature::MetallicMap => {
             let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Metallic, 0), form);
             moved(&shader().at_layer(0, "passing", vector(&[0.2, 0.5, 0.9])), &shader())

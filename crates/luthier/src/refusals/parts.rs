@@ -4,7 +4,7 @@ use luthier_layers::models::parts::Parts;
 use luthier_lut::TableKind;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
-    BeamsRecord, DiffusePart, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets,
+    BeamsRecord, DiffusePart, DiffuseTerm, Feature, Form, InternalReflection, LowerAlpha, LowerCosine, LowerFacets,
     LowerReflectance, Masking, Reflectance, ShadingModel,
 };
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
@@ -33,6 +33,7 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts.extend(material.bake.lower_facets.and_then(|lower| of_lower_facets(material, model, lower)));
     doubts.extend(material.bake.lower_alpha.and_then(|lower| of_lower_alpha(material, model, lower)));
     doubts.extend(material.bake.diffuse_part.and_then(|part| of_diffuse_part(material, model, part)));
+    doubts.extend(material.bake.diffuse_term.and_then(|term| of_diffuse_term(material, model, term)));
     doubts
 }
 
@@ -41,11 +42,15 @@ pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let bake = &material.bake;
     let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
     let reflectance = bake.reflectance.filter(|_| model.takes(ModelPart::Reflectance)).unwrap_or_default();
-    let parts = Parts { masking, reflectance, path: bake.path_parts(model), ..Parts::PLAIN };
+    let diffuse_term = bake.diffuse_term.filter(|_| model.takes(ModelPart::DiffuseTerm)).unwrap_or_default();
+    let parts = Parts { masking, reflectance, path: bake.path_parts(model), diffuse_term, ..Parts::PLAIN };
     let beams = material.beams().filter(|_| model.takes(ModelPart::Beams));
-    beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
-        parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
-    })
+    beams.map_or(
+        parts,
+        |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal, lobe_height }| {
+            parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal, lobe_height)
+        },
+    )
 }
 
 /// Cosines at which a curve is compared with the reflectance.
@@ -62,6 +67,7 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("lower_facets", material.bake.lower_facets.is_some()),
         ("lower_alpha", material.bake.lower_alpha.is_some()),
         ("diffuse_part", material.bake.diffuse_part.is_some()),
+        ("diffuse_term", material.bake.diffuse_term.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
     let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
@@ -198,6 +204,13 @@ fn of_reflectance(material: &Material, model: ShadingModel, reflectance: Reflect
         let hint =
             "leave it out, or write `[bake] model = \"elek\"`, `\"weidlich-wilkie\"` or `\"microfacet\"`".to_owned();
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if model.is_statistical() && reflectance == Reflectance::Exact {
+        let message = format!(
+            "the reflectance `{name}` takes facets as level: rough interfaces lack what tilted facets reflect, and nothing of a lobe is totally reflected"
+        );
+        let hint = "`table`, the default, has FGD-infinity, with all bounces between facets".to_owned();
+        return Some(material.diagnostic(Severity::Warning, key, message, Some(hint)));
     }
     if !reflectance.is_fitted() {
         return None;
@@ -379,6 +392,31 @@ fn has_smoother_below(material: &Material) -> bool {
         above = f64::max(above, (x * y).sqrt());
         is_smoother
     }) || !material.images().is_empty()
+}
+
+fn of_diffuse_term(material: &Material, model: ShadingModel, term: DiffuseTerm) -> Option<Diagnostic> {
+    let (name, key) = (term.name(), "bake.diffuse_term");
+    if !model.takes(ModelPart::DiffuseTerm) {
+        let message = format!("the model `{model}` of this material has no diffuse term `{name}`");
+        let hint = "leave it out, or write `[bake] model = \"microfacet\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if term == DiffuseTerm::None {
+        return None;
+    }
+    let effect = match (Interface::of(&material.stack, 0), material.stack.layers.last().map(|last| &last.base)) {
+        (Some(first), Some(Base::Diffuse(base))) => {
+            let mirrored = first.sampled(&material.color()).rgb(1.0);
+            let [r, g, b] = [0, 1, 2].map(|c: usize| base.albedo[c] + mirrored[c]);
+            format!(
+                "adds the base as if nothing lay above it: albedo and reflectance at the normal sum to {r:.3}, {g:.3}, {b:.3}"
+            )
+        }
+        _ => "changes nothing here: no interface lies above a diffuse base".to_owned(),
+    };
+    let message = format!("the diffuse term `{name}` {effect}");
+    let hint = "models such as `lobes` follow the light of the base through the interface".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 
 /// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.

@@ -200,7 +200,14 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     };
     match *kind {
         Kind::Reradiated(_) => None,
-        Kind::Wavelength(_) if model.is_statistical() && place.base_color.is_none() && place.layers.is_empty() => None,
+        Kind::Wavelength(_)
+            if model.is_statistical()
+                && reflectance == Reflectance::Table
+                && place.base_color.is_none()
+                && place.layers.is_empty() =>
+        {
+            None
+        }
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
             let shaded = made(&at_wavelength(stack, nm), [nm; 3], color)?;

@@ -84,6 +84,12 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
                 let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel(c) - 1.0);
                 own.normal = DVec3::new(x, y, z.max(1e-3)).normalize();
             }
+            MapSlot::Lean => {
+                // Slopes add up with those of an option.
+                let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel(c) - 1.0);
+                let slopes = [place.under.inner_normal, DVec3::new(x, y, z.max(1e-3))].map(|n| n.truncate() / n.z);
+                place.under.inner_normal = (slopes[0] + slopes[1]).extend(1.0).normalize();
+            }
             MapSlot::Alpha => own.alpha_factors = own.alpha_factors.map(|factor| factor * texel(0)),
             MapSlot::AlphaX => own.alpha_factors[0] *= texel(0),
             MapSlot::AlphaY => own.alpha_factors[1] *= texel(0),

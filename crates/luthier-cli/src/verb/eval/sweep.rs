@@ -65,6 +65,11 @@ fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
         );
         return Err(Failure::Input(anyhow::anyhow!(text)));
     }
+    if model.is_statistical() {
+        let text =
+            format!("`--furnace` of `{name}` has FGD-infinity, and the file chooses `{reflectance}`: leave that out");
+        return Err(Failure::Input(anyhow::anyhow!(text)));
+    }
     let beams = parts.beams.leaning(subject.place.under.inner_normal);
     let model = (room(model).composed)(Parts { beams, ..parts });
     Ok(model.map(|model| ModelInputs::textured(subject.place.sample, model)))

@@ -166,6 +166,7 @@ fn parts_that_a_model_does_not_have() {
     let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n";
     let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
     let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.3\nthickness_nm = 300\n";
+    let chalk = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
     for (layers, bake, words) in [
         (metal.to_owned(), "masking = \"kelemen\"", ["the masking `kelemen`", "has `lobes`", "x.toml:10:11"]),
         (format!("{coat}{metal}"), "masking = \"smith\"", ["the masking `smith`", "has `lobes`", "x.toml:14:11"]),
@@ -214,6 +215,26 @@ fn parts_that_a_model_does_not_have() {
             format!("{coat}{metal}"),
             "model = \"elek\"\nmasking = \"smith\"",
             ["model `elek` of this material has", "no masking `smith`", "x.toml:15:11"],
+        ),
+        (
+            format!("{coat}maps = {{ lean = \"maps/grey.png\" }}\n{metal}"),
+            "model = \"elek\"",
+            ["`lean` gives a lean of the model `granier-heidrich`", "this material has `elek`", "x.toml:8:17"],
+        ),
+        (
+            format!("{metal}maps = {{ lean = \"maps/grey.png\" }}\n"),
+            "model = \"granier-heidrich\"",
+            ["neither film nor slab", "no inner boundary could lean", "x.toml:8:17"],
+        ),
+        (
+            format!("{coat}{metal}maps = {{ lean = \"maps/grey.png\" }}\n"),
+            "model = \"granier-heidrich\"",
+            ["a lean is that of the inner boundary", "the first interface's film or slab", "x.toml:12:17"],
+        ),
+        (
+            format!("{coat}{metal}"),
+            "model = \"elek\"\ndiffuse_term = \"added\"",
+            ["model `elek` of this material has", "no diffuse term `added`", "x.toml:15:16"],
         ),
         (
             metal.replace("alpha = 0.2", "exponents = [90, 170]"),
@@ -282,6 +303,11 @@ fn parts_that_a_model_does_not_have() {
         (format!("{coat}{metal}"), "model = \"elek\"\ndiffuse_part = \"beside\"", 1),
         (format!("{coat}{metal}"), "model = \"elek\"\nmasking = \"v-cavity\"", 0),
         (format!("{coat}{metal}"), "model = \"elek\"\nmasking = \"kelemen\"", 1),
+        (format!("{coat}{chalk}"), "model = \"microfacet\"\ndiffuse_term = \"added\"", 1),
+        (metal.to_owned(), "model = \"microfacet\"\ndiffuse_term = \"none\"", 0),
+        (metal.to_owned(), "model = \"microfacet\"\ndiffuse_term = \"added\"", 1),
+        (metal.to_owned(), "model = \"granier-heidrich\"\ngranier-heidrich = { lobe_height = \"scaled\" }", 0),
+        (metal.to_owned(), "model = \"granier-heidrich\"\ngranier-heidrich = { lobe_height = \"one\" }", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"smith\"", 0),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"implicit\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"v-cavity\"\nreflectance = \"approximate\"", 2),

@@ -66,13 +66,15 @@ fn reflecting() -> Vec<Material> {
 
 fn of_beams(parts: Parts, beams: &BeamsRecord) -> Parts {
     let weights = [beams.specular_weight, beams.diffuse_weight];
-    parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+    parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal, beams.lobe_height)
 }
 
 fn parts(material: &Material) -> (Parts, Reflectance) {
     let (masking, reflectance) =
         (material.bake.masking.unwrap_or_default(), material.bake.reflectance.unwrap_or_default());
-    let parts = Parts { masking, reflectance, path: material.bake.path_parts(material.model()), ..Parts::PLAIN };
+    let diffuse_term = material.bake.diffuse_term.unwrap_or_default();
+    let path = material.bake.path_parts(material.model());
+    let parts = Parts { masking, reflectance, path, diffuse_term, ..Parts::PLAIN };
     (material.beams().map_or(parts, |beams| of_beams(parts, &beams)), reflectance)
 }
 
@@ -277,6 +279,92 @@ fn lower_layers_are_those_of_the_twin() {
     eprintln!("lower layers: at most {worst:.1e}");
 }
 
+/// Energies of level facets beside those of the table, in sets and alone.
+#[test]
+fn energies_of_level_facets_are_those_of_the_twin() {
+    let mut materials = Vec::new();
+    for model in ["belcour", "yamaguchi"] {
+        for reflectance in ["exact", "approximate", "lazanyi"] {
+            let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\nthickness_um = 1\nabsorption_per_um = [0.1, 0.3, 0.6]\n";
+            let layers = format!("{coat}{COPPER}alpha_x = 0.3\nalpha_y = 0.1\n");
+            let bake = format!("model = \"{model}\"\nreflectance = \"{reflectance}\"");
+            materials.push(material(&format!("{model}-{reflectance}"), &layers, &bake));
+        }
+    }
+    let mut worst = 0.0;
+    compare(&materials, &mut worst);
+    let plain = material(
+        "plain",
+        &format!("{COAT}alpha = 0.3\n{COPPER}alpha = 0.3\n"),
+        "model = \"belcour\"\nfgd = { size = [12, 12] }",
+    );
+    let table = material("table", &format!("{COAT}alpha = 0.3\n{COPPER}alpha = 0.3\n"), "model = \"elek\"");
+    compare(&[materials[0].clone(), materials[4].clone(), table], &mut worst);
+    materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("level facets: at most {worst:.1e}");
+    // Beside a material that reads the table, the baked shader still computes these.
+    let set = [materials[0].clone(), plain];
+    let package = Bake::wgsl(&[Form::Baked]).package(&set, &MemoryStore::default()).unwrap();
+    let entry = &package.manifest.materials[0];
+    assert!(entry.layers.iter().all(|layer| layer.tiles[luthier_lut::TableKind::Fgd].is_none()));
+    let Some(gpu) = gpu() else { return };
+    let scene = gpu.scene(&package, Form::Baked).unwrap();
+    let nm = set[0].bake.wavelengths_nm();
+    let (parts, color) = (parts(&set[0]).0, Color::ThreeWavelengths(nm));
+    let twin = Shaded::with(ShadingModel::Belcour, &set[0].stack, nm, color, &Place::NONE, parts).unwrap();
+    for (&(wi, wo), found) in pairs().iter().zip(scene.evaluate(0, &pairs()).unwrap()) {
+        let expected = twin.eval(wide(wi), wide(wo));
+        assert!(error(found, expected) < TOLERANCE, "{wi:?} {wo:?}: {found:?}, {expected:?}");
+    }
+}
+
+/// Bases beside the facets of the first interface, in sets with materials that add none. By hand: the values differ by `albedo cos / pi` of a Lambertian
+/// base, whatever lies above it.
+#[test]
+fn added_bases_are_those_of_the_twin() {
+    let one = |name: &str, layers: &str, bake: &str| {
+        material(name, layers, &format!("model = \"microfacet\"\nreflectance = \"exact\"\n{bake}"))
+    };
+    let slab = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.3\n";
+    let matte = |sigma: f64| format!("[[layer]]\ntype = \"diffuse\"\nalbedo = [0.7, 0.4, 0.2]\nsigma = {sigma}\n");
+    let (lambert, rough) = (format!("{slab}{}", matte(0.0)), format!("{slab}{}", matte(0.5)));
+    let added = "diffuse_term = \"added\"";
+    let set = [
+        one("lambert", &lambert, added),
+        one("rough", &rough, added),
+        one("smith", &lambert, ""),
+        one("cavities", &lambert, &format!("{added}\nmasking = \"v-cavity\"")),
+        one("copper", &format!("{COPPER}alpha = 0.2\n"), added),
+        one("base-alone", &matte(0.5), added),
+    ];
+    let mut worst = 0.0;
+    compare(&set, &mut worst);
+    set.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("added bases: at most {worst:.1e}");
+    let value = |material: &Material, wi: DVec3, wo: DVec3| {
+        let nm = material.bake.wavelengths_nm();
+        let (parts, color) = (parts(material).0, Color::ThreeWavelengths(nm));
+        Shaded::with(ShadingModel::Microfacet, &material.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)
+    };
+    for (wi, wo) in pairs() {
+        let (wi, wo) = (wide(wi), wide(wo));
+        let [with, without] = [0, 2].map(|i: usize| value(&set[i], wi, wo));
+        for (c, albedo) in [0.7, 0.4, 0.2].into_iter().enumerate() {
+            let expected = if wi.z > 0.0 && wo.z > 0.0 { albedo * wi.z / std::f64::consts::PI } else { 0.0 };
+            assert!((with[c] - without[c] - expected).abs() < 1e-12 * (1.0 + with[c]), "{wi} {wo}");
+        }
+    }
+    let mut found = Found::default();
+    let Some(scene) = scene(&set) else { return };
+    for (number, material) in (0..).zip(&set) {
+        for theta in [20.0, 70.0] {
+            let name = format!("{} {theta}", material.name);
+            judge(&scene, number, theta, 2000 + u64::from(number), &name, &mut found);
+        }
+    }
+    assert!(found.faults.is_empty(), "{}", found.faults.join("\n"));
+}
+
 /// Films, slabs and metals with numbers of Granier and Heidrich's model; some alike, some not.
 fn beams() -> Vec<Material> {
     let film = "[[layer]]\ntype = \"thin-film\"\nior = { n = [1.6, 1.45, 1.4], wavelengths_nm = [445, 525, 645] }\nthickness_nm = 400\n";
@@ -286,6 +374,7 @@ fn beams() -> Vec<Material> {
     let metal = "[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3 }\n";
     let weights = "specular_weight = 0.9\ndiffuse_weight = 0.4\n";
     let lean = "inner_tilt_deg = 14\ninner_azimuth_deg = 30\n";
+    let height = "lobe_height = \"one\"\n";
     let rows = [
         ("all-film", format!("{film}{slab}exponents = [90, 170]\n{base}"), format!("{weights}{lean}")),
         ("all-slab", format!("{slab}exponents = [300, 20]\n{base}"), format!("{weights}{lean}")),
@@ -294,6 +383,10 @@ fn beams() -> Vec<Material> {
         ("weights-alone", format!("{film}{metal}alpha = 0.2\n"), "specular_weight = 0.5\n".to_owned()),
         ("exponents-alone", format!("{film}{metal}exponents = [130, 40]\n"), String::new()),
         ("metal", format!("{metal}alpha = 0.2\n"), "specular_weight = 0.5\n".to_owned()),
+        ("height-film", format!("{film}{slab}exponents = [90, 170]\n{base}"), format!("{weights}{lean}{height}")),
+        ("height-slab", format!("{slab}exponents = [3, 20]\n{base}"), height.to_owned()),
+        ("height-schlick", format!("{schlick}exponents = [90, 9000]\n{base}"), height.to_owned()),
+        ("height-metal", format!("{metal}alpha = 0.2\n"), height.to_owned()),
         ("alike", format!("{slab}exponents = [130, 130]\n{base}"), String::new()),
     ];
     let one = |(name, layers, numbers): (&str, String, String)| {
@@ -307,7 +400,7 @@ fn beams() -> Vec<Material> {
 fn exponents_weights_and_leans_are_those_of_the_twin() {
     let (materials, mut worst) = (beams(), 0.0);
     let alike = materials.last().unwrap();
-    assert!(alike.beams().is_none() && materials[..7].iter().all(|material| material.beams().is_some()));
+    assert!(alike.beams().is_none() && materials[..11].iter().all(|material| material.beams().is_some()));
     compare(&materials, &mut worst);
     let plain = material("plain", &format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.3\n"), "model = \"elek\"");
     compare(&[plain, materials[0].clone(), alike.clone()], &mut worst);

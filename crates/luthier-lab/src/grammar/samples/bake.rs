@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 15] = [
+pub(super) static SAMPLES: [Sample; 17] = [
     sample(
         "bake.model",
         "bake.model",
@@ -58,6 +58,12 @@ pub(super) static SAMPLES: [Sample; 15] = [
         &["'below'", "'beside'"],
     ),
     sample(
+        "bake.diffuse_term",
+        "bake.diffuse_term",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.2 }, { type = 'diffuse', albedo = [0.5, 0.1, 0.05] }]\nbake = { model = 'microfacet', diffuse_term = @ }",
+        &["'none'", "'added'"],
+    ),
+    sample(
         "bake.color",
         "bake.color",
         "layer = [{ type = 'thin-film', ior = 2.3, thickness_nm = 900 }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]\nbake = { color = @ }",
@@ -92,5 +98,11 @@ pub(super) static SAMPLES: [Sample; 15] = [
         "bake.granier-heidrich",
         "layer = [{ type = 'dielectric', ior = 1.7, exponents = [60, 60], thickness_um = 1 }, { type = 'diffuse', albedo = [0.02, 0.05, 0.2] }]\nbake = { model = 'granier-heidrich', granier-heidrich = { inner_tilt_deg = 15, inner_azimuth_deg = @ } }",
         &["0", "90", "180"],
+    ),
+    sample(
+        "beams.lobe_height",
+        "bake.granier-heidrich",
+        "layer = [{ type = 'dielectric', ior = 1.7, exponents = [20, 40], thickness_um = 1 }, { type = 'diffuse', albedo = [0.1, 0.2, 0.6] }]\nbake = { model = 'granier-heidrich', granier-heidrich = { lobe_height = @ } }",
+        &["'scaled'", "'one'"],
     ),
 ];

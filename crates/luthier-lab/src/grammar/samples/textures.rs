@@ -4,7 +4,7 @@ use super::{Sample, sample};
 
 const FILM: &str = "layer.0.film.0.thickness_nm";
 
-pub(super) static SAMPLES: [Sample; 21] = [
+pub(super) static SAMPLES: [Sample; 22] = [
     sample(
         "noise.seed",
         FILM,
@@ -70,6 +70,12 @@ pub(super) static SAMPLES: [Sample; 21] = [
         "layer.0.maps.tangent",
         "layer = [{ type = 'conductor', ior = 'al', alpha_x = 0.4, alpha_y = 0.06, maps = { @ } }]\nbake = { model = 'weidlich-wilkie' }",
         &["absent|", "'rays.png'|tangent = 'rays.png'", "'circles.png'|tangent = 'circles.png'"],
+    ),
+    sample(
+        "dielectric-maps.lean",
+        "layer.0.maps.lean",
+        "layer = [{ type = 'dielectric', ior = { n = [1.5, 1.6, 1.8], wavelengths_nm = [645, 525, 445] }, exponents = [60, 60], thickness_um = 1, maps = { @ } }, { type = 'diffuse', albedo = [0.02, 0.05, 0.2] }]\nbake = { model = 'granier-heidrich' }",
+        &["absent|", "'bumps.png'|lean = 'bumps.png'", "'ripples.png'|lean = 'ripples.png'"],
     ),
     sample(
         "diffuse-maps.albedo",

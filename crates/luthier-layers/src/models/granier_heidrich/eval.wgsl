@@ -71,6 +71,9 @@ struct LuthierOwn {
     weights: vec2<f32>,
     /// Normal of the inner boundary, unit.
     inner_normal: vec3<f32>,
+    //? granier_height
+    /// Lobes have height one, and do not carry their coefficients.
+    has_height_one: bool,
 }
 
 /// The numbers of a material whose outer boundary has the slope parameter `alpha`; those of all others where it has none of its own.
@@ -84,6 +87,8 @@ fn luthier_own(material: u32, alpha: f32) -> LuthierOwn {
         2.0 / (inner * inner) - 2.0,
         select(vec2<f32>(1.0), numbers.yz, is_own),
         select(vec3<f32>(0.0, 0.0, 1.0), normal.xyz, is_own),
+        //? granier_height
+        is_own && numbers.w > 0.5,
     );
 }
 
@@ -111,6 +116,9 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
     {
         let exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
         let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
+        //? granier_height
+        let mirror = select((exponent + 1.0) / (2.0 * LUTHIER_PI), 1.0, own.has_height_one) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
+        //? else
         let mirror = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
     }
     //? granier_transparent
@@ -150,6 +158,15 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
         let green = luthier_beam(wi, wo, eta.y, normal.y, exponent, inner_normal);
         let blue = luthier_beam(wi, wo, eta.z, normal.z, exponent, inner_normal);
         let r = luthier_schlick(normal, wi.z) * mirror;
+        //? granier_height
+        {
+            // The factors that have a lobe carry its coefficient, which `luthier_beam` multiplies in.
+            let inside = sqrt(max(wi.z * wi.z + (eta - 1.0) * (eta + 1.0), vec3<f32>(1e-12))) / eta;
+            let factors = (exponent + 1.0) / (2.0 * LUTHIER_PI) * wi.z / (eta * eta * inside);
+            let carried = vec3<f32>(red.transmitted, green.transmitted, blue.transmitted);
+            let t = select(carried, carried / factors, own.has_height_one);
+        }
+        //? else
         let t = vec3<f32>(red.transmitted, green.transmitted, blue.transmitted);
         specular = luthier_superpose(layer, r, t, vec3<f32>(red.cosines, green.cosines, blue.cosines));
         //? granier_base

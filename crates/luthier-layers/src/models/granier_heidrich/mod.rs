@@ -15,7 +15,7 @@
 //!
 //! The paper's lobes have height one, and it does not say what share of the light they carry. At its exponents this is 1/76 or less of their
 //! coefficients. [`GranierHeidrich`] scales each lobe so that it carries its coefficient. The transmitted lobe is scaled in the film, where its
-//! directions are.
+//! directions are. [`LobeHeight::One`] leaves the lobes as printed.
 //!
 //! The remaining errors are the paper's, and the tests measure them:
 //!
@@ -35,7 +35,7 @@ use std::array::from_fn;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
-use luthier_model::ShadingModel;
+use luthier_model::{LobeHeight, ShadingModel};
 use luthier_optics::schlick::schlick_average;
 
 use crate::formulas::normals::exponent;
@@ -168,7 +168,8 @@ fn superpose(r: f64, t: f64, interference: f64) -> f64 {
 /// thicknesses.
 ///
 /// Lobes are Phong's of 1975, without a cosine, times `(e + 1) / (2 pi)`. By this factor an eye at any angle sees of a white sky the coefficient of
-/// each lobe, less the light from below the horizon. The transmitted lobe is scaled over solid angles in the film.
+/// each lobe, less the light from below the horizon. The transmitted lobe is scaled over solid angles in the film. With [`LobeHeight::One`] there are no
+/// such factors, and values are those of eq. 5 ([`Film::specular`]).
 ///
 /// Exponents are `2/alpha^2 - 2` unless given, and the inner boundary has its own alpha, as in the material of the paper's figure 4. About the mirror
 /// direction such a lobe is half as wide as the surface's.
@@ -187,6 +188,8 @@ pub struct GranierHeidrich {
     pub specular_weight: f64,
     /// Weight of the diffuse part, beside the albedo of the base.
     pub diffuse_weight: f64,
+    /// Height of both lobes.
+    pub lobe_height: LobeHeight,
 }
 
 impl Default for GranierHeidrich {
@@ -203,6 +206,7 @@ impl GranierHeidrich {
         inner_alpha_ratio: 1.0,
         specular_weight: 1.0,
         diffuse_weight: 1.0,
+        lobe_height: LobeHeight::Scaled,
     };
 
     /// The model with an inner boundary that leans by `normal` (unit, above the surface) at a place. Slopes of heights add up: those of `normal` are
@@ -291,7 +295,10 @@ impl GranierHeidrich {
             let (specular, diffuse) = match (films[c], stack.layers.first()) {
                 (Some(film), Some(layer)) => {
                     let beams = film.beams(wi, wo);
-                    let [r, t] = film.scaled(&beams);
+                    let [r, t] = match self.lobe_height {
+                        LobeHeight::Scaled => film.scaled(&beams),
+                        LobeHeight::One => [beams.reflected, beams.transmitted],
+                    };
                     let [specular, diffuse] = [beams.cosines, 2.0].map(|cosines| match film.waves_inside {
                         Some(_) => terms.interference(0, c, cosines).unwrap_or_else(|| layer.interference(cosines)),
                         None => 0.0,
@@ -311,7 +318,11 @@ impl GranierHeidrich {
             return 0.0;
         }
         let [e, _] = self.exponents_of(layer.surface.alpha_isotropic());
-        schlick(f, wi.z.min(1.0)) * ((e + 1.0) / (2.0 * PI)) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e)
+        let height = match self.lobe_height {
+            LobeHeight::Scaled => (e + 1.0) / (2.0 * PI),
+            LobeHeight::One => 1.0,
+        };
+        schlick(f, wi.z.min(1.0)) * height * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e)
     }
 }
 

@@ -55,8 +55,16 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
         let inside = sqrt(max(wo.z * wo.z + (eta - 1.0) * (eta + 1.0), vec3<f32>(0.0))) / eta;
         //? granier_own
         {
-            let energy = own.weights.x * (luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy);
             let exponent = own.inner_exponent;
+            //? granier_height
+            {
+                // What a lobe of height one carries, of its coefficient. Outside, the same lobe is wider.
+                let wider = eta * eta * inside / max(wo.z, 0.05);
+                let carried = select(vec3<f32>(1.0), wider * 2.0 * LUTHIER_PI / (exponent + 1.0), own.has_height_one);
+                let energy = own.weights.x * carried * (luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy);
+            }
+            //? else
+            let energy = own.weights.x * (luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy);
             //? granier_tilted
             {
                 //? place
@@ -100,6 +108,8 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
     {
         //? granier_own
         mirror.energy *= own.weights.x;
+        //? granier_height
+        mirror.energy *= select(1.0, 2.0 * LUTHIER_PI / (mirror.exponent + 1.0), own.has_height_one);
         prepared.parts[0] = mirror;
     }
     //? granier_base

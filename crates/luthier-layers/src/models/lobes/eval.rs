@@ -22,7 +22,7 @@ pub(super) fn twin(given: &Given<'_>) -> Box<dyn Shade> {
 impl Shade for Twin {
     fn eval(&self, terms: &dyn ShaderTerms, under: &Under, _: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
         let Some(layer) = self.layers.layers.first() else { return [0.0; 3] };
-        let first = self.facets.eval_with(layer, terms, wi, wo);
+        let first = self.facets.eval_with(std::slice::from_ref(layer), terms, wi, wo);
         let below = match layer.below {
             Below::Dielectric { .. } | Below::Conductor if wi.z > 0.0 => terms.below(wo),
             _ => None,

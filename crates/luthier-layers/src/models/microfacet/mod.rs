@@ -3,7 +3,7 @@
 mod eval;
 
 use glam::DVec3;
-use luthier_model::{Masking, ShadingModel};
+use luthier_model::{DiffuseTerm, Masking, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Distribution, Surface};
 
@@ -38,11 +38,18 @@ pub struct Components {
     pub masking: Masking,
     /// Reflectance of a facet.
     pub fresnel: Fresnel,
+    /// Light of the diffuse base below the interface.
+    pub diffuse_term: DiffuseTerm,
 }
 
 impl Components {
     /// The surface's own distribution, height-correlated Smith masking, exact reflectance.
-    pub const PLAIN: Self = Self { normals: Normals::Surface, masking: Masking::Smith, fresnel: Fresnel::Exact };
+    pub const PLAIN: Self = Self {
+        normals: Normals::Surface,
+        masking: Masking::Smith,
+        fresnel: Fresnel::Exact,
+        diffuse_term: DiffuseTerm::None,
+    };
 }
 
 /// Variants of the model: name, components, source. Each differs from the first in one component.
@@ -141,9 +148,10 @@ pub const VARIANTS: [(&str, Components, &str); 18] = {
 };
 
 /// `f = F D G / (4 cos_theta_i cos_theta_o)` of the first interface (Torrance and Sparrow 1967; Walter et al. 2007, eq. 20), D
-/// normalised. Light through the interface is lost. A diffuse first layer has Oren and Nayar's model.
+/// normalised. Light through the interface is lost. With [`DiffuseTerm::Added`] the diffuse base, if the last layer is one, comes on top as if no interface
+/// lay above it. A diffuse first layer has Oren and Nayar's model.
 ///
-/// Reciprocal. The albedo of an interface is at most one, except for the variant with two beams, which gains. V-cavities let `f cos_theta_i` grow
+/// Reciprocal. The albedo of an interface is at most one, except for the variant with two beams, which gains. An added base is not dimmed. V-cavities let `f cos_theta_i` grow
 /// as 1/cos_theta_o towards grazing mirror directions.
 #[derive(Debug)]
 pub struct Microfacet {
@@ -167,9 +175,28 @@ impl Microfacet {
         }
     }
 
-    /// [`Model::eval`] of the first layer, with terms in place of the exact reflectance and of the surface's own distribution.
-    pub fn eval_with<const C: usize>(&self, layer: &Layer<C>, terms: &dyn Terms<C>, wi: DVec3, wo: DVec3) -> [f64; C] {
-        self.eval_by(layer, terms, |cos_theta_d| terms.fresnel(0, cos_theta_d), wi, wo)
+    /// [`Model::eval`] of layers, with terms in place of the exact reflectance and of the surface's own distribution.
+    pub fn eval_with<const C: usize>(
+        &self,
+        layers: &[Layer<C>],
+        terms: &dyn Terms<C>,
+        wi: DVec3,
+        wo: DVec3,
+    ) -> [f64; C] {
+        let [first, rest @ ..] = layers else { return [0.0; C] };
+        let facets = self.eval_by(first, terms, |cos_theta_d| terms.fresnel(0, cos_theta_d), wi, wo);
+        let base = rest.last().map_or([0.0; C], |last| self.added(last.below, wi, wo));
+        std::array::from_fn(|c| facets[c] + base[c])
+    }
+
+    /// `f cos_theta_i` of the base below the interface, if it is diffuse and added.
+    fn added<const C: usize>(&self, base: Below<C>, wi: DVec3, wo: DVec3) -> [f64; C] {
+        match (self.components.diffuse_term, base) {
+            (DiffuseTerm::Added, Below::Diffuse { albedo, sigma }) if wi.z > 0.0 && wo.z > 0.0 => {
+                oren_nayar::brdf(albedo, sigma, wi, wo).map(|f| wi.z * f)
+            }
+            _ => [0.0; C],
+        }
     }
 
     fn eval_by<const C: usize>(
@@ -212,16 +239,22 @@ impl Model for Microfacet {
                     "the first interface of any stack, isotropic; alpha from 1e-4"
                 }
             },
-            leaves_out: "all layers below, and all bounces after the first",
+            leaves_out: match self.components.diffuse_term {
+                DiffuseTerm::None => "all layers below, and all bounces after the first",
+                DiffuseTerm::Added => {
+                    "layers between the first and the diffuse base, what the first takes from the base's light, and all bounces after the first"
+                }
+            },
             inputs: &[],
         }
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        let Some(layer) = stack.layers.first() else { return 0.0 };
+        let [layer, rest @ ..] = stack.layers.as_slice() else { return 0.0 };
         let fresnel = self.components.fresnel;
         let [value] = self.eval_by(&layer.into(), stack, |cos| [fresnel.reflectance(&self.fits, layer, cos)], wi, wo);
-        value
+        let base = rest.last().map(|last| Layer::<1>::from(last).below);
+        value + base.map_or(0.0, |base| self.added(base, wi, wo)[0])
     }
 
     fn eval_rgb(&self, channels: &[(f64, Monochrome); 3], wi: DVec3, wo: DVec3) -> Option<Rgb> {

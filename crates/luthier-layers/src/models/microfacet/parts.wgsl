@@ -51,6 +51,8 @@ fn luthier_parts_microfacet(given: LuthierPrepared, $place_parameter material: u
         //? cavities
         part.cavity_power = luthier_cavity_power(layer);
         prepared.parts[0] = part;
+        //? microfacet_base
+        prepared.wide = LUTHIER_PI * luthier_added_base($place_argument material, luthier_mean_light(wo), wo);
     }
     return prepared;
 }

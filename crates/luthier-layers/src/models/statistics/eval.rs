@@ -9,7 +9,7 @@ use luthier_optics::Rgb;
 use super::diffuse_base::DiffuseBase;
 use super::evaluate::{Follow, evaluate};
 use super::spread::Spread;
-use crate::layers::Layers;
+use crate::layers::{Below, Layers};
 use crate::models::path::Tilts;
 use crate::models::shade::{Given, Shade, ShaderTerms, Under};
 
@@ -26,7 +26,9 @@ pub(in crate::models) fn twin<S: Spread + Debug + 'static>(given: &Given<'_>) ->
 
 impl<S: Spread + Debug> Shade for Twin<S> {
     fn eval(&self, terms: &dyn ShaderTerms, _: &Under, _: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
-        let base = DiffuseBase::veiled(&self.layers, terms.veil());
+        // A veil may take long to compute.
+        let has_base = self.layers.layers.last().is_some_and(|last| matches!(last.below, Below::Diffuse { .. }));
+        let base = if has_base { DiffuseBase::veiled(&self.layers, terms.veil()) } else { None };
         evaluate::<S, 3>(&self.layers, terms, base.as_ref(), Follow::Eye, wi, wo)
     }
 }

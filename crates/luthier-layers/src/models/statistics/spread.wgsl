@@ -17,12 +17,24 @@ fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
 //? else
 /// Share of the light at a cosine above an interface that it sends back, all bounces on it included.
 fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
-    let given = luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb;
-    //? own_f0
-    // What another F0 does not reflect is in proportion: exact of one bounce, and where all is reflected.
-    return saturate(1.0 - layer.passing * (1.0 - given));
-    //? else
-    return saturate(given);
+    //? level
+    {
+        //? fgd
+        if layer.reflectance != 0u {
+            return saturate(luthier_fresnel_term(layer, cos_theta));
+        }
+        //? else
+        return saturate(luthier_fresnel_term(layer, cos_theta));
+    }
+    //? !level|fgd
+    {
+        let given = luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb;
+        //? own_f0
+        // What another F0 does not reflect is in proportion: exact of one bounce, and where all is reflected.
+        return saturate(1.0 - layer.passing * (1.0 - given));
+        //? else
+        return saturate(given);
+    }
 }
 
 /// f cos_theta_i of a perfectly reflecting GGX surface, its slope parameters along an axis and across it: D G / (4 cos_theta_o), G
