@@ -21,7 +21,8 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   course calls 5 degrees grazing: its angles are those to the surface. Each picture is the hemisphere of the eye seen from above: its middle is the normal, its edge the horizon. The facets of the varnish mirror in green, \
                   forward of the normal, and the base glows orange everywhere. The colours are those of the two wavelengths in Rec.709, its negative channels cut off. The numbers are the shares of the light that leave in green and in orange, and how far to the right \
                   the light of each lies, in radii. The share of 0.7 and the index (1.5) are luthier's.",
-        seen: "A green spot on orange, strongest for flat light and gone at 60 degrees, as in the course's photographs and renderings.",
+        seen: "A green spot on orange, strongest for flat light, as in the course. At 60 degrees a broad yellow glow is left, where the \
+               course sees almost no green.",
         size: LARGE,
         claim: Claim {
             text: "The base glows in orange, and the varnish mirrors in green, forward, the more the flatter the light falls in. At 60 \

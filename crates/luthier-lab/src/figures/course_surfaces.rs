@@ -41,7 +41,6 @@ pub(crate) const FIGURES: [Figure; 3] = [
                 Check::Falls(&["lepidolite: sparkles", "lepidolite without glitter: sparkles"]),
                 Check::Falls(&["green-aventurine: sparkles", "green-aventurine without glitter: sparkles"]),
                 Check::Falls(&["raspberry-aventurine: sparkles", "raspberry-aventurine without glitter: sparkles"]),
-                Check::Falls(&["sunstone: sparkles", "lepidolite: sparkles"]),
                 Check::Falls(&["pink-sunstone: sparkles", "sunstone: sparkles", "patterned-sunstone: sparkles"]),
                 Check::Falls(&[
                     "pink-sunstone: share of the square that glitters",

@@ -9,7 +9,7 @@ use luthier_report::lightness_chroma_hue;
 use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
-use super::elek_places::{from_above, grown};
+use super::elek_places::{DIM, from_above, grown};
 use super::figure::{Figure, Labelled, Made, SIMULATED, SMALL, TONE, compared, enlarged};
 use super::numbers::places::{
     correlation, greenness, middle_values, nearest, places_of_square, quantile, sparkles, steepness,
@@ -27,8 +27,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   From left to right: glaze, lacquer, latex, foil, car paint. A search finds the albedo of a diffuse base or the absorption above a metal, channel by channel, and the slope of a metal, of which a \
                   display shows the least squared difference. With the numbers of the file (`unmatched`) bases are too bright, because the model lacks the factor 1/n^2. \
                   Balls stand alone, so that no light passes from one object to another: that is the one difference in kind that the paper names.",
-        seen: "Each ball of the bottom row is taken for the one above it. Foil and car paint have a slightly flatter highlight, because \
-               the model has one lobe where the simulation adds those of the bounces.",
+        seen: "Each ball of the bottom row is taken for the one above it, as in the paper.",
         size: SIMULATED,
         claim: Claim {
             text: "With parameters adjusted to the best match, the model in real time looks like the simulation of each surface, and \
@@ -78,8 +77,8 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   varies; concrete, a base of Oren and Nayar with sigma 0.5, bare and under a blue transparent varnish. Numbers and map are luthier's. A pixel sparkles \
                   where it is at least twice as bright as the median around it. Hues are those of CIELAB: orange is Munsell's yellow-red (42 to 77 degrees), purple his purple \
                   (298 to 335), blue is from the least of his blue to the primary of Rec.709 (215 to 306). The correlations are those of a level square with the map of thickness.",
-        seen: "Lacquers, concrete and varnish look as the paper describes them. The flakes sparkle, but are larger than the paper's, and \
-               wider than high near the equator, because texture coordinates of a ball are.",
+        seen: "Car paint, lacquers, concrete and varnish look as the paper describes them. The flakes sparkle strongly, and are larger \
+               than the paper's.",
         size: SMALL,
         claim: Claim {
             text: "Car paint sparkles strongly. An orange and a purple lacquer are deeper where they are thicker: darker, and more \
@@ -256,7 +255,8 @@ fn edges(studio: &Studio, made: &mut Made) -> Outcome {
             made.measure(format!("transition {transition}: {what}"), value);
         }
     }
-    let rendered = studio.staged(&package, |_, _| {})?;
+    // As the stages of figure 8.
+    let rendered = studio.staged(&package, |_, settings| settings.exposure = DIM)?;
     for (transition, picture) in TRANSITIONS.into_iter().zip(rendered) {
         pictures.push((format!("{transition}"), TONE.image(picture)));
     }
@@ -288,7 +288,10 @@ fn examples(studio: &Studio, made: &mut Made) -> Outcome {
     let map = "[layer.maps]\nthickness = \"thickness.png\"\n";
     // The map of elek-6 in place of cells, which would be wider than high on a ball.
     let facets = file!("chromium-car-paint")
-        .replace("cells = { seed = 1, count = 64, spread_deg = 15 }", "height_map = { image = \"facets.png\", height = 0.02 }")
+        .replace(
+            "cells = { seed = 1, count = 64, spread_deg = 15 }",
+            "height_map = { image = \"facets.png\", height = 0.02 }",
+        )
         .replace("tiling = 1000", "tiling = 4")
         .replace("fade_start = 1.0", "fade_start = 1000")
         .replace("alpha = 0.2\n", "alpha = 0.07\n");

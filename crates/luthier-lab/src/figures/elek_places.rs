@@ -67,8 +67,9 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   channel over the red one in the middle of each picture. On a level square of the same material the share of pixels that are greener than red is the covered part; \
                   how green each pixel is goes with how dark the map is there. The maps, the model, the green and the tarnish are luthier's; see \
                   `materials/papers/copper-patina.toml`.",
-        seen: "The stages go from red copper with a highlight to green, matt patina, unevenly, as the paper describes them. The paper's \
-               object has cracks and wrinkles in which patina begins; here blotches and streaks stand for them.",
+        seen: "The stages go from copper with a highlight to green, matt patina, unevenly, as the paper describes them. Copper is as pale \
+               as its indices make it. The paper's object has cracks and wrinkles in which patina begins; here blotches and streaks stand \
+               for them.",
         size: SMALL,
         claim: Claim {
             text: "As extent grows, patina covers more of the copper: nothing at -0.65, all at 1.65, first where the map is dark. \
@@ -164,6 +165,9 @@ fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     Ok(())
 }
 
+/// Exposure of the figures of patina: bare copper would be blown out under the usual one.
+pub(super) const DIM: f32 = 0.5;
+
 /// The stages of figure 8, and its transition.
 const EXTENTS: [f64; 6] = [-0.65, -0.05, 0.15, 0.45, 0.75, 1.65];
 const TRANSITION: f64 = 0.65;
@@ -195,8 +199,7 @@ fn patina(studio: &Studio, made: &mut Made) -> Outcome {
         let correlation = correlation(&green, &dark);
         made.measure(format!("extent {extent}: correlation of green with the darkness of the map"), correlation);
     }
-    // Bare copper would be blown out under the usual exposure.
-    let pictures = studio.staged(&package, |_, settings| settings.exposure = 0.5)?;
+    let pictures = studio.staged(&package, |_, settings| settings.exposure = DIM)?;
     for (extent, picture) in EXTENTS.iter().zip(&pictures) {
         made.measure(format!("extent {extent}: green over red"), over_red(picture, 1));
         made.measure(format!("extent {extent}: highlight over the median"), highlight(picture));

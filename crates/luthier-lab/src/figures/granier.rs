@@ -69,14 +69,14 @@ pub(crate) const FIGURES: [Figure; 5] = [
         caption: "The parameters are the printed ones: indices 1.4, 1.45, 1.6, thickness 66 to 76 nm, exponents 90 \
                   and 170, weights 1 and 0.7. The pictures are by the printed equations in f64, with lobes of height one, under two lights and no surroundings. With parallel boundaries, both beams leave in the mirror direction. In the \
                   other pictures the inner boundary is tilted by a constant 14 degrees (the angle of figure 6), \
-                  which turns the transmitted beam to the side. Each light then has a second highlight to the right \
-                  of the first, with a bluish and a yellow edge. With one index \
-                  for all colours, the second highlight has no coloured edges. With an exponent of 20 for the inner \
+                  which turns the transmitted beam aside. The bright highlight of each light then stands to the left of a faint one, which the outer boundary mirrors, \
+                  and has a blue and a yellow side. With one index \
+                  for all colours, it has no coloured sides. With an exponent of 20 for the inner \
                   boundary, it is wide, and its colours blur into each other. The numbers are of the specular part of luthier's shader, whose lobes carry their \
                   coefficients, under the light from the eye: how far from the middle the light of each channel lies, in half sides of the picture, and the mean \
                   saturation of the light.",
-        seen: "The highlight of the parallel layer is white and yellow; the leaning one throws a second highlight aside, with a blue and a \
-               yellow side. Deviation and dispersion are those of the paper's two pictures; the other two are luthier's.",
+        seen: "Deviation and dispersion are seen as in the paper: the highlight of the leaning layer stands aside, blue on one side and \
+               yellow on the other. The two pictures on the right are luthier's.",
         size: SMALL,
         claim: Claim {
             text: "Where the boundaries are not parallel, the beam through the layer turns aside: blue, of the highest index, \
@@ -130,12 +130,12 @@ pub(crate) const FIGURES: [Figure; 5] = [
         caption: "The parameters are the printed ones: indices 1.5, 1.6, 1.8, exponents 130, deviation 14 degrees, \
                   weights 1 and 0.5. The pictures are by the printed equations in f64, as those of granier-4. The ranges of thickness and the index of the object are luthier's. Thin films \
                   are brown, and thicker ones blue, then yellow. A wide range of thickness shows all orders of \
-                  interference at once. Coloured highlights stand beside the white ones. The charts compare the \
+                  interference at once. Highlights have coloured sides. The charts compare the \
                   model with the exact film in the mirror direction. Both have their extremes at the same \
                   thicknesses. But the two beams of the model make the object reflect all light, and more than falls \
                   on it where both are in phase.",
-        seen: "The colours go from reddish brown over blue to yellow and green with the thickness, and highlights split into colours, as \
-               the paper describes them.",
+        seen: "The thickness gives the base colour and the lean the coloured sides of highlights, as in the paper. The thin layer is \
+               reddish brown rather than red.",
         size: SMALL,
         claim: Claim {
             text: "The thickness gives the colour: red is strongest where the layer is thin, and blue or green where it is \

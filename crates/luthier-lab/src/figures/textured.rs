@@ -23,7 +23,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "flakes from a height field",
         source: "Elek 2010, figure 6",
         caption: "Chromium flakes under a tinted coat, and a quarter of the map in large: the heights of the flakes, and the normals that the bake makes of them by finite differences. \
-                  A flake is about as large as five pixels, so that single ones sparkle; the paper's are smaller than a pixel. The map is twice as wide as high, as the texture coordinates of a ball are, so that \
+                  A flake is a few pixels wide, so that single ones sparkle; the paper's are smaller than a pixel. The map is twice as wide as high, as the texture coordinates of a ball are, so that \
                   flakes have no long side. Heights and numbers are luthier's; `crates/luthier-lab/maps/make.py` draws them. A pixel sparkles where it is at least twice \
                   as bright as the median around it. Under a coat that absorbs all, flakes cannot be seen.",
         seen: "Single flakes light up around the highlight and all over the ball, as in metallic paint, and heights and normals are of the \

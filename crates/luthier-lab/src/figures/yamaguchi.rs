@@ -22,8 +22,8 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
               right they are the simulation, Yamaguchi's model and its difference, and Belcour's model and its difference, which the paper's figure does not have. \
               The base is dark: all pictures have 2.5 times the exposure. The length of a highlight is that of red less blue, the light of the base; the rim is beyond three quarters of the radius. The model stretches highlights by a third less than the simulation does. The slopes are those of \
               luthier's figure 1, because the paper's supplement, which states its own, was not available. So its RMSE values cannot be compared.",
-    seen: "The highlights of the middle column have the shapes of the simulation, and the differences grow to the rim, as in the paper. \
-           Belcour's are round where they should not be.",
+    seen: "The highlights of Yamaguchi's model have the shapes of the simulation, round and long, and its differences are broad and dim. \
+           Belcour's are round where they should be long.",
     size: SIMULATED,
     claim: Claim {
         text: "The highlights look like those of the reference: round in (a), and stretched along the tangent in (b) and (d), as \

@@ -25,8 +25,8 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   reflects red, and green and blue only at the rim, where light in the coat is reflected totally, and of (e)'s gold. From left to right: both layers isotropic (a); an anisotropic base (b); an anisotropic coat (c); both, along one tangent (d); both, the coat across (e). \
                   The paper does not print which of (a) to (d) has which; these are luthier's, as are meshes, slopes and surroundings. The bases of (a) to (d) are dark: their pictures have four times the exposure. The numbers are of balls of the same materials under one light \
                   from the eye, whose tangents are level: the standard deviation of the highlight to the side over that upwards. That of the base is red less blue, which the coat does not tint. `coat alone` is the coat over an opaque absorber.",
-        seen: "Dark, reddish balls of rings with round, long and crossed highlights, and a golden one. The paper's environment, meshes and \
-               slopes are not known, so that only the kinds of highlights can be compared.",
+        seen: "Highlights are round in (a), long in one layer in (b) and (c) and in both in (d), and cross in (e). The paper's meshes, \
+               slopes and surroundings are not known, so that only the kinds of highlights can be compared.",
         size: SMALL,
         claim: Claim {
             text: "Each layer may be isotropic or anisotropic along its own tangents, which differ from layer to layer. The highlight of \
