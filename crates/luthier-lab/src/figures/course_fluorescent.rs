@@ -82,7 +82,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         make: phong,
     },
     Figure {
-        name: "course-fluorescent-paint",
+        name: "course-glow-paint",
         title: "specular fluorescent paint",
         source: "Weidlich and Wilkie 2009, section 5.2.2, which has no figure of it",
         caption: "The paint of ambulances and police cars, as the course describes it: a glossy paint, slope 2 degrees, whose diffuse base fluoresces. Light, matrix, angles and numbers are those of course-5-6. \
@@ -242,6 +242,6 @@ fn paint(studio: &Studio, made: &mut Made) -> Outcome {
     let (rough, glossy) = (coated(CARDBOARD_DEG)?, coated(PAINT_DEG)?);
     hemispheres(studio, made, "cardboard, ", of_varnish(&rough));
     let (pictures, _) = hemispheres(studio, made, "paint, ", of_varnish(&glossy));
-    made.sheet("course-fluorescent-paint", pictures, ANGLES.len() as u32);
+    made.sheet("course-glow-paint", pictures, ANGLES.len() as u32);
     Ok(())
 }

@@ -34,7 +34,7 @@ const NAMES: [&str; 40] = [
     "course-5-7",
     "course-5-6",
     "course-phong",
-    "course-fluorescent-paint",
+    "course-glow-paint",
     "course-5-1",
     "course-5-2",
     "course-5-3",
