@@ -1,6 +1,7 @@
 """The maps of figures: thickness.png, a grey map of periodic noise; bumps.png, a normal map of a field of bumps; patina.png, where patina grows
 first: in blotches and in streaks that water has left, every value as often as every other; crust.png, how thick it lies, most where it grew first; circles.png and rays.png, two fields of
-tangents that cross; heights.png, flakes that lie askew; paint.png, a picture in colours; ripples.png, a normal map of waves.
+tangents that cross; heights.png, flakes that lie askew; facets.png, flakes without gaps, twice as wide as high as the map of a ball is; paint.png, a picture in
+colours; ripples.png, a normal map of waves.
 
     python3 crates/luthier-lab/maps/make.py
 """
@@ -37,7 +38,8 @@ def octaves(seed, cells, count, decay=0.5):
 
 def png(name, kind, rows):
     chunk = lambda tag, data: struct.pack(">I", len(data)) + tag + data + struct.pack(">I", zlib.crc32(tag + data))
-    head = struct.pack(">IIBBBBB", len(rows), len(rows), 8, kind, 0, 0, 0)
+    wide = len(rows[0]) // (3 if kind == 2 else 1)
+    head = struct.pack(">IIBBBBB", wide, len(rows), 8, kind, 0, 0, 0)
     body = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows), 9)
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
     with open(path, "wb") as file:
@@ -79,7 +81,8 @@ places = [((i + 0.5) / FINE, (j + 0.5) / FINE) for j in range(FINE) for i in ran
 grown = [patina(*place) for place in places]
 ranks = {place: rank for rank, place in enumerate(sorted(range(FINE * FINE), key=lambda place: grown[place]))}
 share = [ranks[i] / (FINE * FINE - 1) for i in range(FINE * FINE)]
-crust = [min(1, max(0, 0.75 - 0.45 * s + 1.2 * (grain(*place) - 0.5))) for s, place in zip(share, places)]
+# Nowhere thinner than half of the thickest: there the patina would be no patina.
+crust = [min(1, max(0.5, 0.95 - 0.3 * s + 0.8 * (grain(*place) - 0.5))) for s, place in zip(share, places)]
 for name, texels in [("patina.png", share), ("crust.png", crust)]:
     png(name, 0, [[byte(x) for x in texels[j * FINE : (j + 1) * FINE]] for j in range(FINE)])
 
@@ -133,3 +136,37 @@ def ripples(u, v):
 
 
 png("ripples.png", 2, rgb(ripples))
+
+
+def facets(across, down, columns, rows):
+    """Heights of flakes without gaps: triangles between corners of random heights, which are off a grid by up to a third of a cell. Repeats."""
+    rng = random.Random(13)
+    corner = lambda: (0.66 * (rng.random() - 0.5), 0.66 * (rng.random() - 0.5), rng.random())
+    corners = [[corner() for _ in range(columns)] for _ in range(rows)]
+    heights = [[0.5] * across for _ in range(down)]
+
+    def point(i, j):
+        dx, dy, height = corners[j % rows][i % columns]
+        return (i + 0.5 + dx) * across / columns, (j + 0.5 + dy) * down / rows, height
+
+    def fill(a, b, c):
+        (ax, ay, ah), (bx, by, bh), (cx, cy, ch) = a, b, c
+        area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+        for y in range(math.floor(min(ay, by, cy)), math.ceil(max(ay, by, cy)) + 1):
+            for x in range(math.floor(min(ax, bx, cx)), math.ceil(max(ax, bx, cx)) + 1):
+                px, py = x + 0.5, y + 0.5
+                t = ((px - ax) * (cy - ay) - (cx - ax) * (py - ay)) / area
+                s = ((bx - ax) * (py - ay) - (px - ax) * (by - ay)) / area
+                if t >= 0 and s >= 0 and t + s <= 1:
+                    heights[y % down][x % across] = ah + t * (bh - ah) + s * (ch - ah)
+
+    for j in range(rows):
+        for i in range(columns):
+            a, b, c, d = point(i, j), point(i + 1, j), point(i, j + 1), point(i + 1, j + 1)
+            # The cell is cut along one diagonal or the other, so that no direction is preferred.
+            for triangle in [(a, b, c), (b, d, c)] if rng.random() < 0.5 else [(a, b, d), (a, d, c)]:
+                fill(*triangle)
+    return heights
+
+
+png("facets.png", 0, [[byte(x) for x in row] for row in facets(512, 256, 64, 32)])

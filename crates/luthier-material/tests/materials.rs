@@ -101,6 +101,62 @@ fn the_classes_are_those_of_the_course() {
     }
 }
 
+/// The paints and the parts of stones that the course has in words: they cite it, and explain their warnings.
+#[test]
+fn parts_of_surfaces_explain_their_warnings() {
+    let mut count = 0;
+    for entry in fs::read_dir(folder().join("surfaces")).unwrap() {
+        let inner = entry.unwrap().path();
+        if !inner.is_dir() {
+            continue;
+        }
+        for file in fs::read_dir(&inner).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_none_or(|ending| ending != "toml") {
+                continue;
+            }
+            let name = path.display().to_string();
+            let text = fs::read_to_string(&path).unwrap();
+            let parsed = parse(&name, &text, &|other| fs::read_to_string(inner.join(other))).unwrap();
+            let explained = text.lines().filter(|line| line.starts_with("# Warning: ")).count();
+            assert_eq!(parsed.warnings.len(), explained, "{name}: {:?}", parsed.warnings);
+            let material = parsed.material;
+            assert!(!material.description.is_empty() && !material.references.is_empty(), "{name}");
+            count += 1;
+        }
+    }
+    assert!(count >= 55, "{count}");
+}
+
+/// Oracle: section 5.1.2 and 5.2.1 of the course, slopes in degrees.
+#[test]
+fn paints_and_stones_are_as_printed() {
+    let slopes = |name: &str| {
+        let layers = material(&format!("surfaces/{name}")).stack.layers;
+        layers.iter().map(|layer| libm::atan(layer.surface.alpha_x).to_degrees()).collect::<Vec<f64>>()
+    };
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    near(slopes("paints/garnet-red")[0], 12.0);
+    let copper = ["pale-copper", "bright-copper", "copper", "dark-copper"];
+    let flakes = ["flake-1", "flake-2", "flake-3"];
+    for (stone, entries, metal) in
+        [("sunstone", &copper[..], 3.0), ("pink-sunstone", &flakes[..], 5.0), ("patterned-sunstone", &flakes[..], 5.0)]
+    {
+        for entry in entries {
+            let name = format!("{stone}/{entry}");
+            let found = slopes(&name);
+            near(found[0], 4.0);
+            near(found[1], metal);
+            let coat = &material(&format!("surfaces/{name}")).stack.layers[0].base;
+            let Base::Dielectric { ior, .. } = coat else { panic!("{name}") };
+            near(ior.at(550.0).re, 1.58);
+        }
+        let surface = fs::read_to_string(folder().join(format!("surfaces/{stone}.toml"))).unwrap();
+        let glitter = surface.split("[glitter]").nth(1).unwrap();
+        assert_eq!(glitter.matches(".toml\"").count(), entries.len(), "{stone}");
+    }
+}
+
 /// Oracle: the sheet of the car paint, with its slopes converted on paper (tan 1 and tan 12 degrees).
 #[test]
 fn the_car_paint_is_as_printed() {

@@ -32,6 +32,8 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   picture that is at least half as bright as the brightest place, under the key light alone. The contrast of the \
                   surroundings is the variation of luminance without that light, over the mean. Mean FLIP is between the picture \
                   of the tables and that of the full evaluation.",
+        seen: "Seven of eight look as the course says. Frosted metal (f) does not: it mirrors too sharply, because the model does not blur \
+               what passes the rough coat, so that the course's own sheet gives a polished metal.",
         size: SMALL,
         claim: Claim {
             text: "By the course's tree: paints of a smooth coat have a sharp highlight (a, b), and frosted paint has a blurred \
@@ -72,6 +74,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   highlights stay white. The chart shows the colour of the middle of each ball; saturation is the chroma that the colour has at a luminance of 0.5, over 100. The absorption is \
                   luthier's. The hue of the ball without varnish is that of the light, and has little meaning at so \
                   small a chroma.",
+        seen: "Twelve balls from white over yellow and orange to red, as the course describes them.",
         size: SMALL,
         claim: Claim {
             text: "A thin yellow varnish makes white yellow. The thicker it is, the darker and the more saturated is the ball, and its hue \

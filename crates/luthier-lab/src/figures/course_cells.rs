@@ -22,6 +22,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
               have such cells over grains, which course-5-1 shows. The numbers are the shares of the middle half of the picture that differ from the level ball. The \
               number of cells and the angle are luthier's. The scatter is the root mean square distance of the places that are at least half as bright as the brightest, under the key \
               light alone, in half sides of the picture.",
+    seen: "Facets scatter the highlight over the ball, as glitter does; the course has no picture of them without a stone.",
     size: LARGE,
     claim: Claim {
         text: "Every filled cell is a facet with a normal of its own, so that the highlight is scattered over the ball. The other cells \

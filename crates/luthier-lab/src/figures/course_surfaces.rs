@@ -13,7 +13,7 @@ use luthier_terminal::{Failure, Outcome, valid};
 
 use super::claim::{Check, Claim};
 use super::course::by_course;
-use super::figure::{Figure, LARGE as SIZE, Made, compared};
+use super::figure::{Figure, LARGE as SIZE, MEDIUM, Made, compared};
 use super::numbers::places::{edges, sparkles, sparkles_that_stay};
 use super::numbers::tint::tint_deviation;
 use super::numbers::{brightest, glitter as glittering, middle, share};
@@ -24,20 +24,28 @@ pub(crate) const FIGURES: [Figure; 3] = [
         name: "course-5-1",
         title: "stones of grains and glitter",
         source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figure 5.1",
-        caption: "Sunstone has one colour, a varnish over a Lambertian base, and a glitter map of copper flakes below varnish of that colour. Lepidolite has \
-                  dark and bright tiles, veins of marble, and few flakes of silver on top; course-5-3 shows its maps one by one. Indices, slopes and numbers of entries are the \
-                  course's, colours and numbers of cells luthier's: the files are in `materials/surfaces`. A pixel sparkles where it is at least twice as bright as the median around it; \
+        caption: "Top row: opaque sunstone, a varnish over a Lambertian base of one colour and a glitter map of four entries, copper of slope 3 degrees below varnish of that colour; pink sunstone, of which many \
+                  cells glitter; patterned sunstone, with fewer, in which three functions of Perlin choose the material. The latter two have three entries of slope 5 degrees. In the course they are translucent, with a glitter map inside: luthier's surfaces have no \
+                  volume, and a tinted varnish over a pale base stands for it. Bottom row: lepidolite has dark and bright tiles, veins of marble, and few flakes of silver on top, and course-5-3 shows its maps one by one; green and raspberry \
+                  aventurine are grains of six shades and flakes. Indices, slopes and numbers of entries are the \
+                  course's where it prints them, colours and numbers of cells luthier's: the files are in `materials/surfaces`. A pixel sparkles where it is at least twice as bright as the median around it; \
                   the light moves from the upper left to the upper right.",
-        size: SIZE,
+        seen: "Six stones that glitter, each of its kind. Against photographs of stones, the flakes are larger and flat, wider than high \
+               near the equator, and the stones have no depth: the translucent ones are painted.",
+        size: MEDIUM,
         claim: Claim {
-            text: "Metallic cells glitter in a stone of one colour, and fewer of them in a stone of many grains. Which cells \
-                  glitter depends on where the light is.",
+            text: "Metallic cells glitter in a stone of one colour, and fewer of them in a stone of many grains. Pink sunstone has \
+                  much more glitter than the opaque one, and patterned sunstone less, but its colour varies. Which cells glitter depends on where the light is.",
             checks: &[
                 Check::Falls(&["sunstone: sparkles", "sunstone without glitter: sparkles"]),
                 Check::Falls(&["lepidolite: sparkles", "lepidolite without glitter: sparkles"]),
-                Check::Falls(&["sunstone: sparkles", "lepidolite: sparkles"]),
+                Check::Falls(&["green-aventurine: sparkles", "green-aventurine without glitter: sparkles"]),
+                Check::Falls(&["raspberry-aventurine: sparkles", "raspberry-aventurine without glitter: sparkles"]),
+                Check::Falls(&["pink-sunstone: sparkles", "sunstone: sparkles", "patterned-sunstone: sparkles"]),
                 Check::Falls(&[
+                    "pink-sunstone: share of the square that glitters",
                     "sunstone: share of the square that glitters",
+                    "patterned-sunstone: share of the square that glitters",
                     "lepidolite: share of the square that glitters",
                 ]),
                 // Very few cells of the lepidolite's map are filled.
@@ -45,6 +53,10 @@ pub(crate) const FIGURES: [Figure; 3] = [
                 Check::Within("sunstone: share of the sparkles that stay when the light moves", 0.0, 0.5),
                 Check::Falls(&[
                     "lepidolite without glitter: deviation of the colour",
+                    "sunstone without glitter: deviation of the colour",
+                ]),
+                Check::Falls(&[
+                    "patterned-sunstone without glitter: deviation of the colour",
                     "sunstone without glitter: deviation of the colour",
                 ]),
             ],
@@ -59,6 +71,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   The surface map (1) has small cells, grains of the dark lepidolite. The glitter map (2) has fewer and larger cells, most of them transparent: here they are dark. \
                   The surface-glitter map (3) is both. The bump map (4) tilts the cells of the glitter map that are not transparent, and no others: one grey material shows \
                   it. The combined maps (5) are grains, with particles of which some sparkle.",
+        seen: "The five squares are those of the course's drawing.",
         size: SIZE,
         claim: Claim {
             text: "The glitter map, most of which is transparent, lies over the surface map. The bump map tilts exactly those cells \
@@ -82,6 +95,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         caption: "Lepidolite has a surface map of dark tiles and one of bright tiles, nine entries each, of cells of one size. A map of larger tiles has either. The marble has three entries, \
                   brighter than the bright tiles, and one of either kind of tiles, in much smaller cells. Perlin's noise near 0 puts it into veins: \
                   that is the marble function here, because the course does not print its own. Colours, numbers of cells and the noise are luthier's.",
+        seen: "The maps and their combination are those of the course's drawing; the veins are thinner than in a photograph of the stone.",
         size: SIZE,
         claim: Claim {
             text: "Dark and bright tiles of one size share the surface, and veins of marble cross it, whose tiles are brighter and much \
@@ -104,8 +118,15 @@ pub(crate) const FIGURES: [Figure; 3] = [
     },
 ];
 
-/// Surface files of the repository.
-const STONES: [&str; 2] = ["sunstone", "lepidolite"];
+/// Surface files of the repository, with their labels.
+const STONES: [(&str, &str); 6] = [
+    ("sunstone", "sunstone"),
+    ("pink-sunstone", "pink"),
+    ("patterned-sunstone", "patterned"),
+    ("lepidolite", "lepidolite"),
+    ("green-aventurine", "green aventurine"),
+    ("raspberry-aventurine", "raspberry aventurine"),
+];
 
 /// The materials and the surface of a file of the repository.
 fn stone(name: &str) -> Outcome<(Vec<Material>, SurfaceEntry)> {
@@ -131,7 +152,7 @@ fn pictures(
 
 fn stones(studio: &Studio, made: &mut Made) -> Outcome {
     let mut all = Vec::new();
-    for name in STONES {
+    for (name, label) in STONES {
         let (materials, surface) = stone(name)?;
         made.measure(
             format!("{name}: share of the square that glitters"),
@@ -152,9 +173,9 @@ fn stones(studio: &Studio, made: &mut Made) -> Outcome {
             let stay = sparkles_that_stay(picture, moved);
             made.measure(format!("{name}: share of the sparkles that stay when the light moves"), stay);
         }
-        all.extend(picture.into_iter().map(|picture| (name.to_owned(), picture)));
+        all.extend(picture.into_iter().map(|picture| (label.to_owned(), picture)));
     }
-    made.sheet("course-5-1", all, 2);
+    made.sheet("course-5-1", all, 3);
     Ok(())
 }
 

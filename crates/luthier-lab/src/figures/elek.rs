@@ -34,6 +34,8 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   that is too wide by a larger factor. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
                   inside the coat. Its energy is nearest to the simulation, but its highlight is as sharp as without \
                   the clamp. The metal is chromium of the paper's appendix A; the red coat is luthier's.",
+        seen: "The tori are those of the paper: the metal's highlight widens with the coat, and without the clamp it is sharp. The model \
+               cannot show more than the paper claims for it: beside the simulation, the clamp greys the ball.",
         size: SMALL,
         claim: Claim {
             text: "The roughness of the coat shapes the reflection of the metal: it gets wider where m1 exceeds m2. Without the \
@@ -75,6 +77,9 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   the paper does not mention: m = 0.01 happens to lie near a row of its table. For smaller m, the \
                   linear axis of m gets nearly as bad as the linear angle, while the logarithmic axis stays \
                   accurate.",
+        seen: "The rings of the linear table and the wrong size with MIP maps are seen as in the paper; the mapping u^8 and the full \
+               evaluation cannot be told apart. The paper's jaggedness of the MIP maps is not seen, because one level is read for the \
+               whole highlight.",
         size: SMALL,
         claim: Claim {
             text: "A table of D that is linear in the angle cannot show a sharp highlight (m 0.01), but does from m 0.02 on. The \
@@ -113,6 +118,8 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   luthier. All three look alike. The differences lie around the highlights, where all terms are \
                   large; they are multiplied by the factors printed below them. The paper found errors of up to 6% \
                   with its material. Both pictures of tables stay far below that.",
+        seen: "No difference is seen between full evaluation and tables, as in the paper; the differences had to be multiplied to be \
+               shown.",
         size: SMALL,
         claim: Claim {
             text: "Tables of F and D look like the full evaluation; the largest error is below 6 percent.",
@@ -197,7 +204,7 @@ fn clamp(studio: &Studio, made: &mut Made) -> Outcome {
 }
 
 /// Red over blue of the key light, and so of what a coat reflects.
-const KEY_RED_OVER_BLUE: f64 = 1.75 / 1.62;
+pub(super) const KEY_RED_OVER_BLUE: f64 = 1.75 / 1.62;
 
 /// Width of the highlight of a metal under a red coat: the root of the share of the picture where it is at least half as bright
 /// as at its peak. Red less blue is the light of the metal, because the coat reflects without colour.

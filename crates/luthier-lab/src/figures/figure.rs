@@ -18,6 +18,8 @@ pub(crate) struct Figure {
     pub(crate) source: &'static str,
     /// Text below the figure: its content in the paper, differences here, and what to see.
     pub(crate) caption: &'static str,
+    /// Judgement of the pictures by eye, beside the caption in the paper.
+    pub(crate) seen: &'static str,
     /// Side of each single picture in pixels, where the command line has none.
     pub(crate) size: u32,
     pub(crate) claim: Claim,

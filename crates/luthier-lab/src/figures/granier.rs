@@ -1,10 +1,13 @@
 //! Figures of Granier and Heidrich 2003.
 
-use glam::DVec3;
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
 use luthier::{Bake, MemoryStore};
 use luthier_gpu::{RenderSettings, Shape};
 use luthier_layers::models::granier_heidrich::Film;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::noise::perlin::Perlin;
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -15,10 +18,11 @@ use luthier_terminal::Outcome;
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Made, SMALL, TONE};
 use super::numbers::light::FROM_EYE;
-use super::numbers::over_red;
+use super::numbers::places::{BALL_DISTANCE, ball_normal};
 use super::numbers::spot::{centres, spot};
 use super::numbers::tint::{hue, hues, tint_deviation, tint_grain, tints_apart};
-use super::studio::{Studio, material, shaded};
+use super::numbers::{across, blown_out, over_red};
+use super::studio::{LIGHTS, Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 5] = [
     Figure {
@@ -31,6 +35,8 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   (middle). The chart shows the diffuse coefficient for the three wavelengths. It exceeds 1, so that \
                   a white base under this model reflects more light than it receives. The indices 1.5, 1.6, 1.8 are \
                   those of figure 6; the ranges are luthier's.",
+        seen: "Old metal, a coloured ball and clay are recognised, as in the paper; the old metal is rather matt, because the diffuse part \
+               is alone.",
         size: LARGE,
         claim: Claim {
             text: "A narrow range of thicknesses looks like old metal, or like clay of its reddish yellow. A wide range gives \
@@ -61,14 +67,16 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "boundaries that are not parallel",
         source: "Granier and Heidrich 2003, figure 4",
         caption: "The parameters are the printed ones: indices 1.4, 1.45, 1.6, thickness 66 to 76 nm, exponents 90 \
-                  and 170, weights 1 and 0.7. With parallel boundaries, both beams leave in the mirror direction. In the \
+                  and 170, weights 1 and 0.7. The pictures are by the printed equations in f64, with lobes of height one, under two lights and no surroundings. With parallel boundaries, both beams leave in the mirror direction. In the \
                   other pictures the inner boundary is tilted by a constant 14 degrees (the angle of figure 6), \
-                  which turns the transmitted beam to the side. Each light then has a second highlight to the right \
-                  of the first, with a bluish and a yellow edge, and the right of the ball darkens. With one index \
-                  for all colours, the second highlight has no coloured edges. With an exponent of 20 for the inner \
-                  boundary, it is wide, and its colours blur into each other. The numbers are of the specular part under the \
-                  light from the eye: how far from the middle the light of each channel lies, in half sides of the picture, and the mean \
+                  which turns the transmitted beam aside. The bright highlight of each light then stands to the left of a faint one, which the outer boundary mirrors, \
+                  and has a blue and a yellow side. With one index \
+                  for all colours, it has no coloured sides. With an exponent of 20 for the inner \
+                  boundary, it is wide, and its colours blur into each other. The numbers are of the specular part of luthier's shader, whose lobes carry their \
+                  coefficients, under the light from the eye: how far from the middle the light of each channel lies, in half sides of the picture, and the mean \
                   saturation of the light.",
+        seen: "Deviation and dispersion are seen as in the paper: the highlight of the leaning layer stands aside, blue on one side and \
+               yellow on the other. The two pictures on the right are luthier's.",
         size: SMALL,
         claim: Claim {
             text: "Where the boundaries are not parallel, the beam through the layer turns aside: blue, of the highest index, \
@@ -88,6 +96,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
                     "14 degrees: width of the second highlight",
                 ]),
                 Check::Falls(&["14 degrees: colours of the highlights", "90 and 20: colours of the highlights"]),
+                Check::Within("14 degrees: share blown out", 0.0, 0.001),
             ],
         },
         make: deviation,
@@ -100,6 +109,8 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   like a bump map. A flat boundary gives smooth bands of colour, which are finer for thicker films. \
                   Bumps break these bands up into streaks, like oil on rough ground. One repeat of the thickness map \
                   is 12 and 24 um wide, chosen for the look. The ranges of thickness are luthier's.",
+        seen: "Streaks of colours stand where the smooth bands were: it looks like oil on a rough surface. Highlights are white, because \
+               lobes that carry their coefficients are brighter than those of the paper.",
         size: SMALL,
         claim: Claim {
             text: "Normals that follow the thickness break up the smooth bands of colour: neighbouring places differ more. The \
@@ -117,12 +128,14 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "specular and diffuse part together",
         source: "Granier and Heidrich 2003, figure 6",
         caption: "The parameters are the printed ones: indices 1.5, 1.6, 1.8, exponents 130, deviation 14 degrees, \
-                  weights 1 and 0.5. The ranges of thickness and the index of the object are luthier's. Thin films \
+                  weights 1 and 0.5. The pictures are by the printed equations in f64, as those of granier-4. The ranges of thickness and the index of the object are luthier's. Thin films \
                   are brown, and thicker ones blue, then yellow. A wide range of thickness shows all orders of \
-                  interference at once. Coloured highlights stand beside the white ones. The charts compare the \
+                  interference at once. Highlights have coloured sides. The charts compare the \
                   model with the exact film in the mirror direction. Both have their extremes at the same \
                   thicknesses. But the two beams of the model make the object reflect all light, and more than falls \
                   on it where both are in phase.",
+        seen: "The thickness gives the base colour and the lean the coloured sides of highlights, as in the paper. The thin layer is \
+               reddish brown rather than red.",
         size: SMALL,
         claim: Claim {
             text: "The thickness gives the colour: red is strongest where the layer is thin, and blue or green where it is \
@@ -150,6 +163,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   As there, the normals of the inner boundary follow the thickness of the layer, the phase has a table of 256 entries, the \
                   thickness one of 256 by 256 of Perlin's noise, and pictures differ in the range of the thickness alone. The mesh casts shadows on \
                   itself and on its floor. Ranges, indices and exponent are luthier's, the latter those of figure 6 and figure 4.",
+        seen: "Pictures of four colours of one mesh, each with subtle variations, as in the paper; the mesh is another.",
         size: SMALL,
         claim: Claim {
             text: "The range of thickness alone gives the layer on a mesh another colour, and within each picture the colour \
@@ -225,6 +239,10 @@ fn look(_: usize, settings: &mut RenderSettings) {
     settings.exposure = 0.8;
 }
 
+/// Seed and octaves of the thickness.
+const NOISE_SEED: u32 = 7;
+const NOISE_OCTAVES: u32 = 4;
+
 /// A film on an object.
 struct Coating {
     name: &'static str,
@@ -268,13 +286,56 @@ impl Coating {
             "schema = 1\nname = \"{name}\"\n\
              [[layer]]\ntype = \"thin-film\"\nior = {{ n = [{r}, {g}, {b}], wavelengths_nm = [645, 525, 445] }}\n\
              [layer.thickness_nm]\nmin = {min}\nmax = {max}\nextent_um = {extent_um}\n\
-             map = {{ noise = {{ seed = 7, frequency = {frequency}, octaves = 4 }} }}\n\
+             map = {{ noise = {{ seed = {NOISE_SEED}, frequency = {frequency}, octaves = {NOISE_OCTAVES} }} }}\n\
              [[layer]]\ntype = \"dielectric\"\nior = 2.0\nexponents = {exponents:?}\n\
              [[layer]]\ntype = \"diffuse\"\nalbedo = 1\n\
              [bake]\nmodel = \"granier-heidrich\"\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n{tables}\
              [bake.granier-heidrich]\ndiffuse_weight = {diffuse}\ninner_tilt_deg = {tilt_deg}\n"
         );
         Ok(shaded(&material(name, &text)?, name, ShadingModel::GranierHeidrich))
+    }
+}
+
+/// Rays along each side of a pixel of a ball of the printed equations.
+const RAYS: u32 = 2;
+
+/// Factor on the lights by which the brightest highlights keep their colours.
+const DIM: f64 = 0.45;
+
+impl Coating {
+    /// A ball under the two lights of the studio by the paper's equations 5 and 18, with lobes of height one and no environment, linear.
+    fn as_printed(&self, size: u32) -> Image {
+        let noise = Perlin { seed: NOISE_SEED, frequency: f64::from(self.frequency), octaves: NOISE_OCTAVES };
+        let (sin, cos) = libm::sincos(self.tilt_deg.to_radians());
+        let inner_normal = DVec3::new(sin, 0.0, cos);
+        let mut image = Image::zeros(size, size, 3);
+        let fine = size * RAYS;
+        for i in 0..fine * fine {
+            let Some(n) = ball_normal([across(i % fine, fine), -across(i / fine, fine)]).map(DVec3::from_array) else {
+                continue;
+            };
+            let tangent = DVec3::new(n.z, 0.0, -n.x).normalize_or(DVec3::X);
+            let local = |w: DVec3| DVec3::new(w.dot(tangent), w.dot(n.cross(tangent)), w.dot(n));
+            let wo = local((DVec3::new(0.0, 0.0, BALL_DISTANCE) - n).normalize());
+            let uv = DVec2::new(0.5 + libm::atan2(n.x, n.z) / (2.0 * PI), libm::acos(n.y.clamp(-1.0, 1.0)) / PI);
+            let [min, max] = self.thickness_nm;
+            let thickness_nm = min + (max - min) * (0.5 + noise.at(uv)).clamp(0.0, 1.0);
+            let texel = image.texel_mut(i % fine / RAYS, i / fine / RAYS);
+            for ((value, ior), (nm, c)) in texel.iter_mut().zip(self.ior).zip(WAVELENGTHS_NM.into_iter().zip(0..)) {
+                let mut film = film(ior, thickness_nm / nm, 0.0);
+                (film.exponents, film.inner_normal) = (self.exponents, inner_normal);
+                for light in &LIGHTS {
+                    let wi = local(DVec3::from_array(light.direction).normalize());
+                    if wi.z <= 0.0 {
+                        continue;
+                    }
+                    let sent = film.specular(wi, wo) + self.diffuse * film.diffuse() * wi.z;
+                    let irradiance: f64 = light.irradiance[c];
+                    *value += (DIM * irradiance * sent / f64::from(RAYS * RAYS)) as f32;
+                }
+            }
+        }
+        image
     }
 }
 
@@ -335,13 +396,11 @@ fn deviation(studio: &Studio, made: &mut Made) -> Outcome {
         coating("no-dispersion", [1.45; 3], 170.0, TILT_DEG),
         coating("rough", rising, 20.0, TILT_DEG),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |n, settings| {
-        look(n, settings);
-        settings.environment_samples = 512;
-    })?;
+    let pictures: Vec<Image> = coatings.iter().map(|coating| coating.as_printed(studio.size)).collect();
     let labels = ["parallel", "14 degrees", "one index", "90 and 20"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
+        made.measure(format!("{label}: share blown out"), blown_out(picture));
     }
     // The specular part alone, under one light.
     let bare: Vec<Coating> = coatings
@@ -394,10 +453,11 @@ fn combined(studio: &Studio, made: &mut Made) -> Outcome {
     let ranges = [("a", [50.0, 70.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
     let tilted = Coating { diffuse: 0.5, tilt_deg: TILT_DEG, ..COATING };
     let coatings = ranges.map(|(name, thickness_nm)| Coating { name, thickness_nm, ..tilted });
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, look)?;
     let mut shown = Vec::new();
-    for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
+    for ((_, [min, max]), coating) in ranges.iter().zip(&coatings) {
+        let picture = coating.as_printed(studio.size);
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
+        made.measure(format!("{min} to {max} nm: share blown out"), blown_out(&picture));
         let [green, blue] = [1, 2].map(|channel| over_red(&picture, channel));
         made.measure(format!("{min} to {max} nm: green over red"), green);
         made.measure(format!("{min} to {max} nm: blue over red"), blue);

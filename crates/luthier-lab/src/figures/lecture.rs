@@ -21,6 +21,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     caption: "Metallic falls from 1 to 0 down the rows, roughness grows from 0.1 to 1 along them. The files are of type `metallic-roughness` with the lecture's F0 of \
               copper as base colour (0.955, 0.638, 0.538), and F0 of 0.04 where nothing is metallic; F0 lies on the straight line between. The model is \
               `belcour`, which follows all bounces, so that the base shows its colour. The numbers are F0 down the rows, R, G, B, as the interface of the file has it.",
+    seen: "The grid is that of the exercise: copper fades to paint down the rows, and highlights to dull surfaces along them.",
     size: SMALL,
     claim: Claim {
         text: "F0 falls from that of copper to 0.04 with metallic, and highlights get wider and dimmer with roughness.",

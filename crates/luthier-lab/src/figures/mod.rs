@@ -76,7 +76,7 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
     let bar = Bar::new("figures");
     let mut new: Vec<Done> = Vec::new();
     for &figure in &asked {
-        studio.size = options.size.unwrap_or(figure.size);
+        studio.begin(options.size.unwrap_or(figure.size));
         let mut figured = Made::default();
         (figure.make)(&studio, &mut figured)?;
         let mut names = Vec::new();
@@ -90,7 +90,7 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
             names.push(file);
         }
         let command = page::command(options, figure.name);
-        new.push(Done::new(figure, studio.size, command, names, figured.measured)?);
+        new.push(Done::new(figure, studio.size, studio.adapter_name(), command, names, figured.measured)?);
         bar.set(new.len() as u64, asked.len() as u64);
     }
     drop(bar);
@@ -101,11 +101,10 @@ pub(crate) fn run(options: &FiguresOptions) -> Outcome {
         made.extend(old.as_ref().map(|old| page::kept(figure, old)).transpose()?.flatten());
     }
     made.sort_by_key(|done| all.iter().position(|figure| figure.name == done.figure.name));
-    let adapter = studio.adapter_name().or_else(|| page::adapter(old.as_ref()?));
-    let text = format!("{:#}\n", page::json(adapter.as_deref(), &made));
+    let text = format!("{:#}\n", page::json(&made));
     std::fs::write(&manifest, text).map_err(files(&manifest, "write"))?;
     let page = folder.with_extension("md");
-    let text = page::markdown(options, adapter.as_deref(), &made);
+    let text = page::markdown(options, &made);
     std::fs::write(&page, text).map_err(files(&page, "write"))?;
     let mut said = format!("{count} figures, {written} files in {}; page {}", folder.display(), page.display());
     for Done { figure, verdict, .. } in made.iter().filter(|done| !done.verdict.holds) {
@@ -119,6 +118,8 @@ struct Done<'a> {
     figure: &'a Figure,
     /// Side of each single picture.
     size: u32,
+    /// The adapter that it was made on, where it needed one.
+    adapter: Option<String>,
     /// The command line that makes it.
     command: String,
     files: Vec<String>,
@@ -130,11 +131,12 @@ impl<'a> Done<'a> {
     fn new(
         figure: &'a Figure,
         size: u32,
+        adapter: Option<String>,
         command: String,
         files: Vec<String>,
         measured: Vec<Measured>,
     ) -> Outcome<Self> {
         let verdict = figure.claim.verdict(figure.name, &measured)?;
-        Ok(Self { figure, size, command, files, measured, verdict })
+        Ok(Self { figure, size, adapter, command, files, measured, verdict })
     }
 }

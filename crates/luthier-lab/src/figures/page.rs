@@ -13,21 +13,23 @@ use super::figure::{Figure, Measured};
 use crate::cli::{FiguresOptions, PATHS};
 
 /// Version of the manifest.
-const SCHEMA: u64 = 2;
+const SCHEMA: u64 = 3;
 
 /// The manifest.
-pub(crate) fn json(adapter: Option<&str>, made: &[Done]) -> Value {
-    let figures = made.iter().map(|Done { figure, size, command, files, measured, verdict }| {
+pub(crate) fn json(made: &[Done]) -> Value {
+    let figures = made.iter().map(|Done { figure, size, adapter, command, files, measured, verdict }| {
         let measured: Vec<Value> = measured.iter().map(|m| json!({"what": m.what, "value": m.value})).collect();
         json!({
             "name": figure.name,
             "title": figure.title,
             "source": figure.source,
             "caption": figure.caption,
+            "seen": figure.seen,
             "must_show": figure.claim.text,
             "shows": verdict.holds,
             "because": verdict.because,
             "size": size,
+            "adapter": adapter,
             "files": files,
             "measured": measured,
             "command": command,
@@ -36,7 +38,6 @@ pub(crate) fn json(adapter: Option<&str>, made: &[Done]) -> Value {
     json!({
         "schema": SCHEMA,
         "generator": GENERATOR,
-        "adapter": adapter,
         "figures": figures.collect::<Vec<Value>>(),
     })
 }
@@ -51,11 +52,6 @@ pub(crate) fn read(path: &Path) -> Outcome<Option<Value>> {
     Ok(Some(manifest).filter(|manifest| manifest["schema"] == SCHEMA))
 }
 
-/// The adapter of an earlier run.
-pub(crate) fn adapter(old: &Value) -> Option<String> {
-    old["adapter"].as_str().map(str::to_owned)
-}
-
 /// A figure as an earlier run made it; `None` where it did not.
 pub(crate) fn kept<'a>(figure: &'a Figure, old: &Value) -> Outcome<Option<Done<'a>>> {
     let entries = old["figures"].as_array().into_iter().flatten();
@@ -67,32 +63,34 @@ pub(crate) fn kept<'a>(figure: &'a Figure, old: &Value) -> Outcome<Option<Done<'
     });
     let size = entry["size"].as_u64().unwrap_or(0) as u32;
     let command = entry["command"].as_str().unwrap_or_default().to_owned();
-    Done::new(figure, size, command, files, measured.collect()).map(Some)
+    let adapter = entry["adapter"].as_str().map(str::to_owned);
+    Done::new(figure, size, adapter, command, files, measured.collect()).map(Some)
 }
 
 /// The page; its links begin at the folder above the pictures.
-pub(crate) fn markdown(options: &FiguresOptions, adapter: Option<&str>, made: &[Done]) -> String {
+pub(crate) fn markdown(options: &FiguresOptions, made: &[Done]) -> String {
     let folder = options.output.file_name().unwrap_or_default().to_string_lossy();
     let mut page = format!(
         "# The papers' figures, made anew\n\nMade by `luthier-lab figures`. Each figure was published in a paper on layered materials; luthier renders it again \
-         from the paper's parameters. {} of {} figures show what they must: *must show* has the statement, and the numbers that decide. The other numbers of \
-         a figure, and the command that makes it, are below its text. Pictures of shaders have 4 samples to a pixel, and a simulation takes {PATHS} paths per pixel and \
-         light, unless the command says otherwise. Adapter: {}. The tone curve keeps values up to 0.8 and bends larger ones towards 1. RMSE compares \
+         from the paper's parameters. {} of {} figures show what they must: *must show* has the statement, and the numbers that decide. *By eye* is the judgement of the \
+         pictures beside the paper's caption. The other numbers of a figure, the command that makes it and the adapter are below its text. Pictures of shaders have 4 samples to a pixel, and a simulation takes {PATHS} paths per pixel and \
+         light, unless the command says otherwise. The tone curve keeps values up to 0.8 and bends larger ones towards 1. RMSE compares \
          linear radiance over all pixels and channels. FLIP compares pictures as a display shows them at 67 pixels per degree. Where a paper does not state a \
          parameter, and for the light and the shapes, the values are luthier's own.\n",
         made.iter().filter(|done| done.verdict.holds).count(),
         made.len(),
-        adapter.unwrap_or("none was needed"),
     );
-    for Done { figure, size, command, files, measured, verdict } in made {
+    for Done { figure, size, adapter, command, files, measured, verdict } in made {
         let _ = write!(page, "\n## {}: {}\n\n*{}*\n\n", figure.name, figure.title, figure.source);
         for file in files {
             let _ = writeln!(page, "![{}]({folder}/{file})\n", figure.title);
         }
         let verb = if verdict.holds { "It shows this" } else { "**It does not show this**" };
         let _ = writeln!(page, "*Must show:* {} {verb}: {}.\n", figure.claim.text, verdict.because.join("; "));
+        let _ = writeln!(page, "*By eye:* {}\n", figure.seen);
         let _ = writeln!(page, "{}\n", figure.caption);
-        let _ = writeln!(page, "| `{command}` | {size} pixels a picture |\n|---|---|");
+        let adapter = adapter.as_deref().unwrap_or("no adapter");
+        let _ = writeln!(page, "| `{command}` | {size} pixels a picture, {adapter} |\n|---|---|");
         for measured in measured {
             let _ = writeln!(page, "| {} | {} |", measured.what, number(measured.value));
         }

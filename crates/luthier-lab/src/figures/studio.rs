@@ -1,6 +1,6 @@
 //! A studio for pictures: one adapter, one light, one size.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::io::ErrorKind;
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::cli::FiguresOptions;
 const ENVIRONMENT_SAMPLES: u32 = 32;
 
 /// A key from the upper left, and a dimmer light from behind on the right. No paper states its lights.
-const LIGHTS: [DistantLight; 2] = [
+pub(crate) const LIGHTS: [DistantLight; 2] = [
     DistantLight { direction: [-0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] },
     DistantLight { direction: [0.9, 0.1, -0.2], irradiance: [1.0, 1.1, 1.25] },
 ];
@@ -34,6 +34,8 @@ pub(crate) struct Studio {
     paths: u32,
     adapter: Option<String>,
     gpu: OnceCell<Gpu>,
+    /// Whether the figure that is made has used the adapter.
+    has_used_gpu: Cell<bool>,
     environment: OnceCell<Arc<Environment>>,
     mesh: OnceCell<Arc<Mesh>>,
 }
@@ -42,20 +44,37 @@ impl Studio {
     pub(crate) fn new(options: &FiguresOptions) -> Self {
         let FiguresOptions { samples, paths, adapter, .. } = options;
         let (gpu, environment, mesh) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Self { size: 0, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment, mesh }
+        let adapter = adapter.name.clone();
+        Self {
+            size: 0,
+            samples: *samples,
+            paths: *paths,
+            adapter,
+            gpu,
+            has_used_gpu: Cell::new(false),
+            environment,
+            mesh,
+        }
+    }
+
+    /// Begins another figure, whose pictures have `size` pixels a side.
+    pub(crate) fn begin(&mut self, size: u32) {
+        self.size = size;
+        self.has_used_gpu.set(false);
     }
 
     /// The adapter, opened when the first figure needs it.
     pub(crate) fn gpu(&self) -> Outcome<&Gpu> {
+        self.has_used_gpu.set(true);
         if self.gpu.get().is_none() {
             let _ = self.gpu.set(open(self.adapter.as_deref())?);
         }
         self.gpu.get().ok_or_else(|| Failure::Device(anyhow::anyhow!("no graphics adapter")))
     }
 
-    /// Name of the adapter, if a figure needed one.
+    /// Name of the adapter, if the figure that is made needed one.
     pub(crate) fn adapter_name(&self) -> Option<String> {
-        self.gpu.get().map(adapter_label)
+        self.gpu.get().filter(|_| self.has_used_gpu.get()).map(adapter_label)
     }
 
     /// The studio of `luthier preview`, its environment through the shader.
@@ -140,13 +159,23 @@ impl Studio {
 
     /// A ball by a model in f64, under two lights and nothing else.
     pub(crate) fn ball(&self, material: &Material, model: &str) -> Outcome<Image> {
+        self.ball_of_size(material, model, self.size)
+    }
+
+    /// The ball of [`Studio::ball`], of `size` pixels a side.
+    pub(crate) fn ball_of_size(&self, material: &Material, model: &str, size: u32) -> Outcome<Image> {
         let model = registry::model(model).ok_or_else(|| Failure::Input(anyhow::anyhow!("no model `{model}`")))?;
         let wavelengths_nm = material.bake.wavelengths_nm();
-        Ok(render_ball(model.as_ref(), &material.stack, wavelengths_nm, &LIGHTS, self.size).image)
+        Ok(render_ball(model.as_ref(), &material.stack, wavelengths_nm, &LIGHTS, size).image)
     }
 
     /// The ball of [`Studio::ball`] by the simulation on the device, of the stack alone.
     pub(crate) fn simulated(&self, material: &Material) -> Outcome<BallPicture> {
+        self.simulated_of_size(material, self.size)
+    }
+
+    /// The ball of [`Studio::simulated`], of `size` pixels a side.
+    pub(crate) fn simulated_of_size(&self, material: &Material, size: u32) -> Outcome<BallPicture> {
         // Models play no part: no table is baked.
         let mut plain = material.clone();
         plain.shade_by(ShadingModel::Phong);
@@ -155,7 +184,7 @@ impl Studio {
         plain.bake.color = Some(ColorMode::ThreeWavelengths);
         let package = Bake::lit().package(std::slice::from_ref(&plain), &MemoryStore::default())?;
         let scene = self.gpu()?.scene(&package, Form::Baked)?;
-        render_ball_of(&LIGHTS, self.size, |pairs| {
+        render_ball_of(&LIGHTS, size, |pairs| {
             let pairs: Vec<_> =
                 pairs.iter().map(|(wi, wo)| (wi.as_vec3().to_array(), wo.as_vec3().to_array())).collect();
             let values = scene.simulate(0, &pairs, self.paths, &SimulationSettings::default())?;

@@ -22,9 +22,12 @@ pub(crate) const FIGURES: [Figure; 5] = [
         name: "elek-6",
         title: "flakes from a height field",
         source: "Elek 2010, figure 6",
-        caption: "Chromium flakes under a tinted coat, the heights of the flakes, and the normals that the bake makes of them by finite differences. The flakes are larger than \
-                  the paper's, so that single ones can be seen. Heights and numbers are luthier's; `crates/luthier-lab/maps/make.py` draws them. A pixel sparkles where it is at least twice \
+        caption: "Chromium flakes under a tinted coat, and a quarter of the map in large: the heights of the flakes, and the normals that the bake makes of them by finite differences. \
+                  A flake is a few pixels wide, so that single ones sparkle; the paper's are smaller than a pixel. The map is twice as wide as high, as the texture coordinates of a ball are, so that \
+                  flakes have no long side. Heights and numbers are luthier's; `crates/luthier-lab/maps/make.py` draws them. A pixel sparkles where it is at least twice \
                   as bright as the median around it. Under a coat that absorbs all, flakes cannot be seen.",
+        seen: "Single flakes light up around the highlight and all over the ball, as in metallic paint, and heights and normals are of the \
+               kind that the paper shows. The ball stands for the paper's object.",
         size: LARGE,
         claim: Claim {
             text: "Flakes of a height field sparkle, most of all under direct light: single places are far brighter than those \
@@ -47,6 +50,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
         source: "Elek 2010, Algorithm 1, line 22, which no figure shows",
         caption: "A painted base, the same under a clear lacquer, and under a lacquer that absorbs. The map multiplies the albedo of the base: less what the lacquer mirrors, a \
                   painted ball over a white one has the same quotients under the lacquer as bare. Map and numbers are luthier's.",
+        seen: "The paint shows through the lacquers as it should. No figure of the paper to set beside it.",
         size: LARGE,
         claim: Claim {
             text: "The map multiplies the diffuse light of the base alone, under a lacquer as without one, and a lacquer that \
@@ -69,6 +73,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
         source: "The lecture's slide on textures, which has no figure of a layered surface",
         caption: "A metallic-roughness surface without metal, with a map of how metallic it is, and all of metal. The left and the right picture have a white map in its place. \
                   In the middle paint has come off a metal. Maps and numbers are luthier's. The numbers are the mean differences of colour (CIELAB) to the other two where the map is below 0.2 and above 0.8.",
+        seen: "Patches of metal and of paint share the middle ball. The lecture has no picture of it.",
         size: LARGE,
         claim: Claim {
             text: "One map makes some places of a surface metal and leaves others paint.",
@@ -93,6 +98,8 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   around the middle; those of the coat on rays; both, so that the fields cross everywhere. Each layer has a map of its own. The paper's fields and slopes \
                   are not known; these are luthier's. The numbers are of the same balls under one light beside the middle: the standard deviation of the highlight along the \
                   circle through it, over that along the ray, of the whole and of the base alone, which is red less blue. `coat alone` is over an opaque absorber.",
+        seen: "Highlights turn around the middle as the fields do; the isotropic ball has round ones. The crossing is seen as in the \
+               paper.",
         size: SMALL,
         claim: Claim {
             text: "Highlights follow the field of tangents of each layer: that of the base is long along circles, that of the coat \
@@ -118,6 +125,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
         caption: "A matt varnish over aluminium: bumps of the metal alone, bumps of the varnish alone above flat metal, and bumps of both. Where the metal is flat, its \
                   reflection is bent by the bumps through which it is seen, less than a bumpy metal bends it. Dark spots are where light that is mirrored inside \
                   would be totally reflected on its way out, which bumps of both avoid. Map and numbers are luthier's.",
+        seen: "The reflection of the varnish runs over the bumps below it undisturbed. The second and third tori are luthier's own.",
         size: SMALL,
         claim: Claim {
             text: "Bumps of the metal alone leave the reflection of the varnish as it is, and bumps of the varnish alone bend the \
@@ -140,11 +148,11 @@ pub(crate) const FIGURES: [Figure; 5] = [
 
 const CHROMIUM: &str = "[[layer]]\ntype = \"conductor\"\n\
      ior = { n = [3.84, 3.18, 1.99], k = [4.37, 4.41, 4.22], wavelengths_nm = [690, 550, 450] }\n\
-     alpha = 0.12\ndistribution = \"beckmann\"\n";
+     alpha = 0.06\ndistribution = \"beckmann\"\n";
 
 fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
     let heights =
-        "[effects.flakes]\nheight_map = { image = \"heights.png\", height = 0.03 }\ntiling = 2\nfade_start = 1000\n";
+        "[effects.flakes]\nheight_map = { image = \"facets.png\", height = 0.02 }\ntiling = 4\nfade_start = 1000\n";
     let coat = lacquer("[0.02, 0.2, 0.6]");
     let with = mapped(layered("flakes", &(coat.clone() + CHROMIUM + heights), ShadingModel::Elek)?);
     let package = Bake::lit().package(&[with], &MemoryStore::default())?;
@@ -166,15 +174,24 @@ fn flakes(studio: &Studio, made: &mut Made) -> Outcome {
         let largest = none.iter().zip(with).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         made.measure("opaque coat, flakes against none: largest difference of luminance", largest);
     }
-    let heights = png::decode(include_bytes!("../../maps/heights.png")).map_err(Failure::input)?;
+    let heights = png::decode(include_bytes!("../../maps/facets.png")).map_err(Failure::input)?;
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
-    shown.push(("heights".to_owned(), enlarged(&heights, studio.size, [0, 1, 2])));
+    shown.push(("heights".to_owned(), enlarged(&corner(&heights), studio.size, [0, 1, 2])));
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::FlakeNormal) {
         slopes(made, &heights, &map.picture.image());
-        shown.push(("normals".to_owned(), enlarged(&map.picture.image(), studio.size, [0, 1, 2])));
+        shown.push(("normals".to_owned(), enlarged(&corner(&map.picture.image()), studio.size, [0, 1, 2])));
     }
     made.shown("elek-6", shown, 3);
     Ok(())
+}
+
+/// The square in the upper left corner of a map, half as high as it.
+fn corner(map: &Image) -> Image {
+    let mut square = Image::zeros(map.height / 2, map.height / 2, map.channels);
+    for (x, y) in pixels(&square) {
+        square.texel_mut(x, y).copy_from_slice(map.texel(x, y));
+    }
+    square
 }
 
 /// Compares a map of normals with the slopes of the heights that it is of. Heights rise towards the light: a normal leans to

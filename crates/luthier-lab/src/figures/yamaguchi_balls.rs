@@ -1,7 +1,7 @@
 //! Figures of Yamaguchi et al. 2019 about anisotropy: layered balls, and distributions projected on the base plane.
 
 use glam::DVec3;
-use luthier_gpu::Shape;
+use luthier_gpu::{Backdrop, Shape};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry;
 use luthier_lut::Image;
@@ -21,17 +21,22 @@ pub(crate) const FIGURES: [Figure; 2] = [
         name: "yamaguchi-1",
         title: "isotropic and anisotropic layers",
         source: "Yamaguchi et al. 2019, figure 1",
-        caption: "A coat of index 1.49 on gold under the surroundings, by Yamaguchi's model, on a torus whose tangents follow the ring. From left to right: both layers isotropic (a); an \
-                  anisotropic base (b); an anisotropic coat (c); both, along one tangent (d); both, the coat across (e). The highlights stretch across the \
-                  brushing of the layer that has it. The paper's meshes, slopes and surroundings are not known; these are luthier's. The numbers are of balls of the same materials under one light \
+        caption: "Coats of index 1.49 under the surroundings, by Yamaguchi's model, on a torus whose tangents follow the ring. The bases are the printed ones: of index (1 + 1i, 1, 1) in (a) to (d), which \
+                  reflects red, and green and blue only at the rim, where light in the coat is reflected totally, and of (e)'s gold. From left to right: both layers isotropic (a); an anisotropic base (b); an anisotropic coat (c); both, along one tangent (d); both, the coat across (e). \
+                  The paper does not print which of (a) to (d) has which; these are luthier's, as are meshes, slopes and surroundings. The bases of (a) to (d) are dark: their pictures have four times the exposure. The numbers are of balls of the same materials under one light \
                   from the eye, whose tangents are level: the standard deviation of the highlight to the side over that upwards. That of the base is red less blue, which the coat does not tint. `coat alone` is the coat over an opaque absorber.",
+        seen: "Highlights are round in (a), long in one layer in (b) and (c) and in both in (d), and cross in (e). The paper's meshes, \
+               slopes and surroundings are not known, so that only the kinds of highlights can be compared.",
         size: SMALL,
         claim: Claim {
-            text: "Each layer may be isotropic or anisotropic along its own tangents. The highlight of a layer is round where it is \
-                  isotropic, and else stretched along its own tangent. The whole is less so where the coat is brushed across.",
+            text: "Each layer may be isotropic or anisotropic along its own tangents, which differ from layer to layer. The highlight of \
+                  a layer is round where it is isotropic, and else stretched along its own tangent.",
             checks: &[
                 Check::Within("a isotropic: length of the base's highlight over its height", 0.95, 1.05),
+                Check::Within("a isotropic: length of the whole highlight over its height", 0.95, 1.05),
                 Check::Within("b base: length of the base's highlight over its height", 1.1, 100.0),
+                Check::Within("c coat: length of the whole highlight over its height", 1.1, 100.0),
+                Check::Within("d one way: length of the base's highlight over its height", 1.1, 100.0),
                 Check::Within("e crossed: length of the base's highlight over its height", 1.1, 100.0),
                 Check::Falls(&[
                     "d one way: length of the whole highlight over its height",
@@ -51,6 +56,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   outgoing directions, for light at 45 degrees. Both are ellipses with the same axes, as the paper says; by its equation 4 that of the BRDF \
                   is wider by 2 cos 45 degrees = 1.41 along both. The numbers are the standard deviations of the part of each above half of its greatest value. \
                   `turned` is the same surface, whose tangent is 30 degrees from the plane of the light.",
+        seen: "Two ellipses with level axes, the right one larger and to the side, as in the paper.",
         size: LARGE,
         claim: Claim {
             text: "The distribution of normals and the BRDF are ellipses with the same axes on the base plane, that of the BRDF \
@@ -67,39 +73,54 @@ pub(crate) const FIGURES: [Figure; 2] = [
     },
 ];
 
-/// Slopes along and across the tangent, and its turn in degrees, of coat and base.
-const BALLS: [(&str, [f64; 3], [f64; 3]); 5] = [
-    ("a isotropic", [0.05, 0.05, 0.0], [0.25, 0.25, 0.0]),
-    ("b base", [0.05, 0.05, 0.0], [0.45, 0.12, 0.0]),
-    ("c coat", [0.25, 0.06, 0.0], [0.25, 0.25, 0.0]),
-    ("d one way", [0.25, 0.06, 0.0], [0.45, 0.12, 0.0]),
-    ("e crossed", [0.25, 0.06, 90.0], [0.45, 0.12, 0.0]),
+/// Slopes along and across the tangent, and its turn in degrees, of coat and base, and the index of the base.
+type Ball = (&'static str, [f64; 3], [f64; 3], &'static str);
+
+pub(super) const BALLS: [Ball; 5] = [
+    ("a isotropic", [0.05, 0.05, 0.0], [0.2, 0.2, 0.0], RED),
+    ("b base", [0.05, 0.05, 0.0], [0.45, 0.08, 0.0], RED),
+    ("c coat", [0.3, 0.05, 0.0], [0.2, 0.2, 0.0], RED),
+    ("d one way", [0.3, 0.05, 0.0], [0.45, 0.08, 0.0], RED),
+    ("e crossed", [0.05, 0.3, 0.0], [0.45, 0.08, 0.0], GOLD),
 ];
 
-/// A coat of index 1.49 on gold (figure 1 (e)) with slopes, and with further keys of the coat. Wavelengths are labels, see
+/// Index of the bases of figure 1 (a) to (d): red alone is reflected by more than the step to the coat. Wavelengths are labels, see
 /// `materials/papers/yamaguchi-brushed.toml`.
-pub(super) fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], more: &str) -> Outcome<Material> {
+pub(super) const RED: &str = "{ n = [1, 1, 1], k = [1, 0, 0], wavelengths_nm = [690, 550, 450] }";
+
+/// Index of the base of figure 1 (e).
+pub(super) const GOLD: &str =
+    "{ n = [0.143, 0.373, 1.444], k = [3.983, 2.387, 1.602], wavelengths_nm = [690, 550, 450] }";
+
+/// A coat of index 1.49 on a base of an index, with slopes, and with further keys of the coat.
+pub(super) fn brushed(name: &str, coat: [f64; 3], base: [f64; 3], ior: &str, more: &str) -> Outcome<Material> {
     let [coat, base] = [coat, base].map(|[x, y, turn]| format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}"));
     let text = format!(
         "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.49\n{coat}\n{more}[[layer]]\ntype = \"conductor\"\n{base}\n\
-         ior = {{ n = [0.143, 0.373, 1.444], k = [3.983, 2.387, 1.602], wavelengths_nm = [690, 550, 450] }}\n\
-         [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [690, 550, 450]\n"
+         ior = {ior}\n[bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [690, 550, 450]\n"
     );
     Ok(shaded(&material(name, &text)?, name, ShadingModel::Yamaguchi))
 }
 
+/// Factor on the exposure of pictures of [`RED`], which reflects 17 parts of 100 in red, and 4 else.
+const BRIGHTER: f32 = 4.0;
+
 fn balls(studio: &Studio, made: &mut Made) -> Outcome {
     let mut materials = Vec::new();
-    for (i, (_, coat, base)) in BALLS.into_iter().enumerate() {
-        materials.push(brushed(&format!("ball-{i}"), coat, base, "")?);
+    for (i, (_, coat, base, ior)) in BALLS.into_iter().enumerate() {
+        materials.push(brushed(&format!("ball-{i}"), coat, base, ior, "")?);
     }
-    let pictures = studio.pictures(&materials, Form::Baked, Shape::Torus, |_, _| {})?;
+    let pictures = studio.pictures(&materials, Form::Baked, Shape::Torus, |n, settings| {
+        settings.exposure = if BALLS[n].3 == RED { BRIGHTER } else { 1.0 };
+        settings.backdrop = Backdrop::Plain([0.1 / settings.exposure; 3]);
+    })?;
     for (name, turn) in [("alone-one-way", 0.0), ("alone-crossed", 90.0)] {
         // The light of the base is lost on its way.
         materials.push(brushed(
             name,
-            [0.25, 0.06, turn],
-            [0.25, 0.25, 0.0],
+            [0.3, 0.05, turn],
+            [0.2, 0.2, 0.0],
+            GOLD,
             "thickness_um = 1\nabsorption_per_um = 100\n",
         )?);
     }
@@ -107,7 +128,7 @@ fn balls(studio: &Studio, made: &mut Made) -> Outcome {
     let labels = BALLS.iter().map(|(label, ..)| *label).chain(["coat alone, one way", "coat alone, crossed"]);
     for (label, picture) in labels.zip(&lit) {
         made.measure(format!("{label}: length of the whole highlight over its height"), spot(picture).elongation());
-        // The coat reflects without colour, and gold does not.
+        // The coat reflects without colour, and the bases do not.
         let base = spot_of(picture, |[red, _, blue]| red - blue).elongation();
         made.measure(format!("{label}: length of the base's highlight over its height"), base);
     }

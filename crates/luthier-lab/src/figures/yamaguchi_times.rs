@@ -16,6 +16,8 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
               percent the second takes longer. Here are both for an anisotropic material and an isotropic one. Times are medians of three pictures of 512 pixels a side on a GPU, from \
               `docs/measurements/simulation-gpu.json`, which `luthier-lab simulation` wrote; the file names the GPU. Pictures of few samples take milliseconds that vary by more \
               than the models differ; the verdict goes by the largest number of samples. gpu-simulation.md has the times of the simulation beside them.",
+    seen: "The curves of both models lie together and grow in a straight line with the samples, as in the paper; the percentages are noisy \
+           where a picture takes milliseconds.",
     size: SMALL,
     claim: Claim {
         text: "Anisotropic layers cost little more time than isotropic ones (at most 10 percent with 2048 samples).",

@@ -140,9 +140,12 @@ pub(crate) fn places_of_ball(image: &Image) -> impl Iterator<Item = ([f64; 2], [
     })
 }
 
+/// Distance of the eye from the middle of a ball of radius 1.
+pub(crate) const BALL_DISTANCE: f64 = 7.0;
+
 /// Normal of a ball of radius 1 at a place of its picture, by the camera of all balls: 7 away, half of its picture 1.22.
 pub(crate) fn ball_normal([x, y]: [f64; 2]) -> Option<[f64; 3]> {
-    const DISTANCE: f64 = 7.0;
+    const DISTANCE: f64 = BALL_DISTANCE;
     const HALF_EXTENT: f64 = 1.22;
     let across = libm::hypot(x, y) * HALF_EXTENT;
     let ray = libm::atan(across / DISTANCE);
