@@ -187,7 +187,7 @@ mod tests {
         )) {
             for (linear, [least, greatest]) in printed_f0(name).unwrap().into_iter().zip(bytes) {
                 let found = encode(linear);
-                assert!(found + 1 >= least && found <= greatest + u8::from(greatest < 255), "{name}: {found}");
+                assert!(found.saturating_add(1) >= least && found <= greatest.saturating_add(1), "{name}: {found}");
             }
         }
         assert!(F0_TABLE.iter().zip(F0_NAMES).all(|(entry, name)| entry.name.to_lowercase() == name));

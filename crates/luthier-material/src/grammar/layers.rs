@@ -100,8 +100,8 @@ const F0: Key = Key::optional(
     "f0",
     Kind::OneOf(&[
         Kind::Number(UNIT),
-        Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 },
         Kind::Choice(&F0_NAMES),
+        Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 },
     ]),
     F0_DOC,
 );
