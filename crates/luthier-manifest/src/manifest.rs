@@ -263,6 +263,7 @@ mod tests {
                 input_hash: "ab".repeat(32),
                 error: error.clone(),
                 aim: Some(2e-3),
+                largest: Some(1.0),
             }],
         };
         Manifest {
