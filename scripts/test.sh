@@ -39,8 +39,9 @@ crashes() {
 judge() {
   local device=()
   [ -z "$(./scripts/wants.sh --missing)" ] || device=(--no-device)
-  "$LUTHIER" report --out "$work/golden/$1" "${device[@]}" --max-error "$2" || return 1
-  awk -F '[:,]' '/"max_error":/ { exit !($2 <= 2e-2) }' "$work/golden/$1/report/report.json"
+  "$LUTHIER" report --out "$work/golden/$1" "${device[@]}" --max-error "$2" || return
+  local json=$work/golden/$1/report/report.json
+  [ ! -e "$json" ] || awk -F '[:,]' '/"max_error":/ { exit !($2 <= 2e-2) }' "$json"
 }
 
 attempt "what the tests need" ./scripts/wants.sh

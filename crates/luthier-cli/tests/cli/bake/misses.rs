@@ -30,7 +30,8 @@ fn a_row_that_misses_its_aim_is_named_by_check_and_bake_and_breaks_the_report() 
     let clear = FRUSTRATED.replace("k = 0.02", "k = 0").replace("name = \"frustrated\"", "name = \"clear\"");
     workshop.write("clear.toml", clear);
     let words = ["frustrated.toml:12", "the fresnel table of layer 0 is off by up to", "2.0e-3"];
-    let said = |text: &str| words.iter().all(|word| text.contains(word)) && !text.contains("clear.toml:");
+    // The small albedo tables are far off, too, and are named as such. Of the rows one is.
+    let said = |text: &str| words.iter().all(|word| text.contains(word)) && text.matches(words[1]).count() == 1;
     let check = workshop.run(&["check", "frustrated.toml", "clear.toml"]).exits(0);
     assert!(said(&check.stderr), "{}", check.stderr);
     let bake = workshop.run(&["bake", "frustrated.toml", "clear.toml", "--out", "out"]).exits(0);

@@ -41,14 +41,14 @@ fn shipped(out: &mut String, report: &Report) {
     }
     let _ = write!(
         out,
-        "<h3 id=\"shipped\">What ships</h3><p>The tables and shaders of this bake at directions where formulas divide by small numbers: {}. Errors are against the model in f64 with exact \
+        "<h3 id=\"shipped\">This bake</h3><p>The tables and shaders of this bake at directions where formulas divide by small numbers: {}. Errors are against the model in f64 with exact \
          terms, relative, with the floor of the other sections. Negative light counts where the model has none, and light at or below the horizon as well. f32 is what single precision adds: \
          the baked shader against f64 on the same tables; of the full shader it is the whole error. The albedo is the light that comes back in all, in the brightest channel, the largest of \
          those seen from 0°, 45°, 75° and 89°, ± the difference of two quadratures; above 1 it is a gain, and a defect where the model claims that there is none.</p>",
         AIMS.map(|aim| format!("<b>{}</b> ({})", aim.name(), escape(aim.title()))).join(", ")
     );
     out.push_str(
-        "<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>what</th><th class=\"n\">values</th><th class=\"n\">not finite</th><th \
+        "<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>level</th><th class=\"n\">values</th><th class=\"n\">not finite</th><th \
          class=\"n\">negative</th>",
     );
     AIMS.iter().for_each(|aim| out.push_str(&format!("<th class=\"n\">{}</th>", aim.name())));
