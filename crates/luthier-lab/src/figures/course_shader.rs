@@ -33,10 +33,11 @@ pub(crate) const FIGURES: [Figure; 6] = [
                   absorbing lacquer has more. Chroma and lightness differ most at the rim, where paths in the lacquer are long, and hue least, as the course says. \
                   The difference of hue is CIE's, in the unit of the other two, of which an eye just notices 2.3: the lacquer changes lightness and chroma at the rim by about that. \
                   More is not to be had, because paths in a coat of index 1.5 get longer by at most a third. The rim is outside of two thirds of the radius. The absorption is luthier's.",
-        seen: "The hue's picture is nearly even, chroma and lightness change all over and most at the rim, as in the course.",
+        seen: "The hue's picture is even, and those of chroma and lightness change all over and most at the rim, as in the course. The course calls \
+               these changes considerable; here an eye just notices them.",
         size: SMALL,
         claim: Claim {
-            text: "An absorbing lacquer differs considerably from a clear one over a base of its colour in chroma and lightness, \
+            text: "An absorbing lacquer differs from a clear one over a base of its colour in chroma and lightness, \
                   mainly at grazing angles, and practically not in hue.",
             checks: &[
                 // 2.3 units of CIELAB is the difference that an eye just notices (Mahy et al. 1994).
