@@ -1,5 +1,5 @@
-/// What a part in the medium outside mirrors of the environment, by one read that is blurred as its facets blur the mirrored direction. A level of a
-/// width has the blur of slopes of width / sqrt(2); the cosine of an exponent has that of the width exponent^(-1/2).
+/// Light of the environment that a part in the medium outside mirrors, by one read that is blurred as its facets blur the mirrored direction. A level of
+/// a width has the blur of slopes of width / sqrt(2); the cosine of an exponent has that of the width exponent^(-1/2).
 fn luthier_environment_part(part: LuthierPart, wo: vec3<f32>, frame: mat3x3<f32>) -> vec3<f32> {
     if part.eta != 1.0 {
         return vec3<f32>(0.0);
@@ -11,8 +11,8 @@ fn luthier_environment_part(part: LuthierPart, wo: vec3<f32>, frame: mat3x3<f32>
     return part.energy * luthier_environment_around(direction, min(width, 1.0));
 }
 
-/// What the interface of a prepared material that lies outside mirrors of the environment, and what diffuse bases return of it. Lobes of interfaces
-/// below are left out (Elek 2010, Algorithm 1, lines 28 and 29).
+/// Light of the environment that the outer interface of a prepared material mirrors and that diffuse bases return. Lobes of interfaces below are left
+/// out (Elek 2010, Algorithm 1, lines 28 and 29).
 fn luthier_environment_outside(prepared: LuthierPrepared, frame: mat3x3<f32>) -> vec3<f32> {
     var light = prepared.wide * luthier_environment_diffuse(frame[2]);
     $each_shown
