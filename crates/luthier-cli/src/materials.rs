@@ -71,9 +71,9 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
     )))
 }
 
-/// True where one of some forms of a material shows a blurred environment.
+/// True where one of some forms of a material shows a blurred environment; no form stands for all.
 pub(crate) fn shows_environment(material: &Material, forms: &[Form]) -> bool {
-    let has_form = material.model().facts().forms.iter().any(|form| forms.contains(form));
+    let has_form = forms.is_empty() || material.model().facts().forms.iter().any(|form| forms.contains(form));
     has_form && material.stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)))
 }
 

@@ -4,7 +4,7 @@ mod page;
 
 use luthier::{Files, SceneSource, TomlFile};
 use luthier_export::{MANIFEST, label};
-use luthier_manifest::{MaterialChoice, SceneChoice};
+use luthier_manifest::{LayerKind, MaterialChoice, SceneChoice};
 use luthier_material::{Material, Scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
 use luthier_terminal::{Broken, Failure, Outcome, bytes, print, print_diagnostics, valid};
@@ -66,7 +66,8 @@ pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     let (scene, materials) = read(file, options.quiet)?;
     let mut director = director(options, &scene, &materials)?;
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
-    let is_shown = made.package.manifest.materials.iter().any(|m| m.model.is_fitted());
+    let mut first = made.package.manifest.materials.iter().filter_map(|material| material.layers.first());
+    let is_shown = first.any(|layer| layer.kind != LayerKind::Diffuse);
     refuse_environment(&options.emission.functions, is_shown)?;
     let encoded = options.encoded(&made.package)?;
     whole(&options.out, || encoded.write(&options.out))?;

@@ -84,6 +84,12 @@ fn an_environment_that_nothing_shows_is_refused() {
         assert!(refusal.contains("there is none: leave it out"), "{arguments:?}: {refusal}");
     }
     assert!(!workshop.path("out").exists());
+    let bake = ["bake", "gold", "-q", "--model", "elek", "--functions", "environment", "--out", "both"];
+    workshop.run(&bake).exits(0);
+    for form in ["baked", "full"] {
+        let text = std::fs::read_to_string(workshop.path(&format!("both/shaders/{form}.wgsl"))).unwrap();
+        assert!(text.contains("fn luthier_environment_outside("), "{form}");
+    }
     for (model, form, lobe) in [
         ("lobes", "baked", "luthier_environment_lobes("),
         ("elek", "baked", "luthier_environment_outside("),
