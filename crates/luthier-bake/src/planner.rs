@@ -111,6 +111,9 @@ impl Part {
                 Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };
             let extras = &material.layers[1..2];
             part.bare = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?.into_iter().next();
+            // The base beside it is no layer of this stack.
+            let diffuse_part = part.layers[1].diffuse_part;
+            part.bare.iter_mut().for_each(|bare| bare.diffuse_part = diffuse_part);
         }
         Ok(part)
     }

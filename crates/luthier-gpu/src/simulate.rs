@@ -1,7 +1,7 @@
 //! Simulation of stacks by random walks of light: values for pairs of directions, and pictures that gather samples.
 
 use luthier_lut::Image;
-use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS, MaterialEntry};
+use luthier_manifest::{DiffusePart, LAYER_WORDS, MATERIAL_WORDS, MaterialEntry};
 
 use crate::context::{Context, Pass, word};
 use crate::error::setting;
@@ -221,6 +221,10 @@ fn beyond(entry: &MaterialEntry) -> Option<&'static str> {
     }
     if entry.layers.iter().any(|layer| layer.reradiation.is_some()) {
         return Some("fluorescent bases");
+    }
+    // The buffer has such an interface as one that does not bend.
+    if entry.diffuse_part() == DiffusePart::Beside {
+        return Some("diffuse bases beside an interface");
     }
     if entry.varies() {
         return Some("textures, flakes, patina and glitter");

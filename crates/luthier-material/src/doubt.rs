@@ -8,7 +8,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, Layer, Slab, Stack};
 
 use luthier_lut::Served;
-use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_manifest::{ColorMode, DiffusePart, ShadingModel};
 
 use crate::bake_settings::BakeSettings;
 use crate::diagnostic::Sink;
@@ -93,7 +93,7 @@ pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<
         films(layer, at, sink);
         match &layer.base {
             Base::Dielectric { ior, slab } => {
-                dielectric(above, layer, ior, at, sink);
+                dielectric(above, layer, ior, bake, at, sink);
                 self::slab(ior, slab, is_last, bake, at, sink);
                 above = ior;
                 roughest = roughest.max(layer.surface.alpha_isotropic());
@@ -187,8 +187,10 @@ fn films(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, at: &At<'_>, sink: &mut Sink<'_>) {
-    if let Some(f0) = ior.f0().filter(|_| at.has("f0")) {
+fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, bake: &BakeSettings, at: &At<'_>, sink: &mut Sink<'_>) {
+    // Beside a diffuse base it stands for a metal.
+    let is_clear = bake.diffuse_part != Some(DiffusePart::Beside);
+    if let Some(f0) = ior.f0().filter(|_| at.has("f0") && is_clear) {
         let most = f0.iter().fold(0.0, |a: f64, b| a.max(*b));
         if most > DIELECTRIC_F0_MAX {
             let message = format!("an F0 of {} is that of no clear medium: diamond has 0.17", short(most));

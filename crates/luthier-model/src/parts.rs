@@ -144,7 +144,7 @@ luthier_lut::named! {
         /// Below the last interface, which light crosses both ways.
         #[default]
         Below = "below",
-        /// Of the layer of the last interface: (1 - F) times its BRDF, unbent (Elek 2010, Algorithm 1, line 22).
+        /// Beside the facets of the last interface, in one layer with them: (1 - F) times its BRDF, unbent (Elek 2010, Algorithm 1, line 22).
         Beside = "beside",
     }
 }

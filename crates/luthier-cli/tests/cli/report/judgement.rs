@@ -212,6 +212,24 @@ fn nonsense_on_the_command_line() {
     }
 }
 
+/// Choices of lower layers where patina grows and where it leaves them bare: both shaders against the twin, which takes the choices from the file.
+#[cfg(feature = "gpu")]
+#[test]
+fn lower_layers_below_a_patina_are_those_of_the_twin() {
+    const LAYERS: &str = "schema = 1\nname = \"N\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.3\n[[layer]]\ntype = \"dielectric\"\n\
+        f0 = 0.5\nalpha = 0.1\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n[effects.patina]\nextent = 0.5\ntransition = 0.5\nmap = { noise = {} }\n\
+        [bake]\nmodel = \"N\"\nlower_facets = \"phong\"\ndiffuse_part = \"beside\"\nmasking = \"kelemen\"\n";
+    let workshop = Workshop::new();
+    workshop.write("m/elek.toml", LAYERS.replace('N', "elek"));
+    let rougher = "lower_alpha = \"at-least-above\"\n";
+    workshop.write("m/course.toml", LAYERS.replace('N', "weidlich-wilkie") + rougher);
+    workshop.run(&["bake", "m", "-q"]).exits(0);
+    let run = workshop.run(&["report", "--pairs", "1024", "--max-error", "2e-2"]);
+    if !run.lacks_adapter() {
+        run.exits(0);
+    }
+}
+
 /// The whole path on a device: tables of the default size, both shaders, all materials.
 #[cfg(feature = "gpu")]
 #[test]
