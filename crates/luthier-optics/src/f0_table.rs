@@ -104,7 +104,7 @@ pub const F0_NAMES: [&str; 18] = [
 /// use luthier_optics::f0_table::printed_f0;
 ///
 /// assert_eq!(printed_f0("copper"), Some([0.955, 0.638, 0.538]));
-/// assert_eq!(printed_f0("diamond-like"), Some([0.15; 3]));
+/// assert_eq!(printed_f0("water"), Some([0.02; 3]));
 /// ```
 pub fn printed_f0(name: &str) -> Option<Rgb> {
     let number = F0_NAMES.iter().position(|known| *known == name)?;
