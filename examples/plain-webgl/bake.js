@@ -6,7 +6,7 @@ export class Bake {
   /** Reads the manifest of the folder at `url` (which ends in a slash), and the shader, the tables and the materials it names. */
   static async open(url, gl) {
     const manifest = await (await get(new URL("manifest.json", url))).json();
-    if (manifest.schema !== 3) throw new Error(`this program reads schema 3 of the manifest, not ${manifest.schema}`);
+    if (manifest.schema !== 4) throw new Error(`this program reads schema 4 of the manifest, not ${manifest.schema}`);
     const bake = new Bake();
     bake.materials = manifest.materials.map((material) => material.name);
 
@@ -16,7 +16,8 @@ export class Bake {
     /** Textures by the names of the shader's samplers. */
     bake.textures = new Map();
     for (const { name, resource } of manifest.bindings) {
-      if (resource !== "texture_2d<f32>") continue;
+      // A table with steps is a buffer elsewhere, and a texture of whole numbers here.
+      if (resource !== "texture_2d<f32>" && resource !== "buffer<vec4<u32>>") continue;
       const table = manifest.tables.find(({ kind }) => name === `luthier_${kind}`);
       const file = await (await get(new URL(table.texture.path, url))).arrayBuffer();
       bake.textures.set(name, makeTexture(gl, { format: table.format, ...level(file) }));

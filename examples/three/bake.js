@@ -7,7 +7,7 @@ export class Bake {
   /** Reads the manifest of the folder at `url` (which ends in a slash), and the shader, the tables and the materials it names. */
   static async open(url, renderer) {
     const manifest = await (await get(new URL("manifest.json", url))).json();
-    if (manifest.schema !== 3) throw new Error(`this program reads schema 3 of the manifest, not ${manifest.schema}`);
+    if (manifest.schema !== 4) throw new Error(`this program reads schema 4 of the manifest, not ${manifest.schema}`);
     const bake = new Bake();
     bake.materials = manifest.materials.map((material) => material.name);
 
@@ -18,6 +18,7 @@ export class Bake {
     const loader = new KTX2Loader().detectSupport(renderer);
     bake.uniforms = {};
     for (const { name, resource } of manifest.bindings) {
+      if (resource === "buffer<vec4<u32>>") throw new Error(`${name} is in whole numbers: bake with --layout filtered`);
       if (resource !== "texture_2d<f32>") continue;
       const table = manifest.tables.find(({ kind }) => name === `luthier_${kind}`);
       const texture = await loader.loadAsync(new URL(table.texture.path, url).href);

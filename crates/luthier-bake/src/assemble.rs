@@ -19,6 +19,7 @@ use crate::planner::color_mode;
 use crate::relief::ImageReader;
 use crate::search::{Planned, plan};
 use crate::settings::Settings;
+use crate::tile::texels;
 
 /// Tables, layer records and maps of a set of materials, ready for a shader.
 #[derive(Debug, Clone, PartialEq)]
@@ -223,6 +224,10 @@ fn atlas(
             largest: largest(kind, &data.truth),
         });
         results.forget(*key);
+    }
+    if format.has_steps() {
+        // Tiles side by side are one row, whose steps lead from one to the next.
+        bytes = texels(kind, format, &truth).0;
     }
     let texels = format.decode(width, height, &bytes).unwrap_or_else(|_| unreachable!("the bytes are those of tiles"));
     Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use luthier_lut::{Axis, FormatSet, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_lut::{Axis, FormatSet, Mapping, RowBase, RowLayout, TableKind, TexelFormat};
 use luthier_manifest::CandidateForm;
 use luthier_material::{BakeSettings, Material};
 
@@ -120,6 +120,12 @@ impl Settings {
         let kind = TableKind::Lobes as usize;
         self.fixed[kind] = shape;
         self.shapes[kind] = Some(self.fixed[kind].clone());
+    }
+
+    /// Takes a layout for rows of lobes.
+    pub(crate) fn take_layout(&mut self, layout: RowLayout) {
+        let fixed = self.fixed(TableKind::Lobes).clone();
+        self.take_lobes(Shape { format: layout.format(), ..fixed });
     }
 
     /// Takes a base and format for Fresnel rows, and leaves nothing to search for.

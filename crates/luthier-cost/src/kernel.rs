@@ -84,7 +84,7 @@ impl Kernel {
         let face = face.iter().filter(|entry| !(style.constant && entry.resource == "buffer"));
         let shader = face.map(|entry| {
             let resource = match entry.resource.as_str() {
-                "buffer" => Resource::Storage,
+                "buffer" | "buffer<vec4<u32>>" => Resource::Storage,
                 "sampler" => Resource::Sampler,
                 _ => Resource::Texture,
             };

@@ -14,6 +14,8 @@ use crate::GpuError;
 #[derive(Debug)]
 enum Resource {
     Table(wgpu::TextureView, TexelFormat),
+    /// A table whose texels have steps.
+    Steps(wgpu::Buffer),
     Sampler(wgpu::Sampler),
     Materials,
     /// The levels of an environment.
@@ -68,6 +70,7 @@ impl ShaderBindings {
                     binding: *binding,
                     resource: match resource {
                         Resource::Table(view, _) => wgpu::BindingResource::TextureView(view),
+                        Resource::Steps(texels) => texels.as_entire_binding(),
                         Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
                         Resource::Materials => buffer.as_entire_binding(),
                         Resource::Environment => wgpu::BindingResource::TextureView(&surroundings.environment),
@@ -104,9 +107,11 @@ fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Resul
             })?;
             Some(Resource::Sampler(sampler))
         }
-        ("texture_2d<f32>", name) => {
+        (resource @ ("texture_2d<f32>" | "buffer<vec4<u32>>"), name) => {
             let kind = TableKind::ALL.into_iter().find(|kind| name.strip_prefix("luthier_") == Some(kind.name()));
-            kind.map(|kind| table(context, package, kind)).transpose()?
+            let is_buffer = resource != "texture_2d<f32>";
+            let is_meant = |kind| package.table(kind).is_none_or(|texels| texels.format.has_steps() == is_buffer);
+            kind.filter(|kind| is_meant(*kind)).map(|kind| table(context, package, kind)).transpose()?
         }
         ("texture_cube<f32>", "luthier_environment_map") => Some(Resource::Environment),
         ("texture_cube<f32>", "luthier_irradiance_map") => Some(Resource::Irradiance),
@@ -117,6 +122,9 @@ fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Resul
 
 fn table(context: &Context, package: &Package, kind: TableKind) -> Result<Resource, GpuError> {
     let texels = package.table(kind).ok_or(PackageError::MissingTexels { kind })?;
+    if texels.format.has_steps() {
+        return Ok(Resource::Steps(context.guarded(kind.name(), || context.upload(kind.name(), &texels.bytes))?));
+    }
     let (width, height) = (texels.width, texels.height);
     let limit = context.device.limits().max_texture_dimension_2d;
     if width > limit || height > limit {
@@ -151,7 +159,7 @@ fn layout_entry(binding: u32, resource: &Resource) -> BindGroupLayoutEntry {
             multisampled: false,
         },
         Resource::Sampler(_) => BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-        Resource::Materials => storage(true),
+        Resource::Materials | Resource::Steps(_) => storage(true),
         Resource::Environment | Resource::Irradiance => BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: true },
             view_dimension: wgpu::TextureViewDimension::Cube,
@@ -196,5 +204,6 @@ fn texture_format(format: TexelFormat) -> wgpu::TextureFormat {
         TexelFormat::Bc6hRgbUfloat => wgpu::TextureFormat::Bc6hRgbUfloat,
         TexelFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         TexelFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+        TexelFormat::Rgba16FloatSteps => wgpu::TextureFormat::Rgba32Uint,
     }
 }

@@ -3,6 +3,7 @@
 use luthier::{MemoryStore, outline, read_materials};
 use luthier_bake::Options;
 use luthier_cost::{Family, Harness, Kernel, Style, compile_apart};
+use luthier_lut::RowLayout;
 use luthier_manifest::ShadingModel;
 use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
@@ -26,7 +27,7 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
                 continue;
             }
             // Without a fit, lobes have their largest number, which costs the most.
-            let options = Options { fits: false, ..Options::default() };
+            let options = Options { fits: false, layout: Some(RowLayout::Filtered), ..Options::default() };
             let manifest = outline(std::slice::from_ref(&material), &options, &MemoryStore::default())?;
             let set = MaterialSet::from_manifest(&manifest);
             for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {

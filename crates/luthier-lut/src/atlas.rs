@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Axis, Encoding, ErrorStats, Image, Mapping, RowBase, SchlickBase, TableKind, TexelFormat, WeightBits, bilinear,
+    sampler::stepped,
 };
 
 /// Where every texel of an atlas lies: equal tiles in a grid, filled row by row.
@@ -203,7 +204,8 @@ pub fn read(
     weights: WeightBits,
 ) -> [f64; 4] {
     let weights = if format.is_filterable() { weights } else { WeightBits::Exact };
-    let texel = bilinear(texels, layout.position(tile, values), weights);
+    let position = layout.position(tile, values);
+    let texel = if format.has_steps() { stepped(texels, position) } else { bilinear(texels, position, weights) };
     match layout.base {
         RowBase::Zero => Encoding::of(kind, format).decode(texel),
         RowBase::Schlick => {

@@ -17,4 +17,7 @@ pub enum LutError {
     /// Blocks that the image fills in part, or blocks of modes that this crate does not write.
     #[error("blocks of texels that were not baked here")]
     Blocks,
+    /// Texels with steps that do not lead to the next texel.
+    #[error("steps that do not lead from texel to texel")]
+    Steps,
 }

@@ -3,7 +3,7 @@
 use half::f16;
 use serde::{Deserialize, Serialize};
 
-use crate::{Image, LutError, bc6h};
+use crate::{Image, LutError, bc6h, steps};
 
 crate::named! {
     /// Texel formats, named as WebGPU names them.
@@ -40,6 +40,9 @@ crate::named! {
         Rgba16Float = "rgba16float",
         /// Four floats. Not filterable in core WebGPU.
         Rgba32Float = "rgba32float",
+        /// Four half floats, and the four steps to those of the texel on the right as half floats; the steps of the last texel of a row are 0. Shaders read such
+        /// texels from a storage buffer, one word of 16 bytes for both ends of an interval, or fetch them as `rgba32uint`. No format of WebGPU.
+        Rgba16FloatSteps = "rgba16float-steps",
     }
 }
 
@@ -50,7 +53,12 @@ impl TexelFormat {
             Self::R16Float | Self::R32Float => 1,
             Self::Rg16Float => 2,
             Self::Rg11b10Ufloat | Self::Bc6hRgbUfloat => 3,
-            Self::Rgba8Unorm | Self::Rgb10a2Unorm | Self::Rgba16Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
+            Self::Rgba8Unorm
+            | Self::Rgb10a2Unorm
+            | Self::Rgba16Unorm
+            | Self::Rgba16Float
+            | Self::Rgba32Float
+            | Self::Rgba16FloatSteps => 4,
         }
     }
 
@@ -73,7 +81,7 @@ impl TexelFormat {
     pub fn channel_bytes(self) -> u32 {
         match self {
             Self::Rgba8Unorm | Self::Bc6hRgbUfloat => 1,
-            Self::R16Float | Self::Rg16Float | Self::Rgba16Unorm | Self::Rgba16Float => 2,
+            Self::R16Float | Self::Rg16Float | Self::Rgba16Unorm | Self::Rgba16Float | Self::Rgba16FloatSteps => 2,
             Self::R32Float | Self::Rgb10a2Unorm | Self::Rg11b10Ufloat | Self::Rgba32Float => 4,
         }
     }
@@ -83,13 +91,19 @@ impl TexelFormat {
         match self {
             Self::Rgb10a2Unorm | Self::Rg11b10Ufloat => 4,
             Self::Bc6hRgbUfloat => 1,
+            Self::Rgba16FloatSteps => 16,
             _ => self.channels() * self.channel_bytes(),
         }
     }
 
     /// Whether a filtering sampler may read it in core WebGPU.
     pub fn is_filterable(self) -> bool {
-        !matches!(self, Self::R32Float | Self::Rgba32Float)
+        !matches!(self, Self::R32Float | Self::Rgba32Float | Self::Rgba16FloatSteps)
+    }
+
+    /// Whether its texels have the steps to the next ones. Such a table is a storage buffer where the language has these.
+    pub fn has_steps(self) -> bool {
+        self == Self::Rgba16FloatSteps
     }
 
     /// The largest code of its first three channels, if they are unsigned and normalised.
@@ -109,8 +123,10 @@ impl TexelFormat {
     /// # Panics
     /// Where a side is no multiple of [`Self::block_side`].
     pub fn encode(self, image: &Image) -> Vec<u8> {
-        if self == Self::Bc6hRgbUfloat {
-            return bc6h::encode(image);
+        match self {
+            Self::Bc6hRgbUfloat => return bc6h::encode(image),
+            Self::Rgba16FloatSteps => return steps::encode(image),
+            _ => {}
         }
         let mut bytes = Vec::with_capacity(image.texel_count() * self.texel_bytes() as usize);
         for texel in image.texels() {
@@ -130,7 +146,7 @@ impl TexelFormat {
                         [(0, 6), (1, 6), (2, 5)].map(|(c, mantissa): (usize, _)| ufloat(texel[c], mantissa));
                     bytes.extend_from_slice(&(r | g << 11 | b << 22).to_le_bytes());
                 }
-                Self::Bc6hRgbUfloat => {}
+                Self::Bc6hRgbUfloat | Self::Rgba16FloatSteps => {}
                 Self::R16Float | Self::Rg16Float | Self::Rgba16Float => {
                     for value in &texel[..self.channels() as usize] {
                         let finite = value.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
@@ -161,7 +177,7 @@ impl TexelFormat {
     ///
     /// # Errors
     /// [`LutError::TexelBytes`] when the length does not fit, [`LutError::Blocks`] for parts of blocks and for modes of BC6H that
-    /// [`Self::encode`] does not write.
+    /// [`Self::encode`] does not write, [`LutError::Steps`] for steps that do not lead to the next texel.
     pub fn decode(self, width: u32, height: u32, bytes: &[u8]) -> Result<Image, LutError> {
         let expected = (width as usize).saturating_mul(height as usize).saturating_mul(self.texel_bytes() as usize);
         if bytes.len() != expected {
@@ -170,6 +186,9 @@ impl TexelFormat {
         let side = self.block_side();
         if !width.is_multiple_of(side) || !height.is_multiple_of(side) || side > 1 && !bc6h::is_known(bytes) {
             return Err(LutError::Blocks);
+        }
+        if self.has_steps() && !steps::is_whole(width, bytes) {
+            return Err(LutError::Steps);
         }
         Ok(Image { width, height, channels: self.channels(), data: self.values(width, height, bytes) })
     }
@@ -199,6 +218,7 @@ impl TexelFormat {
                 bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
             }
             Self::R32Float | Self::Rgba32Float => words.map(f32::from_bits).collect(),
+            Self::Rgba16FloatSteps => steps::values(bytes),
         }
     }
 }
@@ -313,6 +333,7 @@ mod tests {
     #[test]
     fn missing_channels_are_black_and_opaque_surplus_ones_go() {
         let image = row(1, &[0.25]);
+        assert_eq!(TexelFormat::Rgba16FloatSteps.encode(&image)[6..], [0x00, 0x3c, 0, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(TexelFormat::Rgba8Unorm.encode(&image), [64, 0, 0, 255]);
         let decoded = TexelFormat::Rgba32Float.decode(1, 1, &TexelFormat::Rgba32Float.encode(&image)).unwrap();
         assert_eq!(decoded.data, [0.25, 0.0, 0.0, 1.0]);
@@ -342,6 +363,7 @@ mod tests {
             (8, true),
             (1, true),
             (8, true),
+            (16, false),
             (16, false),
         ];
         assert_eq!(sizes, expected);
@@ -382,7 +404,7 @@ mod tests {
     proptest! {
         #[test]
         fn what_was_decoded_encodes_to_the_same_bytes(bytes in prop::collection::vec(any::<u8>(), 48)) {
-            for format in TexelFormat::ALL.into_iter().filter(|format| format.block_side() == 1) {
+            for format in TexelFormat::ALL.into_iter().filter(|format| format.block_side() == 1 && !format.has_steps()) {
                 let width = 48 / format.texel_bytes();
                 let image = format.decode(width, 1, &bytes).unwrap();
                 // Half floats that are not finite are clamped, by contract; floats that are not numbers keep their bits.

@@ -1,6 +1,7 @@
 //! Bilinear filtering with the weights of texture hardware.
 
 use crate::Image;
+use crate::steps::step;
 
 /// Precision of the interpolation weights.
 ///
@@ -34,6 +35,17 @@ pub fn bilinear(image: &Image, position: [f64; 2], weights: WeightBits) -> [f64;
         *value = top + (bottom - top) * wy;
     }
     out
+}
+
+/// [`bilinear`] of texels with steps: exact weights, and along a row a texel with its step to the next ([`crate::TexelFormat::Rgba16FloatSteps`]).
+pub(crate) fn stepped(image: &Image, position: [f64; 2]) -> [f64; 4] {
+    let (x0, x1, wx) = footprint(position[0], image.width, WeightBits::Exact);
+    let (y0, y1, wy) = footprint(position[1], image.height, WeightBits::Exact);
+    let [top, bottom] = [y0, y1].map(|y| {
+        let [here, next] = [x0, x1].map(|x| image.texel(x, y));
+        [0, 1, 2, 3].map(|c: usize| f64::from(here[c]) + wx * step(here[c], next[c]).to_f64())
+    });
+    [0, 1, 2, 3].map(|c: usize| top[c] + (bottom[c] - top[c]) * wy)
 }
 
 /// The two texels around a position, and the weight of the second.

@@ -15,7 +15,7 @@ use crate::surface::SurfaceEntry;
 use crate::target::Target;
 
 /// Version of the manifest's shape. A reader refuses any other.
-pub const MANIFEST_SCHEMA: u32 = 3;
+pub const MANIFEST_SCHEMA: u32 = 4;
 
 /// `manifest.json`: all files and records of a bake. Paths are relative to the manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -99,7 +99,8 @@ pub struct BindingEntry {
     pub binding: u32,
     /// Name of the variable in the shaders.
     pub name: String,
-    /// `texture_2d<f32>`, `sampler` (linear, clamp-to-edge) or `buffer` (read-only, array of `vec4<f32>`).
+    /// `texture_2d<f32>`, `texture_cube<f32>`, `sampler` (linear, clamp-to-edge), `buffer` (read-only, array of `vec4<f32>`), or `buffer<vec4<u32>>`: a
+    /// table whose texels have steps, read-only.
     pub resource: String,
 }
 
@@ -388,7 +389,7 @@ mod tests {
 
     #[test]
     fn another_schema_is_refused_before_its_shape_is_looked_at() {
-        let refused = Manifest::from_json(r#"{"schema": 4, "future": true}"#);
+        let refused = Manifest::from_json(r#"{"schema": 5, "future": true}"#);
         assert!(matches!(refused, Err(ManifestError::Schema { found: 4, expected: MANIFEST_SCHEMA })));
         for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 3}"#, r#"{"schema": -1}"#] {
             assert!(matches!(Manifest::from_json(other), Err(ManifestError::Json(_))), "{other}");

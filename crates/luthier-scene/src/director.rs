@@ -3,7 +3,7 @@
 use luthier::{Bake, Error, Shading};
 use luthier_bake::{BakeError, Options, Store};
 use luthier_export::{Package, PackageError, sha256};
-use luthier_lut::{FormatSet, TexelFormat};
+use luthier_lut::{FormatSet, RowLayout, TexelFormat};
 use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target};
 use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
@@ -199,7 +199,9 @@ impl<'a> Director<'a> {
             Form::Full => bake.package(&materials, self.store)?,
             Form::Baked => {
                 let formats = scene.target.formats.unwrap_or(FormatSet::CORE);
-                let bake = Bake { options: Options { formats, ..bake.options }, ..bake };
+                // Steps double the bytes of rows.
+                let layout = scene.target.max_bytes.map(|_| RowLayout::Filtered);
+                let bake = Bake { options: Options { formats, layout, ..bake.options }, ..bake };
                 match tables(&materials, &bake, self.store, judges, &mut choices, budgets, allow_miss)? {
                     Ok(package) => package,
                     Err(reason) => return Ok(Err(Refusal::Tables(reason))),

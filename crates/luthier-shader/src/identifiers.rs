@@ -13,6 +13,14 @@ pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>
     out
 }
 
+/// `LuthierMaterials` for `luthier_materials`: the name of a block of a binding.
+pub(crate) fn camel_case(name: &str) -> String {
+    let capital = |word: &str| {
+        word.chars().enumerate().map(|(i, c)| if i == 0 { c.to_ascii_uppercase() } else { c }).collect::<String>()
+    };
+    name.split('_').map(capital).collect()
+}
+
 /// Whether a character may stand in a word.
 pub(crate) fn is_of_word(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'

@@ -31,6 +31,9 @@ const ENVIRONMENT_BINDINGS: [(u32, &str, &str); 3] = [
     (15, "luthier_environment_sampler", "sampler"),
 ];
 
+/// Resource of a table with steps: a read-only storage buffer of its texels, 16 bytes each.
+pub(crate) const STEPS: &str = "buffer<vec4<u32>>";
+
 const _: () = {
     let mut i = 0;
     while i < TableKind::ALL.len() {
@@ -282,8 +285,8 @@ impl<'a> MaterialSet<'a> {
     }
 }
 
-/// Resources to bind in group 0 for a form of the shader: textures that are read, the sampler if any of them is filtered, the material
-/// buffer, and the environment's.
+/// Resources to bind in group 0 for a form of the shader: textures and buffers of tables that are read, the sampler if any of them is filtered, the
+/// material buffer, and the environment's.
 ///
 /// ```
 /// use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry};
@@ -300,7 +303,8 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     let mut is_sampled = false;
     for table in set.tables_read(form) {
         is_sampled |= table.format.is_filterable();
-        bindings.push(entry(table.kind.binding(), &format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
+        let resource = if table.format.has_steps() { STEPS } else { "texture_2d<f32>" };
+        bindings.push(entry(table.kind.binding(), &format!("luthier_{}", table.kind.name()), resource));
     }
     if is_sampled {
         bindings.push(entry(SAMPLER_BINDING, "luthier_sampler", "sampler"));

@@ -21,7 +21,7 @@ pub mod refusals;
 mod shading;
 mod sources;
 
-pub use bake::{Bake, lit, of_materials, outline, source_hash};
+pub use bake::{Bake, lit, of_materials, outline, row_layout, source_hash};
 pub use error::Error;
 pub use paths::{find, inner_files};
 pub use pictures::{read_image, read_picture};

@@ -66,8 +66,8 @@ impl BakedMaterial {
         shaders: &mut Assets<Shader>,
     ) -> Result<Self> {
         let manifest: Value = serde_json::from_str(&fs::read_to_string(folder.join("manifest.json"))?)?;
-        if manifest["schema"] != 3 {
-            return Err(format!("this program reads schema 3 of the manifest, not {}", manifest["schema"]).into());
+        if manifest["schema"] != 4 {
+            return Err(format!("this program reads schema 4 of the manifest, not {}", manifest["schema"]).into());
         }
         let material = entries(&manifest["materials"])?.iter().position(|material| material["name"] == name);
         let material = material.ok_or_else(|| format!("no material `{name}` in the bake"))? as u32;
@@ -81,6 +81,10 @@ impl BakedMaterial {
         shaders.insert(&SHADER, Shader::from_wgsl(format!("{}\n{wgsl}", include_str!("ball.wgsl")), "ball.wgsl"))?;
 
         let tables = entries(&manifest["tables"])?;
+        // Bindings of a material of Bevy are fixed when it is compiled: here all tables are textures.
+        if tables.iter().any(|table| table["format"] == "rgba16float-steps") {
+            return Err("a table is in a buffer: bake with --layout filtered".into());
+        }
         let mut table = |kind: &str| -> Result<Option<Handle<Image>>> {
             let Some(entry) = tables.iter().find(|table| table["kind"] == kind) else { return Ok(None) };
             let mut image = Image::from_buffer(

@@ -16,9 +16,9 @@ pub struct Bake {
 /// A line of `bindings[]`: what group 0 of the shader expects at a number.
 pub struct Binding {
     pub number: u32,
-    /// `luthier_` and, for a texture, the kind of its table.
+    /// `luthier_` and, for a table, its kind.
     pub name: String,
-    /// `texture_2d<f32>`, `texture_cube<f32>`, `sampler` or `buffer`.
+    /// `texture_2d<f32>`, `texture_cube<f32>`, `sampler`, `buffer`, or `buffer<vec4<u32>>` for a table in a buffer.
     pub resource: String,
 }
 
@@ -40,7 +40,7 @@ impl Bake {
         let path = folder.join("manifest.json");
         let text = fs::read_to_string(&path).with_context(|| format!("{}: bake first", path.display()))?;
         let manifest: Value = serde_json::from_str(&text)?;
-        ensure!(manifest["schema"] == 3, "this program reads schema 3 of the manifest, not {}", manifest["schema"]);
+        ensure!(manifest["schema"] == 4, "this program reads schema 4 of the manifest, not {}", manifest["schema"]);
         Ok(Self { folder: folder.to_owned(), manifest })
     }
 

@@ -75,6 +75,14 @@ fn upload(
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         }))),
+        "buffer<vec4<u32>>" => {
+            let kind = binding.name.strip_prefix("luthier_").context("a table without its prefix")?;
+            Ok(Resource::Buffer(device.create_buffer_init(&BufferInitDescriptor {
+                label: Some(&binding.name),
+                contents: &bake.table(kind)?.bytes,
+                usage: wgpu::BufferUsages::STORAGE,
+            })))
+        }
         "buffer" => Ok(Resource::Buffer(device.create_buffer_init(&BufferInitDescriptor {
             label: Some(&binding.name),
             contents: &bake.material_buffer()?,

@@ -7,7 +7,8 @@ use luthier_layers::models::lobes::{
     base_below, most_lobes, shown,
 };
 use luthier_lut::{
-    AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
+    AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, RowLayout, Scan, TableKind, TexelFormat, WeightBits,
+    measure_scan,
 };
 use luthier_manifest::{
     AxesRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, PaintedRecord,
@@ -22,6 +23,7 @@ use serde_json::{Value, json};
 use super::{Kind, Site};
 use crate::candidates::{self, Found, Refusal, choose, cost, locked};
 use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results, Store, result_of};
+use crate::options::Options;
 use crate::plan::Plan;
 use crate::settings::{Ask, Settings, Shape, axis};
 use crate::tile::{TileData, apron, color_in_words, lone_tile};
@@ -44,7 +46,7 @@ pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
-        Ok(shape(LOBES, materials.iter().any(has_base), 1))
+        Ok(shape(LOBES, materials.iter().any(has_base), 1, RowLayout::Filtered.format()))
     }
 
     /// A tile for the first layer, whose lobes contain the light of all layers below.
@@ -102,16 +104,26 @@ fn has_base(material: &Material) -> bool {
     material.model().is_fitted() && !is_under_patina && base_below(&material.stack).is_some()
 }
 
+/// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].
+pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budget) -> RowLayout {
+    let is_alone = |material: &Material| Varied::tiles_of(&shown(&material.stack), varying(material)) == 1;
+    let mut fitted = materials.iter().filter(|material| material.model().is_fitted());
+    options.layout.unwrap_or_else(|| {
+        let has_room = asked.max_bytes.is_none() && options.formats.has(RowLayout::Steps.format());
+        if has_room && fitted.all(is_alone) { RowLayout::Steps } else { RowLayout::Filtered }
+    })
+}
+
 /// The shape of tiles for some lobes, with or without the light of diffuse bases. `step` is the distance of the rows
 /// that are kept.
-fn shape(lobes: usize, has_base: bool, step: usize) -> Shape {
+fn shape(lobes: usize, has_base: bool, step: usize, format: TexelFormat) -> Shape {
     let rows = (ROWS - 1) / step + 1;
     let (first, last) = (if has_base { Row::BASE_PARTS } else { 0 } as f64, (Row::parts(lobes) - 1) as f64);
     let axes = [
         axis("cos_theta", "", [0.0, 1.0], rows as u32, Mapping::Rational { bend: 1.0 }),
         axis("part", "", [0.0 - first, last], (first + last) as u32 + 1, Mapping::Apart),
     ];
-    Shape::grid(axes, TexelFormat::Rgba16Float)
+    Shape::grid(axes, format)
 }
 
 /// The step between kept rows of an axis with this many nodes.
@@ -141,15 +153,16 @@ pub(crate) fn decide(
 ) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
+    let format = settings.fixed(TableKind::Lobes).format;
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(lobes_of(&fits, None), has_base, 1));
+        settings.take_lobes(shape(lobes_of(&fits, None), has_base, 1, format));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
     let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
     let candidates = choices.iter().map(|&(most, i)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
-        let Shape { x, y, base, format } = shape(lobes_of(&fits, Some(most)), has_base, STEPS[i]);
+        let Shape { x, y, base, format } = shape(lobes_of(&fits, Some(most)), has_base, STEPS[i], format);
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
@@ -173,7 +186,7 @@ pub(crate) fn decide(
     })?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
-    settings.take_lobes(shape(lobes_of(&fits, Some(most)), has_base, STEPS[i]));
+    settings.take_lobes(shape(lobes_of(&fits, Some(most)), has_base, STEPS[i], format));
     Ok(Some(candidates::report(&found[0], chosen, budget)))
 }
 
@@ -209,6 +222,7 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_cot_sq: 0.0,
     critical_width: 0.0,
     critical_plain_share: 0.0,
+    inverse_tails: [1.0; 2],
     varying: None,
     axes: None,
     painted: None,
@@ -243,6 +257,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_cot_sq: cot_sq,
         critical_width: width,
         critical_plain_share: plain_share,
+        inverse_tails: texels_of(varied.stored(0, 0).inverse_tails(), shape.format),
         varying: varied.varying().map(|varying| VaryingRecord {
             factor: match varying {
                 Varying::Alpha => VaryingFactor::AlphaFactor,
@@ -264,6 +279,13 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         }),
         error,
     }
+}
+
+/// Numbers as texels of a format have them.
+fn texels_of(numbers: [f64; 2], format: TexelFormat) -> [f64; 2] {
+    let image = Image { width: 1, height: 1, channels: 2, data: numbers.map(|x| x as f32).to_vec() };
+    let texels = format.quantise(&image).data;
+    [texels[0], texels[1]].map(f64::from)
 }
 
 /// Lobes of a material, and their errors with each of [`STEPS`].
@@ -382,6 +404,10 @@ struct LobesJob {
 impl Job for LobesJob {
     fn kind(&self) -> JobKind {
         JobKind::tile(TableKind::Lobes)
+    }
+
+    fn revision(&self) -> u32 {
+        6
     }
 
     fn inputs(&self) -> Value {

@@ -60,6 +60,7 @@ impl Fixed {
         }
         let asked = budget(materials, &options.budget)?;
         settings.lobes = (options.search && asked.limits_lobes()).then_some(LOBES);
+        settings.take_layout(lobes::layout(materials, options, &asked));
         let plan = planner::plan(materials, settings.clone(), read_image)?;
         Ok(Self { settings, plan, asked })
     }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args, Command, CommandFactory, Parser, Subcommand};
 #[cfg(feature = "cost")]
 use luthier_cost::Family;
-use luthier_lut::TableKind;
+use luthier_lut::{RowLayout, TableKind};
 use luthier_manifest::{Form, FunctionGroup, Reflectance, ShadingModel, Target};
 use luthier_terminal::{Sources, named};
 
@@ -271,6 +271,9 @@ pub(crate) struct Limits {
     /// Largest error of the directional albedo of fitted lobes
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_albedo_err: Option<f64>,
+    /// Layout of rows of lobes: `filtered`, a texture for a sampler, or `steps`, a storage buffer that gives both ends of an interval at once, for twice the bytes. By default the one that was cheaper on an NVIDIA H200, and `filtered` with glsl-es300, which has no buffers (docs/bindings.md)
+    #[arg(long, value_name = "NAME", value_parser = named::<RowLayout>(RowLayout::NAMES))]
+    pub(crate) layout: Option<RowLayout>,
     /// Take fixed sizes, mappings and formats, whatever the budget
     #[arg(long, conflicts_with_all = ["max_abs", "max_rel", "delta_e", "max_bytes", "max_cost", "max_lobe_err", "max_albedo_err"])]
     pub(crate) no_search: bool,
@@ -279,10 +282,11 @@ pub(crate) struct Limits {
 impl Limits {
     /// The options of the baker under these limits.
     pub(crate) fn options(&self) -> luthier_bake::Options<'static> {
-        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err, no_search } = self;
+        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err, layout, no_search } =
+            self;
         let budget =
             luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err };
-        luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
+        luthier_bake::Options { budget, layout, search: !no_search, ..luthier_bake::Options::default() }
     }
 }
 
@@ -434,6 +438,9 @@ pub(crate) struct CostOptions {
     /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
     #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
     pub(crate) fresnel: Option<Reflectance>,
+    /// Layout of rows of lobes, as for `luthier bake`
+    #[arg(long, value_name = "NAME", value_parser = named::<RowLayout>(RowLayout::NAMES))]
+    pub(crate) layout: Option<RowLayout>,
     /// Form to compile; may be given again. By default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
     pub(crate) form: Vec<Form>,
@@ -527,6 +534,9 @@ pub(crate) struct ShaderOptions {
     /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `propose` (a direction for each lobe), `albedo`, `environment` (prefiltered, of materials of lobes), `surface` (normals of a renderer's own)
     #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) functions: Vec<FunctionGroup>,
+    /// Layout of rows of lobes, as for `luthier bake`
+    #[arg(long, value_name = "NAME", value_parser = named::<RowLayout>(RowLayout::NAMES))]
+    pub(crate) layout: Option<RowLayout>,
     /// D in closed form instead of from its table
     #[arg(long)]
     pub(crate) closed: bool,

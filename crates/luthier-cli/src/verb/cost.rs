@@ -82,7 +82,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
             shaded.iter().map(|m| (m.name.clone(), std::slice::from_ref(m))).collect()
         };
         for (name, group) in groups {
-            let manifest = outline(group, &Options::default(), store()?)?;
+            let manifest = outline(group, &Options { layout: options.layout, ..Options::default() }, store()?)?;
             // A form that is asked for by name is kept: if the model lacks it, the emitter refuses it.
             for &form in forms.iter().filter(|form| !options.form.is_empty() || model.has(**form)) {
                 for (closed, constant) in styles(options) {
@@ -122,6 +122,7 @@ fn command(options: &CostOptions) -> String {
     words.extend(options.model.iter().map(|model| format!("--model {}", model.name())));
     words.extend(options.form.iter().map(|&form| format!("--form {}", form.name())));
     words.extend(options.fresnel.iter().map(|reflectance| format!("--fresnel {reflectance}")));
+    words.extend(options.layout.iter().map(|layout| format!("--layout {}", layout.name())));
     words.extend(options.family.iter().map(|family| format!("--family {}", family)));
     let flags = [
         ("--no-fit", options.no_fit),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier::{Files, outline};
+use luthier::{Files, Functions, outline, row_layout};
 use luthier_bake::Options;
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
 use luthier_terminal::{Failure, Outcome, STDOUT, files, print_bytes};
@@ -20,9 +20,11 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let (materials, surfaces) = bakeable_with_surfaces(found, &options.shading.in_forms(&[options.form]), false)?;
     let is_shown = materials.iter().any(|material| shows_environment(material, &[options.form]));
     refuse_environment(&options.functions, is_shown)?;
-    let mut manifest = outline(&materials, &Options::default(), store()?)?;
+    let functions: Functions = options.functions.iter().copied().collect();
+    let layout = options.layout.or_else(|| row_layout(&functions, &[options.target]));
+    let mut manifest = outline(&materials, &Options { layout, ..Options::default() }, store()?)?;
     manifest.surfaces = surfaces;
-    manifest.functions = options.functions.iter().copied().collect();
+    manifest.functions = functions;
     let set = MaterialSet::from_manifest(&manifest);
     let set = if options.closed { set.with_closed_distribution() } else { set };
     let (form, target) = (options.form, options.target);

@@ -10,11 +10,12 @@ export const textureFormats = gl => ({
   rgba16float: [gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, Uint16Array],
   r32float: [gl.R32F, gl.RED, gl.FLOAT, Float32Array],
   rgba32float: [gl.RGBA32F, gl.RGBA, gl.FLOAT, Float32Array],
+  "rgba16float-steps": [gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, Uint32Array],
 });
 
 /**
  * A texture of one level, which ends at its edges. Texels are an array or an ArrayBuffer, or null for none yet. Tables are filtered where WebGL filters
- * their format; of 32-bit floats, which it does not, shaders read single texels.
+ * their format; of 32-bit floats and whole numbers, which it does not, shaders read single texels.
  */
 export function makeTexture(gl, { format, width, height, texels, filter }) {
   const formats = textureFormats(gl);
@@ -24,7 +25,7 @@ export function makeTexture(gl, { format, width, height, texels, filter }) {
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
   gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, layout, type, texels && new Texels(texels));
-  const filtered = filter ?? (type === gl.FLOAT ? gl.NEAREST : gl.LINEAR);
+  const filtered = filter ?? ([gl.FLOAT, gl.UNSIGNED_INT].includes(type) ? gl.NEAREST : gl.LINEAR);
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, filtered);
   for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
   return texture;

@@ -52,13 +52,13 @@ fn share(Lobe(shift, width, tail, _): Lobe, cos_theta: f64, azimuth: Option<[f64
 
 /// A material of two lobes and a remainder of 0.1 below a first interface with this energy, all of one colour; lobes are in axes, or in the plane of
 /// the eye.
-fn scene(first: f32, fresnel: f32, axes: Option<Axes>) -> Option<Scene> {
+fn scene(first: f32, fresnel: f32, axes: Option<Axes>, format: TexelFormat) -> Option<Scene> {
     let parts = Axis { max: 5.0, ..axis("part", 5.0, 6, Mapping::Apart) };
     let x = axis("cos_theta", 1.0, 17, Mapping::Rational { bend: 1.0 });
     let tiles = axes.map_or(1, |_| Axes::TILES as u32);
     let layout = AtlasLayout { x: x.clone(), y: Some(parts), apron: 1, tiles, ..row_layout() };
     let across = layout.row_size();
-    let mut lobes = Table::new(TableKind::Lobes, layout.clone(), TexelFormat::Rgba32Float, |_, _| [0.0; 4]);
+    let mut lobes = Table::new(TableKind::Lobes, layout.clone(), format, |_, _| [0.0; 4]);
     for (i, tile) in (0..across).flat_map(|i| (0..tiles).map(move |tile| (i, tile))) {
         let c = x.node((i.max(1) - 1).min(x.size - 1));
         let azimuth = axes.map(|axes| axes.azimuth(f64::from(tile)));
@@ -68,9 +68,11 @@ fn scene(first: f32, fresnel: f32, axes: Option<Axes>) -> Option<Scene> {
             [[energy / share, energy / share, energy / share, shift], [sharp_x, sharp_y, 1.0 / tail, share]]
         };
         let albedo = f64::from(first) + NARROW.3 + BROAD.3 + 0.1;
-        let ([a, b], [d, e]) = (lobe(NARROW), lobe(BROAD));
+        let ([a, [b, c, d, e]], [f, [g, h, k, l]]) = (lobe(NARROW), lobe(BROAD));
         let shear = axes.map_or(0.0, |_| SHEAR);
-        for (j, part) in (0..).zip([[0.1, 0.1, 0.1, shear], a, b, d, e, [albedo, albedo, albedo, shear]]) {
+        for (j, part) in
+            (0..).zip([[0.1, 0.1, 0.1, shear], a, f, [b, c, g, h], [d, e, k, l], [albedo, albedo, albedo, shear]])
+        {
             let [_, y] = layout.origin(tile);
             lobes.truth.texel_mut(j * across + i, y).copy_from_slice(&part.map(|value| value as f32));
         }
@@ -90,6 +92,7 @@ fn scene(first: f32, fresnel: f32, axes: Option<Axes>) -> Option<Scene> {
         critical_cot_sq: 0.0,
         critical_width: 0.0,
         critical_plain_share: 0.0,
+        inverse_tails: [1.0 / NARROW.2, 1.0 / BROAD.2],
         varying: None,
         axes: axes.map(|Axes { turn, is_mirrored }| AxesRecord { turn, is_mirrored, tiles }),
         painted: None,
@@ -108,8 +111,9 @@ const FRAMES: [Option<Axes>; 2] = [None, Some(Axes { turn: TURN, is_mirrored: fa
 
 #[test]
 fn in_a_white_furnace_lobes_show_their_albedo() {
-    for axes in FRAMES {
-        let Some(scene) = scene(0.15, 0.3, axes) else { return };
+    let formats = [TexelFormat::Rgba32Float, TexelFormat::Rgba16FloatSteps];
+    for (axes, format) in FRAMES.into_iter().flat_map(|axes| formats.map(|format| (axes, format))) {
+        let Some(scene) = scene(0.15, 0.3, axes, format) else { return };
         let furnace = RenderSettings { environment: uniform(0.8), ..dark() };
         let image = scene.render(&[0], &furnace).unwrap();
         check(&image, 2e-3, |_, _| [0.8 * 0.95; 3]);
@@ -124,7 +128,7 @@ fn lobes_show_the_environment_that_a_brute_force_finds() {
 }
 
 fn compare(axes: Option<Axes>) {
-    let Some(scene) = scene(0.0, 0.0, axes) else { return };
+    let Some(scene) = scene(0.0, 0.0, axes, TexelFormat::Rgba32Float) else { return };
     let sky = RenderSettings::new(luthier_gpu::Shape::Sphere).unwrap().environment;
     let [blurred, sampled] = [0, 512].map(|environment_samples| {
         let settings = RenderSettings { environment: sky.clone(), environment_samples, ..dark() };

@@ -235,6 +235,47 @@ fn thickness_tiles_repeat() {
     }
 }
 
+/// Rows that are read from a buffer, between the values of one word: one below the other, in columns, and part by part.
+#[test]
+fn rows_with_steps_are_those_of_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let rows = AtlasLayout { x: axis("cos_theta", 1.0, 9, Mapping::Rational { bend: 1.0 }), tiles: 5, ..row_layout() };
+    let part = luthier_lut::Axis { min: -2.0, ..axis("part", 3.0, 6, Mapping::Apart) };
+    let parts = AtlasLayout { y: Some(part), apron: 1, ..rows.clone() };
+    let columns = AtlasLayout { columns: 2, ..rows.clone() };
+    for (kind, layout) in [(TableKind::Fresnel, rows), (TableKind::Fresnel, columns), (TableKind::Lobes, parts)] {
+        let mut table = Table::new(kind, layout, TexelFormat::Rgba16FloatSteps, |_, _| [0.0; 4]);
+        // Numbers of every magnitude and sign, so that a read of another texel would show.
+        for (i, value) in table.truth.data.iter_mut().enumerate() {
+            *value = (libm::sin(i as f64) * libm::exp2((i % 13) as f64 - 6.0)) as f32;
+        }
+        let tables = with(table.clone());
+        let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), Form::Baked).unwrap();
+        let texels = table.texels();
+        let channels = if kind == TableKind::Fresnel { 3 } else { 4 };
+        let mut values = probes(&table.layout);
+        // Parts are read at whole numbers.
+        values.iter_mut().for_each(|at| at[1] = at[1].round().clamp(-2.0, 3.0));
+        for tile in 0..table.layout.tiles {
+            for (got, at) in scene.lookup(kind, tile, &values).unwrap().iter().zip(&values) {
+                let expected = luthier_lut::read(
+                    kind,
+                    &table.layout,
+                    table.format,
+                    &texels,
+                    tile,
+                    at.map(f64::from),
+                    WeightBits::Fixed(8),
+                );
+                for c in 0..channels {
+                    let error = (f64::from(got[c]) - expected[c]).abs();
+                    assert!(error < 2e-4, "{kind:?} tile {tile} at {at:?}: {got:?}, not {expected:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Rows and tiles next to each other hold 0 and 1000. A read of 0 anywhere in its tile may show no more of the
 /// neighbour than rounding of an f32 texel coordinate lets through.
 #[test]

@@ -70,6 +70,9 @@ pub struct LobesRecord {
     pub critical_width: f64,
     /// Share of `5 cos / (1 + 4 cos)` of the view in the axis of the rows; the rest is the cosine inside.
     pub critical_plain_share: f64,
+    /// 1 over the tail of each of two lobes, as the texels of the rows have it. All rows of one tile have the same; where there are several tiles, the
+    /// first decides, and shaders read the rows.
+    pub inverse_tails: [f64; 2],
     /// Tiles over a factor of a texture, if there are such tiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub varying: Option<VaryingRecord>,
@@ -187,12 +190,15 @@ impl LobesRecord {
     }
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
-    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1.
+    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of other rows: the reciprocal tails, and 0.
     fn sheet(&self) -> [f64; 3] {
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
             return [1.0 / (least - most), most / (most - least), -1.0];
         }
-        let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.axes else { return [0.0; 3] };
+        let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.axes else {
+            let [first, second] = self.inverse_tails;
+            return [first, second, 0.0];
+        };
         [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
 
@@ -275,7 +281,7 @@ impl MaterialConstants {
     /// | 7 | patina: diffuse albedo RGB, 0; of such lobes the two integrals of [`PaintedRecord`], 0, 0 |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of other lobes 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);
@@ -387,6 +393,7 @@ mod tests {
             critical_cot_sq: 3.0,
             critical_width: 2.0,
             critical_plain_share: 0.25,
+            inverse_tails: [2.0, 3.0],
             varying: None,
             axes: None,
             painted: None,
@@ -404,6 +411,7 @@ mod tests {
         assert_eq!(words(lobes)[..3], [[0.0, 0.0, 1e-3, 0.25], inside, [0.5625, 0.5, 0.75, 1.0]]);
         let without = LobesRecord { critical_cot_sq: 0.0, critical_width: 0.0, ..lobes };
         assert_eq!(words(without)[1], [0.0, 0.0, f32::sqrt(0.5), 0.0]);
+        assert_eq!(words(lobes)[9], [0.0, 2.0, 3.0, 0.0]);
         let over = |factor| {
             let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None });
             words(LobesRecord { varying, ..lobes })[0]

@@ -167,6 +167,8 @@ luthier_lut::named! {
         OneLobe = "one_lobe",
         /// No material of the set has more than two lobes.
         TwoLobes = "two_lobes",
+        /// Rows of lobes are over something beside the view.
+        LobesRows = "lobes_rows",
         /// Rows of lobes are over azimuths.
         LobesAxes = "lobes_axes",
         /// Rows of lobes are over the thickness of a film.

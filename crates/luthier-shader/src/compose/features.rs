@@ -105,7 +105,7 @@ impl Features {
                     _ => None,
                 });
             }
-            if !table.format.is_filterable() {
+            if !table.format.is_filterable() && !table.format.has_steps() {
                 names.insert(Feature::Bilinear);
             }
         }
@@ -287,6 +287,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         let rows = material.constants.lobes.filter(|_| material.model.is_fitted());
         if rows.is_some_and(|rows| rows.critical_cot_sq > 0.0) {
             names.insert(Feature::CriticalView);
+        }
+        if rows.is_some_and(|rows| rows.axes.is_some() || rows.varying.is_some()) {
+            names.insert(Feature::LobesRows);
         }
         if rows.is_some_and(|rows| rows.axes.is_some()) {
             names.insert(Feature::LobesAxes);

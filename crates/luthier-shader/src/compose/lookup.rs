@@ -63,6 +63,9 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     if let (Some(y), Some(quantity)) = (&layout.y, facts.y) {
         check_axis(y, &[quantity], kind)?;
     }
+    if table.format.has_steps() && (layout.y.is_some() && layout.abreast().is_none() || layout.base != RowBase::Zero) {
+        return Err(ShaderError::layout(kind, "texels with steps are those of rows"));
+    }
     if layout.apron == 0 && layout.y.iter().chain([&layout.x]).any(|axis| axis.mapping == Mapping::Periodic) {
         return Err(ShaderError::layout(kind, "a periodic axis needs an apron"));
     }
@@ -87,7 +90,10 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
         } else if let (Some(value), Some(y)) = (place(line, "let y = $y("), &layout.y) {
             node_index(&mut out, "y", y, value, 1.0);
         } else if line.contains("$position") {
-            position(&mut out, table);
+            match table.format.has_steps() {
+                true => texel(&mut out, table, features.has(Feature::LobesRows)),
+                false => position(&mut out, table),
+            }
         } else {
             let line = line.replace("$nodes", &layout.x.size.to_string());
             let line = line.replace("$span", &float(SchlickBase::span(table.format)));
@@ -167,8 +173,50 @@ fn position(out: &mut String, table: &TableFace) {
     };
 }
 
+/// Writes the place of the interval about node (x, y) of a tile in a buffer, row by row, and the way from its first node to the second. With
+/// `is_between` a tile may be fractional: the place in the next one, and the way there, follow.
+fn texel(out: &mut String, table: &TableFace, is_between: bool) {
+    let layout = &table.layout;
+    let ([width, _], [tile_width, _]) = (layout.size(), layout.tile_size());
+    // At the last node the way to the next is 0.
+    out.push_str("    let node = floor(x);\n");
+    let (apron, row) = (layout.apron, layout.row_size());
+    let across = match (layout.abreast(), apron) {
+        // Two numbers, so that compilers know the first, and have the second once for all parts.
+        (Some(_), _) => format!("u32(y * {row}.0 + {apron}.5) + u32(node)"),
+        (None, 0) => "u32(node)".to_owned(),
+        (None, _) => format!("u32(node) + {apron}u"),
+    };
+    let _ = match (is_between, layout.columns) {
+        (true, _) => writeln!(
+            out,
+            "    let first_tile = floor(tile);\n    let next_tile = min(first_tile + 1.0, {}.0);\n    \
+             let across = {across};\n    let texel = u32(first_tile) * {width}u + across;\n    \
+             let next = u32(next_tile) * {width}u + across;",
+            layout.tiles - 1
+        ),
+        (false, 1) if layout.tiles == 1 => writeln!(out, "    let texel = {across};"),
+        (false, 1) => writeln!(out, "    let texel = u32(tile) * {width}u + {across};"),
+        (false, columns) => writeln!(
+            out,
+            "    let row = u32(tile) / {columns}u;\n    \
+             let texel = row * {width}u + (u32(tile) - row * {columns}u) * {tile_width}u + {across};"
+        ),
+    };
+    let name = table.kind.name();
+    let read = |texel| format!("luthier_stepped(luthier_{name}[{texel}], x - node)");
+    let value = match is_between {
+        true => format!("mix({}, {}, tile - first_tile)", read("texel"), read("next")),
+        false => read("texel"),
+    };
+    let _ = writeln!(out, "    let value = {value};");
+}
+
 fn read(table: &TableFace) -> String {
     let name = table.kind.name();
+    if table.format.has_steps() {
+        return "value".to_owned();
+    }
     let [width, height] = table.layout.size();
     match (table.format.is_filterable(), is_whole(table)) {
         (true, true) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),

@@ -31,7 +31,8 @@ pub(crate) use self::lookup::calls;
 use self::lookup::lookup;
 use self::reached::reached;
 use self::words::numbered;
-use crate::{Form, MaterialSet, ShaderError, bindings};
+use crate::set::STEPS;
+use crate::{Form, MaterialSet, ShaderError, TableFace, bindings};
 
 /// Place of the material buffer in a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +63,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     // `reached` removes functions without a call. A condition here is for a module with public functions, and for one that shares names with another.
     let modules = [
         (true, include_str!("../wgsl/tables/bilinear.wgsl")),
+        (true, include_str!("../wgsl/tables/stepped.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
         (features.has(Feature::Place), place.as_str()),
         (true, include_str!("../wgsl/surface/local.wgsl")),
@@ -110,7 +112,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     let wgsl = parts.join("\n");
     let wgsl = match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
-        Buffer::Texture => read_from_texture(&wgsl),
+        Buffer::Texture => read_from_texture(set, form, &wgsl),
         Buffer::Storage | Buffer::Sized => wgsl,
     };
     Ok(reached(&wgsl, kept))
@@ -230,14 +232,37 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
             }
             ("buffer", Buffer::Sized) => ("<storage, read>", format!("array<vec4<f32>, {}>", set.words())),
             ("buffer", Buffer::Texture) => ("", "texture_2d<f32>".to_owned()),
+            (STEPS, Buffer::Storage | Buffer::Constant) => ("<storage, read>", "array<vec4<u32>>".to_owned()),
+            (STEPS, Buffer::Sized) => ("<storage, read>", format!("array<vec4<u32>, {}>", texels(set, entry.binding))),
+            (STEPS, Buffer::Texture) => ("", "texture_2d<u32>".to_owned()),
             _ => ("", entry.resource),
         };
         let _ = writeln!(out, "@group(0) @binding({}) var{space} {}: {resource};", entry.binding, entry.name);
     }
     if buffer == Buffer::Texture {
         out.push_str(&word(set));
+        set.tables_read(form).filter(|table| table.format.has_steps()).for_each(|table| out.push_str(&texel(table)));
     }
     out
+}
+
+/// Texels of the table at a binding.
+fn texels(set: &MaterialSet<'_>, binding: u32) -> u32 {
+    let table = set.tables.iter().find(|table| table.kind.binding() == binding);
+    table.map_or(0, |table| table.layout.size().iter().product())
+}
+
+/// The function that reads a texel with steps in a texture.
+fn texel(table: &TableFace) -> String {
+    let (name, [width, height]) = (table.kind.name(), table.layout.size());
+    let place = match height {
+        1 => "i32(index), 0".to_owned(),
+        _ => format!("i32(index % {width}u), i32(index / {width}u)"),
+    };
+    format!(
+        "\n/// A texel of the table, which is a texture.\nfn luthier_{name}_texel(index: u32) -> vec4<u32> {{\n    \
+         return textureLoad(luthier_{name}, vec2<i32>({place}), 0);\n}}\n"
+    )
 }
 
 /// The function that reads a word of a material buffer in a texture.
@@ -252,15 +277,23 @@ fn word(set: &MaterialSet<'_>) -> String {
     )
 }
 
-/// The text with calls of [`word`] in place of indices into the material buffer.
-fn read_from_texture(wgsl: &str) -> String {
+/// The text with calls of [`word`] in place of indices into the material buffer, and of [`texel`] in place of those into tables with steps.
+fn read_from_texture(set: &MaterialSet<'_>, form: Form, wgsl: &str) -> String {
+    let stepped = set.tables_read(form).filter(|table| table.format.has_steps()).map(|table| table.kind.name());
+    stepped.fold(called(wgsl, "luthier_materials[", "luthier_word"), |text, name| {
+        called(&text, &format!("luthier_{name}["), &format!("luthier_{name}_texel"))
+    })
+}
+
+/// The text with calls of a function in place of indices into a buffer, which begin with an opening.
+fn called(wgsl: &str, opening: &str, function: &str) -> String {
     let mut out = String::with_capacity(wgsl.len());
     let mut rest = wgsl;
     // No index contains another, so the next bracket closes it.
     while let Some((before, (index, after))) =
-        rest.split_once("luthier_materials[").and_then(|(before, rest)| Some((before, rest.split_once(']')?)))
+        rest.split_once(opening).and_then(|(before, rest)| Some((before, rest.split_once(']')?)))
     {
-        out.push_str(&format!("{before}luthier_word({index})"));
+        out.push_str(&format!("{before}{function}({index})"));
         rest = after;
     }
     out + rest

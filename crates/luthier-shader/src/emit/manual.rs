@@ -10,6 +10,7 @@ use luthier_manifest::{
 
 use super::Part;
 use crate::functions::FUNCTIONS;
+use crate::set::STEPS;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
 
 /// Longest line of the comment.
@@ -216,7 +217,10 @@ fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> V
     if has_buffer {
         how.push("luthier_materials is materials.bin of the bake, byte for byte.".to_owned());
     }
-    if set.tables_read(form).next().is_some() {
+    if set.tables_read(form).any(|table| table.format.has_steps()) && target != Target::GlslEs300 {
+        how.push("A buffer of texels has those of the KTX2 file of its name, row by row.".to_owned());
+    }
+    if set.tables_read(form).any(|table| !table.format.has_steps() || target == Target::GlslEs300) {
         how.push(
             "Textures are the KTX2 files of the bake: one level, linear values, the first row at coordinate 0."
                 .to_owned(),
@@ -250,6 +254,11 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
         }
         ("buffer", Target::Hlsl) => format!("ByteAddressBuffer (a raw view), {words} float4"),
         ("buffer", Target::Msl) => format!("device LuthierMaterials const&, {words} float4"),
+        (STEPS, Target::Wgsl | Target::SpirV) => "storage buffer of vec4<u32>".to_owned(),
+        (STEPS, Target::Glsl450) => "storage block LuthierLobes (std430) of uvec4".to_owned(),
+        (STEPS, Target::GlslEs300) => "usampler2D, RGBA32UI".to_owned(),
+        (STEPS, Target::Hlsl) => "ByteAddressBuffer (a raw view) of uint4".to_owned(),
+        (STEPS, Target::Msl) => "device LuthierLobes const& of uint4".to_owned(),
         ("sampler", Target::Hlsl) => "SamplerState, linear, clamp to edge".to_owned(),
         ("sampler", _) => "sampler, linear, clamp to edge".to_owned(),
         ("texture_cube<f32>", Target::Glsl450 | Target::GlslEs300) => "samplerCube".to_owned(),
@@ -264,7 +273,8 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
         (Target::GlslEs300, _) => String::new(),
         (Target::Hlsl, "sampler") => format!("s{binding} "),
         (Target::Hlsl, _) => format!("t{binding} "),
-        (Target::Msl, "sampler" | "buffer") => format!("{resource}({binding}) "),
+        (Target::Msl, "sampler") => format!("sampler({binding}) "),
+        (Target::Msl, "buffer" | STEPS) => format!("buffer({binding}) "),
         (Target::Msl, _) => format!("texture({binding}) "),
         _ => format!("{binding} "),
     };

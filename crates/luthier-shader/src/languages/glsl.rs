@@ -7,15 +7,13 @@ use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer
 use naga::proc::BoundsCheckPolicies;
 use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
 
-use crate::identifiers::rename;
+use crate::identifiers::{camel_case, rename};
 use crate::languages::text::layout;
 use crate::validate::module;
 use crate::{ShaderError, Target};
 
 /// naga writes GLSL for an entry point only. This one is cut off afterwards.
 const ENTRY: &str = "luthier_entry";
-/// Name of the block of the material buffer.
-const BLOCK: &str = "LuthierMaterials";
 
 /// Functions, blocks and uniforms in GLSL, without `#version`, precision and `main`.
 ///
@@ -58,7 +56,7 @@ fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, Strin
         names.insert(name.clone(), global(module, mapping.texture));
     }
     for (&handle, block) in &reflection.uniforms {
-        names.insert(block.clone(), BLOCK.to_owned());
+        names.insert(block.clone(), camel_case(&global(module, handle)));
         if let Some(at) = &module.global_variables[handle].binding {
             names.insert(format!("_group_{}_binding_{}_fs", at.group, at.binding), global(module, handle));
         }

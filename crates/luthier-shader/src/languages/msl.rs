@@ -6,14 +6,13 @@ use luthier_manifest::BindingEntry;
 use naga::ResourceBinding;
 use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
 
-use crate::identifiers::rename;
+use crate::identifiers::{camel_case, rename};
 use crate::languages::lint;
 use crate::languages::text::{helper, layout};
+use crate::set::STEPS;
 use crate::validate::module;
 use crate::{ShaderError, Target};
 
-/// Name of the type of the material buffer.
-const BUFFER: &str = "LuthierMaterials";
 /// Longest line of a joined list of parameters.
 const WIDTH: usize = 120;
 
@@ -33,8 +32,8 @@ pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry]) -> Result<String,
     }
     let text = without_end_padding(&text.replace(", metal::access::sample>", ">"));
     let text = rename(text.trim_start_matches(|c| c != '#'), helper);
-    let buffer = text.split_once(" const& luthier_materials").and_then(|(before, _)| before.rsplit(' ').next());
-    let body = rename(&text, |word| (Some(word) == buffer).then_some(BUFFER));
+    let buffers: Vec<(&str, String)> = bindings.iter().filter_map(|entry| type_of(&text, &entry.name)).collect();
+    let body = rename(&text, |word| buffers.iter().find(|(of, _)| *of == word).map(|(_, name)| name.clone()));
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused("a name of naga's is left"));
     }
@@ -47,11 +46,17 @@ fn refused(reason: impl ToString) -> ShaderError {
     ShaderError::untranslatable(Target::Msl, reason)
 }
 
+/// naga's name for the type of a buffer, and the one it gets.
+fn type_of<'t>(text: &'t str, binding: &str) -> Option<(&'t str, String)> {
+    let (before, _) = text.split_once(&format!(" const& {binding}"))?;
+    Some((before.rsplit(' ').next()?, camel_case(binding)))
+}
+
 /// Argument index of a binding in an entry point.
 fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
-        "buffer" => BindTarget { buffer: Some(at), ..BindTarget::default() },
+        "buffer" | STEPS => BindTarget { buffer: Some(at), ..BindTarget::default() },
         "sampler" => BindTarget { sampler: Some(BindSamplerTarget::Resource(at)), ..BindTarget::default() },
         _ => BindTarget { texture: Some(at), ..BindTarget::default() },
     };

@@ -2,7 +2,9 @@
 
 use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
-use crate::scenes::{Part, clear, conductor, dielectric, diffuse, filmed, forms, material, sets, tables, text};
+use crate::scenes::{
+    Part, clear, conductor, dielectric, diffuse, filmed, forms, material, sets, stepped_tables, tables, text,
+};
 use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{
     BUFFER_WORDS_MAX, CellsRecord, FunctionGroup, LAYER_WORDS, LayerKind, SurfaceEntry, material_buffer,
@@ -66,9 +68,20 @@ fn every_function_passes_the_lint() {
 
 #[test]
 fn every_format_passes() {
-    for format in TexelFormat::ALL {
+    for format in TexelFormat::ALL.into_iter().filter(|format| !format.has_steps()) {
         let tables: Vec<_> = tables().into_iter().map(|t| TableFace { format, ..t }).collect();
         emit_all(&richest(), &tables);
+    }
+    // Texels with steps are those of rows.
+    let steps = TexelFormat::Rgba16FloatSteps;
+    let is_row = |table: &TableFace| table.layout.y.is_none() || table.layout.abreast().is_some();
+    let face = |table: TableFace| if is_row(&table) { TableFace { format: steps, ..table } } else { table };
+    let (rows, all) = (tables().into_iter().map(face), tables().into_iter().map(|t| TableFace { format: steps, ..t }));
+    emit_all(&richest(), &rows.collect::<Vec<_>>());
+    let refused = emit(&MaterialSet::new(&richest(), all.collect()), Form::Baked, Target::Wgsl).unwrap_err();
+    assert!(refused.to_string().contains("texels with steps are those of rows"), "{refused}");
+    for (_, materials) in sets().into_iter().filter(|(name, _)| name.starts_with("lobes")) {
+        emit_all(&materials, &stepped_tables());
     }
     // Rows over Schlick's form, side by side or not; and D computed.
     for format in [TexelFormat::Rgba8Unorm, TexelFormat::Rgb10a2Unorm] {

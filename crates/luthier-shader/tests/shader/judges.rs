@@ -11,7 +11,7 @@ use luthier_shader::{Form, MaterialSet, Target, bindings, complete, complete_spi
 use tempfile::TempDir;
 
 use crate::examples;
-use crate::scenes::{Part, clear, conductor, forms, material, sets, tables, text};
+use crate::scenes::{Part, clear, conductor, forms, material, sets, stepped_tables, tables, text};
 
 /// Environment that SPIR-V emitted here is for.
 const VULKAN: &str = "vulkan1.1";
@@ -63,8 +63,11 @@ fn each(turn: Option<usize>, mut judge: impl FnMut(&Case<'_>)) {
         };
         let (whole, plain, lit) = (of(&FunctionGroup::ALL), of(&[]), of(&[FunctionGroup::Environment]));
         let has_light = bindings(&lit, Form::Baked).iter().any(|entry| entry.name == "luthier_environment_map");
+        let stepped = MaterialSet { tables: stepped_tables(), ..plain.clone() };
+        let has_rows = bindings(&plain, Form::Baked).iter().any(|entry| entry.name == "luthier_lobes");
         let cases = forms(&materials).flat_map(|form| [(form, &whole), (form, &plain)]);
-        for (form, set) in cases.chain(has_light.then_some((Form::Baked, &lit))) {
+        let cases = cases.chain(has_light.then_some((Form::Baked, &lit)));
+        for (form, set) in cases.chain(has_rows.then_some((Form::Baked, &stepped))) {
             if turn.is_none_or(|turn| count % TURNS == turn) {
                 judge(&Case { name, set: set.clone(), form, folder: folder.path() });
             }

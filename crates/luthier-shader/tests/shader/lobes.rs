@@ -29,9 +29,9 @@ fn rows() -> (AtlasLayout, Image) {
         let parts = [
             [0.3 * c, 0.2, 0.1, 0.0],
             [0.5, 0.4 + 0.1 * c, 0.3, 0.3 - 0.2 * c],
-            [8.0 + c, 12.0 - c, 1.0, 0.9],
             [0.1, 0.2, 0.2 + 0.3 * c, -0.1],
-            [0.5 + c, 0.7, 40.0, 0.8],
+            [8.0 + c, 12.0 - c, 0.5 + c, 0.7],
+            [1.0, 0.9, 40.0, 0.8],
             [0.9, 0.8, 0.7, 0.0],
         ];
         for (j, part) in (0..).zip(parts) {
@@ -87,6 +87,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_cot_sq: cot_sq,
             critical_width: width,
             critical_plain_share: 0.25,
+            inverse_tails: [1.0, 40.0],
             varying: None,
             axes: None,
             painted: None,
@@ -215,9 +216,9 @@ fn turned_rows() -> (AtlasLayout, Image) {
             let texel = match x / layout.row_size() {
                 0 => [0.1, 0.2 + 0.02 * k, 0.3, 2.0 - 0.5 * k],
                 1 => [0.5 + 0.1 * k, 0.4, 0.3, 0.02 + 0.005 * k],
-                2 => [6.0 + k, 15.0 - k, 2.0, 0.9],
-                3 => [0.2, 0.1 * k, 0.3, -0.1],
-                4 => [0.7, 0.9, 40.0, 0.8],
+                2 => [0.2, 0.1 * k, 0.3, -0.1],
+                3 => [6.0 + k, 15.0 - k, 0.7, 0.9],
+                4 => [2.0, 0.9, 40.0, 0.8],
                 _ => [2.0, 2.0, 2.0, 0.3 - 0.1 * k],
             };
             image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
@@ -399,9 +400,9 @@ fn covered_rows() -> (AtlasLayout, Image) {
             let texel = match x / layout.row_size() {
                 0 => [0.2 + 0.1 * k, 0.3, 0.5 - 0.1 * k, 0.0],
                 1 => [1.2 - 0.4 * k, 0.4, 0.3 * k, 0.2 + 0.05 * end],
-                2 => [6.0 + end, 9.0 - end, 2.0 + end, 0.9],
-                3 => [0.1 * k, 0.2, 0.3, -0.1],
-                4 => [0.7, 0.9, 40.0, 0.8],
+                2 => [0.1 * k, 0.2, 0.3, -0.1],
+                3 => [6.0 + end, 9.0 - end, 0.7, 0.9],
+                4 => [2.0 + end, 0.9, 40.0, 0.8],
                 _ => [2.0, 2.0, 2.0, if tile == 3 { 0.1 } else { 0.0 }],
             };
             image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
@@ -562,6 +563,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_cot_sq: 0.0,
             critical_width: 0.0,
             critical_plain_share: 0.0,
+            inverse_tails: [1.0, 40.0],
             varying,
             axes,
             painted: None,

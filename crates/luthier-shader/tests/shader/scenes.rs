@@ -188,6 +188,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_cot_sq,
         critical_width: 0.02,
         critical_plain_share: 0.25,
+        inverse_tails: [1.0, 40.0],
         varying: None,
         axes: None,
         painted: None,
@@ -356,7 +357,8 @@ pub(crate) fn text((name, set): (&str, &MaterialSet<'_>), form: Form, target: Ta
     type Texts = BTreeMap<String, Arc<OnceLock<Arc<str>>>>;
     static TEXTS: Mutex<Texts> = Mutex::new(BTreeMap::new());
     assert_eq!(set.materials.len(), sets().iter().find(|(known, _)| *known == name).unwrap().1.len());
-    let key = format!("{name} {form} {target} {part:?} {:?}", set.functions);
+    let formats: Vec<TexelFormat> = set.tables.iter().map(|table| table.format).collect();
+    let key = format!("{name} {form} {target} {part:?} {:?} {formats:?}", set.functions);
     let text = Arc::clone(TEXTS.lock().unwrap().entry(key).or_default());
     let compose = match part {
         Part::Snippet => emit,
@@ -365,6 +367,15 @@ pub(crate) fn text((name, set): (&str, &MaterialSet<'_>), form: Form, target: Ta
     };
     let composed = || compose(set, form, target).unwrap_or_else(|e| panic!("{name} {form} {target} {part:?}: {e}"));
     Arc::clone(text.get_or_init(|| composed().into()))
+}
+
+/// [`tables`] with rows of lobes in a buffer.
+pub(crate) fn stepped_tables() -> Vec<TableFace> {
+    let face = |table: TableFace| match table.kind {
+        TableKind::Lobes => TableFace { format: TexelFormat::Rgba16FloatSteps, ..table },
+        _ => table,
+    };
+    tables().into_iter().map(face).collect()
 }
 
 /// The tables of a bake with default settings.

@@ -284,6 +284,7 @@ fn vulkan_format(format: TexelFormat) -> Format {
         TexelFormat::Bc6hRgbUfloat => Format::BC6H_UFLOAT_BLOCK,
         TexelFormat::Rgba16Float => Format::R16G16B16A16_SFLOAT,
         TexelFormat::Rgba32Float => Format::R32G32B32A32_SFLOAT,
+        TexelFormat::Rgba16FloatSteps => Format::R32G32B32A32_UINT,
     }
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use luthier_bake::{BakedMaterial, ImageReader, Missing, Observer, Options, Share, Silent, Store};
 use luthier_export::{GENERATOR, Package, Table};
-use luthier_lut::{Atlas, TableKind};
+use luthier_lut::{Atlas, RowLayout, TableKind};
 use luthier_manifest::{Form, FunctionGroup, Functions, Manifest, SurfaceEntry, TableEntry, Target};
 use luthier_material::{Diagnostic, Material};
 use luthier_shader::ShaderError;
@@ -123,12 +123,12 @@ impl<'a> Bake<'a> {
         let read = &read_image as ImageReader<'_>;
         if *forms == [Form::Full] {
             // Without a shader that reads them there are no tables.
-            let options = Options { search: false, ..self.options };
+            let options = Options { search: false, ..self.options() };
             let mut outline = luthier_bake::outline_with(materials, &options, read, store)?;
             outline.materials.iter_mut().for_each(BakedMaterial::forget_tables);
             return self.assembled(materials, forms, &outline.materials, Vec::new());
         }
-        let baked = luthier_bake::bake_with(materials, &self.options, read, self.observer, store)?;
+        let baked = luthier_bake::bake_with(materials, &self.options(), read, self.observer, store)?;
         let mut package = self.assembled(materials, forms, &baked.materials, baked.atlases)?;
         package.manifest.searches = baked.searches;
         Ok(package)
@@ -143,7 +143,7 @@ impl<'a> Bake<'a> {
         if forms == [Form::Full] {
             return Ok(());
         }
-        Ok(luthier_bake::bake_share(&materials, &self.options, &read_image, self.observer, store, share)?)
+        Ok(luthier_bake::bake_share(&materials, &self.options(), &read_image, self.observer, store, share)?)
     }
 
     /// The jobs that a bake would run because a store lacks their results.
@@ -155,7 +155,12 @@ impl<'a> Bake<'a> {
         if forms == [Form::Full] {
             return Ok(Missing { jobs: BTreeMap::new(), is_all: true });
         }
-        Ok(luthier_bake::missing(&materials, &self.options, &read_image, store)?)
+        Ok(luthier_bake::missing(&materials, &self.options(), &read_image, store)?)
+    }
+
+    /// The options, with a layout of rows where functions or languages decide it.
+    fn options(&self) -> Options<'a> {
+        Options { layout: self.options.layout.or_else(|| row_layout(&self.functions, &self.targets)), ..self.options }
     }
 
     /// The materials as they are baked, and the forms of their shaders.
@@ -190,6 +195,13 @@ impl<'a> Bake<'a> {
         emit(&mut package, &self.targets, forms)?;
         Ok(package)
     }
+}
+
+/// The layout of rows that functions and languages of shaders decide: a sampler's where a view is prepared once for many lights (on an NVIDIA H200 its
+/// reads then hide behind the arithmetic, and those of a buffer add to it), and where a language has no storage buffers. Else the materials decide.
+pub fn row_layout(functions: &Functions, targets: &[Target]) -> Option<RowLayout> {
+    let has_buffers = !targets.contains(&Target::GlslEs300);
+    (!functions.is_eval_alone() || !has_buffers).then_some(RowLayout::Filtered)
 }
 
 /// The manifest of a bake that is not made: materials, tables without tiles, searches, no files. This takes little computing, unless a material has a

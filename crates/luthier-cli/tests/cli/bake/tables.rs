@@ -42,7 +42,8 @@ fn set() -> Workshop {
 /// Kinds of textures that a shader binds, and those that its functions of shading reach.
 fn textures(wgsl: &str) -> [BTreeSet<String>; 2] {
     let module = naga::front::wgsl::parse_str(wgsl).unwrap();
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+    let info =
+        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32).validate(&module).unwrap();
     let bound: Vec<_> = module
         .global_variables
         .iter()

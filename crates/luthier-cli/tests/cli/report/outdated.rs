@@ -23,7 +23,7 @@ const ARTEFACTS: [Case; 7] = [
         parts: &["no bake in out", "luthier bake"],
     },
     Case {
-        spoil: |w| w.edit("out/manifest.json", |text| text.replacen("\"schema\": 3", "\"schema\": 0", 1)),
+        spoil: |w| w.edit("out/manifest.json", |text| text.replacen("\"schema\": 4", "\"schema\": 0", 1)),
         code: 1,
         parts: &["out/manifest.json", "manifest schema 0", "bake again"],
     },

@@ -8,6 +8,8 @@ const LUTHIER_LOBES: u32 = 1u;
 const LUTHIER_LOBES: u32 = 0u;
 /// The part of rows that is the albedo.
 const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
+/// The part of rows of two lobes that has their decays and shares.
+const LUTHIER_LOBES_SHARES: f32 = 4.0;
 /// The parts of rows that are what layers send back to a diffuse base, and the light of that base.
 const LUTHIER_LOBES_INTERNAL: f32 = -2.0;
 const LUTHIER_LOBES_BASE: f32 = -1.0;
@@ -365,6 +367,17 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let unresolved = 0.0;
         let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
         prepared.first_strength = first.rgb;
+        //? two_lobes
+        {
+            let sharpness = luthier_lookup_lobes(tile, cos_theta, 3.0);
+            // Rows of one tile have one decay for each lobe.
+            //? lobes_rows
+            let decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
+            //? else
+            let decays = luthier_materials[header + $word_glitter_tilt].yz;
+            let first_numbers = vec3<f32>(sharpness.xy, decays.x);
+        }
+        //? else
         let first_numbers = luthier_lookup_lobes(tile, cos_theta, 2.0).rgb;
         //? lobes_axes
         let first_shape = luthier_lobe_in_axes(first.a, first_numbers, around.y * wide.a, eye, is_turned);
@@ -377,9 +390,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     }
     //? two_lobes
     {
-        let second = luthier_lookup_lobes(tile, cos_theta, 3.0);
+        let second = luthier_lookup_lobes(tile, cos_theta, 2.0);
         prepared.second_strength = second.rgb;
-        let second_numbers = luthier_lookup_lobes(tile, cos_theta, 4.0).rgb;
+        let second_numbers = vec3<f32>(sharpness.zw, decays.y);
         //? lobes_axes
         {
             let second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
@@ -507,12 +520,18 @@ struct LuthierBelow {
 
 fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow {
     //? two_lobes
-    if lobe == 1u {
-        let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 4.0).a;
-        return LuthierBelow(prepared.second_strength * share, prepared.second_shape);
+    {
+        let shares = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_SHARES).yw;
+        if lobe == 1u {
+            return LuthierBelow(prepared.second_strength * shares.y, prepared.second_shape);
+        }
+        return LuthierBelow(prepared.first_strength * shares.x, prepared.first_shape);
     }
-    let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
-    return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
+    //? else
+    {
+        let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
+        return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
+    }
 }
 
 /// f cos_theta_i of the first interface, one bounce, and of the simulated light from below it.

@@ -287,9 +287,14 @@ impl Row {
     /// | -2, with a diffuse base only | share of the base's light that the layers send back to it RGB, b of the remainder |
     /// | -1, with a diffuse base only | energy of the base's light in the remainder RGB, a of the remainder |
     /// | 0 | wide remainder RGB, shear of the first lobe |
-    /// | 1 + 2k | strength of lobe k RGB, shift |
-    /// | 2 + 2k | of lobe k the sharpness along the plane of the eye, and across it; 1 over the tail; share |
+    /// | 1 | strength of the first lobe RGB, shift |
+    /// | 2, with one lobe | its sharpness along the plane of the eye, and across it; 1 over the tail; share |
+    /// | 2, with two lobes | strength of the second lobe RGB, shift |
+    /// | 3, with two lobes | sharpness of the first lobe, then of the second |
+    /// | 4, with two lobes | 1 over the tail and share of the first lobe, then of the second |
     /// | last | directional albedo RGB, shear of the second lobe |
+    ///
+    /// Tails hold at all views of a tile. A shader that has those of the material as numbers ([`Self::inverse_tails`]) does not read part 4.
     ///
     /// Sharpness x and y and shear k are multiplied by the root of the tail. With z, 1 over the tail, the shape is then
     /// `(x y - k^2) z / pi (1 + q)^-(1 + z)`: a shader has no tail to multiply.
@@ -301,14 +306,26 @@ impl Row {
             parts.extend([part(internal, b), part(energy, a)]);
         }
         parts.push(part(self.wide, shear_first));
-        for lobe in &self.lobes {
-            parts.push(part(lobe.strength, lobe.shift));
+        parts.extend(self.lobes.iter().map(|lobe| part(lobe.strength, lobe.shift)));
+        let shapes = self.lobes.iter().map(|lobe| {
             let tail = lobe.tail.max(TAIL_MIN);
             let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
-            parts.push([x, y, 1.0 / tail, lobe.share]);
+            [x, y, 1.0 / tail, lobe.share]
+        });
+        match shapes.collect::<Vec<_>>()[..] {
+            [[a, b, first_tail, first_share], [c, d, second_tail, second_share], ..] => {
+                parts.extend([[a, b, c, d], [first_tail, first_share, second_tail, second_share]]);
+            }
+            [shape] => parts.push(shape),
+            [] => {}
         }
         parts.push(part(self.albedo_dir, shear_second));
         parts
+    }
+
+    /// 1 over the tail of each of two lobes, as [`Self::to_parts`] has it; for a lobe that the row lacks, that of a lobe without light.
+    pub fn inverse_tails(&self) -> [f64; 2] {
+        [0, 1].map(|lobe: usize| 1.0 / self.lobes.get(lobe).map_or(0.0, |lobe| lobe.tail).max(TAIL_MIN))
     }
 
     /// The row of parts. With `has_base`, the first two belong to a diffuse base.
@@ -317,19 +334,24 @@ impl Row {
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
         let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
-        let shears = [parts.first(), parts.last()].into_iter().chain(std::iter::repeat(None));
-        let lobes = inner.chunks_exact(2).zip(shears).filter_map(|(pair, shear)| {
-            let &[strength, [x, y, inverse_tail, share]] = pair else { return None };
+        let shears = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part[3]));
+        let shaped = match *inner {
+            [strength, shape] => vec![(strength, shape)],
+            [first, second, [a, b, c, d], [first_tail, first_share, second_tail, second_share]] => {
+                vec![(first, [a, b, first_tail, first_share]), (second, [c, d, second_tail, second_share])]
+            }
+            _ => Vec::new(),
+        };
+        let lobes = shaped.into_iter().zip(shears).map(|((strength, [x, y, inverse_tail, share]), shear)| {
             let inverse_tail = inverse_tail.max(1.0);
-            let sharpness = [x, y].map(|x| x * inverse_tail.sqrt());
-            Some(Lobe {
+            Lobe {
                 strength: rgb(Some(&strength)),
                 share,
                 shift: strength[3],
-                sharpness,
-                shear: shear.map_or(0.0, |part| part[3] * inverse_tail.sqrt()),
+                sharpness: [x, y].map(|x| x * inverse_tail.sqrt()),
+                shear: shear * inverse_tail.sqrt(),
                 tail: 1.0 / inverse_tail,
-            })
+            }
         });
         Self {
             albedo_dir: rgb(parts.last()),

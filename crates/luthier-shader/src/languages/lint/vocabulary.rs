@@ -67,13 +67,14 @@ const WIDEST: [&str; 35] = [
     "step",
     "tan",
 ];
-const HLSL_WIDEST: [&str; 17] = [
+const HLSL_WIDEST: [&str; 18] = [
     "asfloat",
     "asint",
     "asuint",
     "countbits",
     "ddx",
     "ddy",
+    "f16tof32",
     "degrees",
     "faceforward",
     "firstbithigh",
