@@ -54,13 +54,13 @@ fn half(value: f32) -> f16 {
 mod tests {
     use super::*;
 
-    /// By hand: 1 is 0x3c00, 0.5 is 0x3800, -0.5 is 0xb800.
+    /// By hand: 1 is 0x3c00, 0.75 is 0x3a00, 0.5 is 0x3800, 0.25 is 0x3400, -0.5 is 0xb800.
     #[test]
     fn a_texel_is_followed_by_the_step_to_the_next() {
-        let image = Image { width: 2, height: 2, channels: 1, data: vec![0.5, 1.0, 1.0, 0.5] };
+        let image = Image { width: 2, height: 2, channels: 1, data: vec![0.5, 1.0, 0.75, 0.25] };
         let words: Vec<u16> = encode(&image).chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
         let red: Vec<[u16; 2]> = words.chunks_exact(HALVES).map(|texel| [texel[0], texel[4]]).collect();
-        assert_eq!(red, [[0x3800, 0x3800], [0x3c00, 0], [0x3c00, 0xb800], [0x3800, 0]]);
+        assert_eq!(red, [[0x3800, 0x3800], [0x3c00, 0], [0x3a00, 0xb800], [0x3400, 0]]);
         assert!(is_whole(2, &encode(&image)));
         assert!(!is_whole(4, &encode(&image)), "the second row begins anew");
         let mut spoilt = encode(&image);
