@@ -3,52 +3,68 @@
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_report::Spread;
-use luthier_shader::Form;
+use luthier_shader::{Form, Yardstick};
 use serde::Serialize;
 
-use super::subjects::Subject;
+use super::subjects::{Subject, Timed};
 
-/// Nanoseconds per evaluation of one shader.
-#[derive(Debug, Serialize)]
-pub(super) struct Row {
-    pub(super) material: String,
-    pub(super) model: ShadingModel,
-    pub(super) form: Form,
-    pub(super) closed: bool,
+/// Nanoseconds per evaluation of one shader for a number of lights. An evaluation is of one light.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Row {
+    pub(crate) material: String,
+    /// Model that the shader evaluates; absent of a yardstick.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) model: Option<ShadingModel>,
+    /// Name of the yardstick; absent of a model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) yardstick: Option<&'static str>,
+    pub(crate) form: Form,
+    pub(crate) closed: bool,
+    /// Lights on each prepared view.
+    pub(crate) lights: u32,
     /// Median, all included.
-    pub(super) median_ns: f64,
+    pub(crate) median_ns: f64,
     /// Median absolute deviation from it.
-    pub(super) mad_ns: f64,
+    pub(crate) mad_ns: f64,
     /// Tenth and ninetieth percentile.
-    pub(super) p10_ns: f64,
-    pub(super) p90_ns: f64,
+    pub(crate) p10_ns: f64,
+    pub(crate) p90_ns: f64,
     /// Median of the same kernel without an evaluation.
-    pub(super) harness_ns: f64,
+    pub(crate) harness_ns: f64,
     /// Median less that.
-    pub(super) net_ns: f64,
-    /// Net over that of Phong's model.
-    pub(super) of_phong: f64,
-    /// Net over that of the full form of the same model.
-    pub(super) of_full: f64,
+    pub(crate) net_ns: f64,
+    /// Net over that of Phong's model for as many lights.
+    pub(crate) of_phong: f64,
+    /// Net over that of the full form of the same model for as many lights.
+    pub(crate) of_full: f64,
+    /// Net over that of glTF's clearcoat for as many lights.
+    pub(crate) of_gltf_clearcoat: f64,
 }
 
-/// The rows of one material, from the times of an empty kernel and of every shader.
-pub(super) fn rows_of(material: &Material, subjects: &[Subject], times: &[Vec<f64>]) -> Vec<Row> {
+/// The rows of one material for a number of lights, from the times of an empty kernel and of every shader.
+pub(super) fn rows_of(material: &Material, subjects: &[Subject], lights: u32, times: &[Vec<f64>]) -> Vec<Row> {
     let mut spreads = times.iter().map(|times| Spread::of(times));
     let harness = spreads.next().map_or(0.0, |spread| spread.median);
     let spreads: Vec<Spread> = spreads.collect();
     let net: Vec<f64> = spreads.iter().map(|spread| spread.median - harness).collect();
     let of = |wanted: &dyn Fn(&Subject) -> bool| subjects.iter().position(wanted).map_or(f64::NAN, |i| net[i]);
-    let phong = of(&|s| s.model == ShadingModel::Phong);
+    let phong = of(&|s| s.shader == Timed::Model(ShadingModel::Phong));
+    let clearcoat = of(&|s| s.shader == Timed::Yardstick(Yardstick::GltfClearcoat));
     let mut rows = Vec::new();
     for (i, subject) in subjects.iter().enumerate() {
         let Spread { median, mad, p10, p90 } = spreads[i];
-        let full = of(&|s| s.model == subject.model && s.form == Form::Full);
+        let full = of(&|s| s.shader == subject.shader && s.form == Form::Full);
+        let (model, yardstick) = match subject.shader {
+            Timed::Model(model) => (Some(model), None),
+            Timed::Yardstick(yardstick) => (None, Some(yardstick.name())),
+        };
         rows.push(Row {
             material: material.name.clone(),
-            model: subject.model,
+            model,
+            yardstick,
             form: subject.form,
             closed: subject.closed,
+            lights,
             median_ns: median,
             mad_ns: mad,
             p10_ns: p10,
@@ -57,6 +73,7 @@ pub(super) fn rows_of(material: &Material, subjects: &[Subject], times: &[Vec<f6
             net_ns: net[i],
             of_phong: net[i] / phong,
             of_full: net[i] / full,
+            of_gltf_clearcoat: net[i] / clearcoat,
         });
     }
     rows
