@@ -98,7 +98,7 @@ run() {
   local name software
   name=$(field name logs/adapter.json)
   software=$(field software logs/adapter.json)
-  local evaluations=60000000 repeats=30 sets=1,22 many=1,$library_size pairs=100000 places=2000 size=256 samples=8192 time_size=512 models=() place_models=() repeats_of_pictures=3 tests=100 mixed=("${stacks[@]}") simulated=(materials/papers/{yamaguchi-brushed,silver-paint}.toml)
+  local evaluations=60000000 repeats=30 sets=1,22 many=1,$library_size pairs=20000 places=2000 size=256 samples=8192 time_size=512 models=() place_models=() repeats_of_pictures=3 tests=100 mixed=("${stacks[@]}") simulated=(materials/papers/{yamaguchi-brushed,silver-paint}.toml)
   if [ "$software" != false ]; then
     # What fits on two cores.
     evaluations=16384 repeats=3 sets=1,3 many=4 pairs=200 places=100 size=8 samples=16 time_size=8 repeats_of_pictures=1 tests=200
