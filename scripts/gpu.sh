@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Tests, comparisons and times on a GPU of a machine that has a Vulkan driver and nothing else: no Rust, no sources.
 #   scripts/gpu.sh pack DIR [PROFILE]     here: builds the programs (PROFILE is release or dev, release by default), and packs them into DIR/luthier-gpu.tar.xz
+#   scripts/gpu.sh try [PROFILE]          here: packs, unpacks elsewhere, and runs there; as root out of sight of the sources
 #   luthier-gpu/gpu.sh run OUT [SECONDS]  there, from the unpacked folder: runs all in SECONDS (360 by default), and leaves results in OUT
 # A step has a limit, and one that fails stops no other. The first are the most important: later ones have what is left. OUT/steps.json has the device,
 # and the exit code and seconds of each step, OUT/logs what they said. OUT/docs has pages and measurements by the names that they have in this repository, where `cp -r OUT/docs .` puts them. On a software adapter all
@@ -50,6 +51,21 @@ pack() {
     echo "error: the pack has $((bytes >> 20)) MiB, and may have $limit_mib: leave materials out, or make the programs smaller" >&2
     exit 1
   fi
+}
+
+try() {
+  local work rc=0
+  work=$(mktemp -d)
+  pack "$work" "${1-release}"
+  tar -C "$work" -xJf "$work/luthier-gpu.tar.xz"
+  if unshare -m true 2>/dev/null; then
+    unshare -m sh -c 'mount -t tmpfs none "$1" && cd "$2" && luthier-gpu/gpu.sh run out' sh "$PWD" "$work" || rc=$?
+  else
+    (cd "$work" && luthier-gpu/gpu.sh run out) || rc=$?
+  fi
+  cat "$work/out/steps.json"
+  rm -rf "$work"
+  return $rc
 }
 
 # now: seconds since the script began, with fractions.
@@ -130,6 +146,7 @@ run() {
 
 case ${1-} in
   pack) [ $# -ge 2 ] && pack "${@:2}" ;;
+  try) try "${@:2}" ;;
   run) [ $# -ge 2 ] && library_size=$library run "${@:2}" ;;
-  *) sed -n '2,4p' "$0" >&2 && exit 2 ;;
+  *) sed -n '3,5p' "$0" >&2 && exit 2 ;;
 esac

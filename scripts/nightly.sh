@@ -51,7 +51,7 @@ declare -A reads=(
   [scale]="lean:luthier-cli crates/luthier-material/examples scripts/many.sh $built"
   [crash]="lean:luthier-cli tests/crash $built"
   [farm]="lean:luthier-cli materials examples/farm scripts/farm $built"
-  [gpu]="crate:luthier-cli crate:luthier-lab crates/luthier-gpu crates/luthier-material/examples materials scripts/gpu.sh $built"
+  [gpu]="lean:luthier-cli crate:luthier-lab crates/luthier-gpu crates/luthier-material/examples materials scripts/gpu.sh $built"
   [book]="docs scripts/book.sh"
   [architecture]="lean:luthier-cli materials scripts/other-architecture.sh $built"
 )
@@ -93,20 +93,8 @@ farm() {
   for script in slurm builds descriptions; do LUTHIER=$PWD/target/release/luthier "./scripts/farm/$script.sh"; done
   ./scripts/farm/s3.sh
 }
-gpu() {
-  local work
-  work=$(mktemp -d)
-  # The profile of the tests, which is built already, and as fast.
-  ./scripts/gpu.sh pack "$work" dev
-  tar -C "$work" -xJf "$work/luthier-gpu.tar.xz"
-  if unshare -m true 2>/dev/null; then
-    unshare -m sh -c 'mount -t tmpfs none "$1" && cd "$2" && luthier-gpu/gpu.sh run out' sh "$PWD" "$work"
-  else
-    (cd "$work" && luthier-gpu/gpu.sh run out)
-  fi
-  cat "$work/out/steps.json"
-  rm -rf "$work"
-}
+# The profile of the tests, which is built already, and as fast.
+gpu() { ./scripts/gpu.sh try dev; }
 architecture() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/other-architecture.sh

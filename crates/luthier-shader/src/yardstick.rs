@@ -19,7 +19,7 @@ luthier_lut::named! {
         /// at the half vector, and Lambert's base with the rest. The masking is Smith's, height-correlated, as in Khronos' sample viewer; the
         /// appendix prints the separable form.
         Gltf = "gltf",
-        /// That surface below a coat: glTF's extension `KHR_materials_clearcoat`, section "Layering". The coat has GGX, the masking above and
+        /// The surface of `gltf` below a coat: glTF's extension `KHR_materials_clearcoat`, section "Layering". The coat has GGX, the masking above and
         /// Schlick's reflectance of index 1.5 at the cosine of the eye, by which coat and surface are mixed.
         GltfClearcoat = "gltf-clearcoat",
         /// Filament's clear coat: `surface_shading_model_standard.fs`, `surface_brdf.fs` and `common_material.fs` at the highest quality. The masking
