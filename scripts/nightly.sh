@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples engines kind packages scale crash farm book)
+steps=(tests random fuzz release examples engines kind packages scale crash farm gpu book)
 # By its name only, because an emulator takes half an hour.
 named=(architecture)
 # Steps that take less than a minute of a processor: they are kept up to date with every change.
@@ -30,6 +30,7 @@ declare -A says=(
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
   [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, jobs for Kubernetes and OpenCue are checked, and machines share a store of the S3 protocol that lies, refuses and is gone'
+  [gpu]='the programs that measure on a GPU are packed, and run on the software adapter out of sight of the sources'
   [book]='mdBook builds the book of `docs/`; tests of every change follow its links, samples and tutorial'
   [architecture]='a program for aarch64, emulated, writes the bytes of one for x86-64'
 )
@@ -50,6 +51,7 @@ declare -A reads=(
   [scale]="lean:luthier-cli crates/luthier-material/examples scripts/many.sh $built"
   [crash]="lean:luthier-cli tests/crash $built"
   [farm]="lean:luthier-cli materials examples/farm scripts/farm $built"
+  [gpu]="lean:luthier-cli crate:luthier-lab crates/luthier-gpu crates/luthier-material/examples materials scripts/gpu.sh $built"
   [book]="docs scripts/book.sh"
   [architecture]="lean:luthier-cli materials scripts/other-architecture.sh $built"
 )
@@ -91,6 +93,8 @@ farm() {
   for script in slurm builds descriptions; do LUTHIER=$PWD/target/release/luthier "./scripts/farm/$script.sh"; done
   ./scripts/farm/s3.sh
 }
+# The profile of the tests, which is built already, and as fast.
+gpu() { ./scripts/gpu.sh try dev; }
 architecture() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/other-architecture.sh

@@ -60,17 +60,21 @@ simulation() {
   luthier-lab simulation materials/papers/{yamaguchi-brushed,silver-paint}.toml --size 32 --samples 512 --time-size 16 \
     --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
 }
-bench() { luthier bench materials/papers/car-paint.toml materials/papers/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
+bench() {
+  # Small runs: three numbers of lights and three yardsticks for each of eight models.
+  local few=(--evaluations 65536 --repeats 10 --json)
+  luthier bench materials/papers/car-paint.toml materials/papers/red-lacquer.toml "${few[@]}" -o docs/measurements/bench-llvmpipe.json
+  luthier bench materials/papers/{car-paint,latex,red-lacquer}.toml --per-pixel 1,3 "${few[@]}" -o docs/measurements/per-pixel-llvmpipe.json
+}
 throughput() { luthier-lab throughput "${stacks[@]}" -o docs/pages/throughput.md; }
-# By its name only, because it wants a GPU: pages and measurements of one, beside those of the software adapter.
+# By its name only, because it wants a GPU: pages and measurements of one, beside those of the software adapter. `scripts/gpu.sh` makes them, where there are no sources, too.
 on-gpu() {
-  local two=(materials/papers/car-paint.toml materials/papers/red-lacquer.toml)
-  luthier bench "${two[@]}" --evaluations 60000000 --json -o docs/measurements/bench-gpu.json
-  luthier-lab throughput "${stacks[@]}" --evaluations 60000000 --data docs/measurements/throughput-gpu.json -o docs/pages/gpu-throughput.md
-  luthier-lab simulation materials/papers/{yamaguchi-brushed,silver-paint}.toml --size 256 --samples 8192 --time-size 512 \
-    --data docs/measurements/simulation-gpu.json -o docs/pages/gpu-simulation.md
-  luthier-lab places -o docs/pages/gpu-places.md
-  luthier-lab parity "${stacks[@]}" -o docs/pages/gpu-parity.md
+  scripts/gpu.sh pack "$work"
+  tar -C "$work" -xJf "$work/luthier-gpu.tar.xz"
+  # What failed is told; the rest is kept.
+  "$work/luthier-gpu/gpu.sh" run "$work/on-gpu" 3600 || true
+  grep -q '"software": false' "$work/on-gpu/steps.json" || { echo "error: there is no GPU here" >&2 && exit 1; }
+  cp -r "$work/on-gpu/docs" .
 }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }

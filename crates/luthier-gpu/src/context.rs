@@ -26,6 +26,8 @@ pub(crate) struct Context {
     faults: Arc<Faults>,
     /// Factor on the work of one submission: 1 on an adapter whose speed is unknown.
     pub(crate) batch: u32,
+    /// Outputs of timed passes, which are not read: one buffer for all, the largest so far.
+    unread: Arc<Mutex<Option<wgpu::Buffer>>>,
 }
 
 #[derive(Debug, Default)]
@@ -58,7 +60,7 @@ impl Context {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             put(&uncaptured.uncaptured, error.to_string());
         }));
-        Self { device, queue, faults, batch }
+        Self { device, queue, faults, batch, unread: Arc::default() }
     }
 
     /// Runs calls that create or submit things, and turns the errors that the device reports meanwhile into ours.
@@ -223,6 +225,15 @@ impl TimedPass {
 const STAMPS: u64 = 16;
 
 impl Context {
+    /// A buffer of at least so many bytes for outputs that are not read.
+    fn unread(&self, bytes: u64) -> wgpu::Buffer {
+        let mut unread = self.unread.lock().unwrap_or_else(PoisonError::into_inner);
+        match unread.as_ref().filter(|buffer| buffer.size() >= bytes) {
+            Some(buffer) => buffer.clone(),
+            None => unread.insert(self.buffer("kernel_outputs", bytes, WRITTEN)).clone(),
+        }
+    }
+
     pub(crate) fn timed_pass(
         &self,
         pipeline: &wgpu::ComputePipeline,
@@ -232,7 +243,7 @@ impl Context {
         self.guarded("timing", || {
             let inputs = self.upload("kernel_inputs", inputs);
             let bytes = (output_words * size_of::<[f32; 4]>()) as u64;
-            let outputs = self.buffer("kernel_outputs", bytes, WRITTEN);
+            let outputs = self.unread(bytes);
             let group = self.kernel_group(pipeline, &inputs, &outputs);
             let clock = self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then(|| {
                 let queries = self.device.create_query_set(&wgpu::QuerySetDescriptor {

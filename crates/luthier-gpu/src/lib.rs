@@ -47,5 +47,5 @@ pub use scene::Scene;
 pub use shape::{Camera, GRID_SIDE, Shape};
 pub use shown::Shown;
 pub use simulate::{Facets, Simulated, Simulation, SimulationSettings};
-pub use time::Stopwatch;
+pub use time::{Stopwatch, Threads, Workload};
 pub use tone::ToneMapping;

@@ -1,6 +1,7 @@
 //! A package on a device: its textures and buffer, and the pipelines of the kernels.
 
-use std::sync::{Mutex, OnceLock};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use luthier_lut::TableKind;
 use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest};
@@ -34,8 +35,8 @@ pub struct Scene {
     pub(crate) render: [[OnceLock<wgpu::ComputePipeline>; 2]; 2],
     /// Simulations of pairs, then of pictures; each first with one facet, then with walks.
     pub(crate) simulations: [OnceLock<wgpu::ComputePipeline>; 4],
-    /// Kernels that are timed: with evaluations, then without.
-    pub(crate) timed: [OnceLock<wgpu::ComputePipeline>; 2],
+    /// Kernels that are timed, by their text.
+    timed: Arc<Mutex<BTreeMap<String, wgpu::ComputePipeline>>>,
     pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
@@ -69,7 +70,7 @@ impl Scene {
             lookups: Default::default(),
             render: Default::default(),
             simulations: Default::default(),
-            timed: Default::default(),
+            timed: Arc::default(),
             grounded: Mutex::default(),
         })
     }
@@ -100,9 +101,18 @@ impl Scene {
             lookups: self.lookups.clone(),
             render: self.render.clone(),
             simulations: self.simulations.clone(),
-            timed: self.timed.clone(),
+            timed: Arc::clone(&self.timed),
             grounded: Mutex::default(),
         }))
+    }
+
+    /// The scene with these words in place of the material buffer, for a shader with records of its own.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn with_words(self, words: &[[f32; 4]]) -> Result<Self, GpuError> {
+        let group = self.bindings.group(&self.context, words, &Surroundings::black(&self.context)?)?;
+        Ok(Self { group, ..self })
     }
 
     /// Form of the shader that runs here: `baked` or `full`.
@@ -130,6 +140,17 @@ impl Scene {
     /// The pipeline of a kernel.
     pub(crate) fn compile(&self, kernel: &str) -> Result<wgpu::ComputePipeline, GpuError> {
         compile(&self.context, &self.kernels, self.form, &self.wgsl, kernel)
+    }
+
+    /// The pipeline of a kernel that is timed, compiled at its first use.
+    pub(crate) fn timed(&self, kernel: &str) -> Result<wgpu::ComputePipeline, GpuError> {
+        let mut timed = self.timed.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = timed.get(kernel) {
+            return Ok(pipeline.clone());
+        }
+        let pipeline = self.compile(kernel)?;
+        timed.insert(kernel.to_owned(), pipeline.clone());
+        Ok(pipeline)
     }
 
     /// The pipeline in `cell`, compiled at its first use.

@@ -1,7 +1,7 @@
 //! The `luthier-lab` command: makes the pages and measurements of this repository. A user of luthier needs none of it.
 //!
-//! The command line (`cli`) uses no other room. Every verb is a room, which uses the command line. Some also use `lobes`, `papers` or `parity`, whose
-//! numbers they share.
+//! The command line (`cli`) uses no other room. Every verb is a room, which uses the command line. Some also use `maps`, and `lobes`, `papers` or `parity`,
+//! whose numbers they share.
 
 mod anisotropic;
 mod budgets;
@@ -12,6 +12,7 @@ mod foreign;
 mod grammar;
 mod judge;
 mod lobes;
+mod maps;
 mod papers;
 mod parity;
 mod places;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use luthier::{Bake, MemoryStore, read_materials};
 use luthier_export::{GENERATOR, Shader};
-use luthier_gpu::{Gpu, Scene, Stopwatch};
+use luthier_gpu::{Gpu, Scene, Stopwatch, Workload};
 use luthier_material::Material;
 use luthier_report::{Pair, ParitySet, Spread};
 use luthier_shader::Form;
@@ -87,9 +87,10 @@ fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome
             scenes.push((name, role, constant, gpu.scene(package, Form::Baked)?));
         }
     }
-    let mut watches: Vec<Stopwatch<'_>> = vec![scenes[0].3.stopwatch(0, &pairs, options.evaluations, true)?];
+    let mut watches: Vec<Stopwatch<'_>> =
+        vec![scenes[0].3.stopwatch(&pairs, Workload::single(0, options.evaluations).empty())?];
     for (.., scene) in &scenes {
-        watches.push(scene.stopwatch(0, &pairs, options.evaluations, false)?);
+        watches.push(scene.stopwatch(&pairs, Workload::single(0, options.evaluations))?);
     }
     let times = Stopwatch::in_turn(&watches, WARM_UP, options.repeats.get())?;
     let spreads: Vec<Spread> = times.iter().map(|times| Spread::of(times)).collect();

@@ -22,7 +22,9 @@
 //! [`library`] translates any WGSL module of functions, textures and samplers, and [`library_spirv`] compiles it to SPIR-V. Tables of engines,
 //! which belong to no material, get their look-ups this way.
 //!
-//! Modules use only those named before them: `functions`, `identifiers`, `style`, `error`; `set`; `validate`; `compose` (WGSL of a set) and
+//! [`Yardstick`] has shaders of engines, to compare costs with.
+//!
+//! Modules use only those named before them: `functions`, `identifiers`, `style`, `error`, `yardstick`; `set`; `validate`; `compose` (WGSL of a set) and
 //! `languages` (any WGSL in another language), which do not use each other; `library` and `emit`.
 //!
 //! Simplifications: bindings of materials are in group 0; the full form has one film per interface.
@@ -40,6 +42,7 @@ mod library;
 mod set;
 mod style;
 mod validate;
+mod yardstick;
 
 pub use emit::{complete, complete_spirv, emit, emit_constant, emit_spirv, interface};
 pub use error::ShaderError;
@@ -49,3 +52,4 @@ pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, Within, bindings, identifier, surface_identifier};
 pub use style::style_name;
 pub use validate::{checks, validate};
+pub use yardstick::{CoatNumbers, Yardstick};

@@ -470,7 +470,7 @@ pub(crate) struct CostOptions {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Shaders are timed in turns; the output has nanoseconds per evaluation. A software adapter is timed too, and the output says so.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
+    after_help = "Shaders are timed in turns, beside yardsticks: the surface of glTF (gltf), its extension for coats (gltf-clearcoat) and the coat of Filament (filament-clearcoat), with numbers taken from the material. The output has nanoseconds per evaluation; an evaluation is of one light. A software adapter is timed too, and the output says so.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --lights 1 --repeats 100 --json -o bench.json\n  luthier bench materials/papers --model lobes --per-pixel 1,8,16"
 )]
 pub(crate) struct BenchOptions {
     #[command(flatten)]
@@ -484,6 +484,12 @@ pub(crate) struct BenchOptions {
     /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
     #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
     pub(crate) fresnel: Option<Reflectance>,
+    /// Lights on a prepared view, a divisor of 16; may list several. One light is an evaluation of both directions
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1,4,16", value_parser = lights)]
+    pub(crate) lights: Vec<u32>,
+    /// Time sets of the first N materials instead, each thread with a material of its own, in the models of their files or of `--model`; may list several
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) per_pixel: Vec<u32>,
     /// Least number of evaluations in one run
     #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
     pub(crate) evaluations: u32,
@@ -502,6 +508,13 @@ pub(crate) struct BenchOptions {
     /// File to write instead of standard output
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// A number of lights that divides the evaluations of a thread.
+#[cfg(feature = "gpu")]
+fn lights(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|&number| matches!(number, 1 | 2 | 4 | 8 | 16));
+    number.ok_or_else(|| "a number of lights is 1, 2, 4, 8 or 16".to_owned())
 }
 
 /// Runs that count: the median is then safe from fourteen outliers.

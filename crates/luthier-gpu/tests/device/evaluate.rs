@@ -24,7 +24,7 @@ const TOLERANCE: f64 = 1e-3;
 /// rounding of f32 by 30.
 const FLOOR: f64 = 1e-3;
 
-type Pair = ([f32; 3], [f32; 3]);
+pub(crate) type Pair = ([f32; 3], [f32; 3]);
 
 /// Deterministic numbers in 0..1.
 struct Numbers(u64);
@@ -57,7 +57,7 @@ fn single(v: DVec3) -> [f32; 3] {
 }
 
 /// Random, grazing, and near the mirrored direction at all spreads from 1e-5 to 1.
-fn pairs(seed: u64) -> Vec<Pair> {
+pub(crate) fn pairs(seed: u64) -> Vec<Pair> {
     let mut numbers = Numbers(seed);
     let mut pairs = Vec::new();
     for _ in 0..4000 {

@@ -18,3 +18,4 @@ mod refusal;
 mod render;
 mod reuse;
 mod simulate;
+mod yardstick;

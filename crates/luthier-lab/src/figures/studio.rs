@@ -212,7 +212,7 @@ pub(crate) fn layered(name: &str, layers: &str, model: ShadingModel) -> Outcome<
 
 /// A material that finds its maps in the lab's folder `maps/`.
 pub(crate) fn mapped(material: Material) -> Material {
-    Material { source: concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").to_owned(), ..material }
+    Material { source: crate::maps::source(), ..material }
 }
 
 /// A material under another name and model.

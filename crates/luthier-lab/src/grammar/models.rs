@@ -1,7 +1,5 @@
 //! Models that show a key, found by checking its sample.
 
-use std::path::Path;
-
 use luthier::Source;
 use luthier::refusals::of_model;
 use luthier_manifest::ModelPart;
@@ -13,7 +11,7 @@ use super::samples::Sample;
 
 /// The materials of a sample, one for each value. Their maps are in the lab's folder.
 pub(crate) fn materials(sample: &Sample) -> Outcome<Vec<Material>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
+    let path = crate::maps::maps("sample.toml");
     let sources: Vec<Source> = sample.texts().into_iter().map(|text| Source::of_text(&path, text)).collect();
     valid(sources, true)
 }

@@ -82,7 +82,7 @@ fn settings(size: u32) -> Outcome<RenderSettings> {
 
 /// A material, baked by itself: materials of one bake share sizes of tables.
 fn ball(text: String) -> Outcome<(Package, Shown)> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("maps/sample.toml");
+    let path = crate::maps::maps("sample.toml");
     let mut sources: Vec<Source> = vec![Source::of_text(&path, text)];
     refuse(&mut sources, |material| luthier::refusals::of_model(material, None));
     let package = Bake::lit().package(&valid(sources, true)?, &MemoryStore::default())?;

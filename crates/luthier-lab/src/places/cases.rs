@@ -142,7 +142,7 @@ impl Case {
             let text = format!("schema = 1\nname = \"m{n}\"\n{text}");
             let parsed = parse("m.toml", &text, &|_| Ok(DYE.to_owned()));
             let mut material = parsed.unwrap_or_else(|errors| panic!("{}", errors[0].render(&text))).material;
-            concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").clone_into(&mut material.source);
+            material.source = crate::maps::source();
             at_three_wavelengths(&mut material, model);
             material
         });

@@ -76,7 +76,7 @@ pub(super) fn all() -> Vec<Material> {
         let text = format!("schema = 1\nname = \"{name}\"\n{body}");
         let parsed = parse("textured.toml", &text, &|_| Err(std::io::Error::other("no file")));
         let mut material = parsed.unwrap_or_else(|errors| panic!("{}", errors[0].render(&text))).material;
-        concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").clone_into(&mut material.source);
+        material.source = crate::maps::source();
         material
     });
     materials.collect()

@@ -1,6 +1,6 @@
 //! Times of the shaders of a bake on the adapter that judges them.
 
-use luthier_gpu::{GpuError, Stopwatch};
+use luthier_gpu::{GpuError, Stopwatch, Workload};
 use luthier_layers::layers::Layers;
 use luthier_report::{Device, Form, Pair, ParitySet, ShaderTime, Spread, Subject, Times};
 use luthier_terminal::{Bar, Outcome, Shaders};
@@ -36,7 +36,8 @@ pub(super) fn measure(shaders: &Shaders, subject: &Subject<'_>) -> Outcome<Times
         let pairs: Vec<Pair> = sets.iter().flat_map(|set| set.pairs(PAIRS / 2, &layers)).collect();
         let forms = [Form::Baked, Form::Full].into_iter().filter(|&form| entry.model.has(form));
         for (form, scene) in forms.filter_map(|form| Some((form, shaders.scene(form)?))) {
-            let watches = [false, true].map(|is_empty| scene.stopwatch(number, &pairs, evaluations, is_empty));
+            let single = Workload::single(number, evaluations);
+            let watches = [single, single.empty()].map(|workload| scene.stopwatch(&pairs, workload));
             let watches: Vec<Stopwatch<'_>> = watches.into_iter().collect::<Result<_, GpuError>>()?;
             let times = Stopwatch::in_turn(&watches, WARM_UP, REPEATS)?;
             let [run, harness] = [0, 1].map(|i: usize| Spread::of(&times[i]));

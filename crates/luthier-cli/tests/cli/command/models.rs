@@ -10,7 +10,7 @@ use super::sources::sources;
 const NAMING: [(&str, &str); 19] = [
     ("cli/src/model_inputs.rs", "names the model that could show what another drops"),
     ("cli/src/simulated.rs", "takes the cheapest model where only stacks count"),
-    ("cli/src/verb/bench.rs", "times everything over Phong's model"),
+    ("cli/src/verb/bench/", "times everything over Phong's model"),
     ("cli/src/verb/gallery/page.rs", "shows a second model beside that of the file"),
     ("crates/luthier/src/refusals/energy.rs", "names the model that returns what the simulation does"),
     ("layers/src/models/belcour/mod.rs", "is the model"),

@@ -11,7 +11,7 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 14] = [
+const CALLED: [&str; 15] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
@@ -26,6 +26,7 @@ const CALLED: [&str; 14] = [
     "farm/builds.sh",
     "farm/descriptions.sh",
     "farm/s3.sh",
+    "gpu.sh",
 ];
 
 /// It passes, unless `FAILS` has its name. As `luthier` it has no window, and bakes a file.
@@ -35,8 +36,10 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 12] =
-    ["book", "crash", "engines", "examples", "farm", "fuzz", "kind", "packages", "random", "release", "scale", "tests"];
+const ALL: [&str; 13] = [
+    "book", "crash", "engines", "examples", "farm", "fuzz", "gpu", "kind", "packages", "random", "release", "scale",
+    "tests",
+];
 
 struct Repository(Workshop);
 
@@ -166,12 +169,12 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
     let repository = Repository::passed();
     assert_eq!(repository.check().1, set(&[]));
     let all_but_book = &ALL[1..];
-    let cases: [(&str, &[&str]); 17] = [
+    let cases: [(&str, &[&str]); 18] = [
         ("CHANGELOG.md", &[]),
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
         ("docs/measurements/stability.json", &["book", "tests"]),
-        ("materials/gold.toml", &["examples", "farm", "fuzz", "random", "release", "tests"]),
+        ("materials/gold.toml", &["examples", "farm", "fuzz", "gpu", "random", "release", "tests"]),
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
         ("tests/crash/kill.c", &["crash"]),
@@ -180,12 +183,16 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("crates/luthier-optics/src/lib.rs", all_but_book),
         // Tests of a crate matter to those who run them.
         ("crates/luthier-optics/tests/all.rs", &["packages"]),
+        ("crates/luthier-gpu/tests/all.rs", &["gpu", "packages"]),
         ("crates/luthier-lut/tests/all.rs", &["packages", "random"]),
         // The window is a feature of the command; meshes are for pictures.
         ("crates/luthier-view/src/lib.rs", &["packages", "release"]),
-        ("crates/luthier-mesh/src/lib.rs", &["fuzz", "kind", "packages", "release", "tests"]),
+        ("crates/luthier-mesh/src/lib.rs", &["fuzz", "gpu", "kind", "packages", "release", "tests"]),
         ("crates/luthier-fuzz/corpus/a", &["fuzz", "packages"]),
-        ("crates/luthier-gallery/src/lib.rs", &["crash", "examples", "farm", "kind", "packages", "release", "scale"]),
+        (
+            "crates/luthier-gallery/src/lib.rs",
+            &["crash", "examples", "farm", "gpu", "kind", "packages", "release", "scale"],
+        ),
     ];
     for (file, expected) in cases {
         repository.0.edit(file, |text| text + "\n# changed\n");

@@ -1,19 +1,37 @@
 //! `bench`.
 
 use luthier_workshop::material_texts::lacquer;
+use serde_json::Value;
 
 use crate::workshop::Workshop;
 
+/// Enough to see every row, and no more.
+const FEW: [&str; 7] = ["--evaluations", "2000", "--repeats", "3", "--warm-up", "1", "--json"];
+
+/// The result of a bench; `None` without an adapter.
+fn bench(workshop: &Workshop, words: &[&str]) -> Option<Value> {
+    let run = workshop.run(&[&["bench"], words, FEW.as_slice()].concat());
+    (!run.lacks_adapter()).then(|| run.exits(0).json())
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name].as_f64().unwrap_or_else(|| panic!("{name} in {row:#}"))
+}
+
+/// Times above zero, and a net time that is the rest over the harness.
+fn is_timed(row: &Value) {
+    assert!(
+        number(row, "median_ns") > 0.0 && number(row, "harness_ns") > 0.0 && number(row, "mad_ns") >= 0.0,
+        "{row:#}"
+    );
+    assert!((number(row, "net_ns") - (number(row, "median_ns") - number(row, "harness_ns"))).abs() < 1e-9, "{row:#}");
+}
+
 #[test]
-fn every_shader_is_timed_against_phong_and_the_full_form() {
+fn every_shader_is_timed_against_phong_the_full_form_and_a_coat_of_engines() {
     let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
-    let few = ["--evaluations", "2000", "--repeats", "3", "--warm-up", "1"];
-    let run = workshop.run(&[&["bench", "lacquer.toml", "--model", "elek", "--json"], few.as_slice()].concat());
-    if run.lacks_adapter() {
-        return;
-    }
-    let report = run.exits(0).json();
-    assert_eq!(report["schema"], 1);
+    let Some(report) = bench(&workshop, &["lacquer.toml", "--model", "elek"]) else { return };
+    assert_eq!(report["schema"], 2);
     for name in ["name", "driver", "backend"] {
         assert!(report["adapter"][name].is_string(), "{report:#}");
     }
@@ -21,16 +39,72 @@ fn every_shader_is_timed_against_phong_and_the_full_form() {
     assert!(report["clock"] == "device" || report["clock"] == "host");
     // Whole workgroups of 64 threads with 16 evaluations each.
     assert_eq!((&report["evaluations"], &report["repeats"]), (&2048.into(), &3.into()));
+    assert!(report["per_pixel"].is_null());
     let rows = report["rows"].as_array().unwrap();
-    let names: Vec<String> =
-        rows.iter().map(|r| format!("{} {} {}", r["model"], r["form"], r["closed"]).replace('"', "")).collect();
-    assert_eq!(names, ["phong full true", "phong baked true", "elek full true", "elek baked false", "elek baked true"]);
+    let name = |row: &Value| {
+        let shader = row["model"].as_str().or(row["yardstick"].as_str()).unwrap().to_owned();
+        format!("{shader} {} {} {}", row["form"], row["closed"], row["lights"]).replace('"', "")
+    };
+    let shaders = [
+        "phong full true",
+        "phong baked true",
+        "gltf full true",
+        "gltf-clearcoat full true",
+        "filament-clearcoat full true",
+        "elek full true",
+        "elek baked false",
+        "elek baked true",
+    ];
+    let expected: Vec<String> =
+        [1, 4, 16].iter().flat_map(|lights| shaders.iter().map(move |shader| format!("{shader} {lights}"))).collect();
+    assert_eq!(rows.iter().map(name).collect::<Vec<_>>(), expected);
     for row in rows {
-        let number = |name: &str| row[name].as_f64().unwrap_or_else(|| panic!("{name} in {row:#}"));
-        assert!(number("median_ns") > 0.0 && number("harness_ns") > 0.0 && number("mad_ns") >= 0.0, "{row:#}");
-        assert!(number("p10_ns") <= number("median_ns") && number("median_ns") <= number("p90_ns"), "{row:#}");
-        assert!((number("net_ns") - (number("median_ns") - number("harness_ns"))).abs() < 1e-9, "{row:#}");
+        is_timed(row);
+        assert!(number(row, "p10_ns") <= number(row, "median_ns"), "{row:#}");
+        assert!(number(row, "median_ns") <= number(row, "p90_ns"), "{row:#}");
     }
-    let ratio = |i: usize, name: &str| rows[i][name].as_f64().unwrap();
-    assert_eq!((ratio(0, "of_phong"), ratio(0, "of_full"), ratio(2, "of_full")), (1.0, 1.0, 1.0));
+    // Ratios are among rows of as many lights.
+    for rows in rows.chunks(shaders.len()) {
+        let ones = [(0, "of_phong"), (0, "of_full"), (3, "of_gltf_clearcoat"), (5, "of_full")];
+        for (i, name) in ones {
+            assert_eq!(number(&rows[i], name), 1.0, "{:#}", rows[i]);
+        }
+        let over = number(&rows[6], "net_ns") / number(&rows[3], "net_ns");
+        assert!((number(&rows[6], "of_gltf_clearcoat") - over).abs() <= 1e-9 * over.abs(), "{:#}", rows[6]);
+    }
+}
+
+#[test]
+fn sets_are_timed_with_a_material_for_each_thread() {
+    let files = ["one", "two", "three"].map(|name| (format!("{name}.toml"), lacquer(name)));
+    let files: Vec<(&str, &str)> = files.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
+    let workshop = Workshop::with(&files);
+    let words = ["one.toml", "two.toml", "three.toml", "--model", "elek", "--lights", "1,4", "--per-pixel", "1,3"];
+    let Some(report) = bench(&workshop, &words) else { return };
+    assert_eq!(report["rows"].as_array().unwrap().len(), 0);
+    let rows = report["per_pixel"].as_array().unwrap();
+    let name = |row: &Value| format!("{} {} {}", row["materials"], row["run"], row["lights"]);
+    let expected: Vec<String> = ["1", "3"]
+        .iter()
+        .flat_map(|size| ["null", "64", "8", "1"].map(|run| [1, 4].map(|lights| format!("{size} {run} {lights}"))))
+        .flatten()
+        .collect();
+    assert_eq!(rows.iter().map(name).collect::<Vec<_>>(), expected);
+    for row in rows {
+        is_timed(row);
+        assert_eq!((&row["model"], &row["models"], &row["form"]), (&"elek".into(), &1.into(), &"baked".into()));
+        let over = number(row, "net_ns") / number(row, "alone_ns");
+        assert!((number(row, "of_alone") - over).abs() <= 1e-9 * over.abs(), "{row:#}");
+    }
+}
+
+#[test]
+fn bad_options_are_refused() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let run = |words: &[&str]| workshop.run(&[&["bench", "lacquer.toml"], words].concat());
+    for lights in ["3", "32", "0", "many", "1,5"] {
+        run(&["--lights", lights]).fails(2, &["a number of lights is 1, 2, 4, 8 or 16"]);
+    }
+    run(&["--per-pixel", "0"]).fails(2, &["--per-pixel"]);
+    run(&["--per-pixel", "2"]).fails(2, &["`--per-pixel 2` wants 2 materials, and the files have 1"]);
 }
