@@ -484,6 +484,9 @@ pub(crate) struct BenchOptions {
     /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
     #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
     pub(crate) fresnel: Option<Reflectance>,
+    /// Layout of rows of lobes, as for `luthier bake`. By default all
+    #[arg(long, value_name = "NAME", value_parser = named::<RowLayout>(RowLayout::NAMES))]
+    pub(crate) layout: Option<RowLayout>,
     /// Lights on a prepared view, a divisor of 16; may list several. One light is an evaluation of both directions
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1,4,16", value_parser = lights)]
     pub(crate) lights: Vec<u32>,

@@ -1,5 +1,6 @@
 //! Rows of a result: one shader and its time.
 
+use luthier_lut::RowLayout;
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_report::Spread;
@@ -20,6 +21,9 @@ pub(crate) struct Row {
     pub(crate) yardstick: Option<&'static str>,
     pub(crate) form: Form,
     pub(crate) closed: bool,
+    /// Layout of rows of lobes; absent of a model without such rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) layout: Option<&'static str>,
     /// Lights on each prepared view.
     pub(crate) lights: u32,
     /// Median, all included.
@@ -64,6 +68,7 @@ pub(super) fn rows_of(material: &Material, subjects: &[Subject], lights: u32, ti
             yardstick,
             form: subject.form,
             closed: subject.closed,
+            layout: subject.layout.map(RowLayout::name),
             lights,
             median_ns: median,
             mad_ns: mad,

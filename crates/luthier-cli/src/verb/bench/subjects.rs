@@ -1,9 +1,9 @@
 //! Shaders to time, on the device.
 
-use luthier::Bake;
+use luthier::{Bake, Options};
 use luthier_export::{GENERATOR, Package, Shader};
 use luthier_gpu::{Gpu, Scene};
-use luthier_lut::TableKind;
+use luthier_lut::{RowLayout, TableKind};
 use luthier_manifest::{FunctionGroup, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_shader::{CoatNumbers, Form, MaterialSet, Target, Yardstick};
@@ -18,6 +18,8 @@ pub(super) struct Subject {
     pub(super) shader: Timed,
     pub(super) form: Form,
     pub(super) closed: bool,
+    /// Layout of rows of lobes, of a model that has them.
+    pub(super) layout: Option<RowLayout>,
     pub(super) scene: Scene,
 }
 
@@ -45,25 +47,38 @@ pub(super) fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -
     for model in models.into_iter().filter(|&model| is_shaded_by(material, model, &options.model)) {
         let mut shaded = material.clone();
         shade_by(&mut shaded, model, options.fresnel)?;
-        let mut package = bake().package(std::slice::from_ref(&shaded), store()?)?;
-        let reads_d = model.reads_some(TableKind::Distribution);
-        let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
-        // A shader without a table of D is the same in both styles.
-        let distinct = if reads_d { 3 } else { 2 };
-        for (form, closed) in styles.into_iter().take(distinct).filter(|(form, _)| model.has(*form)) {
-            if form == Form::Baked && closed && reads_d {
-                package = with_closed(package)?;
+        for layout in layouts(model, options) {
+            let bake = bake();
+            let bake = Bake { options: Options { layout, ..bake.options }, ..bake };
+            let mut package = bake.package(std::slice::from_ref(&shaded), store()?)?;
+            let reads_d = model.reads_some(TableKind::Distribution);
+            let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
+            // A shader without a table of D is the same in both styles.
+            let distinct = if reads_d { 3 } else { 2 };
+            for (form, closed) in styles.into_iter().take(distinct).filter(|(form, _)| model.has(*form)) {
+                if form == Form::Baked && closed && reads_d {
+                    package = with_closed(package)?;
+                }
+                let scene = gpu.scene(&package, form)?;
+                subjects.push(Subject { shader: Timed::Model(model), form, closed, layout, scene });
             }
-            let scene = gpu.scene(&package, form)?;
-            subjects.push(Subject { shader: Timed::Model(model), form, closed, scene });
-        }
-        if !subjects.iter().any(|subject: &Subject| matches!(subject.shader, Timed::Yardstick(_))) {
-            for yardstick in Yardstick::ALL {
-                subjects.push(of_yardstick(gpu, yardstick, &package.manifest)?);
+            if !subjects.iter().any(|subject: &Subject| matches!(subject.shader, Timed::Yardstick(_))) {
+                for yardstick in Yardstick::ALL {
+                    subjects.push(of_yardstick(gpu, yardstick, &package.manifest)?);
+                }
             }
         }
     }
     Ok(subjects)
+}
+
+/// The layouts of rows to time: of a model with rows of lobes the one asked for, or all.
+fn layouts(model: ShadingModel, options: &BenchOptions) -> Vec<Option<RowLayout>> {
+    match (model.is_fitted(), options.layout) {
+        (false, _) => vec![None],
+        (true, Some(layout)) => vec![Some(layout)],
+        (true, None) => RowLayout::ALL.map(Some).to_vec(),
+    }
 }
 
 /// A yardstick with the numbers of the first material of a bake.
@@ -76,7 +91,7 @@ fn of_yardstick(gpu: &Gpu, yardstick: Yardstick, baked: &Manifest) -> Outcome<Su
     let shaders = vec![Shader::wgsl(form, yardstick.wgsl())];
     let package = Package::from_parts(manifest, Vec::new(), shaders).map_err(Failure::input)?;
     let scene = gpu.scene(&package, form)?.with_words(&words)?;
-    Ok(Subject { shader: Timed::Yardstick(yardstick), form, closed: true, scene })
+    Ok(Subject { shader: Timed::Yardstick(yardstick), form, closed: true, layout: None, scene })
 }
 
 /// The bake with the shader `baked` that has D in closed form.

@@ -28,16 +28,19 @@ impl Bench {
 
     fn single_text(&self) -> String {
         let mut out = format!(
-            "{:<24} {:<18} {:<16} {:>6} {:>9} {:>8} {:>9} {:>7} {:>7} {:>15}\n",
+            "{:<24} {:<18} {:<26} {:>6} {:>9} {:>8} {:>9} {:>7} {:>7} {:>15}\n",
             "material", "shader", "form", "lights", "median ns", "MAD", "net ns", "/phong", "/full", "/gltf-clearcoat"
         );
         for row in &self.rows {
             let (shader, form) = match row.model {
-                Some(model) => (model.name(), style_name(model, row.form, row.closed, false)),
+                Some(model) => {
+                    let style = style_name(model, row.form, row.closed, false);
+                    (model.name(), row.layout.map_or(style.clone(), |layout| format!("{style}, {layout}")))
+                }
                 None => (row.yardstick.unwrap_or_default(), "-".to_owned()),
             };
             out.push_str(&format!(
-                "{:<24} {:<18} {:<16} {:>6} {:>9.4} {:>8.4} {:>9.4} {:>7} {:>7} {:>15}\n",
+                "{:<24} {:<18} {:<26} {:>6} {:>9.4} {:>8.4} {:>9.4} {:>7} {:>7} {:>15}\n",
                 row.material,
                 shader,
                 form,
