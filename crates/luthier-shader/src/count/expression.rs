@@ -90,7 +90,9 @@ impl<'a> Walk<'a> {
                 let mark = sampler as u32 * 8 + gather.map_or(0, |component| 1 + component as u32);
                 arguments.push(self.graph.constant(Constant::Uint(mark)));
                 let image = self.value(frame, *image)?;
-                self.texels(&image, Memory::Filtered, arguments)
+                let name = self.name(&image)?;
+                let is_wide = self.wide.iter().any(|wide| wide == name);
+                self.texels(&image, if is_wide { Memory::Wide } else { Memory::Filtered }, arguments)
             }
             Expression::ImageLoad { image, coordinate, array_index, level, .. } => {
                 let mut arguments = Vec::new();
@@ -167,6 +169,12 @@ impl<'a> Walk<'a> {
     fn image(&self, variable: usize) -> Result<&'a TypeInner, Reason> {
         let (_, variable) = self.module.global_variables.iter().nth(variable).ok_or("a texture is missing")?;
         Ok(&self.module.types[variable.ty].inner)
+    }
+
+    fn name(&self, image: &Value) -> Result<&'a str, Reason> {
+        let Value::Resource(image) = image else { return Err("a texture is expected") };
+        let (_, variable) = self.module.global_variables.iter().nth(*image).ok_or("a texture is missing")?;
+        Ok(variable.name.as_deref().unwrap_or_default())
     }
 
     fn texels(&mut self, image: &Value, memory: Memory, arguments: Vec<Id>) -> Result<Value, Reason> {

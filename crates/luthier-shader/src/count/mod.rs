@@ -38,13 +38,15 @@ use walk::Walk;
 ///     return wi / dot(wo, wo);
 /// }\n";
 /// // Three operations for the dot product, one reciprocal, three products.
-/// assert_eq!(count(wgsl, 1)?, StaticCounts { plain: 6, special: 1, ..StaticCounts::default() });
+/// assert_eq!(count(wgsl, &[], 1)?, StaticCounts { plain: 6, special: 1, ..StaticCounts::default() });
 /// # Ok::<(), luthier_shader::ShaderError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StaticCounts {
-    /// Reads of textures through a sampler.
+    /// Reads through a sampler of textures with at most 4 bytes a texel.
     pub filtered_reads: u32,
+    /// Reads through a sampler of textures with more bytes a texel.
+    pub wide_reads: u32,
     /// Reads of textures without one.
     pub texel_fetches: u32,
     /// Reads of `luthier_materials`, in words of 16 bytes.
@@ -61,19 +63,28 @@ pub struct StaticCounts {
 
 impl StaticCounts {
     /// Names of the counts, in the order of [`Self::values`].
-    pub const NAMES: [&'static str; 7] =
-        ["filtered_reads", "texel_fetches", "record_reads", "buffer_reads", "special", "plain", "branches"];
+    pub const NAMES: [&'static str; 8] = [
+        "filtered_reads",
+        "wide_reads",
+        "texel_fetches",
+        "record_reads",
+        "buffer_reads",
+        "special",
+        "plain",
+        "branches",
+    ];
 
     /// The counts, one by one.
-    pub fn values(&self) -> [u32; 7] {
-        let &Self { filtered_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches } = self;
-        [filtered_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches]
+    pub fn values(&self) -> [u32; 8] {
+        let &Self { filtered_reads, wide_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches } =
+            self;
+        [filtered_reads, wide_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches]
     }
 
     /// The counts of [`Self::values`].
-    pub fn of_values(values: [u32; 7]) -> Self {
-        let [filtered_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches] = values;
-        Self { filtered_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches }
+    pub fn of_values(values: [u32; 8]) -> Self {
+        let [filtered_reads, wide_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches] = values;
+        Self { filtered_reads, wide_reads, texel_fetches, record_reads, buffer_reads, special, plain, branches }
     }
 
     /// The counts of two shaders, one after the other.
@@ -84,21 +95,22 @@ impl StaticCounts {
     }
 
     /// One number by which sides of a branch are compared, of no device: 1 for a plain operation or a branch, 4 for a special function, a texel, a word
-    /// of a buffer, 16 for a filtered read.
+    /// of a buffer, 16 for each 4 bytes of a filtered texel.
     pub fn operations(&self) -> u32 {
         let quarter_rate = self.special + self.texel_fetches + self.record_reads + self.buffer_reads;
-        self.plain + self.branches + 4 * quarter_rate + 16 * self.filtered_reads
+        self.plain + self.branches + 4 * quarter_rate + 16 * self.filtered_reads + 32 * self.wide_reads
     }
 }
 
 /// Counts of one evaluation of a WGSL text under some lights: `luthier_eval` for one, `luthier_prepare` and `luthier_light` for more. A text
-/// without these two counts `luthier_eval` for each light, less what the lights share.
+/// without these two counts `luthier_eval` for each light, less what the lights share. `wide` names the textures with more than 4 bytes a texel
+/// ([`MaterialSet::wide_textures`](crate::MaterialSet::wide_textures)).
 ///
 /// # Errors
 /// [`ShaderError::Invalid`] for invalid WGSL, and [`ShaderError::Uncounted`] for a text without these functions or with statements that no evaluation has.
-pub fn count(wgsl: &str, lights: u32) -> Result<StaticCounts, ShaderError> {
+pub fn count(wgsl: &str, wide: &[String], lights: u32) -> Result<StaticCounts, ShaderError> {
     let (module, _) = module(wgsl)?;
-    Walk::new(&module).evaluation(lights).map_err(|reason| ShaderError::Uncounted(reason.to_owned()))
+    Walk::new(&module, wide).evaluation(lights).map_err(|reason| ShaderError::Uncounted(reason.to_owned()))
 }
 
 #[cfg(test)]

@@ -22,6 +22,8 @@ const TURNS: usize = 256;
 pub(super) struct Walk<'a> {
     pub(super) module: &'a Module,
     pub(super) graph: Graph,
+    /// Names of textures with more than 4 bytes a texel.
+    pub(super) wide: &'a [String],
     /// Variables of functions, and private ones.
     slots: Vec<Value>,
     privates: HashMap<usize, usize>,
@@ -58,8 +60,8 @@ enum Flow {
 const THROUGH: Flow = Flow::Through { is_cut: false };
 
 impl<'a> Walk<'a> {
-    pub(super) fn new(module: &'a Module) -> Self {
-        Self { module, graph: Graph::new(), slots: Vec::new(), privates: HashMap::new(), inputs: 0 }
+    pub(super) fn new(module: &'a Module, wide: &'a [String]) -> Self {
+        Self { module, graph: Graph::new(), wide, slots: Vec::new(), privates: HashMap::new(), inputs: 0 }
     }
 
     /// Counts of one evaluation under some lights.

@@ -46,6 +46,8 @@ impl Constant {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Memory {
     Filtered,
+    /// Through a sampler, with more than 4 bytes a texel.
+    Wide,
     Texel,
     Record,
     Buffer,
@@ -88,6 +90,7 @@ impl Operation {
                 let mut counts = StaticCounts::default();
                 match memory {
                     Memory::Filtered => counts.filtered_reads = 1,
+                    Memory::Wide => counts.wide_reads = 1,
                     Memory::Texel => counts.texel_fetches = 1,
                     Memory::Record => counts.record_reads = 1,
                     Memory::Buffer => counts.buffer_reads = 1,
