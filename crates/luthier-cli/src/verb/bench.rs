@@ -1,6 +1,7 @@
 //! `bench`: shaders timed on the adapter at hand.
 
 use luthier::{Bake, read_materials};
+use luthier_cost::{StaticCounts, Timing};
 use luthier_export::{GENERATOR, Package, Shader};
 use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_lut::TableKind;
@@ -15,6 +16,7 @@ use serde_json::Value;
 use crate::cli::BenchOptions;
 use crate::materials::{is_shaded_by, models, shade_by};
 use crate::store::store;
+use crate::verb::bench_fit;
 
 /// Pairs of directions, near the mirror direction and anywhere by halves: few enough for any cache.
 const PAIRS: u32 = 1024;
@@ -66,6 +68,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
     let gpu = open(options.adapter.as_deref())?;
     let bar = Bar::new("timing");
     let mut rows = Vec::new();
+    let mut timings: Vec<Timing> = Vec::new();
     let (mut evaluations, mut has_timestamps) = (0, true);
     for (n, material) in materials.iter().enumerate() {
         let subjects = subjects(&gpu, material, options)?;
@@ -85,7 +88,12 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
         if let Some(watch) = watches.first() {
             (evaluations, has_timestamps) = (watch.evaluations(), watch.has_timestamps());
         }
-        rows.extend(rows_of(material, &subjects, &times));
+        let own = rows_of(material, &subjects, &times);
+        timings.extend(own.iter().zip(&subjects).filter_map(|(row, subject)| {
+            let (material, model, time) = (row.material.clone(), row.model.name().to_owned(), 1e3 * row.net_ns);
+            Some(Timing { material, model, counts: subject.counts?, time })
+        }));
+        rows.extend(own);
         bar.set(n as u64 + 1, materials.len() as u64);
     }
     drop(bar);
@@ -99,10 +107,11 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
         repeats: options.repeats.get(),
         rows,
     };
+    let fit = options.fit.as_deref().map(|file| bench_fit::fitted(&gpu, &timings, file)).transpose()?;
     let text = if options.json {
         format!("{:#}\n", serde_json::to_value(&bench).map_err(Failure::input)?)
     } else {
-        bench.to_text(&gpu)
+        bench.to_text(&gpu) + &fit.map_or_else(String::new, |fit| format!("\n{fit}"))
     };
     deliver(&text, options.output.as_deref())
 }
@@ -112,6 +121,8 @@ struct Subject {
     model: ShadingModel,
     form: Form,
     closed: bool,
+    /// Counts of its text for a fit; `None` where none is asked for.
+    counts: Option<StaticCounts>,
     scene: Scene,
 }
 
@@ -134,7 +145,8 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
                 package = with_closed(package)?;
             }
             let scene = gpu.scene(&package, form)?;
-            subjects.push(Subject { model, form, closed, scene });
+            let counts = options.fit.is_some().then(|| bench_fit::counts(&package, form, 1)).transpose()?;
+            subjects.push(Subject { model, form, closed, counts, scene });
         }
     }
     Ok(subjects)
