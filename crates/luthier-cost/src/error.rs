@@ -17,6 +17,7 @@ pub enum CostError {
     )]
     NoDriver(String),
     /// A call of Vulkan failed.
+    #[cfg(feature = "radv")]
     #[error("{what}: {result}")]
     Vulkan {
         /// Action that failed.
@@ -49,7 +50,10 @@ pub enum CostError {
     /// A failure of a probe, in its own words.
     #[error("{0}")]
     Probe(String),
-    /// Kernels or counts that are not valid JSON.
-    #[error("JSON of kernels or counts: {0}")]
+    /// Times that no costs can be fitted to, or costs that are none.
+    #[error("{0}")]
+    Fit(String),
+    /// Kernels, counts or costs that are not valid JSON.
+    #[error("JSON of kernels, counts or costs: {0}")]
     Exchange(#[from] serde_json::Error),
 }

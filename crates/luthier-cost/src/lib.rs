@@ -16,19 +16,29 @@
 //!
 //! Out of scope: files, arguments, time on a real device (`luthier-gpu`).
 
+#[cfg(feature = "radv")]
 mod apart;
+#[cfg(feature = "radv")]
 mod code;
 mod counts;
+mod device;
 mod error;
 mod family;
+mod fit;
 mod kernel;
+#[cfg(feature = "radv")]
 mod radv;
 mod report;
 
+#[cfg(feature = "radv")]
 pub use apart::{answer, assembly_apart, compile_apart};
 pub use counts::{Compiled, Counts};
+pub use device::{Coefficients, CostUnit, DEFAULT_DEVICE, DeviceCost, FitSource};
 pub use error::CostError;
 pub use family::{FOREIGN_VARIABLES, Family};
+pub use fit::{FitQuality, Misfit, Timing, misfit};
 pub use kernel::{Binding, Harness, Kernel, Resource, Style, shader_text};
+pub use luthier_shader::StaticCounts;
+#[cfg(feature = "radv")]
 pub use radv::{assembly, compile};
 pub use report::{CostReport, CostRow, FamilyCost};

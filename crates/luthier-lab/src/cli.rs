@@ -55,6 +55,8 @@ pub(crate) enum Verb {
     Papers(PapersOptions),
     /// Time the papers' shaders on the device: a page in Markdown
     Throughput(ThroughputOptions),
+    /// Fit costs of operations to kept times and counts: a file for each device, and a page in Markdown
+    Devices(DevicesOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
     Shapes(ShapesOptions),
     /// Try files that others wrote with the readers of their kinds: a page in Markdown
@@ -419,6 +421,24 @@ pub(crate) struct PapersOptions {
 pub(crate) struct ShapesOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Reads gpu-cost.json, bench-gpu.json, throughput-gpu.json and bench-llvmpipe.json, and counts the shaders that their rows name. No device and no driver is needed.\n\n\
+                  Examples:\n  luthier-lab devices materials/papers -o docs/pages/devices.md"
+)]
+pub(crate) struct DevicesOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Folder of the measurements
+    #[arg(long, value_name = "DIR", default_value = "docs/measurements")]
+    pub(crate) measurements: PathBuf,
+    /// Folder to write the files of the devices to
+    #[arg(long, value_name = "DIR", default_value = "crates/luthier-cost/data")]
+    pub(crate) folder: PathBuf,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -6,6 +6,7 @@
 mod anisotropic;
 mod budgets;
 mod cli;
+mod devices;
 mod environment;
 mod figures;
 mod foreign;
@@ -49,6 +50,7 @@ fn main() -> ExitCode {
         Verb::Budgets(options) => budgets::run(options),
         Verb::Papers(options) => papers::run(options),
         Verb::Throughput(options) => throughput::run(options),
+        Verb::Devices(options) => devices::run(options),
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),
         Verb::Texels(options) => texels::run(options),

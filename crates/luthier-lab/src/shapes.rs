@@ -2,10 +2,10 @@
 
 use luthier::{MemoryStore, outline, read_materials};
 use luthier_bake::Options;
-use luthier_cost::{Family, Harness, Kernel, Style, compile_apart};
+use luthier_cost::{Family, Harness, Kernel, StaticCounts, Style, compile_apart};
 use luthier_lut::RowLayout;
 use luthier_manifest::ShadingModel;
-use luthier_shader::{Form, MaterialSet};
+use luthier_shader::{Form, MaterialSet, count};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
 
 use crate::cli::ShapesOptions;
@@ -13,8 +13,8 @@ use crate::cli::ShapesOptions;
 /// Costs of every shape that the materials have, whole or without some of their parts: what scenes choose by.
 pub(crate) fn run(options: &ShapesOptions) -> Outcome {
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
-    let family = Family::Rdna2;
     let mut keys: Vec<(ShadingModel, Form, String)> = Vec::new();
+    let mut texts = Vec::new();
     let mut kernels = vec![Kernel::empty(Harness::Bare).map_err(Failure::input)?];
     for model in ShadingModel::ALL {
         for mut material in materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material) {
@@ -32,24 +32,39 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
             let set = MaterialSet::from_manifest(&manifest);
             for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
                 let style = Style { form, constant: false, approximate: false };
+                let text = luthier_cost::shader_text(&set, style).map_err(Failure::input)?;
+                texts.push(count(&text, &set.wide_textures(), 1).map_err(Failure::input)?);
                 kernels.push(Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?);
                 keys.push((model, form, shape.clone()));
             }
         }
     }
-    let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
-    let [harness, counts @ ..] = compiled.counts.as_slice() else {
-        return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
-    };
-    let mut rows: Vec<String> = Vec::new();
-    keys.iter().zip(counts).for_each(|((model, form, shape), counts)| {
-        let (model, form, cycles) = (model.name(), form.name(), counts.beyond(harness).inverse_throughput);
-        rows.push(format!(r#"    {{"model":"{model}","form":"{form}","shape":"{shape}","cycles":{cycles}}}"#));
-    });
+    let mut driver = String::new();
+    let mut cycles: Vec<[i64; 3]> = vec![[0; 3]; keys.len()];
+    for (place, family) in Family::ALL.into_iter().enumerate() {
+        let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
+        let [harness, counts @ ..] = compiled.counts.as_slice() else {
+            return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
+        };
+        let net = counts.iter().map(|counts| counts.beyond(harness).inverse_throughput);
+        cycles.iter_mut().zip(net).for_each(|(row, net)| row[place] = net);
+        driver = compiled.driver;
+    }
+    let rows: Vec<String> = keys
+        .iter()
+        .zip(cycles.iter().zip(&texts))
+        .map(|((model, form, shape), (cycles, counts))| {
+            let (model, form, counts) = (model.name(), form.name(), counts.values());
+            format!(
+                r#"    {{"model":"{model}","form":"{form}","shape":"{shape}","cycles":{cycles:?},"counts":{counts:?}}}"#
+            )
+        })
+        .collect();
     let text = format!(
-        "{{\n  \"driver\": {},\n  \"family\": \"{}\",\n  \"rows\": [\n{}\n  ]\n}}\n",
-        serde_json::json!(compiled.driver),
-        family.name(),
+        "{{\n  \"driver\": {},\n  \"families\": {},\n  \"counts\": {},\n  \"rows\": [\n{}\n  ]\n}}\n",
+        serde_json::json!(driver),
+        serde_json::json!(Family::NAMES),
+        serde_json::json!(StaticCounts::NAMES),
         rows.join(",\n")
     );
     deliver(&text, options.destination.output.as_deref())

@@ -114,9 +114,9 @@ pub struct SceneCandidate {
     pub color: ColorMode,
     /// Names of the parts that were left out of the stack; empty for the whole stack.
     pub left_out: Vec<String>,
-    /// Inverse throughput in cycles per wave of 64 on RDNA2.
+    /// Cost of one evaluation, in the unit of the device of the choice.
     pub cost: f64,
-    /// Whether the cost was measured on the most similar surface, and not on this one.
+    /// Whether the cost was counted for the most similar surface, and not on this one.
     pub cost_is_of_similar: bool,
     /// Error of the model against the reference; tables and single precision are not in it.
     pub error: SceneError,
@@ -137,6 +137,9 @@ pub struct MaterialChoice {
     pub next_cheaper: Option<usize>,
     /// Reason of the choice, in a sentence.
     pub reason: String,
+    /// Sentences on shipped devices that put the choice and the next candidate into another order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disagreements: Vec<String>,
     /// All candidates that were judged, cheapest first.
     pub tried: Vec<SceneCandidate>,
     /// Pairs of directions, and directions of view under light from everywhere.
@@ -160,6 +163,19 @@ impl MaterialChoice {
     }
 }
 
+/// Device by whose costs models were chosen.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CostDevice {
+    /// Short name.
+    pub name: String,
+    /// The device, in the words of its driver; the chip, where a compiler counted.
+    pub device: String,
+    /// Driver and version.
+    pub driver: String,
+    /// Unit of costs: `ps` for picoseconds of the device for an evaluation, `cycles` for cycles per wave of 64.
+    pub unit: String,
+}
+
 /// How the models of a bake came from a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneChoice {
@@ -171,6 +187,15 @@ pub struct SceneChoice {
     pub source_hash: String,
     /// The form of all shaders.
     pub form: Form,
+    /// Device of the costs; absent in manifests from before devices were named, whose costs are cycles per wave of 64 on RDNA2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device: Option<CostDevice>,
+    /// Share of neighbouring pixels that differ in material, 0 to 1.
+    #[serde(default)]
+    pub neighbours_differ: f64,
+    /// Cost of all materials together, one evaluation each, in the unit of the device.
+    #[serde(default)]
+    pub cost: f64,
     /// One per material, in the order of the manifest.
     pub materials: Vec<MaterialChoice>,
 }
@@ -223,6 +248,7 @@ mod tests {
             chosen: 1,
             next_cheaper: Some(0),
             reason: String::new(),
+            disagreements: Vec::new(),
             tried: vec![
                 candidate(ShadingModel::Phong, Verdict::Fails),
                 candidate(ShadingModel::Elek, Verdict::Holds),

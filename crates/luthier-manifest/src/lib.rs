@@ -37,7 +37,9 @@ mod target;
 mod tiles;
 
 pub use buffer::{MATERIAL_WORDS, material_buffer};
-pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
+pub use choice::{
+    CostDevice, MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict,
+};
 pub use color::ColorMode;
 pub use constants::{
     AxesRecord, BeamsRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PaintedRecord,

@@ -27,6 +27,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Angles under which surfaces are seen.
     pub view: View,
+    /// Share of neighbouring pixels that differ in material, 0 to 1.
+    pub neighbours_differ: f64,
     /// Room and time of the target.
     pub target: SceneTarget,
     /// Limits on the errors of models, unless a material has limits of its own.
@@ -83,8 +85,10 @@ pub struct View {
 pub struct SceneTarget {
     /// Bytes of the texels of all tables.
     pub max_bytes: Option<u64>,
-    /// Cycles per wave of 64 on RDNA2 of one evaluation.
+    /// Cost of one evaluation, in the unit of the device.
     pub max_cost: Option<f64>,
+    /// Short name of the device whose costs count.
+    pub device: Option<String>,
     /// Texel formats that tables may have.
     pub formats: Option<FormatSet>,
 }
@@ -164,6 +168,7 @@ fn decode(label: &str, text: &str, document: &Section<'_>, sink: &mut Sink<'_>) 
         materials: scene_materials,
         lights,
         view: View { angles_deg, footprint_deg },
+        neighbours_differ: view.as_ref().and_then(|at| at.number("neighbours_differ")).unwrap_or(0.0),
         target: document.section("target").map(|at| target(&at)).unwrap_or_default(),
         budget,
     }
@@ -177,6 +182,7 @@ fn target(at: &Section<'_>) -> SceneTarget {
     SceneTarget {
         max_bytes: at.number("max_bytes").map(|bytes| bytes as u64),
         max_cost: at.number("max_cost"),
+        device: at.text("device").map(str::to_owned),
         formats: at
             .has("formats")
             .then(|| at.texts("formats").iter().filter_map(|name| TexelFormat::from_name(name)).collect()),
@@ -208,8 +214,8 @@ mod tests {
 
     const SHELF: &str = "scene = 1\nname = \"shelf\"\n\n[[material]]\nfile = \"a.toml\"\nbudget = { delta_e = 2 }\n\n\
                          [[light]]\ntype = \"point\"\nfrom_eye_deg = [20, 60]\n\n[[light]]\ntype = \"environment\"\n\n\
-                         [view]\nangles_deg = [0, 60]\nfootprint_deg = 0.5\n\n\
-                         [target]\nmax_bytes = 4096\nmax_cost = 200\nformats = [\"rgba8unorm\"]\n\n[budget]\nmax_rel = 0.1\n";
+                         [view]\nangles_deg = [0, 60]\nfootprint_deg = 0.5\nneighbours_differ = 0.25\n\n\
+                         [target]\nmax_bytes = 4096\nmax_cost = 200\ndevice = \"rdna3\"\nformats = [\"rgba8unorm\"]\n\n[budget]\nmax_rel = 0.1\n";
 
     #[test]
     fn every_key_arrives() {
@@ -219,6 +225,7 @@ mod tests {
         assert_eq!(scene.view, View { angles_deg: [0.0, 60.0], footprint_deg: 0.5 });
         assert_eq!((scene.target.max_bytes, scene.target.max_cost), (Some(4096), Some(200.0)));
         assert_eq!(scene.target.formats, Some([TexelFormat::Rgba8Unorm].into_iter().collect()));
+        assert_eq!((scene.target.device.as_deref(), scene.neighbours_differ), (Some("rdna3"), 0.25));
         assert_eq!(scene.budget.max_rel, Some(0.1));
         assert_eq!(FileKind::of(SHELF), FileKind::Scene);
     }
@@ -238,8 +245,8 @@ mod tests {
             ("\"point\"", "\"pont\"", 9, "`pont` is no `type`", "did you mean `type = \"point\"`?"),
             ("[20, 60]", "[60, 20]", 10, "must ascend", "write `from_eye_deg = [20, 60]`"),
             ("[0, 60]", "[0, 95]", 16, "must be from 0 to 85", ""),
-            ("rgba8unorm", "rgba8", 22, "`rgba8` is no value", ""),
-            ("max_rel = 0.1\n", "", 24, "limits nothing", "max_rel"),
+            ("rgba8unorm", "rgba8", 24, "`rgba8` is no value", ""),
+            ("max_rel = 0.1\n", "", 26, "limits nothing", "max_rel"),
             ("scene = 1", "scene = 2", 1, "`scene` must be 1", "scene = 1"),
             ("file = ", "flie = ", 5, "unknown key `flie`", "did you mean `file`?"),
         ] {

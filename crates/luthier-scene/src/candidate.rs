@@ -41,7 +41,7 @@ pub struct Candidate {
     pub left_out: Vec<LeaveOut>,
     /// The material to bake: without the parts that are left out, with model and colour as settings.
     pub material: Material,
-    /// Cycles per wave of 64 on RDNA2.
+    /// Cost of one evaluation, in the unit of the device of the costs.
     pub cost: f64,
     /// Whether the cost is that of a similar surface, because the costs lack this one.
     pub cost_is_of_similar: bool,

@@ -1,14 +1,19 @@
 //! Choice of the first candidate that holds the budget.
 
+use luthier_cost::CostUnit;
 use luthier_layers::models::shade::ShaderTerms;
-use luthier_manifest::{ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, Verdict};
+use luthier_manifest::{
+    ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, ShadingModel, Verdict,
+};
 use luthier_material::{Light, Material, View};
 
 use crate::candidate::{Candidate, color_of};
 use crate::cost::CostTable;
+use crate::divergence::Shaded;
 use crate::error::{Miss, Standing, Value, largest};
 use crate::probe::{Probe, footprint, probes};
 use crate::reference::Reference;
+use crate::shape::shape;
 use crate::simplify::LeaveOut;
 
 /// The most samples of the reference for one material: about a minute of one core.
@@ -36,6 +41,40 @@ pub struct Judge {
     probes: Vec<Probe>,
     reference: Reference,
     footprint_deg: f64,
+    form: Form,
+    unit: CostUnit,
+}
+
+/// Candidates of a material that were judged against a budget, cheapest first.
+#[derive(Debug)]
+pub(crate) struct Tried {
+    budget: SceneBudget,
+    /// Figures with the verdict, and the largest ratio of an error to a limit.
+    judged: Vec<(SceneCandidate, f64)>,
+    /// Share of neighbours that differ in the choice to come.
+    neighbours_differ: f64,
+}
+
+impl Tried {
+    /// The cheapest candidate of each model that holds, cheapest first; the nearest one if none holds. `None` if nothing was judged.
+    pub(crate) fn eligible(&self) -> Option<Vec<usize>> {
+        let holds = |i: &usize| self.judged[*i].0.verdict == Verdict::Holds;
+        let mut found: Vec<usize> = Vec::new();
+        for i in (0..self.judged.len()).filter(holds) {
+            if !found.iter().any(|&other| self.judged[other].0.model == self.judged[i].0.model) {
+                found.push(i);
+            }
+        }
+        if found.is_empty() {
+            found.push((0..self.judged.len()).min_by(|&a, &b| self.judged[a].1.total_cmp(&self.judged[b].1))?);
+        }
+        Some(found)
+    }
+
+    pub(crate) fn shaded(&self, i: usize) -> Shaded {
+        let SceneCandidate { model, cost, .. } = self.judged[i].0;
+        Shaded { model, cost }
+    }
 }
 
 impl Judge {
@@ -58,6 +97,8 @@ impl Judge {
             reference,
             probes,
             footprint_deg: view.footprint_deg,
+            form,
+            unit: costs.device.unit,
         }
     }
 
@@ -66,43 +107,84 @@ impl Judge {
     ///
     /// `None` if every candidate costs more than `max_cost`.
     pub fn choose(&mut self, budget: &SceneBudget, max_cost: Option<f64>) -> Option<MaterialChoice> {
-        let budget = &budget.scaled(MODEL_SHARE);
-        let mut tried: Vec<(SceneCandidate, f64)> = Vec::new();
-        let mut holder = None;
+        let tried = self.tried(budget, max_cost, 0.0);
+        let chosen = *tried.eligible()?.first()?;
+        Some(self.chosen(tried, chosen))
+    }
+
+    /// Judges candidates, cheapest first, up to the first that holds; where neighbours differ, up to those that cannot be cheaper for a scene.
+    pub(crate) fn tried(&mut self, budget: &SceneBudget, max_cost: Option<f64>, neighbours_differ: f64) -> Tried {
+        let budget = budget.scaled(MODEL_SHARE);
+        // A material pays for every model of a scene: the dearest choice that can pay replaces all of them.
+        let reach = 1.0 + neighbours_differ * ShadingModel::ALL.len() as f64;
+        let mut judged: Vec<(SceneCandidate, f64)> = Vec::new();
+        let mut most = f64::INFINITY;
         for number in 0..self.candidates.len() {
-            if max_cost.is_some_and(|most| self.candidates[number].cost > most) {
+            let cost = self.candidates[number].cost;
+            if max_cost.is_some_and(|most| cost > most) || cost >= most {
                 break;
             }
-            let judged = self.judge(number, budget);
-            let holds = judged.0.verdict == Verdict::Holds;
-            tried.push(judged);
-            if holds {
-                holder = Some(number);
+            let found = self.judge(number, &budget);
+            let holds = found.0.verdict == Verdict::Holds;
+            judged.push(found);
+            if holds && neighbours_differ == 0.0 {
                 break;
+            }
+            if holds && most.is_infinite() {
+                most = reach * cost;
             }
         }
-        let nearest = (0..tried.len()).min_by(|&a, &b| tried[a].1.total_cmp(&tried[b].1))?;
-        let chosen = holder.unwrap_or(nearest);
-        let cost = tried[chosen].0.cost;
-        let cheaper = (0..tried.len()).filter(|&i| tried[i].0.cost < cost);
+        Tried { budget, judged, neighbours_differ }
+    }
+
+    /// The choice of one of the candidates that were judged.
+    pub(crate) fn chosen(&self, Tried { budget, judged, neighbours_differ }: Tried, chosen: usize) -> MaterialChoice {
+        let cost = judged[chosen].0.cost;
+        let cheaper = (0..judged.len()).filter(|&i| judged[i].0.cost < cost);
         // Among equal costs, the most accurate.
         let next_cheaper = cheaper.max_by(|&a, &b| {
-            let by_cost = tried[a].0.cost.total_cmp(&tried[b].0.cost);
-            by_cost.then(tried[b].1.total_cmp(&tried[a].1)).then(b.cmp(&a))
+            let by_cost = judged[a].0.cost.total_cmp(&judged[b].0.cost);
+            by_cost.then(judged[b].1.total_cmp(&judged[a].1)).then(b.cmp(&a))
         });
-        let tried: Vec<SceneCandidate> = tried.into_iter().map(|(candidate, _)| candidate).collect();
-        let reason = reason(&tried, chosen, next_cheaper, budget);
-        Some(MaterialChoice {
+        let tried: Vec<SceneCandidate> = judged.into_iter().map(|(candidate, _)| candidate).collect();
+        let reason = reason(&tried, chosen, next_cheaper, &budget, self.unit, neighbours_differ);
+        MaterialChoice {
             name: self.name.clone(),
-            budget: *budget,
+            budget,
             chosen,
             next_cheaper,
             reason,
+            disagreements: Vec::new(),
             tried,
             probes: self.probes.len() as u32,
             samples: self.reference.samples(),
             table_error: None,
-        })
+        }
+    }
+
+    /// Sentences on orders that other devices turn round: of the chosen candidate and the next cheaper one, and of the chosen one and the next dearer one
+    /// of another model.
+    pub(crate) fn disagreements(&self, choice: &MaterialChoice, own: &CostTable, others: &[CostTable]) -> Vec<String> {
+        let chosen = &self.candidates[choice.chosen];
+        let dearer = self.candidates.iter().position(|c| c.cost > chosen.cost && c.model != chosen.model);
+        let cost = |costs: &CostTable, candidate: &Candidate| {
+            costs.cost(candidate.model, self.form, &shape(&candidate.material.stack)).map(|(cost, _)| cost)
+        };
+        let mut found = Vec::new();
+        for other in [choice.next_cheaper, dearer].into_iter().flatten().map(|i| &self.candidates[i]) {
+            let [cheap, dear] = if other.cost < chosen.cost { [other, chosen] } else { [chosen, other] };
+            let turned: Vec<&str> = others
+                .iter()
+                .filter(|costs| cost(costs, cheap).zip(cost(costs, dear)).is_some_and(|(cheap, dear)| cheap > dear))
+                .map(|costs| costs.device.name.as_str())
+                .collect();
+            if !turned.is_empty() {
+                let [cheap, dear] = [cheap, dear].map(|c| label_of(c.model, c.color, &names(&c.left_out)));
+                let (own, turned) = (&own.device.name, turned.join(", "));
+                found.push(format!("{cheap} costs less than {dear} on {own}, and more on {turned}"));
+            }
+        }
+        found
     }
 
     /// Errors of a candidate on the terms of tables, against exact terms, at the directions of the scene.
@@ -147,7 +229,7 @@ impl Judge {
             let judged = SceneCandidate {
                 model: candidate.model,
                 color: candidate.color,
-                left_out: candidate.left_out.iter().map(|part| LeaveOut::name(*part)).collect(),
+                left_out: names(&candidate.left_out),
                 cost: candidate.cost,
                 cost_is_of_similar: candidate.cost_is_of_similar,
                 error: largest(&misses, &self.probes),
@@ -160,18 +242,46 @@ impl Judge {
 
 /// A candidate in a few words: model, colour, parts that are left out.
 pub fn label(candidate: &SceneCandidate) -> String {
-    let color = if candidate.color == ColorMode::Spectral { "" } else { " at three wavelengths" };
-    let without = if candidate.left_out.is_empty() {
-        String::new()
-    } else {
-        format!(" without {}", candidate.left_out.join(", "))
-    };
-    format!("{}{color}{without}", candidate.model.name())
+    label_of(candidate.model, candidate.color, &candidate.left_out)
 }
 
-fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, budget: &SceneBudget) -> String {
+fn label_of(model: ShadingModel, color: ColorMode, left_out: &[String]) -> String {
+    let color = if color == ColorMode::Spectral { "" } else { " at three wavelengths" };
+    let without = if left_out.is_empty() { String::new() } else { format!(" without {}", left_out.join(", ")) };
+    format!("{}{color}{without}", model.name())
+}
+
+fn names(left_out: &[LeaveOut]) -> Vec<String> {
+    left_out.iter().map(|part| part.name()).collect()
+}
+
+/// A cost with its unit.
+///
+/// ```
+/// use luthier_cost::CostUnit;
+/// use luthier_scene::cost_text;
+///
+/// assert_eq!(cost_text(5.25, CostUnit::Picoseconds), "5.2 ps");
+/// assert_eq!(cost_text(164.0, CostUnit::Cycles), "164 cycles");
+/// ```
+pub fn cost_text(cost: f64, unit: CostUnit) -> String {
+    let digits = usize::from(unit == CostUnit::Picoseconds && cost < 1e3);
+    format!("{cost:.digits$} {unit}")
+}
+
+fn reason(
+    tried: &[SceneCandidate],
+    chosen: usize,
+    next_cheaper: Option<usize>,
+    budget: &SceneBudget,
+    unit: CostUnit,
+    neighbours_differ: f64,
+) -> String {
     let own = &tried[chosen];
+    let has_cheaper_holder = tried[..chosen].iter().any(|other| other.verdict == Verdict::Holds);
+    let for_scene = format!("the cheapest for a scene where a share of {neighbours_differ} of neighbours differs");
     let verdict = match own.verdict {
+        Verdict::Holds if has_cheaper_holder => for_scene.as_str(),
         Verdict::Holds => "the cheapest that holds",
         Verdict::Undecided => {
             "none holds for certain; this comes nearest, and the noise of the reference leaves it open"
@@ -180,13 +290,17 @@ fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, 
     };
     let place = own.error.at.filter(|_| own.verdict != Verdict::Holds).map_or_else(String::new, |at| format!("; {at}"));
     let mut text =
-        format!("{} for {:.0} cycles: {verdict} (error {}{place})", label(own), own.cost, errors(own, budget));
+        format!("{} for {}: {verdict} (error {}{place})", label(own), cost_text(own.cost, unit), errors(own, budget));
     if let Some(cheaper) = next_cheaper.map(|i| &tried[i]) {
-        let outcome = if cheaper.verdict == Verdict::Undecided { "could not be told apart from" } else { "would have" };
+        let outcome = match cheaper.verdict {
+            Verdict::Undecided => "could not be told apart from",
+            Verdict::Holds => "alone holds, too, with",
+            Verdict::Fails => "would have",
+        };
         text.push_str(&format!(
-            "; {} for {:.0} cycles {outcome} {}",
+            "; {} for {} {outcome} {}",
             label(cheaper),
-            cheaper.cost,
+            cost_text(cheaper.cost, unit),
             errors(cheaper, budget)
         ));
     }

@@ -1,6 +1,7 @@
-//! Costs of shaders by model, form and shape, as a compiler counted them.
+//! Costs of shaders by model, form and shape, on a device.
 
-use luthier_manifest::{Form, ShadingModel};
+use luthier_cost::{DEFAULT_DEVICE, DeviceCost, Family, StaticCounts};
+use luthier_manifest::{CostDevice, Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::shape::{distance, shape_of};
@@ -8,28 +9,61 @@ use crate::shape::{distance, shape_of};
 /// Output of `scripts/pages.sh shapes`, with the version of the driver in it.
 pub const COST_DATA: &str = include_str!("../data/cost.json");
 
-/// Costs of shaders by model, form and shape of the surface.
+/// Counts of shaders by model, form and shape of the surface: [`COST_DATA`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapeTable {
+    /// Driver whose compiler counted cycles, with its version.
+    pub driver: String,
+    /// Families of GPUs, in the order of [`ShapeRow::cycles`].
+    pub families: Vec<Family>,
+    /// Names of the counts, in the order of [`ShapeRow::counts`].
+    pub counts: Vec<String>,
+    /// One per model, form and shape.
+    pub rows: Vec<ShapeRow>,
+}
+
+/// Counts of one shader.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapeRow {
+    /// The model.
+    pub model: ShadingModel,
+    /// The form.
+    pub form: Form,
+    /// The shape that the model sees, see [`shape_of`].
+    pub shape: String,
+    /// Inverse throughput by the driver's compiler, cycles per wave of 64, for each family.
+    pub cycles: Vec<u32>,
+    /// Counts of the text for one light.
+    pub counts: [u32; StaticCounts::NAMES.len()],
+}
+
+/// Costs of shaders on one device, by model, form and shape of the surface.
 ///
 /// ```
 /// use luthier_manifest::{Form, ShadingModel};
 /// use luthier_scene::CostTable;
 ///
 /// // A smooth dielectric of Beckmann slopes over a conductor.
-/// let (cycles, is_of_similar) = CostTable::shipped().cost(ShadingModel::Elek, Form::Baked, "dbx/cb").unwrap();
-/// assert!(cycles > 0.0 && !is_of_similar);
+/// let (cost, is_of_similar) = CostTable::shipped().cost(ShadingModel::Elek, Form::Baked, "dbx/cb").unwrap();
+/// assert!(cost > 0.0 && !is_of_similar);
+/// // Reads of textures weigh more on a device that was timed than in the cycles that a compiler counts.
+/// let ratio = |device| {
+///     let costs = CostTable::on(device).unwrap();
+///     let [lobes, elek] = [ShadingModel::Lobes, ShadingModel::Elek].map(|m| costs.cost(m, Form::Baked, "dbx/cb").unwrap().0);
+///     lobes / elek
+/// };
+/// assert!(ratio("h100") > 1.5 * ratio("rdna2"));
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CostTable {
-    /// Driver and version.
-    pub driver: String,
-    /// Family of GPUs.
-    pub family: String,
-    /// One per model, form and shape, in this order.
+    /// The device.
+    pub device: DeviceCost,
+    /// One per model, form and shape, in the order of the data.
     pub rows: Vec<CostRow>,
 }
 
 /// Cost of one shader.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CostRow {
     /// The model.
     pub model: ShadingModel,
@@ -37,19 +71,46 @@ pub struct CostRow {
     pub form: Form,
     /// The shape that the model sees, see [`shape_of`].
     pub shape: String,
-    /// Inverse throughput, cycles per wave of 64.
-    pub cycles: u32,
+    /// Cost of one evaluation, in the unit of the device.
+    pub cost: f64,
 }
 
 impl CostTable {
-    /// The table that ships, [`COST_DATA`].
-    pub fn shipped() -> Self {
+    /// The costs of shapes on a device: the compiler's own count where it stands for a family of chips, and the counts of the text times the numbers of
+    /// the device elsewhere.
+    pub fn of(device: DeviceCost) -> Self {
         // A test reads the data. If it were broken all the same, no shader would have a cost, and no model would be a candidate.
-        serde_json::from_str(COST_DATA).unwrap_or_else(|_| Self {
-            driver: String::new(),
-            family: String::new(),
-            rows: Vec::new(),
-        })
+        let table: Option<ShapeTable> = serde_json::from_str(COST_DATA).ok();
+        let place = table.iter().flat_map(|table| &table.families).position(|family| device.family == Some(*family));
+        let rows =
+            table.into_iter().flat_map(|table| table.rows).map(|ShapeRow { model, form, shape, cycles, counts }| {
+                let by_compiler = place.and_then(|place| cycles.get(place)).map(|cycles| f64::from(*cycles));
+                let cost = by_compiler.unwrap_or_else(|| device.cost(&StaticCounts::of_values(counts)));
+                CostRow { model, form, shape, cost }
+            });
+        Self { rows: rows.collect(), device }
+    }
+
+    /// The costs on a device whose costs ship; `None` for another name.
+    pub fn on(device: &str) -> Option<Self> {
+        DeviceCost::shipped(device).map(Self::of)
+    }
+
+    /// The cycles that RADV's compiler counts for RDNA2.
+    pub fn rdna2() -> Self {
+        Self::on("rdna2").unwrap_or_else(Self::shipped)
+    }
+
+    /// The costs on [`DEFAULT_DEVICE`].
+    pub fn shipped() -> Self {
+        // A test reads the files of all devices.
+        Self::on(DEFAULT_DEVICE).unwrap_or_else(|| unreachable!("the costs of {DEFAULT_DEVICE} ship"))
+    }
+
+    /// The device, for manifests.
+    pub fn manifest_device(&self) -> CostDevice {
+        let DeviceCost { name, device, driver, unit, .. } = self.device.clone();
+        CostDevice { name, device, driver, unit: unit.name().to_owned() }
     }
 
     /// The table without the costs of a model. The model is then no candidate.
@@ -58,14 +119,14 @@ impl CostTable {
         self
     }
 
-    /// Cost of a shader for a surface of some [`shape`](crate::shape). The flag is true if the shape was not measured and the cost is that of the most
+    /// Cost of a shader for a surface of some [`shape`](crate::shape). The flag is true if the shape was not counted and the cost is that of the most
     /// similar one; among equally similar shapes the dearest counts.
     pub fn cost(&self, model: ShadingModel, form: Form, shape: &str) -> Option<(f64, bool)> {
         let wanted = shape_of(model, shape);
         let rows = self.rows.iter().filter(|row| row.model == model && row.form == form);
-        let near = rows.map(|row| (distance(&row.shape, &wanted), row.cycles));
-        let (distance, cycles) = near.min_by_key(|&(distance, cycles)| (distance, std::cmp::Reverse(cycles)))?;
-        Some((f64::from(cycles), distance > 0))
+        let near = rows.map(|row| (distance(&row.shape, &wanted), row.cost));
+        let (distance, cost) = near.min_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)))?;
+        Some((cost, distance > 0))
     }
 }
 
@@ -75,13 +136,19 @@ mod tests {
 
     #[test]
     fn the_shipped_table_is_whole() {
-        let table: CostTable = serde_json::from_str(COST_DATA).unwrap();
-        for model in ShadingModel::ALL {
-            for form in Form::ALL.into_iter().filter(|form| model.has(*form)) {
-                let (cost, is_of_similar) = table.cost(model, form, "dbx/cb").unwrap();
-                assert!(cost > 0.0 && !is_of_similar, "{model:?} {form:?}");
+        let data: ShapeTable = serde_json::from_str(COST_DATA).unwrap();
+        assert_eq!(data.counts, StaticCounts::NAMES);
+        assert_eq!(data.families, Family::ALL);
+        for device in DeviceCost::names() {
+            let table = CostTable::on(device).unwrap();
+            for model in ShadingModel::ALL {
+                for form in Form::ALL.into_iter().filter(|form| model.has(*form)) {
+                    let (cost, is_of_similar) = table.cost(model, form, "dbx/cb").unwrap();
+                    assert!(cost > 0.0 && !is_of_similar, "{device} {model:?} {form:?}");
+                }
             }
         }
+        let table = CostTable::shipped();
         let mut keys: Vec<_> = table.rows.iter().map(|row| (row.model.name(), row.form, &row.shape)).collect();
         let count = keys.len();
         keys.sort();
@@ -89,13 +156,33 @@ mod tests {
         assert_eq!(keys.len(), count);
     }
 
-    /// Why the form `full` is only looked at where tables have no room.
+    /// The grammar of scenes knows the devices whose costs ship, and no other.
     #[test]
-    fn no_full_form_is_cheaper_than_its_baked_form() {
-        let table = CostTable::shipped();
-        for row in table.rows.iter().filter(|row| row.form == Form::Full) {
-            let baked = table.rows.iter().find(|r| (r.model, r.form, &r.shape) == (row.model, Form::Baked, &row.shape));
-            assert!(baked.is_some_and(|baked| baked.cycles <= row.cycles), "{row:?} {baked:?}");
+    fn scenes_may_name_every_device() {
+        let text = |name: &str| {
+            format!(
+                "scene = 1\nname = \"shelf\"\n[[material]]\nfile = \"a.toml\"\n[[light]]\ntype = \"environment\"\n\
+                 [target]\ndevice = \"{name}\"\n[budget]\nmax_rel = 0.1\n"
+            )
+        };
+        for name in DeviceCost::names() {
+            let scene = luthier_material::parse_scene("shelf.toml", &text(name)).unwrap();
+            assert_eq!(scene.target.device.as_deref(), Some(name));
+        }
+        let wrong = luthier_material::parse_scene("shelf.toml", &text("abacus")).unwrap_err();
+        assert_eq!(wrong.len(), 1);
+    }
+
+    /// Why the form `full` is only looked at where tables have no room. llvmpipe filters textures in software, and is no target of scenes.
+    #[test]
+    fn on_no_gpu_is_a_full_form_cheaper_than_its_baked_form() {
+        for device in DeviceCost::names().filter(|name| *name != "llvmpipe") {
+            let table = CostTable::on(device).unwrap();
+            for row in table.rows.iter().filter(|row| row.form == Form::Full) {
+                let same = |r: &&CostRow| (r.model, r.form, &r.shape) == (row.model, Form::Baked, &row.shape);
+                let baked = table.rows.iter().find(same);
+                assert!(baked.is_some_and(|baked| baked.cost <= row.cost), "{device}: {row:?} {baked:?}");
+            }
         }
     }
 }

@@ -9,7 +9,8 @@ use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
 use thiserror::Error;
 
-use crate::{CostTable, Form, Judge, TABLE_SHARE, label};
+use crate::divergence::cheapest;
+use crate::{CostTable, DeviceCost, Form, Judge, Shaded, TABLE_SHARE, cost_text, label, scene_cost};
 
 /// Limits on the absolute error of tables to try, loosest first.
 const TABLE_LEVELS: [f64; 6] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5];
@@ -25,6 +26,9 @@ pub struct Director<'a> {
     functions: Functions,
     store: &'a dyn Store,
     costs: CostTable,
+    /// Whether the target has the format of rows of lobes, and whether models may be fitted.
+    has_rows: bool,
+    has_fits: bool,
     baked: Option<Vec<Judge>>,
     full: Option<Vec<Judge>>,
 }
@@ -44,9 +48,9 @@ impl Made {
         self.package.texel_bytes()
     }
 
-    /// Cycles of all materials together.
-    pub fn cycles(&self) -> f64 {
-        self.choice.materials.iter().map(|choice| choice.candidate().cost).sum()
+    /// Cost of all materials together, in the unit of the choice's device.
+    pub fn cost(&self) -> f64 {
+        self.choice.cost
     }
 
     /// The largest error of a model, relative.
@@ -97,7 +101,7 @@ impl<'a> Director<'a> {
     pub fn new(scene: &'a Scene, materials: &'a [Material], targets: Vec<Target>, store: &'a dyn Store) -> Self {
         // Rows of lobes exist in one format only: without it, `lobes` is no candidate.
         let has_rows = scene.target.formats.is_none_or(|formats| formats.has(TexelFormat::Rgba16Float));
-        let costs = CostTable::shipped();
+        let costs = default_costs(scene);
         Self {
             scene,
             materials,
@@ -105,15 +109,30 @@ impl<'a> Director<'a> {
             functions: Functions::default(),
             store,
             costs: if has_rows { costs } else { costs.without(ShadingModel::Lobes) },
+            has_rows,
+            has_fits: true,
             baked: None,
             full: None,
         }
     }
 
+    /// Takes the costs of a device in place of those that the scene names.
+    #[must_use]
+    pub fn with_costs(self, device: DeviceCost) -> Self {
+        let costs = CostTable::of(device);
+        let has_lobes = self.has_rows && self.has_fits;
+        Self { costs: if has_lobes { costs } else { costs.without(ShadingModel::Lobes) }, ..self }
+    }
+
+    /// The device whose costs count.
+    pub fn device(&self) -> &DeviceCost {
+        &self.costs.device
+    }
+
     /// Excludes models that are fitted to a simulation of the stack.
     #[must_use]
     pub fn without_fits(self) -> Self {
-        Self { costs: self.costs.without(ShadingModel::Lobes), ..self }
+        Self { costs: self.costs.without(ShadingModel::Lobes), has_fits: false, ..self }
     }
 
     /// Adds groups of functions to the shaders.
@@ -163,16 +182,35 @@ impl<'a> Director<'a> {
             let materials = self.materials.iter();
             materials.map(|material| Judge::new(material, form, &scene.lights, &scene.view, costs)).collect()
         });
-        let mut choices: Vec<MaterialChoice> = Vec::with_capacity(judges.len());
-        let mut misses = Vec::new();
+        let share = scene.neighbours_differ;
+        let mut all_tried = Vec::new();
         for (judge, (budget, material)) in judges.iter_mut().zip(budgets.iter().zip(self.materials)) {
-            let Some(choice) = judge.choose(budget, scene.target.max_cost) else {
+            let tried = judge.tried(budget, scene.target.max_cost, share);
+            let Some(eligible) = tried.eligible() else {
+                let unit = costs.device.unit;
                 let least = judge.candidates().first().map_or(0.0, |candidate| candidate.cost);
-                let most = scene.target.max_cost.unwrap_or_default();
-                let text =
-                    format!("{}: the cheapest model takes {least:.0} cycles, more than {most:.0}", material.name);
+                let [least, most] =
+                    [least, scene.target.max_cost.unwrap_or_default()].map(|cost| cost_text(cost, unit));
+                let name = &costs.device.name;
+                let text = format!("{}: the cheapest model takes {least} on {name}, more than {most}", material.name);
                 return Ok(Err(Refusal::Model(text)));
             };
+            all_tried.push((tried, eligible));
+        }
+        let shaded = all_tried.iter().map(|(tried, eligible)| eligible.iter().map(|&i| tried.shaded(i)).collect());
+        let shaded: Vec<Vec<Shaded>> = shaded.collect();
+        // Alone, each material takes its cheapest.
+        let places = if share == 0.0 { None } else { cheapest(&shaded, share) };
+        let places = places.unwrap_or_else(|| vec![0; shaded.len()]);
+        let taken: Vec<Shaded> = shaded.iter().zip(&places).map(|(of_one, &place)| of_one[place]).collect();
+        let cost = scene_cost(&taken, share);
+        let names = DeviceCost::names().filter(|name| *name != costs.device.name);
+        let others: Vec<CostTable> = names.filter_map(CostTable::on).collect();
+        let mut choices: Vec<MaterialChoice> = Vec::with_capacity(judges.len());
+        let mut misses = Vec::new();
+        for ((judge, (tried, eligible)), place) in judges.iter().zip(all_tried).zip(places) {
+            let mut choice = judge.chosen(tried, eligible[place]);
+            choice.disagreements = judge.disagreements(&choice, costs, &others);
             if !choice.holds() {
                 misses.push(format!("{}: {}", choice.name, choice.reason));
             }
@@ -213,6 +251,9 @@ impl<'a> Director<'a> {
             source: scene.source.clone(),
             source_hash: sha256(scene.text.as_bytes()),
             form,
+            device: Some(self.costs.manifest_device()),
+            neighbours_differ: share,
+            cost,
             materials: choices,
         };
         let mut made = Made { choice, package };
@@ -222,6 +263,12 @@ impl<'a> Director<'a> {
             None => Ok(made),
         })
     }
+}
+
+/// The costs that a scene asks for. A limit on cost without a device is one of cycles on RDNA2.
+fn default_costs(scene: &Scene) -> CostTable {
+    let named = scene.target.device.as_deref().or(scene.target.max_cost.map(|_| "rdna2"));
+    named.and_then(CostTable::on).unwrap_or_else(CostTable::shipped)
 }
 
 /// Reason why tables do not fit the target: too many bytes, or a format that it lacks.

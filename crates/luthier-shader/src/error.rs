@@ -113,6 +113,9 @@ pub enum ShaderError {
         /// Obstacle in the way.
         reason: String,
     },
+    /// Operations of a text cannot be counted.
+    #[error("the operations of this text cannot be counted: {0}")]
+    Uncounted(String),
     /// SPIR-V was asked for as text.
     #[error("SPIR-V is no text")]
     NotText,

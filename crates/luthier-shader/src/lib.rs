@@ -22,10 +22,11 @@
 //! [`library`] translates any WGSL module of functions, textures and samplers, and [`library_spirv`] compiles it to SPIR-V. Tables of engines,
 //! which belong to no material, get their look-ups this way.
 //!
-//! [`Yardstick`] has shaders of engines, to compare costs with.
+//! [`Yardstick`] has shaders of engines, to compare costs with. [`count`] counts the operations of an evaluation from its text: reads by kind, special
+//! functions, plain arithmetic.
 //!
 //! Modules use only those named before them: `functions`, `identifiers`, `style`, `error`, `yardstick`; `set`; `validate`; `compose` (WGSL of a set) and
-//! `languages` (any WGSL in another language), which do not use each other; `library` and `emit`.
+//! `languages` (any WGSL in another language) and `count` (operations of any WGSL), which do not use each other; `library` and `emit`.
 //!
 //! Simplifications: bindings of materials are in group 0; the full form has one film per interface.
 //!
@@ -33,6 +34,7 @@
 //! [`RESERVED_BINDINGS`] up are the caller's.
 
 mod compose;
+mod count;
 mod emit;
 mod error;
 mod functions;
@@ -44,6 +46,7 @@ mod style;
 mod validate;
 mod yardstick;
 
+pub use count::{StaticCounts, count};
 pub use emit::{complete, complete_spirv, emit, emit_constant, emit_spirv, interface};
 pub use error::ShaderError;
 pub use languages::spirv::{library_spirv, spirv_words};

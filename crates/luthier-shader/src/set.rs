@@ -99,6 +99,12 @@ impl<'a> MaterialSet<'a> {
         Self { materials: materials.into(), within: None, surfaces: &[], tables, functions: Functions::default() }
     }
 
+    /// Names of the textures of tables with more than 4 bytes a texel: their filtered reads cost more.
+    pub fn wide_textures(&self) -> Vec<String> {
+        let wide = self.tables.iter().filter(|table| table.format.texel_bytes() > 4);
+        wide.map(|table| format!("luthier_{}", table.kind.name())).collect()
+    }
+
     /// All materials, tables and groups of functions of a bake.
     pub fn from_manifest(manifest: &'a Manifest) -> Self {
         let tables = manifest.tables.iter();

@@ -84,7 +84,7 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
-    /// Count the cycles of every shader of every material on real GPUs, without such a GPU: a page in Markdown
+    /// Count the cycles of every shader of every material on gcn5, rdna2 and rdna3, without such a GPU, or predict its cost on another device: a page in Markdown
     #[cfg(feature = "cost")]
     Cost(CostOptions),
     /// Time every shader of every material on the graphics adapter of this machine
@@ -172,6 +172,8 @@ pub(crate) struct BakeOptions {
     pub(crate) emission: Emission,
     #[command(flatten)]
     pub(crate) pipeline: Pipeline,
+    #[command(flatten)]
+    pub(crate) costs_of: CostsOf,
     /// Of a scene: if no model holds the budget, take the most accurate one
     #[arg(long)]
     pub(crate) allow_miss: bool,
@@ -352,7 +354,7 @@ pub(crate) struct ReportOptions {
     /// Compare the models with a simulation of this many paths per view
     #[arg(long, value_name = "PATHS", num_args = 0..=1, default_missing_value = "1000", require_equals = true)]
     pub(crate) reference: Option<std::num::NonZeroU32>,
-    /// Costs of shaders: the output of `luthier cost --json` for these materials
+    /// Costs of shaders on gcn5, rdna2 and rdna3: the output of `luthier cost --json` for these materials
     #[arg(long, value_name = "FILE")]
     pub(crate) cost: Option<PathBuf>,
     /// Results of the stability suite: the output of `luthier-lab stability --json`
@@ -384,6 +386,9 @@ pub(crate) struct ReportOptions {
     pub(crate) json: bool,
 }
 
+mod device;
+pub(crate) use device::CostsOf;
+
 mod manual;
 pub(crate) use manual::{CompletionsOptions, ManOptions};
 
@@ -413,7 +418,8 @@ pub(crate) use render::{CompareOptions, Look, PreviewOptions, ShapeName, Side};
 
 #[cfg(feature = "cost")]
 const COST_EXAMPLES: &str = "\
-Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
+Mesa's RADV driver compiles for gcn5, rdna2 and rdna3 without such a GPU; where it is missing, the exit code is 4. Costs on h100, llvmpipe or a device of --costs \
+are predicted from counts of the texts, and need no driver. What making directions \
 and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
 form `baked` with D from its table and in closed form, unless named.
 
@@ -421,6 +427,7 @@ Examples:
   luthier cost materials -o docs/pages/cost.md
   luthier cost mine.toml --model elek --model phong --family rdna2 --json
   luthier cost materials --set --form baked
+  luthier cost mine.toml --device h100
   luthier cost mine.toml --model elek --form baked --closed --constant --family rdna2 --assembly";
 
 #[cfg(feature = "cost")]
@@ -445,8 +452,10 @@ pub(crate) struct CostOptions {
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
     pub(crate) form: Vec<Form>,
     /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
-    #[arg(long, value_name = "NAME", value_parser = named::<Family>(Family::NAMES))]
+    #[arg(long, value_name = "NAME", value_parser = named::<Family>(Family::NAMES), conflicts_with_all = ["device", "costs"])]
     pub(crate) family: Vec<Family>,
+    #[command(flatten)]
+    pub(crate) costs_of: CostsOf,
     /// All materials in one shader, as a bake of them has it, instead of each in its own
     #[arg(long)]
     pub(crate) set: bool,
@@ -457,7 +466,7 @@ pub(crate) struct CostOptions {
     #[arg(long, conflicts_with = "set")]
     pub(crate) constant: bool,
     /// Print the machine code of one kernel
-    #[arg(long, conflicts_with_all = ["json", "output"])]
+    #[arg(long, conflicts_with_all = ["json", "output", "costs"])]
     pub(crate) assembly: bool,
     /// JSON instead of Markdown
     #[arg(long)]
@@ -505,6 +514,9 @@ pub(crate) struct BenchOptions {
     /// Use the graphics adapter whose name contains this
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
+    /// Fit costs of operations to the times, print them and write them to FILE, which `--costs` reads. Without FILE they are printed alone
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", conflicts_with = "per_pixel")]
+    pub(crate) fit: Option<PathBuf>,
     /// JSON instead of a table
     #[arg(long)]
     pub(crate) json: bool,

@@ -2,24 +2,35 @@
 
 use luthier::{outline, read_materials};
 use luthier_bake::Options;
-use luthier_cost::{CostReport, CostRow, Family, Harness, Kernel, Style, assembly_apart, compile_apart};
+use luthier_cost::{
+    CostReport, CostRow, DeviceCost, Family, Harness, Kernel, StaticCounts, Style, assembly_apart, compile_apart,
+    shader_text,
+};
 use luthier_export::GENERATOR;
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
-use luthier_shader::{Form, MaterialSet};
+use luthier_shader::{Form, MaterialSet, count};
 use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
 use crate::materials::{is_shaded_by, models, shade_by};
 use crate::store::store;
+use crate::verb::cost_on;
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
 pub(crate) fn run(options: &CostOptions) -> Outcome {
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
+    let device = options.costs_of.load()?;
+    // A family of chips has its compiler, which is asked in place of counts.
+    let family: Vec<Family> = device.iter().filter_map(|device| device.family).collect();
+    let asked = if family.is_empty() { &options.family } else { &family };
     let variants = variants(options, &materials)?;
+    if let Some(costs) = device.filter(|device| device.family.is_none()) {
+        return on_device(options, &costs, variants);
+    }
     if options.assembly {
-        return match (variants.as_slice(), options.family.as_slice()) {
+        return match (variants.as_slice(), asked.as_slice()) {
             ([variant], [family]) => print(&assembly_apart(*family, &variant.kernel).map_err(Failure::device)?),
             _ => Err(Failure::Usage(anyhow::anyhow!(
                 "--assembly prints one kernel, not {}: name one material, --model, --form, --closed, --constant and --family",
@@ -29,7 +40,7 @@ pub(crate) fn run(options: &CostOptions) -> Outcome {
     }
     let mut kernels = vec![Kernel::empty(Harness::Bare).map_err(Failure::input)?];
     kernels.extend(variants.iter().map(|v| v.kernel.clone()));
-    let families: &[Family] = if options.family.is_empty() { &Family::ALL } else { &options.family };
+    let families: &[Family] = if asked.is_empty() { &Family::ALL } else { asked };
     let mut report = CostReport { generator: GENERATOR.to_owned(), ..CostReport::default() };
     for &family in families {
         let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
@@ -52,6 +63,27 @@ pub(crate) fn run(options: &CostOptions) -> Outcome {
     deliver(&text, options.output.as_deref())
 }
 
+/// The costs on a device that no compiler counts for.
+fn on_device(options: &CostOptions, costs: &DeviceCost, variants: Vec<Variant>) -> Outcome {
+    if options.assembly {
+        return Err(Failure::Usage(anyhow::anyhow!("--assembly is of gcn5, rdna2 and rdna3, not of {}", costs.name)));
+    }
+    let shaders = variants.into_iter().map(|Variant { material, model, style, closed, counts, .. }| cost_on::Shader {
+        material,
+        model,
+        form: style.form,
+        closed,
+        constant: style.constant,
+        counts,
+    });
+    let shaders: Vec<cost_on::Shader> = shaders.collect();
+    let text = match options.json {
+        true => cost_on::json(costs, &shaders)?,
+        false => cost_on::markdown(costs, &shaders, &command(options)),
+    };
+    deliver(&text, options.output.as_deref())
+}
+
 /// One shader to compile.
 struct Variant {
     material: String,
@@ -59,6 +91,8 @@ struct Variant {
     style: Style,
     /// Whether D is a closed form.
     closed: bool,
+    /// Counts of its text.
+    counts: StaticCounts,
     kernel: Kernel,
 }
 
@@ -96,8 +130,10 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
                     let set = if closed { set.with_closed_distribution() } else { set };
                     let style = Style { form, constant, approximate: false };
                     let kernel = Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?;
+                    let text = shader_text(&set, style).map_err(Failure::input)?;
+                    let counts = count(&text, &set.wide_textures(), 1).map_err(Failure::input)?;
                     let closed = closed || !has_table;
-                    variants.push(Variant { material: name.clone(), model, style, closed, kernel });
+                    variants.push(Variant { material: name.clone(), model, style, closed, counts, kernel });
                 }
             }
         }
@@ -124,6 +160,8 @@ fn command(options: &CostOptions) -> String {
     words.extend(options.fresnel.iter().map(|reflectance| format!("--fresnel {reflectance}")));
     words.extend(options.layout.iter().map(|layout| format!("--layout {}", layout.name())));
     words.extend(options.family.iter().map(|family| format!("--family {}", family)));
+    words.extend(options.costs_of.device.iter().map(|name| format!("--device {name}")));
+    words.extend(options.costs_of.costs.iter().map(|path| format!("--costs {}", path.display())));
     let flags = [
         ("--no-fit", options.no_fit),
         ("--set", options.set),

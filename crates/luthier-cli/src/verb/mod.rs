@@ -4,6 +4,8 @@ pub(crate) mod audit;
 pub(crate) mod bake;
 #[cfg(feature = "gpu")]
 pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+pub(crate) mod bench_fit;
 pub(crate) mod cache;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
@@ -11,6 +13,8 @@ pub(crate) mod compare;
 pub(crate) mod completions;
 #[cfg(feature = "cost")]
 pub(crate) mod cost;
+#[cfg(feature = "cost")]
+pub(crate) mod cost_on;
 pub(crate) mod environment;
 pub(crate) mod eval;
 pub(crate) mod fit;

@@ -37,15 +37,44 @@ fn shapes_are_counted_by_model_and_form() {
     if run.lacks_driver() {
         return;
     }
-    let table: luthier_scene::CostTable = serde_json::from_str(&run.exits(0).stdout).unwrap();
-    assert_eq!(table.family, "rdna2");
+    let table: luthier_scene::ShapeTable = serde_json::from_str(&run.exits(0).stdout).unwrap();
+    assert_eq!(table.families, luthier_cost::Family::ALL);
+    assert_eq!(table.counts, luthier_cost::StaticCounts::NAMES);
     assert!(table.driver.contains("Mesa"), "{}", table.driver);
     for model in luthier_manifest::ShadingModel::ALL {
         for form in luthier_manifest::Form::ALL.into_iter().filter(|&form| model.has(form)) {
             assert!(table.rows.iter().any(|row| (row.model, row.form) == (model, form)), "{model}, {form}");
         }
     }
-    assert!(table.rows.iter().all(|row| row.cycles > 0), "{table:?}");
+    assert!(table.rows.iter().all(|row| row.cycles.len() == 3 && row.cycles.iter().all(|n| *n > 0)), "{table:?}");
+    assert!(table.rows.iter().all(|row| row.counts.iter().any(|n| *n > 0)), "{table:?}");
+}
+
+/// A measurement of rows whose materials are at hand gives a file for each device, and a page that names each.
+#[test]
+fn devices_are_fitted_to_kept_measurements() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("red-lacquer"))]);
+    std::fs::create_dir(workshop.path("data")).unwrap();
+    let measurements = luthier_workshop::root().join("docs/measurements");
+    let run = workshop.run(&[
+        "devices",
+        "lacquer.toml",
+        "--measurements",
+        measurements.to_str().unwrap(),
+        "--folder",
+        "data",
+        "-o",
+        "page.md",
+    ]);
+    run.exits(0);
+    let page = workshop.text("page.md");
+    for name in luthier_cost::DeviceCost::names() {
+        let costs = luthier_cost::DeviceCost::parse(&workshop.text(&format!("data/{name}.json"))).unwrap();
+        assert_eq!(costs.name, name);
+        assert!(costs.fit.rows > 8 && costs.fit.without_material.is_none(), "{costs:?}");
+        assert!(page.contains(&format!("| {name} | {} |", costs.unit)), "{page}");
+    }
+    assert!(page.contains("## Shaders timed on h100") && page.contains("cycles of RDNA2 by RADV's compiler"), "{page}");
 }
 
 /// Ten shaders of a material of two layers, each with its time; ratios of the page are those of the numbers.

@@ -1,6 +1,6 @@
 //! Grammar of a scene file.
 
-use super::table::{Key, Kind, LAYERS_MAX, PATH, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, TextForm};
+use super::table::{Key, Kind, LAYERS_MAX, PATH, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, TextForm, UNIT};
 
 /// Version of the grammar of scenes.
 const SCENE_VERSION: i64 = 1;
@@ -94,6 +94,12 @@ static VIEW: Table = Table {
             "0",
             "How far the normals within one pixel lean from their mean: added to the slopes of every interface.",
         ),
+        Key::with_default(
+            "neighbours_differ",
+            Kind::Number(UNIT),
+            "0",
+            "Share of neighbouring pixels that differ in material: threads of a wave wait for each other's models.",
+        ),
     ],
     exactly_one: None,
 };
@@ -106,7 +112,12 @@ static TARGET: Table = Table {
         Key::optional(
             "max_cost",
             Kind::Number(POSITIVE),
-            "Inverse throughput of one evaluation, in cycles per wave of 64 on RDNA2.",
+            "Cost of one evaluation, in the unit of the device: picoseconds, or cycles per wave of 64 where a compiler counted (gcn5, rdna2, rdna3).",
+        ),
+        Key::optional(
+            "device",
+            Kind::Choice(DEVICES),
+            "Device whose costs count. By default h100, an NVIDIA H100; rdna2 where `max_cost` stands without a device.",
         ),
         Key::optional(
             "formats",
@@ -116,6 +127,9 @@ static TARGET: Table = Table {
     ],
     exactly_one: None,
 };
+
+/// Devices whose costs ship: those of luthier-cost.
+const DEVICES: &[&str] = &["h100", "gcn5", "rdna2", "rdna3", "llvmpipe"];
 
 /// Formats that tables come in.
 const FORMATS: &[&str] = &[

@@ -16,7 +16,7 @@ const NAMES: [(&str, &str, &str); 14] = [
     ("film-thickness", "min", "nm"),
     ("film-thickness", "max", "nm"),
     ("", "frequency", "cells per unit of texture coordinate"),
-    ("", "max_cost", "cycles per wave of 64"),
+    ("", "max_cost", "ps or cycles per wave of 64"),
     ("", "sigma", "radians"),
     ("", "size", "texels"),
     ("", "count", "cells"),
@@ -28,7 +28,7 @@ const NAMES: [(&str, &str, &str); 14] = [
 ];
 
 /// Keys of pure numbers.
-const PURES: [&str; 35] = [
+const PURES: [&str; 36] = [
     "offset",
     "f0",
     "roughness",
@@ -63,6 +63,7 @@ const PURES: [&str; 35] = [
     "seed",
     "between",
     "share",
+    "neighbours_differ",
     "max_abs",
 ];
 

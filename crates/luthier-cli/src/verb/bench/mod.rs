@@ -6,6 +6,7 @@ mod subjects;
 mod text;
 
 use luthier::read_materials;
+use luthier_cost::Timing;
 use luthier_export::GENERATOR;
 use luthier_gpu::{Gpu, Stopwatch, Workload};
 use luthier_material::Material;
@@ -15,6 +16,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::cli::BenchOptions;
+use crate::verb::bench_fit;
 use per_pixel::{PerPixel, per_pixel};
 use rows::{Row, rows_of};
 use subjects::subjects;
@@ -59,22 +61,25 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
         rows: Vec::new(),
         per_pixel: Vec::new(),
     };
+    let mut timings = Vec::new();
     if options.per_pixel.is_empty() {
-        bench.time_singly(&gpu, &materials, options)?;
+        timings = bench.time_singly(&gpu, &materials, options)?;
     } else {
         per_pixel(&gpu, &materials, options, &mut bench)?;
     }
+    let fit = options.fit.as_deref().map(|file| bench_fit::fitted(&gpu, &timings, file)).transpose()?;
     let text = if options.json {
         format!("{:#}\n", serde_json::to_value(&bench).map_err(Failure::input)?)
     } else {
-        bench.to_text(&gpu)
+        bench.to_text(&gpu) + &fit.map_or_else(String::new, |fit| format!("\n{fit}"))
     };
     deliver(&text, options.output.as_deref())
 }
 
 impl Bench {
-    /// Times every shader of every material, and the yardsticks.
-    fn time_singly(&mut self, gpu: &Gpu, materials: &[Material], options: &BenchOptions) -> Outcome {
+    /// Times every shader of every material, and the yardsticks. Returns the times of those whose operations were counted.
+    fn time_singly(&mut self, gpu: &Gpu, materials: &[Material], options: &BenchOptions) -> Outcome<Vec<Timing>> {
+        let mut timings = Vec::new();
         let bar = Bar::new("timing");
         for (n, material) in materials.iter().enumerate() {
             let subjects = subjects(gpu, material, options)?;
@@ -91,12 +96,23 @@ impl Bench {
             }
             let times = self.time(&watches)?;
             let times: Vec<_> = times.chunks(subjects.len() + 1).collect();
-            for (&lights, times) in options.lights.iter().zip(times) {
-                self.rows.extend(rows_of(material, &subjects, lights, times));
+            for (i, (&lights, times)) in options.lights.iter().zip(times).enumerate() {
+                let own = rows_of(material, &subjects, lights, times);
+                timings.extend(own.iter().zip(&subjects).filter_map(|(row, subject)| {
+                    // Counts are those of all lights of a view.
+                    let time = 1e3 * row.net_ns * f64::from(lights);
+                    Some(Timing {
+                        material: row.material.clone(),
+                        model: row.shader().to_owned(),
+                        counts: *subject.counts.get(i)?,
+                        time,
+                    })
+                }));
+                self.rows.extend(own);
             }
             bar.set(n as u64 + 1, materials.len() as u64);
         }
-        Ok(())
+        Ok(timings)
     }
 
     /// Nanoseconds per evaluation of some watches, which take turns.

@@ -45,6 +45,13 @@ pub(crate) struct Row {
     pub(crate) of_gltf_clearcoat: f64,
 }
 
+impl Row {
+    /// Name of the model or yardstick.
+    pub(crate) fn shader(&self) -> &'static str {
+        self.model.map_or(self.yardstick.unwrap_or_default(), ShadingModel::name)
+    }
+}
+
 /// The rows of one material for a number of lights, from the times of an empty kernel and of every shader.
 pub(super) fn rows_of(material: &Material, subjects: &[Subject], lights: u32, times: &[Vec<f64>]) -> Vec<Row> {
     let mut spreads = times.iter().map(|times| Spread::of(times));

@@ -1,6 +1,7 @@
 //! Shaders to time, on the device.
 
 use luthier::{Bake, Options};
+use luthier_cost::StaticCounts;
 use luthier_export::{GENERATOR, Package, Shader};
 use luthier_gpu::{Gpu, Scene};
 use luthier_lut::{RowLayout, TableKind};
@@ -12,6 +13,7 @@ use luthier_terminal::{Failure, Outcome};
 use crate::cli::BenchOptions;
 use crate::materials::{is_shaded_by, shade_by};
 use crate::store::store;
+use crate::verb::bench_fit;
 
 /// One shader on the device.
 pub(super) struct Subject {
@@ -20,6 +22,8 @@ pub(super) struct Subject {
     pub(super) closed: bool,
     /// Layout of rows of lobes, of a model that has them.
     pub(super) layout: Option<RowLayout>,
+    /// Counts of its text for each number of lights; none where no fit is asked for.
+    pub(super) counts: Vec<StaticCounts>,
     pub(super) scene: Scene,
 }
 
@@ -60,11 +64,12 @@ pub(super) fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -
                     package = with_closed(package)?;
                 }
                 let scene = gpu.scene(&package, form)?;
-                subjects.push(Subject { shader: Timed::Model(model), form, closed, layout, scene });
+                let counts = counts(&package, form, options)?;
+                subjects.push(Subject { shader: Timed::Model(model), form, closed, layout, counts, scene });
             }
             if !subjects.iter().any(|subject: &Subject| matches!(subject.shader, Timed::Yardstick(_))) {
                 for yardstick in Yardstick::ALL {
-                    subjects.push(of_yardstick(gpu, yardstick, &package.manifest)?);
+                    subjects.push(of_yardstick(gpu, yardstick, &package.manifest, options)?);
                 }
             }
         }
@@ -81,8 +86,14 @@ fn layouts(model: ShadingModel, options: &BenchOptions) -> Vec<Option<RowLayout>
     }
 }
 
+/// Counts of a shader for each number of lights that is timed, where a fit is asked for.
+fn counts(package: &Package, form: Form, options: &BenchOptions) -> Outcome<Vec<StaticCounts>> {
+    let lights = options.lights.iter().filter(|_| options.fit.is_some());
+    lights.map(|&lights| bench_fit::counts(package, form, lights)).collect()
+}
+
 /// A yardstick with the numbers of the first material of a bake.
-fn of_yardstick(gpu: &Gpu, yardstick: Yardstick, baked: &Manifest) -> Outcome<Subject> {
+fn of_yardstick(gpu: &Gpu, yardstick: Yardstick, baked: &Manifest, options: &BenchOptions) -> Outcome<Subject> {
     let form = Form::Full;
     let entry = baked.materials[0].clone();
     let words = CoatNumbers::of(&entry).words();
@@ -91,7 +102,14 @@ fn of_yardstick(gpu: &Gpu, yardstick: Yardstick, baked: &Manifest) -> Outcome<Su
     let shaders = vec![Shader::wgsl(form, yardstick.wgsl())];
     let package = Package::from_parts(manifest, Vec::new(), shaders).map_err(Failure::input)?;
     let scene = gpu.scene(&package, form)?.with_words(&words)?;
-    Ok(Subject { shader: Timed::Yardstick(yardstick), form, closed: true, layout: None, scene })
+    Ok(Subject {
+        shader: Timed::Yardstick(yardstick),
+        form,
+        closed: true,
+        layout: None,
+        counts: counts(&package, form, options)?,
+        scene,
+    })
 }
 
 /// The bake with the shader `baked` that has D in closed form.

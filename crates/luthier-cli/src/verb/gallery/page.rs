@@ -111,7 +111,7 @@ fn left_out(gallery: &Gallery) {
 
 /// Adds materials with their own models, and with the models to compare.
 fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) -> Outcome {
-    let costs = CostTable::shipped();
+    let costs = CostTable::rdna2();
     let first = gallery.exhibits.len();
     let own = package(materials)?;
     for (number, material) in (0..).zip(materials) {

@@ -42,7 +42,7 @@ pub(super) fn given(options: &ReportOptions) -> Outcome<Given> {
         let text = read(path, "costs", &mut out.files)?;
         out.costs = Some(serde_json::from_str(&text).map_err(|source| unusable(path, "luthier cost", source.into()))?);
     } else {
-        let driver = CostTable::shipped().driver;
+        let driver = CostTable::rdna2().device.driver;
         out.files.push(("costs".to_owned(), format!("shaders for layers of the same kinds; {driver}")));
     }
     if let Some(path) = &options.stability {
@@ -76,7 +76,7 @@ pub(super) fn add(
         costs.rows.retain(|row| !row.constant && report.materials.iter().any(|m| m.name == row.material));
         report.costs = Some(costs);
     }
-    let costs = CostTable::shipped();
+    let costs = CostTable::rdna2();
     for (judged, material) in report.materials.iter_mut().zip(materials) {
         judged.shape_cost = shape_cost(&costs, judged.model, material);
     }

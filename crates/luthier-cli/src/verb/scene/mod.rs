@@ -6,7 +6,7 @@ use luthier::{Files, SceneSource, TomlFile};
 use luthier_export::{MANIFEST, label};
 use luthier_manifest::{LayerKind, MaterialChoice, SceneChoice};
 use luthier_material::{Material, Scene};
-use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
+use luthier_scene::{DeviceCost, Director, Made, SceneFailure, cost_text, label as candidate_label};
 use luthier_terminal::{Broken, Failure, Outcome, bytes, print, print_diagnostics, valid};
 use serde_json::{Value, json};
 
@@ -33,6 +33,10 @@ pub(super) fn refuse_mixture(files: &Files) -> Outcome {
 fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Material]) -> Outcome<Director<'a>> {
     let director = Director::new(scene, materials, options.emission.targets(), store()?);
     let director = director.with_functions(options.emission.functions());
+    let director = match options.costs_of.load()? {
+        Some(device) => director.with_costs(device),
+        None => director,
+    };
     Ok(if options.shading.no_fit { director.without_fits() } else { director })
 }
 
@@ -75,16 +79,16 @@ pub(super) fn run(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
     let missed = tell_misses(&made.package.manifest, &materials, options.quiet);
     if options.json {
         let manifest = options.out.join(MANIFEST);
-        let (bytes, cycles) = (made.bytes(), made.cycles());
+        let (bytes, cost) = (made.bytes(), made.cost());
         let summary = json!({
-            "manifest": manifest.to_string_lossy(), "texel_bytes": bytes, "cycles": cycles, "choice": made.choice,
+            "manifest": manifest.to_string_lossy(), "texel_bytes": bytes, "cost": cost, "choice": made.choice,
             "diagnostics": diagnostics(&missed),
         });
         print(&format!("{summary:#}"))
     } else if options.quiet {
         Ok(())
     } else {
-        print(&text(options, &made))
+        print(&text(options, &made, director.device()))
     }
 }
 
@@ -107,17 +111,21 @@ fn tighten(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
         let mut director = director(options, &scene, &materials)?;
         let steps = budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss).map_err(failure));
         let steps = steps.collect::<Outcome<Vec<Made>>>()?;
-        tightened.push((scene, steps));
+        let device = director.device().clone();
+        tightened.push(page::Tightened { scene, device, steps });
     }
     if options.json {
-        let scenes: Value = tightened.iter().map(|(_, steps)| steps.iter().map(summary).collect::<Value>()).collect();
+        let scenes: Value = tightened
+            .iter()
+            .map(|page::Tightened { steps, .. }| steps.iter().map(summary).collect::<Value>())
+            .collect();
         return print(&format!("{:#}", json!({ "budgets": budgets, "scenes": scenes })));
     }
     print(&page::markdown(&command(options), &budgets, &tightened))
 }
 
 fn summary(made: &Made) -> Value {
-    json!({ "texel_bytes": made.bytes(), "cycles": made.cycles(), "choice": made.choice })
+    json!({ "texel_bytes": made.bytes(), "cost": made.cost(), "choice": made.choice })
 }
 
 /// A scene and its materials. If they cannot be used, all diagnostics are printed and the result is a failure.
@@ -131,16 +139,22 @@ fn read(file: TomlFile, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
     Ok((scene, valid(materials, quiet)?))
 }
 
-fn text(options: &BakeOptions, made: &Made) -> String {
-    let SceneChoice { scene, form, materials, .. } = &made.choice;
+fn text(options: &BakeOptions, made: &Made, device: &DeviceCost) -> String {
+    let SceneChoice { scene, form, materials, neighbours_differ, .. } = &made.choice;
+    let differ = match *neighbours_differ {
+        0.0 => String::new(),
+        share => format!(" where a share of {share} of neighbours differs"),
+    };
     let mut out = format!(
-        "{scene}: {} materials, form {form}, {} of tables, {:.0} cycles in all\n\n",
+        "{scene}: {} materials, form {form}, {} of tables, {} in all{differ}\ncosts: {}\n\n",
         materials.len(),
         bytes(made.bytes()),
-        made.cycles()
+        cost_text(made.cost(), device.unit),
+        device.label(),
     );
-    for MaterialChoice { name, reason, .. } in materials {
+    for MaterialChoice { name, reason, disagreements, .. } in materials {
         out.push_str(&format!("{name}: {reason}\n"));
+        disagreements.iter().for_each(|sentence| out.push_str(&format!("  {sentence}\n")));
     }
     let models: Vec<String> = materials.iter().map(|choice| candidate_label(choice.candidate())).collect();
     let tables: Vec<&str> = made.package.manifest.tables.iter().map(|table| table.kind.name()).collect();
@@ -159,5 +173,7 @@ fn command(options: &BakeOptions) -> String {
     if options.allow_miss {
         words.push("--allow-miss".to_owned());
     }
+    words.extend(options.costs_of.device.iter().map(|name| format!("--device {name}")));
+    words.extend(options.costs_of.costs.iter().map(|path| format!("--costs {}", label(path))));
     words.join(" ")
 }

@@ -49,7 +49,7 @@ fn a_tightened_budget_is_monotone() {
     }
     for pair in steps.windows(2) {
         let number = |key: &str| [0, 1].map(|i: usize| pair[i][key].as_f64().unwrap());
-        for key in ["cycles", "texel_bytes"] {
+        for key in ["cost", "texel_bytes"] {
             let [loose, tight] = number(key);
             assert!(loose <= tight, "{key}: {loose} {tight}");
         }
@@ -57,7 +57,7 @@ fn a_tightened_budget_is_monotone() {
         assert!(worst(&pair[1]) <= worst(&pair[0]) + 0.01, "{} {}", worst(&pair[0]), worst(&pair[1]));
     }
     let chosen: Vec<Vec<&str>> = steps.iter().map(|step| models(&step["choice"])).collect();
-    assert!(chosen[0] != chosen[3] && steps[0]["cycles"] != steps[3]["cycles"], "{chosen:?}");
+    assert!(chosen[0] != chosen[3] && steps[0]["cost"] != steps[3]["cost"], "{chosen:?}");
 }
 
 /// A bake has the code and the tables of the chosen models only, says why, and does not depend on threads.
@@ -106,7 +106,53 @@ fn what_nothing_holds_is_refused_or_said() {
     let run = workshop.run(&["bake", "shelf.toml", "--allow-miss"]).exits(0);
     assert!(run.stdout.contains("none holds; this comes nearest"), "{}", run.stdout);
     workshop.edit("shelf.toml", |text| text.replace("max_cost = 55", "max_cost = 2"));
-    workshop.run(&["bake", "shelf.toml"]).fails(1, &["cycles, more than 2"]);
+    // A limit without a device is one of cycles on RDNA2; the device of a limit decides its unit.
+    workshop.run(&["bake", "shelf.toml"]).fails(1, &["cycles on rdna2, more than 2 cycles"]);
+    workshop.edit("shelf.toml", |text| text.replace("max_cost = 2", "max_cost = 0.1\ndevice = \"h100\""));
+    workshop.run(&["bake", "shelf.toml"]).fails(1, &["ps on h100, more than 0.1 ps"]);
+    workshop.run(&["bake", "shelf.toml", "--device", "gcn5"]).fails(1, &["cycles on gcn5, more than 0 cycles"]);
+}
+
+/// The answer names the device of its costs, in the text and in the manifest, and devices that order candidates otherwise.
+#[test]
+fn the_device_of_the_costs_is_named() {
+    let workshop = shelf();
+    let run = workshop.run(&["bake", "shelf.toml", "--out", "a"]).exits(0);
+    assert!(run.stdout.contains("costs: picoseconds an evaluation on h100 (NVIDIA H100"), "{}", run.stdout);
+    let of = |folder: &str| workshop.json(&format!("{folder}/manifest.json"))["choice"].clone();
+    let [name, unit] = ["name", "unit"].map(|key| of("a")["device"][key].clone());
+    assert_eq!((name, unit), ("h100".into(), "ps".into()));
+    let run = workshop.run(&["bake", "shelf.toml", "--out", "b", "--device", "rdna2"]).exits(0);
+    assert!(run.stdout.contains("costs: cycles per wave of 64 on rdna2 (navi21)"), "{}", run.stdout);
+    assert_eq!(of("b")["device"]["unit"], "cycles");
+    assert_eq!(of("b")["neighbours_differ"], 0.0);
+    // A file of costs is a device, too.
+    let costs = luthier_cost::DeviceCost::shipped("h100").unwrap();
+    let toy = luthier_cost::DeviceCost { name: "toy".to_owned(), ..costs };
+    workshop.write("toy.json", toy.to_json().unwrap());
+    let run = workshop.run(&["bake", "shelf.toml", "--out", "c", "--costs", "toy.json"]).exits(0);
+    assert!(run.stdout.contains("an evaluation on toy"), "{}", run.stdout);
+    assert_eq!(models(&of("c")), models(&of("a")));
+    workshop.write("toy.json", "{}");
+    workshop.run(&["bake", "shelf.toml", "--costs", "toy.json"]).fails(1, &["toy.json", "JSON"]);
+    workshop.run(&["bake", "shelf.toml", "--device", "abacus"]).fails(2, &["abacus"]);
+    workshop.run(&["bake", "parts/clay.toml", "--device", "h100"]).fails(2, &["for scenes"]);
+}
+
+/// Where all neighbours differ, a scene takes no more models than where none does, and its cost has those of the neighbours.
+#[test]
+fn neighbours_that_differ_draw_models_together() {
+    let workshop = shelf();
+    let choice = |share: &str| {
+        let text = SCENE.replace("footprint_deg = 1\n", &format!("footprint_deg = 1\nneighbours_differ = {share}\n"));
+        workshop.write("shelf.toml", text.replace("max_rel = 0.3", "max_rel = 1.5"));
+        workshop.run(&["bake", "shelf.toml", "--json", "--no-fit"]).exits(0).json()["choice"].clone()
+    };
+    let [none, all] = ["0", "1"].map(choice);
+    let distinct = |choice: &Value| models(choice).into_iter().collect::<std::collections::BTreeSet<_>>().len();
+    assert!(distinct(&all) <= distinct(&none), "{:?} {:?}", models(&none), models(&all));
+    assert!(all["cost"].as_f64() >= none["cost"].as_f64(), "{} {}", none["cost"], all["cost"]);
+    assert_eq!(all["neighbours_differ"], 1.0);
 }
 
 /// Where there is no room for tables the form without them is taken, if its error is small enough.
