@@ -21,6 +21,9 @@ const SHIPPED: [(&str, &str); 5] = [
     ("llvmpipe", include_str!("../data/llvmpipe.json")),
 ];
 
+/// Operations on components that make four values of 16 bytes: two halves from each word, and a product and a sum for each value.
+const STEPS: f64 = 16.0;
+
 luthier_lut::named! {
     /// Unit of costs.
     #[derive(Serialize, Deserialize)]
@@ -180,6 +183,20 @@ impl DeviceCost {
     /// Cost of an evaluation with some counts, in [`Self::unit`].
     pub fn cost(&self, counts: &StaticCounts) -> f64 {
         Numbers { values: self.coefficients.values(), hidden: self.hidden }.cost(counts)
+    }
+
+    /// Whether 16 bytes of a buffer, turned into four values on the way between two others, cost less than a filtered read of four halves. Only
+    /// times tell: a compiler counts both reads as an instruction, and sees the arithmetic of the first alone.
+    ///
+    /// ```
+    /// use luthier_cost::DeviceCost;
+    ///
+    /// let [timed, counted] = ["h100", "rdna2"].map(|name| DeviceCost::shipped(name).unwrap().has_cheap_buffers());
+    /// assert!(timed && !counted);
+    /// ```
+    pub fn has_cheap_buffers(&self) -> bool {
+        let Coefficients { wide_reads, buffer_reads, plain, .. } = self.coefficients;
+        self.unit == CostUnit::Picoseconds && buffer_reads + STEPS * plain < wide_reads
     }
 
     /// Names of the devices whose costs ship.

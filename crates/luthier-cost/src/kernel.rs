@@ -9,6 +9,24 @@ use crate::CostError;
 const EMPTY: &str =
     "fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {\n    return wi * wo;\n}\n";
 
+/// Replaces a shader in two steps.
+const EMPTY_LIT: &str = "struct LuthierPrepared {\n    wo: vec3<f32>,\n}\nfn luthier_prepare(material: u32, wo: vec3<f32>) -> LuthierPrepared {\n    \
+    return LuthierPrepared(wo);\n}\nfn luthier_light(prepared: LuthierPrepared, wi: vec3<f32>) -> vec3<f32> {\n    return wi * prepared.wo;\n}\n";
+
+/// The bare harness with one view and so many lights, each of which differs from the first by an instruction per component.
+fn lit(bare: &str, lights: u32) -> String {
+    let mut each =
+        "let prepared = luthier_prepare(harness_material.x, wo);\n    var value = luthier_light(prepared, wi);\n"
+            .to_owned();
+    for light in 1..lights {
+        each.push_str(&format!(
+            "    value += luthier_light(prepared, bitcast<vec3<f32>>(bitcast<vec3<u32>>(wi) ^ vec3<u32>({}u)));\n",
+            light << 12
+        ));
+    }
+    bare.replace("let value = luthier_eval(harness_material.x, wi, wo);\n", &each)
+}
+
 /// Schlick's form with the reflectance at normal incidence of a complex index (Elek 2010, `FresnelTermNP`). It replaces the exact equations.
 const APPROXIMATE_FRESNEL: &str = include_str!("wgsl/approximate_fresnel.wgsl");
 
@@ -19,6 +37,8 @@ pub enum Harness {
     Bare,
     /// The surroundings in Elek's pixel shaders: a normal map and a reflected environment.
     NormalMapped,
+    /// Two directions and more, no surroundings: a view that is prepared once, and so many lights on it, each from a direction of its own.
+    Lights(u32),
 }
 
 /// Variant of the shader of a set.
@@ -93,19 +113,34 @@ impl Kernel {
         Self::new(&shader_text(set, style)?, shader, harness)
     }
 
+    /// Any text with the functions of a shader, evaluated in a harness. `buffers` and `textures` are the numbers of its bindings in group 0; a
+    /// sampler is at 5.
+    ///
+    /// # Errors
+    /// Those of naga.
+    pub fn of_text(wgsl: &str, buffers: &[u32], textures: &[u32], harness: Harness) -> Result<Self, CostError> {
+        let bind = |resource| move |&binding: &u32| Binding { group: 0, binding, resource };
+        let sampler = [5].iter().filter(|_| !textures.is_empty()).map(bind(Resource::Sampler)).collect::<Vec<_>>();
+        let buffers = buffers.iter().map(bind(Resource::Storage));
+        Self::new(wgsl, buffers.chain(textures.iter().map(bind(Resource::Texture))).chain(sampler), harness)
+    }
+
     /// The harness alone. It multiplies the two directions, so that both are read: three instructions that other kernels lack.
     ///
     /// # Errors
     /// A defect of the harness.
     pub fn empty(harness: Harness) -> Result<Self, CostError> {
-        Self::new(EMPTY, std::iter::empty(), harness)
+        let shader = if matches!(harness, Harness::Lights(_)) { EMPTY_LIT } else { EMPTY };
+        Self::new(shader, std::iter::empty(), harness)
     }
 
     fn new(shader: &str, bindings: impl Iterator<Item = Binding>, harness: Harness) -> Result<Self, CostError> {
+        let bare = include_str!("wgsl/harness.wgsl");
         let (text, resources): (_, &[Resource]) = match harness {
-            Harness::Bare => (include_str!("wgsl/harness.wgsl"), &[Resource::Storage, Resource::Uniform]),
+            Harness::Bare => (bare.to_owned(), &[Resource::Storage, Resource::Uniform]),
+            Harness::Lights(lights) => (lit(bare, lights), &[Resource::Storage, Resource::Uniform]),
             Harness::NormalMapped => (
-                include_str!("wgsl/harness_normal_mapped.wgsl"),
+                include_str!("wgsl/harness_normal_mapped.wgsl").to_owned(),
                 &[Resource::Storage, Resource::Uniform, Resource::Texture, Resource::Texture, Resource::Sampler],
             ),
         };

@@ -57,6 +57,8 @@ pub(crate) enum Verb {
     Throughput(ThroughputOptions),
     /// Fit costs of operations to kept times and counts: a file for each device, and a page in Markdown
     Devices(DevicesOptions),
+    /// Count both layouts of rows of lobes and the coats of engines on chips that are not there, and predict their times: a page in Markdown
+    Layouts(LayoutsOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
     Shapes(ShapesOptions),
     /// Try files that others wrote with the readers of their kinds: a page in Markdown
@@ -409,6 +411,18 @@ pub(crate) struct PapersOptions {
     /// Instruction set; may be given again. By default all
     #[arg(long, value_name = "NAME", value_parser = named::<Family>(Family::NAMES))]
     pub(crate) family: Vec<Family>,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Every material is fitted with the model lobes. Needs Mesa's RADV driver, as `luthier cost` does.\n\n\
+                  Examples:\n  luthier-lab layouts materials/papers/car-paint.toml materials/red-lacquer.toml -o docs/pages/layouts.md"
+)]
+pub(crate) struct LayoutsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -12,6 +12,7 @@ mod figures;
 mod foreign;
 mod grammar;
 mod judge;
+mod layouts;
 mod lobes;
 mod maps;
 mod papers;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
         Verb::Papers(options) => papers::run(options),
         Verb::Throughput(options) => throughput::run(options),
         Verb::Devices(options) => devices::run(options),
+        Verb::Layouts(options) => layouts::run(options),
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),
         Verb::Texels(options) => texels::run(options),

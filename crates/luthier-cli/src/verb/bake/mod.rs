@@ -68,9 +68,9 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
         scene::run(options, scenes)?;
         return Ok(read);
     }
-    if options.allow_miss || !options.budgets.is_empty() || options.costs_of.is_given() {
+    if options.allow_miss || !options.budgets.is_empty() {
         return Err(Failure::Usage(anyhow::anyhow!(
-            "--allow-miss, --budgets, --costs and --device are for scenes (docs/pages/scenes.md)"
+            "--allow-miss and --budgets are for scenes (docs/pages/scenes.md)"
         )));
     }
     let (packages, files): (Vec<(String, BakeOptions)>, Vec<Files>) =

@@ -119,8 +119,10 @@ impl<'a> Begun<'a> {
         let pool = options.pool()?;
         let observer: &(dyn Observer + Sync) =
             if options.quiet && !options.pipeline.events { &Silent } else { progress };
+        let limits = options.limits.options();
+        let layout = limits.layout.or(options.costs_of.row_layout()?);
         let bake = Bake {
-            options: luthier_bake::Options { locked: lock.decisions(), ..options.limits.options() },
+            options: luthier_bake::Options { locked: lock.decisions(), layout, ..limits },
             targets: options.emission.targets(),
             shading: options.shading.in_forms(&options.emission.forms()),
             functions: options.emission.functions(),

@@ -70,9 +70,12 @@ fn address(out: &Path) -> Option<Key> {
 
 impl Stamp {
     pub(super) fn new(options: &BakeOptions, files: &Files) -> Self {
-        let BakeOptions { shading, limits, emission, no_zstd, hashed_names, .. } = options;
+        let BakeOptions { shading, limits, emission, costs_of, no_zstd, hashed_names, .. } = options;
         let program = std::env::current_exe().ok().and_then(|path| state(&path));
-        let decided = format!("{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {no_zstd} {hashed_names}");
+        let decided = format!(
+            "{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {:?} {no_zstd} {hashed_names}",
+            costs_of.load().ok().flatten()
+        );
         let materials = files.materials.par_iter().map(|file| hashed(&file.path, Key::of(&file.bytes)));
         let surfaces = files.surfaces.iter().map(|file| hashed(&file.path, Key::of(file.text.as_bytes())));
         let hashes: Vec<String> = materials.collect::<Vec<_>>().into_iter().chain(surfaces).collect();
