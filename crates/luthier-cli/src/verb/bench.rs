@@ -64,6 +64,9 @@ struct Row {
 
 /// Times shaders on the adapter at hand.
 pub(crate) fn run(options: &BenchOptions) -> Outcome {
+    if options.json && options.fit.as_ref().is_some_and(|file| file.as_os_str().is_empty()) {
+        return Err(Failure::Usage(anyhow::anyhow!("with --json, --fit writes the costs to a file: name it")));
+    }
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
     let gpu = open(options.adapter.as_deref())?;
     let bar = Bar::new("timing");
