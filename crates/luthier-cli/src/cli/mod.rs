@@ -499,7 +499,7 @@ pub(crate) struct BenchOptions {
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
     /// Fit costs of operations to the times, print them and write them to FILE, which `--costs` reads. Without FILE they are printed alone
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
     pub(crate) fit: Option<PathBuf>,
     /// JSON instead of a table
     #[arg(long)]

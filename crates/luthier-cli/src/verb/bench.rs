@@ -64,7 +64,7 @@ struct Row {
 
 /// Times shaders on the adapter at hand.
 pub(crate) fn run(options: &BenchOptions) -> Outcome {
-    if options.json && options.fit.as_ref().is_some_and(|file| file.as_os_str().is_empty()) {
+    if options.json && options.fit.as_deref().is_some_and(bench_fit::is_printed_alone) {
         return Err(Failure::Usage(anyhow::anyhow!("with --json, --fit writes the costs to a file: name it")));
     }
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
