@@ -107,7 +107,8 @@ pub(crate) fn numbers(rows: &[&Timing]) -> Numbers {
             let mut is_bound: Vec<bool> = rows.iter().map(|row| reads(row) >= start).collect();
             for _ in 0..STEPS {
                 let numbers = Numbers { values: values(rows, &is_bound, hidden), hidden };
-                let squares: f64 = rows.iter().map(|row| (numbers.cost(&row.counts) / row.time - 1.0).powi(2)).sum();
+                let misses = rows.iter().map(|row| numbers.cost(&row.counts) / row.time - 1.0);
+                let squares: f64 = misses.map(|miss| miss * miss).sum();
                 if squares < best.1 * (1.0 - 1e-9) {
                     best = (numbers, squares);
                 }

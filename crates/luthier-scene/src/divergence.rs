@@ -78,8 +78,8 @@ mod tests {
     use super::*;
 
     /// Expected number of distinct models of `models` equally frequent ones among some draws.
-    fn distinct(models: f64, draws: i32) -> f64 {
-        models * (1.0 - (1.0 - 1.0 / models).powi(draws))
+    fn distinct(models: f64, draws: f64) -> f64 {
+        models * (1.0 - libm::pow(1.0 - 1.0 / models, draws))
     }
 
     /// Oracle: times on an NVIDIA H200 of 22 materials in one buffer, ps an evaluation, for one material in 64 threads, in 8, and in each.
@@ -89,7 +89,7 @@ mod tests {
         let of_six: Vec<Shaded> = (0..22).map(|i| Shaded { model: six[i % 6], cost: 13.6 }).collect();
         let of_one: Vec<Shaded> = (0..22).map(|_| Shaded { model: Lobes, cost: 21.7 }).collect();
         // A warp has 32 threads: four groups of eight.
-        let share = (distinct(6.0, 4) - 1.0) / 5.0;
+        let share = (distinct(6.0, 4.0) - 1.0) / 5.0;
         let mut off = Vec::new();
         for (set, share, measured) in
             [(&of_six, share, 37.0), (&of_six, 1.0, 98.0), (&of_one, share, 19.9), (&of_one, 1.0, 26.6)]

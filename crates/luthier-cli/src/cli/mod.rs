@@ -264,7 +264,7 @@ pub(crate) struct Limits {
     /// Bytes of the texels of all tables
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) max_bytes: Option<u64>,
-    /// Estimated cost of one read of every table, in operations
+    /// Estimated cost of one read of every table, in operations of no device
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_cost: Option<f64>,
     /// Largest lobe error of fitted lobes against the simulated stack, noise of the judge included
@@ -515,7 +515,7 @@ pub(crate) struct BenchOptions {
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
     /// Fit costs of operations to the times, print them and write them to FILE, which `--costs` reads. Without FILE they are printed alone
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", conflicts_with = "per_pixel")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-", conflicts_with = "per_pixel")]
     pub(crate) fit: Option<PathBuf>,
     /// JSON instead of a table
     #[arg(long)]

@@ -15,11 +15,16 @@ pub(crate) fn counts(package: &Package, form: Form, lights: u32) -> Outcome<Stat
     count(wgsl, &wide, lights).map_err(Failure::input)
 }
 
-/// Fits costs to times in picoseconds, net of the harness, writes them to a file unless its name is empty, and returns what to print of them.
+/// Whether costs are printed and not written: `-` in place of a file.
+pub(crate) fn is_printed_alone(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+/// Fits costs to times in picoseconds, net of the harness, writes them to a file unless they are printed alone, and returns what to print of them.
 pub(crate) fn fitted(gpu: &Gpu, rows: &[Timing], file: &Path) -> Outcome<String> {
     let adapter = adapter_json(gpu);
     let text = |key: &str| adapter[key].as_str().unwrap_or_default().to_owned();
-    let name: String = match file.file_stem() {
+    let name = match file.file_stem().filter(|_| !is_printed_alone(file)) {
         Some(stem) => stem.to_string_lossy().into_owned(),
         None => "this device".to_owned(),
     };
@@ -33,7 +38,7 @@ pub(crate) fn fitted(gpu: &Gpu, rows: &[Timing], file: &Path) -> Outcome<String>
         family: None,
     };
     let costs = DeviceCost::fitted(source, rows).map_err(Failure::input)?;
-    if !file.as_os_str().is_empty() {
+    if !is_printed_alone(file) {
         deliver(&costs.to_json().map_err(Failure::input)?, Some(file))?;
     }
     Ok(costs.to_text())

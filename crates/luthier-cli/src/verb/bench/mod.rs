@@ -47,6 +47,9 @@ pub(crate) struct Bench {
 
 /// Times shaders on the adapter at hand.
 pub(crate) fn run(options: &BenchOptions) -> Outcome {
+    if options.json && options.fit.as_deref().is_some_and(bench_fit::is_printed_alone) {
+        return Err(Failure::Usage(anyhow::anyhow!("with --json, --fit writes the costs to a file: name it")));
+    }
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
     per_pixel::refuse(options, materials.len())?;
     let gpu = open(options.adapter.as_deref())?;

@@ -108,3 +108,35 @@ fn bad_options_are_refused() {
     run(&["--per-pixel", "0"]).fails(2, &["--per-pixel"]);
     run(&["--per-pixel", "2"]).fails(2, &["`--per-pixel 2` wants 2 materials, and the files have 1"]);
 }
+
+/// Costs of the adapter at hand are printed and written, and other verbs read them.
+#[test]
+fn costs_of_operations_are_fitted_to_the_times() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let args = ["bench", "lacquer.toml", "--no-fit", "--evaluations", "65536", "--repeats", "3", "--fit"];
+    let run = workshop.run(&[&args[..], &["here.json"]].concat());
+    if run.lacks_adapter() {
+        return;
+    }
+    let said = run.exits(0).stdout;
+    for part in ["filtered_reads", "special", "of the shorter of reads", "error on the ", "of counts alone"] {
+        assert!(said.contains(part), "no `{part}` in\n{said}");
+    }
+    let costs = luthier_cost::DeviceCost::parse(&workshop.text("here.json")).unwrap();
+    assert_eq!((costs.name.as_str(), costs.unit), ("here", luthier_cost::CostUnit::Picoseconds));
+    assert!(!costs.device.is_empty() && !costs.driver.is_empty() && costs.fit.rows > 8, "{costs:?}");
+    workshop.run(&["bench", "lacquer.toml", "--json", "--fit"]).exits(2).says(&["name it"]);
+    // What the fit says of a shader is what `cost` says of it.
+    let args = ["cost", "lacquer.toml", "--model", "elek", "--form", "full", "--costs", "here.json"];
+    let report = workshop.run(&[&args[..], &["--json"]].concat()).exits(0).json();
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &report["device"]["name"]), (2, &"here".into()));
+    for row in rows {
+        let counts = luthier_cost::StaticCounts::NAMES.map(|name| row["counts"][name].as_u64().unwrap() as u32);
+        let cost = costs.cost(&luthier_cost::StaticCounts::of_values(counts));
+        assert!((row["cost"].as_f64().unwrap() - cost).abs() <= 1e-9 * cost, "{row:#}");
+        assert_eq!(counts[0], 0, "the form `full` reads no texture: {row:#}");
+    }
+    let page = workshop.run(&args).exits(0).stdout;
+    assert!(page.contains("# What the shaders cost on here") && page.contains("predicted from counts"), "{page}");
+}
