@@ -114,11 +114,11 @@ run() {
   local name software
   name=$(field name logs/adapter.json)
   software=$(field software logs/adapter.json)
-  local evaluations=60000000 repeats=30 sets=1,22 many=1,$library_size pairs=20000 places=2000 size=256 samples=8192 time_size=512 models=() place_models=() repeats_of_pictures=3 tests=100 mixed=("${stacks[@]}") simulated=(materials/papers/{yamaguchi-brushed,silver-paint}.toml)
+  local evaluations=60000000 repeats=30 sets=1,22 many=1,$library_size pairs=20000 places=2000 size=256 samples=8192 time_size=512 models=() place_models=() repeats_of_pictures=3 tests=100 pictures=60 mixed=("${stacks[@]}") simulated=(materials/papers/{yamaguchi-brushed,silver-paint}.toml)
   if [ "$software" != false ]; then
     # What fits on two cores.
     evaluations=16384 repeats=3 sets=1,3 many=4 pairs=200 places=100 size=8 samples=16 time_size=8 repeats_of_pictures=1 tests=200
-    models=(--model elek --model belcour) place_models=(--model microfacet) simulated=(materials/papers/yamaguchi-brushed.toml)
+    models=(--model elek --model belcour) place_models=(--model microfacet) simulated=(materials/papers/yamaguchi-brushed.toml) pictures=100
     two=("${two[0]}") stacks=("${two[0]}" materials/papers/red-lacquer.toml)
     mixed=(materials/papers/{car-paint,latex,red-lacquer}.toml)
   fi
@@ -130,7 +130,7 @@ run() {
   step per-pixel-many 60 luthier bench library --lights 1 --per-pixel "$many" "${times[@]}" --json -o docs/measurements/per-pixel-many-gpu.json
   step throughput 30 luthier-lab throughput "${stacks[@]}" "${times[@]}" --data docs/measurements/throughput-gpu.json -o docs/pages/gpu-throughput.md
   step places 60 luthier-lab places "${place_models[@]}" --pairs "$places" -o docs/pages/gpu-places.md
-  step simulation 60 luthier-lab simulation "${simulated[@]}" --size "$size" --samples "$samples" --time-size "$time_size" \
+  step simulation "$pictures" luthier-lab simulation "${simulated[@]}" --size "$size" --samples "$samples" --time-size "$time_size" \
     --repeats "$repeats_of_pictures" --data docs/measurements/simulation-gpu.json -o docs/pages/gpu-simulation.md
   step parity 300 luthier-lab parity "${stacks[@]}" "${models[@]}" --pairs "$pairs" -o docs/pages/gpu-parity.md
   rm -rf materials library store
