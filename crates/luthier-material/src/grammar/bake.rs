@@ -141,7 +141,11 @@ pub(super) static BUDGET: Table = Table {
             "Largest CIEDE2000 difference of tabulated reflectances under D65.",
         ),
         Key::optional("max_bytes", Kind::Integer(1, i64::MAX), "Bytes of the texels of all tables of a bake."),
-        Key::optional("max_cost", Kind::Number(POSITIVE), "Estimated cost of one read of every table, in operations of no device."),
+        Key::optional(
+            "max_cost",
+            Kind::Number(POSITIVE),
+            "Estimated cost of one read of every table, in operations of no device.",
+        ),
         Key::optional(
             "max_lobe_err",
             Kind::Number(POSITIVE),
