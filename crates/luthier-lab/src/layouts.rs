@@ -24,7 +24,7 @@ struct Text {
     wide: Vec<String>,
 }
 
-/// What is compared.
+/// A shader that the page compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shader {
     Yardstick(Yardstick),

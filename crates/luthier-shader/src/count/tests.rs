@@ -1,3 +1,5 @@
+//! Counts of small texts, by hand.
+
 use super::*;
 
 /// A module whose evaluation has these statements, with a texture, a sampler and two buffers.

@@ -26,6 +26,42 @@ fn lobes_have_a_tile_a_record_and_one_form() {
     assert_eq!(workshop.text("out/manifest.json"), before);
 }
 
+/// A layout that is asked for holds; else a language without buffers, functions that prepare a view, a limit on bytes, or a device decide. Both layouts are
+/// the same rows: a judgement on the device and in f64 holds the same limit.
+#[test]
+fn rows_have_the_layout_of_their_target() {
+    let workshop = Workshop::with(&[("a.toml", &lacquer("a"))]);
+    let format = |options: &[&str]| {
+        let bake = ["bake", "a.toml", "-q", "--model", "lobes"];
+        workshop.run(&[&bake, options].concat()).exits(0);
+        let manifest = workshop.json("out/manifest.json");
+        let table = manifest["tables"].as_array().unwrap().iter().find(|table| table["kind"] == "lobes").unwrap();
+        let binding = manifest["bindings"].as_array().unwrap().iter().find(|entry| entry["binding"] == 9).unwrap();
+        let (format, resource) = (table["format"].as_str().unwrap(), binding["resource"].as_str().unwrap());
+        assert_eq!(format == "rgba16float-steps", resource == "buffer<vec4<u32>>", "{format} {resource}");
+        format.to_owned()
+    };
+    let [steps, filtered] = ["rgba16float-steps", "rgba16float"];
+    assert_eq!(format(&["--target", "wgsl", "--layout", "filtered"]), filtered);
+    assert_eq!(format(&["--target", "wgsl,glsl450,hlsl,msl,spirv"]), steps);
+    assert_eq!(format(&[]), filtered);
+    assert_eq!(format(&["--target", "wgsl", "--functions", "light"]), filtered);
+    assert_eq!(format(&["--target", "wgsl", "--max-bytes", "100000"]), filtered);
+    assert_eq!(format(&["--target", "wgsl", "--device", "rdna2"]), filtered);
+    assert_eq!(format(&["--target", "wgsl", "--device", "h100"]), steps);
+    // The default languages, GLSL ES 3.00 with a texture of whole numbers among them.
+    assert_eq!(format(&["--layout", "steps"]), steps);
+    let report = workshop.run(&["report", "--pairs", "64", "--max-error", "2e-2", "--json"]).exits(0).json();
+    assert!(!report["limits"].as_array().unwrap().is_empty(), "{report}");
+    let shader = |options: &[&str]| {
+        workshop.run(&[&["shader", "a.toml", "--model", "lobes", "--form", "baked"], options].concat()).exits(0).stdout
+    };
+    assert!(shader(&[]).contains("var<storage, read> luthier_lobes: array<vec4<u32>>;"));
+    assert!(shader(&["--layout", "filtered"]).contains("var luthier_lobes: texture_2d<f32>;"));
+    assert!(shader(&["--target", "glsl-es300"]).contains("sampler2D luthier_lobes;"));
+    assert!(shader(&["--target", "glsl-es300", "--layout", "steps"]).contains("usampler2D luthier_lobes;"));
+}
+
 /// The fewest bytes that hold the limit are baked, tighter limits cost no less, and what none holds is refused with the limit that would do: which
 /// does.
 #[test]
