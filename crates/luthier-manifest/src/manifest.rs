@@ -390,8 +390,8 @@ mod tests {
     #[test]
     fn another_schema_is_refused_before_its_shape_is_looked_at() {
         let refused = Manifest::from_json(r#"{"schema": 5, "future": true}"#);
-        assert!(matches!(refused, Err(ManifestError::Schema { found: 4, expected: MANIFEST_SCHEMA })));
-        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 3}"#, r#"{"schema": -1}"#] {
+        assert!(matches!(refused, Err(ManifestError::Schema { found: 5, expected: MANIFEST_SCHEMA })));
+        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 4}"#, r#"{"schema": -1}"#] {
             assert!(matches!(Manifest::from_json(other), Err(ManifestError::Json(_))), "{other}");
         }
     }

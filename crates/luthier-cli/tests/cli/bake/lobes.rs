@@ -51,8 +51,8 @@ fn rows_have_the_layout_of_their_target() {
     assert_eq!(format(&["--target", "wgsl", "--device", "h100"]), steps);
     // The default languages, GLSL ES 3.00 with a texture of whole numbers among them.
     assert_eq!(format(&["--layout", "steps"]), steps);
-    let report = workshop.run(&["report", "--pairs", "64", "--max-error", "2e-2", "--json"]).exits(0).json();
-    assert!(!report["limits"].as_array().unwrap().is_empty(), "{report}");
+    let report = workshop.run(&["report", "--pairs", "64", "--max-error", "2e-2"]).exits(0).stdout;
+    assert!(report.contains("held"), "{report}");
     let shader = |options: &[&str]| {
         workshop.run(&[&["shader", "a.toml", "--model", "lobes", "--form", "baked"], options].concat()).exits(0).stdout
     };
