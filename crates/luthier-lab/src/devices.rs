@@ -8,6 +8,7 @@ use luthier::{MemoryStore, outline, read_materials};
 use luthier_bake::Options;
 use luthier_cost::{CostUnit, DeviceCost, Family, FitSource, Misfit, StaticCounts, Style, Timing, misfit};
 use luthier_export::GENERATOR;
+use luthier_lut::RowLayout;
 use luthier_manifest::{Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, count, style_name};
@@ -206,7 +207,11 @@ impl Shaders<'_> {
 
     fn manifest(&mut self, key: &(String, String), material: impl FnOnce() -> Material) -> Outcome<&Manifest> {
         if !self.manifests.contains_key(key) {
-            let manifest = outline(&[material()], &Options::default(), &MemoryStore::default())?;
+            let manifest = outline(
+                &[material()],
+                &Options { layout: Some(RowLayout::Filtered), ..Options::default() },
+                &MemoryStore::default(),
+            )?;
             self.manifests.insert(key.clone(), manifest);
         }
         Ok(&self.manifests[key])

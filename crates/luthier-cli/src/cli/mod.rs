@@ -445,7 +445,7 @@ pub(crate) struct CostOptions {
     /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
     #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
     pub(crate) fresnel: Option<Reflectance>,
-    /// Layout of rows of lobes, as for `luthier bake`
+    /// Layout of rows of lobes: `filtered`, the default, or `steps`
     #[arg(long, value_name = "NAME", value_parser = named::<RowLayout>(RowLayout::NAMES))]
     pub(crate) layout: Option<RowLayout>,
     /// Form to compile; may be given again. By default both

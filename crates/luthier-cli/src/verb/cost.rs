@@ -7,7 +7,7 @@ use luthier_cost::{
     shader_text,
 };
 use luthier_export::GENERATOR;
-use luthier_lut::TableKind;
+use luthier_lut::{RowLayout, TableKind};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, count};
@@ -98,6 +98,8 @@ struct Variant {
 
 /// Every material (or all as one set) in every model, form and style asked for.
 fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Variant>> {
+    // A sampler's rows, as bakes for the families of RADV and for programs have them; `--layout` names the others.
+    let layout = options.layout.unwrap_or(RowLayout::Filtered);
     let models = models(&options.model, options.no_fit);
     let forms: Vec<Form> = if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.clone() };
     let mut variants = Vec::new();
@@ -116,7 +118,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
             shaded.iter().map(|m| (m.name.clone(), std::slice::from_ref(m))).collect()
         };
         for (name, group) in groups {
-            let manifest = outline(group, &Options { layout: options.layout, ..Options::default() }, store()?)?;
+            let manifest = outline(group, &Options { layout: Some(layout), ..Options::default() }, store()?)?;
             // A form that is asked for by name is kept: if the model lacks it, the emitter refuses it.
             for &form in forms.iter().filter(|form| !options.form.is_empty() || model.has(**form)) {
                 for (closed, constant) in styles(options) {
