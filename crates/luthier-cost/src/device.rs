@@ -22,7 +22,7 @@ const SHIPPED: [(&str, &str); 5] = [
 ];
 
 /// Operations on components that make four values of 16 bytes: two halves from each word, and a product and a sum for each value.
-const STEPS: f64 = 16.0;
+const UNPACKED: f64 = 16.0;
 
 luthier_lut::named! {
     /// Unit of costs.
@@ -135,26 +135,28 @@ pub struct FitSource {
 }
 
 impl DeviceCost {
-    /// The costs that meet some times best: not negative, with the least sum of squared relative errors.
+    /// The costs that meet some times best: not negative, with the least sum of squared relative errors. Times that are not positive are left out: the noise of
+    /// a clock may be larger than a short shader.
     ///
     /// A fetch of a texel that no row has costs as much as a wide read, and a read of a buffer a sixth of it. On an NVIDIA H200 five reads of 16 bytes from a
     /// buffer added 2.2 ps to a shader, and five wide reads alone took 13.9 ps.
     ///
     /// # Errors
-    /// [`CostError::Fit`] for fewer rows than kinds of operations, or times that are not positive.
+    /// [`CostError::Fit`] for fewer rows than kinds of operations.
     pub fn fitted(source: FitSource, rows: &[Timing]) -> Result<Self, CostError> {
+        let kept = rows.iter().filter(|row| row.time.is_finite() && row.time > 0.0);
+        let (given, rows): (usize, &[Timing]) = (rows.len(), &kept.cloned().collect::<Vec<_>>());
         if rows.len() < KINDS {
-            return Err(CostError::Fit(format!("{} shaders are too few to fit {KINDS} numbers to", rows.len())));
-        }
-        if let Some(row) = rows.iter().find(|row| !(row.time.is_finite() && row.time > 0.0)) {
-            return Err(CostError::Fit(format!(
-                "{} of {} takes {} beyond the harness: the clock is too coarse; raise the number of evaluations",
-                row.model, row.material, row.time
-            )));
+            let hint = match given - rows.len() {
+                0 => String::new(),
+                count => format!("; {count} more took no longer than the harness: raise the number of evaluations"),
+            };
+            return Err(CostError::Fit(format!("{} shaders are too few to fit {KINDS} numbers to{hint}", rows.len())));
         }
         let Numbers { values, hidden } = fit::numbers(&rows.iter().collect::<Vec<_>>());
         let mut values = values.map(rounded);
-        let quality = fit::quality(rows, &Numbers { values, hidden });
+        let quality =
+            FitQuality { left_out: (given - rows.len()) as u32, ..fit::quality(rows, &Numbers { values, hidden }) };
         let mut assumed = Vec::new();
         for (kind, share) in [(2, 1.0), (4, 1.0 / 6.0)] {
             if rows.iter().all(|row| row.counts.values()[kind] == 0) {
@@ -191,12 +193,13 @@ impl DeviceCost {
     /// ```
     /// use luthier_cost::DeviceCost;
     ///
-    /// let [timed, counted] = ["h100", "rdna2"].map(|name| DeviceCost::shipped(name).unwrap().has_cheap_buffers());
-    /// assert!(timed && !counted);
+    /// let devices = ["h100", "llvmpipe", "rdna2"].map(|name| DeviceCost::shipped(name).unwrap());
+    /// // A program on the CPU was timed, too, and reads buffers more slowly than textures; nothing was timed on rdna2.
+    /// assert_eq!(devices.map(|costs| costs.has_cheap_buffers()), [true, false, false]);
     /// ```
     pub fn has_cheap_buffers(&self) -> bool {
         let Coefficients { wide_reads, buffer_reads, plain, .. } = self.coefficients;
-        self.unit == CostUnit::Picoseconds && buffer_reads + STEPS * plain < wide_reads
+        self.unit == CostUnit::Picoseconds && buffer_reads + UNPACKED * plain < wide_reads
     }
 
     /// Names of the devices whose costs ship.
@@ -257,7 +260,7 @@ impl DeviceCost {
             "  hidden          {:>10.2} of the shorter of reads of textures and the rest\n",
             self.hidden
         ));
-        let FitQuality { rows, own, without_material, without_model, counts_alone } = &self.fit;
+        let FitQuality { rows, left_out, own, without_material, without_model, counts_alone } = &self.fit;
         let mut line = |what: &str, misfit: &fit::Misfit| {
             out.push_str(&format!(
                 "  {what:<38} median {:>5.1} %, largest {:>6.1} %, pairs in order {:>5.1} %\n",
@@ -274,6 +277,9 @@ impl DeviceCost {
             line("on models that it has not seen:", misfit);
         }
         line("of counts alone, on such models:", counts_alone);
+        if *left_out > 0 {
+            out.push_str(&format!("  {left_out} more shaders took no longer than the harness, and were left out.\n"));
+        }
         if !self.fit.is_better_than_counts() {
             out.push_str("  The fit is not better than the counts alone.\n");
         }
@@ -337,7 +343,10 @@ mod tests {
         let mut rows = vec![row(1.5); 8];
         let costs = DeviceCost::fitted(source.clone(), &rows).unwrap();
         assert_eq!((costs.coefficients.plain, costs.assumed.len()), (0.5, 2));
-        rows[3].time = -0.1;
-        assert!(DeviceCost::fitted(source, &rows).unwrap_err().to_string().contains("too coarse"));
+        rows.push(row(-0.1));
+        let costs = DeviceCost::fitted(source.clone(), &rows).unwrap();
+        assert_eq!((costs.coefficients.plain, costs.fit.rows, costs.fit.left_out), (0.5, 8, 1));
+        let few = DeviceCost::fitted(source, &rows[5..]).unwrap_err().to_string();
+        assert!(few.contains("3 shaders are too few") && few.contains("1 more took no longer"), "{few}");
     }
 }

@@ -40,6 +40,9 @@ pub struct Misfit {
 pub struct FitQuality {
     /// Rows that were fitted.
     pub rows: u32,
+    /// Rows that took no longer than the harness.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub left_out: u32,
     /// On the rows themselves.
     pub own: Misfit,
     /// On the rows of each material, by a fit to those of the others; absent where there is one material.
@@ -48,6 +51,10 @@ pub struct FitQuality {
     pub without_model: Option<Misfit>,
     /// Of [`StaticCounts::operations`] times one number, fitted to the rows of the other models (to all, where there is one).
     pub counts_alone: Misfit,
+}
+
+fn is_zero(count: &u32) -> bool {
+    *count == 0
 }
 
 impl FitQuality {
@@ -220,6 +227,7 @@ pub(crate) fn quality(rows: &[Timing], fitted: &Numbers) -> FitQuality {
     });
     FitQuality {
         rows: rows.len() as u32,
+        left_out: 0,
         own: misfit(rows, &own),
         without_material: left_out(rows, |row| &row.material, by_numbers).map(|costs| misfit(rows, &costs)),
         without_model: left_out(rows, |row| &row.model, by_numbers).map(|costs| misfit(rows, &costs)),

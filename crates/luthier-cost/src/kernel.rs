@@ -1,5 +1,6 @@
 //! Kernels: a shader in a harness.
 
+use luthier_manifest::BindingEntry;
 use luthier_shader::{Form, MaterialSet, Target, bindings, emit, emit_constant, spirv_words};
 use serde::{Deserialize, Serialize};
 
@@ -100,29 +101,25 @@ impl Kernel {
     /// # Errors
     /// Those of [`emit`] and [`emit_constant`].
     pub fn of_set(set: &MaterialSet<'_>, style: Style, harness: Harness) -> Result<Self, CostError> {
-        let face = bindings(set, style.form);
-        let face = face.iter().filter(|entry| !(style.constant && entry.resource == "buffer"));
-        let shader = face.map(|entry| {
+        let mut bound = bindings(set, style.form);
+        bound.retain(|entry| !(style.constant && entry.resource == BindingEntry::BUFFER));
+        Self::of_text(&shader_text(set, style)?, &bound, harness)
+    }
+
+    /// A text with the functions of a shader, evaluated in a harness.
+    ///
+    /// # Errors
+    /// Those of naga.
+    pub fn of_text(wgsl: &str, bound: &[BindingEntry], harness: Harness) -> Result<Self, CostError> {
+        let shader = bound.iter().map(|entry| {
             let resource = match entry.resource.as_str() {
-                "buffer" | "buffer<vec4<u32>>" => Resource::Storage,
+                _ if entry.is_buffer() => Resource::Storage,
                 "sampler" => Resource::Sampler,
                 _ => Resource::Texture,
             };
             Binding { group: 0, binding: entry.binding, resource }
         });
-        Self::new(&shader_text(set, style)?, shader, harness)
-    }
-
-    /// Any text with the functions of a shader, evaluated in a harness. `buffers` and `textures` are the numbers of its bindings in group 0; a
-    /// sampler is at 5.
-    ///
-    /// # Errors
-    /// Those of naga.
-    pub fn of_text(wgsl: &str, buffers: &[u32], textures: &[u32], harness: Harness) -> Result<Self, CostError> {
-        let bind = |resource| move |&binding: &u32| Binding { group: 0, binding, resource };
-        let sampler = [5].iter().filter(|_| !textures.is_empty()).map(bind(Resource::Sampler)).collect::<Vec<_>>();
-        let buffers = buffers.iter().map(bind(Resource::Storage));
-        Self::new(wgsl, buffers.chain(textures.iter().map(bind(Resource::Texture))).chain(sampler), harness)
+        Self::new(wgsl, shader, harness)
     }
 
     /// The harness alone. It multiplies the two directions, so that both are read: three instructions that other kernels lack.

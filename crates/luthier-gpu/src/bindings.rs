@@ -94,7 +94,7 @@ pub(crate) fn material_words(package: &Package) -> Vec<[f32; 4]> {
 
 fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Result<Resource, GpuError> {
     let found = match (entry.resource.as_str(), entry.name.as_str()) {
-        ("buffer", _) => Some(Resource::Materials),
+        (BindingEntry::BUFFER, _) => Some(Resource::Materials),
         ("sampler", name) => {
             let sampler = context.guarded("sampler", || {
                 context.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -107,10 +107,10 @@ fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Resul
             })?;
             Some(Resource::Sampler(sampler))
         }
-        (resource @ ("texture_2d<f32>" | "buffer<vec4<u32>>"), name) => {
+        ("texture_2d<f32>" | BindingEntry::STEPS, name) => {
             let kind = TableKind::ALL.into_iter().find(|kind| name.strip_prefix("luthier_") == Some(kind.name()));
-            let is_buffer = resource != "texture_2d<f32>";
-            let is_meant = |kind| package.table(kind).is_none_or(|texels| texels.format.has_steps() == is_buffer);
+            let is_meant =
+                |kind| package.table(kind).is_none_or(|texels| texels.format.has_steps() == entry.is_buffer());
             kind.filter(|kind| is_meant(*kind)).map(|kind| table(context, package, kind)).transpose()?
         }
         ("texture_cube<f32>", "luthier_environment_map") => Some(Resource::Environment),

@@ -9,9 +9,9 @@ use luthier_bake::Options;
 use luthier_cost::{CostUnit, DeviceCost, Family, FitSource, Misfit, StaticCounts, Style, Timing, misfit};
 use luthier_export::GENERATOR;
 use luthier_lut::RowLayout;
-use luthier_manifest::{Manifest, ShadingModel};
+use luthier_manifest::{FunctionGroup, Manifest, ShadingModel};
 use luthier_material::Material;
-use luthier_shader::{Form, MaterialSet, count, style_name};
+use luthier_shader::{Form, MaterialSet, Yardstick, count, style_name};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
 use serde_json::Value;
 
@@ -30,11 +30,15 @@ const FAMILIES: [Family; 3] = Family::ALL;
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     material: String,
-    /// Name of a model, or of a shader of the papers.
+    /// Name of a model, of a yardstick, or of a shader of the papers.
     shader: String,
     form: Form,
     closed: bool,
     constant: bool,
+    /// Layout of rows of lobes.
+    layout: RowLayout,
+    /// Lights on a prepared view.
+    lights: u32,
 }
 
 /// A timed shader, with the cycles that the compiler counted for each family where it did.
@@ -67,13 +71,11 @@ pub(crate) fn run(options: &DevicesOptions) -> Outcome {
             for row in rows(&measured) {
                 let Some(time) = row["net_ns"].as_f64() else { continue };
                 let Some((key, counts)) = shaders.of_row(row)? else { continue };
-                let model = row["model"].as_str().map_or_else(|| paper_model(&key.shader), str::to_owned);
-                let timing = Timing { material: key.material.clone(), model, counts, time: 1e3 * time };
-                let title = match model_of(&key) {
-                    Some(model) => format!("{model}, {}", style_name(model, key.form, key.closed, key.constant)),
-                    None if key.constant => format!("{} (papers), constants", key.shader),
-                    None => format!("{} (papers)", key.shader),
-                };
+                let model = if row["shader"].is_null() { key.shader.clone() } else { paper_model(&key.shader) };
+                // Counts are those of all lights of a view.
+                let time = 1e3 * time * f64::from(key.lights);
+                let timing = Timing { material: key.material.clone(), model, counts, time };
+                let title = title(&key, !row["shader"].is_null());
                 timed.push(Row { timing, title, cycles: cycles.get(&key).copied() });
             }
             adapter = measured["adapter"].clone();
@@ -114,6 +116,23 @@ pub(crate) fn run(options: &DevicesOptions) -> Outcome {
     deliver(&page(options, &found), options.destination.output.as_deref())
 }
 
+/// A timed shader in words.
+fn title(key: &Key, is_of_papers: bool) -> String {
+    let mut title = match model_of(key) {
+        Some(model) => format!("{model}, {}", style_name(model, key.form, key.closed, key.constant)),
+        None if is_of_papers && key.constant => format!("{} (papers), constants", key.shader),
+        None if is_of_papers => format!("{} (papers)", key.shader),
+        None => key.shader.clone(),
+    };
+    if key.layout != RowLayout::Filtered {
+        title += &format!(", {}", key.layout);
+    }
+    if key.lights > 1 {
+        title += &format!(", {} lights", key.lights);
+    }
+    title
+}
+
 fn fitted(source: FitSource, rows: &[Row]) -> Outcome<DeviceCost> {
     let timings: Vec<Timing> = rows.iter().map(|row| row.timing.clone()).collect();
     DeviceCost::fitted(source, &timings).map_err(Failure::input)
@@ -133,18 +152,18 @@ fn text(value: &Value) -> String {
     value.as_str().unwrap_or_default().to_owned()
 }
 
-/// The shader of a row for one light; `None` for rows of other shaders.
+/// The shader of a row of counts or of `luthier bench`; `None` for rows of other shaders.
 fn key(row: &Value) -> Option<Key> {
-    if row["lights"].as_u64().is_some_and(|lights| lights != 1) {
-        return None;
-    }
-    let model: ShadingModel = row["model"].as_str()?.parse().ok()?;
-    Some(Key {
+    let shader = row["yardstick"].as_str().or(row["model"].as_str())?;
+    let is_known = shader.parse::<ShadingModel>().is_ok() || shader.parse::<Yardstick>().is_ok();
+    is_known.then_some(Key {
         material: row["material"].as_str()?.to_owned(),
-        shader: model.name().to_owned(),
+        shader: shader.to_owned(),
         form: row["form"].as_str()?.parse().ok()?,
         closed: row["closed"].as_bool()?,
         constant: row["constant"].as_bool().unwrap_or(false),
+        layout: row["layout"].as_str().map_or(Some(RowLayout::Filtered), |layout| layout.parse().ok())?,
+        lights: row["lights"].as_u64().unwrap_or(1) as u32,
     })
 }
 
@@ -160,7 +179,7 @@ fn paper_model(shader: &str) -> String {
 /// Texts of shaders, counted once each.
 struct Shaders<'m> {
     materials: &'m [Material],
-    manifests: BTreeMap<(String, String), Manifest>,
+    manifests: BTreeMap<(String, String, RowLayout), Manifest>,
     counts: BTreeMap<Key, Option<StaticCounts>>,
 }
 
@@ -174,10 +193,12 @@ impl Shaders<'_> {
             let constant = row["constant"].as_bool().unwrap_or(false);
             let [elek, phong] = of_models(known);
             let of_role = if shader == "Phong" { phong } else { elek };
-            let manifest = self.manifest(&(material.clone(), format!("{shader} of the papers")), || of_role)?;
+            let layout = RowLayout::Filtered;
+            let manifest = self.manifest(&(material.clone(), format!("{shader} of the papers"), layout), || of_role)?;
             let (set, style) = crate::papers::shader(manifest, role, constant);
-            let counts = counted(&set, style)?;
-            let key = Key { material, shader: shader.to_owned(), form: style.form, closed: true, constant };
+            let counts = counted(&set, style, 1)?;
+            let (shader, form) = (shader.to_owned(), style.form);
+            let key = Key { material, shader, form, closed: true, constant, layout, lights: 1 };
             return Ok(Some((key, counts)));
         }
         let Some(key) = key(row) else { return Ok(None) };
@@ -190,26 +211,37 @@ impl Shaders<'_> {
             return Ok(*counts);
         }
         let model = model_of(key);
+        if let Ok(yardstick) = key.shader.parse::<Yardstick>() {
+            return Ok(Some(count(&yardstick.wgsl(), &[], key.lights).map_err(Failure::input)?));
+        }
         let material = self.materials.iter().find(|material| material.name == key.material);
         let counts = match model.zip(material.cloned()) {
             None => None,
             Some((model, mut material)) => {
                 material.bake.model = Some(model);
-                let manifest = self.manifest(&(key.material.clone(), key.shader.clone()), || material)?;
-                let set = MaterialSet::from_manifest(manifest);
-                let set = if key.closed { set.with_closed_distribution() } else { set };
-                Some(counted(&set, Style { form: key.form, constant: key.constant, approximate: false })?)
+                let place = (key.material.clone(), key.shader.clone(), key.layout);
+                let set = MaterialSet::from_manifest(self.manifest(&place, || material)?);
+                let mut set = if key.closed { set.with_closed_distribution() } else { set };
+                if key.lights > 1 {
+                    set.functions = [FunctionGroup::Light].into_iter().collect();
+                }
+                let style = Style { form: key.form, constant: key.constant, approximate: false };
+                Some(counted(&set, style, key.lights)?)
             }
         };
         self.counts.insert(key.clone(), counts);
         Ok(counts)
     }
 
-    fn manifest(&mut self, key: &(String, String), material: impl FnOnce() -> Material) -> Outcome<&Manifest> {
+    fn manifest(
+        &mut self,
+        key: &(String, String, RowLayout),
+        material: impl FnOnce() -> Material,
+    ) -> Outcome<&Manifest> {
         if !self.manifests.contains_key(key) {
             let manifest = outline(
                 &[material()],
-                &Options { layout: Some(RowLayout::Filtered), ..Options::default() },
+                &Options { layout: Some(key.2), ..Options::default() },
                 &MemoryStore::default(),
             )?;
             self.manifests.insert(key.clone(), manifest);
@@ -218,9 +250,9 @@ impl Shaders<'_> {
     }
 }
 
-fn counted(set: &MaterialSet<'_>, style: Style) -> Outcome<StaticCounts> {
+fn counted(set: &MaterialSet<'_>, style: Style, lights: u32) -> Outcome<StaticCounts> {
     let text = luthier_cost::shader_text(set, style).map_err(Failure::input)?;
-    count(&text, &set.wide_textures(), 1).map_err(Failure::input)
+    count(&text, &set.wide_textures(), lights).map_err(Failure::input)
 }
 
 fn page(options: &DevicesOptions, found: &[(DeviceCost, Vec<Row>)]) -> String {
@@ -268,11 +300,12 @@ fn page(options: &DevicesOptions, found: &[(DeviceCost, Vec<Row>)]) -> String {
         lines.push(("cycles of RDNA2 by RADV's compiler, times one number", by_compiler));
         for (what, found) in lines {
             let Some(Misfit { median, largest, in_order }) = found else { continue };
+            let count = if what.starts_with("cycles") { counted_too(rows).len() } else { fit.rows as usize };
             let [median, largest, in_order] = [median, largest, in_order].map(|share| 100.0 * share);
             let _ = writeln!(
                 page,
-                "| {} | {what} | {} | {median:.0} % | {largest:.0} % | {in_order:.0} % |",
-                costs.name, fit.rows
+                "| {} | {what} | {count} | {median:.0} % | {largest:.0} % | {in_order:.0} % |",
+                costs.name
             );
         }
     }
@@ -309,11 +342,15 @@ fn page(options: &DevicesOptions, found: &[(DeviceCost, Vec<Row>)]) -> String {
     page
 }
 
+/// Timed shaders that the compiler counted for RDNA2, too, with its cycles.
+fn counted_too(rows: &[Row]) -> Vec<(Timing, f64)> {
+    let place = FAMILIES.iter().position(|family| *family == Family::Rdna2).unwrap_or(0);
+    rows.iter().filter_map(|row| Some((row.timing.clone(), row.cycles?[place]))).collect()
+}
+
 /// How well the compiler's cycles of RDNA2, times one number, meet the times of a device.
 fn of_compiler(rows: &[Row]) -> Option<Misfit> {
-    let place = FAMILIES.iter().position(|family| *family == Family::Rdna2)?;
-    let (timings, cycles): (Vec<Timing>, Vec<f64>) =
-        rows.iter().filter_map(|row| Some((row.timing.clone(), row.cycles?[place]))).unzip();
+    let (timings, cycles): (Vec<Timing>, Vec<f64>) = counted_too(rows).into_iter().unzip();
     let ratios: Vec<f64> = timings.iter().zip(&cycles).map(|(row, cycles)| cycles / row.time).collect();
     let scale = ratios.iter().sum::<f64>() / ratios.iter().map(|r| r * r).sum::<f64>();
     (!timings.is_empty()).then(|| misfit(&timings, &cycles.iter().map(|c| scale * c).collect::<Vec<_>>()))

@@ -6,8 +6,9 @@ use luthier::{MemoryStore, Options, outline, read_materials};
 use luthier_cost::{CostReport, DeviceCost, Family, Harness, Kernel, Style, compile_apart, shader_text};
 use luthier_export::GENERATOR;
 use luthier_lut::RowLayout;
-use luthier_manifest::{FunctionGroup, Manifest, ShadingModel};
+use luthier_manifest::{BindingEntry, FunctionGroup, Manifest, ShadingModel};
 use luthier_material::Material;
+use luthier_report::Spread;
 use luthier_shader::{Form, MaterialSet, Yardstick, count};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
 
@@ -19,8 +20,7 @@ const LIGHTS: [u32; 3] = [1, 4, 16];
 /// A shader of a material.
 struct Text {
     wgsl: String,
-    buffers: Vec<u32>,
-    textures: Vec<u32>,
+    bound: Vec<BindingEntry>,
     wide: Vec<String>,
 }
 
@@ -63,8 +63,8 @@ pub(crate) fn run(options: &LayoutsOptions) -> Outcome {
         for lights in LIGHTS {
             let harness = Harness::Lights(lights);
             kernels.push(Kernel::empty(harness).map_err(Failure::input)?);
-            for Text { wgsl, buffers, textures, .. } in texts.iter().flatten() {
-                kernels.push(Kernel::of_text(wgsl, buffers, textures, harness).map_err(Failure::input)?);
+            for Text { wgsl, bound, .. } in texts.iter().flatten() {
+                kernels.push(Kernel::of_text(wgsl, bound, harness).map_err(Failure::input)?);
             }
         }
         let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
@@ -118,8 +118,7 @@ fn texts(material: &Material, store: &MemoryStore) -> Outcome<Vec<Text>> {
 fn text(material: &Material, shader: Shader, store: &MemoryStore) -> Outcome<Text> {
     let layout = match shader {
         Shader::Yardstick(yardstick) => {
-            let (buffers, wgsl) = (vec![Yardstick::binding().binding], yardstick.wgsl());
-            return Ok(Text { wgsl, buffers, textures: Vec::new(), wide: Vec::new() });
+            return Ok(Text { wgsl: yardstick.wgsl(), bound: vec![Yardstick::binding()], wide: Vec::new() });
         }
         Shader::Rows(layout) => layout,
         Shader::Unread => RowLayout::Filtered,
@@ -135,13 +134,7 @@ fn text(material: &Material, shader: Shader, store: &MemoryStore) -> Outcome<Tex
     if shader == Shader::Unread {
         wgsl = unread(&wgsl);
     }
-    let bound = luthier_shader::bindings(&set, Form::Baked);
-    let numbers = |is_wanted: &dyn Fn(&str) -> bool| {
-        bound.iter().filter(|entry| is_wanted(&entry.resource)).map(|entry| entry.binding).collect()
-    };
-    let buffers = numbers(&|resource| resource.starts_with("buffer"));
-    let textures = numbers(&|resource| resource.starts_with("texture"));
-    Ok(Text { wgsl, buffers, textures, wide: set.wide_textures() })
+    Ok(Text { wgsl, bound: luthier_shader::bindings(&set, Form::Baked), wide: set.wide_textures() })
 }
 
 /// The text with the place of a read in place of its value.
@@ -165,16 +158,10 @@ fn table(page: &mut String, title: &str, of_lights: &[Vec<Vec<f64>>]) {
     for (i, shader) in SHADERS.into_iter().enumerate() {
         let _ = write!(page, "| {} |", shader.title());
         for materials in of_lights {
-            let values = materials.iter().map(|shaders| shaders[i]).collect();
-            let ratios = materials.iter().map(|shaders| shaders[i] / shaders[0]).collect();
-            let _ = write!(page, " {:.1} ({:.2}) |", median(values), median(ratios));
+            let values: Vec<f64> = materials.iter().map(|shaders| shaders[i]).collect();
+            let ratios: Vec<f64> = materials.iter().map(|shaders| shaders[i] / shaders[0]).collect();
+            let _ = write!(page, " {:.1} ({:.2}) |", Spread::of(&values).median, Spread::of(&ratios).median);
         }
         page.push('\n');
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
 }

@@ -98,6 +98,20 @@ mod tests {
         }
     }
 
+    /// By hand: a quarter of the way from 1/2 to 1; and beyond 2048, where half floats are whole and even, a step that is not the difference of both ends.
+    #[test]
+    fn steps_are_half_floats_of_their_own() {
+        let row = |data: &[f32]| Image { width: 2, height: 1, channels: 4, data: data.to_vec() };
+        let plain = row(&[0.5, 1.0, 0.0, -1.0, 1.0, 0.5, 0.0, 1.0]);
+        assert_eq!(stepped(&plain, [0.75, 0.5]), [0.625, 0.875, 0.0, -0.5]);
+        assert_eq!(stepped(&plain, [1.5, 0.5]), [1.0, 0.5, 0.0, 1.0]);
+        let far = row(&[0.25, 0.0, 0.0, 0.0, 2050.0, 0.0, 0.0, 0.0]);
+        assert_eq!(stepped(&far, [1.0, 0.5])[0], 0.25 + 0.5 * 2050.0);
+        // Between two rows both are read.
+        let two = Image { height: 2, data: [plain.data, vec![0.0; 8]].concat(), ..far };
+        assert_eq!(stepped(&two, [0.75, 0.75])[..2], [0.75 * 0.625, 0.75 * 0.875]);
+    }
+
     #[test]
     fn weights_have_the_given_bits() {
         let image = Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] };

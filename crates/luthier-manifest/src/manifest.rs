@@ -104,6 +104,18 @@ pub struct BindingEntry {
     pub resource: String,
 }
 
+impl BindingEntry {
+    /// Resource of the material buffer.
+    pub const BUFFER: &str = "buffer";
+    /// Resource of a table whose texels have steps: 16 bytes each.
+    pub const STEPS: &str = "buffer<vec4<u32>>";
+
+    /// Whether it is a read-only storage buffer.
+    pub fn is_buffer(&self) -> bool {
+        [Self::BUFFER, Self::STEPS].contains(&self.resource.as_str())
+    }
+}
+
 impl TableEntry {
     /// Checks texels against the entry: size, format and bytes.
     ///

@@ -31,9 +31,6 @@ const ENVIRONMENT_BINDINGS: [(u32, &str, &str); 3] = [
     (15, "luthier_environment_sampler", "sampler"),
 ];
 
-/// Resource of a table with steps: a read-only storage buffer of its texels, 16 bytes each.
-pub(crate) const STEPS: &str = "buffer<vec4<u32>>";
-
 const _: () = {
     let mut i = 0;
     while i < TableKind::ALL.len() {
@@ -309,13 +306,13 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     let mut is_sampled = false;
     for table in set.tables_read(form) {
         is_sampled |= table.format.is_filterable();
-        let resource = if table.format.has_steps() { STEPS } else { "texture_2d<f32>" };
+        let resource = if table.format.has_steps() { BindingEntry::STEPS } else { "texture_2d<f32>" };
         bindings.push(entry(table.kind.binding(), &format!("luthier_{}", table.kind.name()), resource));
     }
     if is_sampled {
         bindings.push(entry(SAMPLER_BINDING, "luthier_sampler", "sampler"));
     }
-    bindings.push(entry(MATERIALS_BINDING, "luthier_materials", "buffer"));
+    bindings.push(entry(MATERIALS_BINDING, "luthier_materials", BindingEntry::BUFFER));
     if set.shows_environment(form) {
         bindings.extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name, resource)));
     }

@@ -22,12 +22,6 @@ pub(crate) fn is_printed_alone(file: &Path) -> bool {
 
 /// Fits costs to times in picoseconds, net of the harness, writes them to a file unless they are printed alone, and returns what to print of them.
 pub(crate) fn fitted(gpu: &Gpu, rows: &[Timing], file: &Path) -> Outcome<String> {
-    // The noise of a clock may be larger than a cheap shader.
-    let (kept, lost): (Vec<Timing>, Vec<Timing>) = rows.iter().cloned().partition(|row| row.time > 0.0);
-    let left = match lost.len() {
-        0 => String::new(),
-        count => format!("; {count} more took no longer than the harness and were left out"),
-    };
     let adapter = adapter_json(gpu);
     let text = |key: &str| adapter[key].as_str().unwrap_or_default().to_owned();
     let name = match file.file_stem().filter(|_| !is_printed_alone(file)) {
@@ -40,10 +34,10 @@ pub(crate) fn fitted(gpu: &Gpu, rows: &[Timing], file: &Path) -> Outcome<String>
         device: text("name"),
         driver: text("driver"),
         unit: CostUnit::Picoseconds,
-        source: format!("times of {} shaders by `luthier bench --fit`{left}", kept.len()),
+        source: format!("times of {} shaders by `luthier bench --fit`", rows.len()),
         family: None,
     };
-    let costs = DeviceCost::fitted(source, &kept).map_err(Failure::input)?;
+    let costs = DeviceCost::fitted(source, rows).map_err(Failure::input)?;
     if !is_printed_alone(file) {
         deliver(&costs.to_json().map_err(Failure::input)?, Some(file))?;
     }

@@ -98,7 +98,7 @@ struct Variant {
 
 /// Every material (or all as one set) in every model, form and style asked for.
 fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Variant>> {
-    // A sampler's rows, as bakes for the families of RADV and for programs have them; `--layout` names the others.
+    // The compiler counts fewer cycles for rows that a sampler filters.
     let layout = options.layout.unwrap_or(RowLayout::Filtered);
     let models = models(&options.model, options.no_fit);
     let forms: Vec<Form> = if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.clone() };

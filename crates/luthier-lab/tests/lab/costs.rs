@@ -77,6 +77,36 @@ fn devices_are_fitted_to_kept_measurements() {
     assert!(page.contains("## Shaders timed on h100") && page.contains("cycles of RDNA2 by RADV's compiler"), "{page}");
 }
 
+/// Both layouts, the coats of engines and a bound, on three chips and on timed devices, for one light and for several. No layout is cheaper than no reads, more lights on a view make each of them cheaper,
+/// and the yardstick is 1 beside itself.
+#[test]
+fn layouts_stand_between_no_reads_and_more_bytes() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let run = workshop.run(&["layouts", "lacquer.toml"]);
+    if run.lacks_driver() {
+        return;
+    }
+    let page = run.exits(0).stdout;
+    let titles: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+    assert_eq!(titles.len(), 5, "{titles:?}");
+    for section in page.split("\n## ").skip(1) {
+        let row = |name: &str| -> Vec<f64> {
+            let line = section.lines().find(|line| line.starts_with(&format!("| {name} |")));
+            let cells = line.unwrap_or_else(|| panic!("no {name} in {section}")).split('|').skip(2);
+            cells.filter_map(|cell| cell.split_whitespace().next()?.parse().ok()).collect()
+        };
+        let [coat, filtered, steps, unread] =
+            ["gltf-clearcoat", "lobes, filtered", "lobes, steps", "lobes without reads"].map(row);
+        for costs in [&coat, &filtered, &steps, &unread] {
+            assert!(costs.len() == 3 && costs.windows(2).all(|pair| pair[1] <= pair[0]) && costs[2] > 0.0, "{section}");
+        }
+        for (i, unread) in unread.iter().enumerate() {
+            assert!(*unread <= filtered[i] && *unread <= steps[i], "{section}");
+        }
+        assert!(section.contains(" (1.00) |"), "{section}");
+    }
+}
+
 /// Ten shaders of a material of two layers, each with its time; ratios of the page are those of the numbers.
 #[test]
 fn shaders_of_the_papers_are_timed() {

@@ -21,7 +21,7 @@ use luthier_layers::models::path;
 use luthier_layers::models::room;
 use luthier_layers::models::room::Kernels;
 use luthier_lut::TableKind;
-use luthier_manifest::{MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_manifest::{BindingEntry, MaterialTexture, SIDE, ShadingModel, material_buffer};
 use luthier_model::Family;
 
 use self::blocks::prune;
@@ -31,7 +31,6 @@ pub(crate) use self::lookup::calls;
 use self::lookup::lookup;
 use self::reached::reached;
 use self::words::numbered;
-use crate::set::STEPS;
 use crate::{Form, MaterialSet, ShaderError, TableFace, bindings};
 
 /// Place of the material buffer in a shader.
@@ -232,9 +231,13 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
             }
             ("buffer", Buffer::Sized) => ("<storage, read>", format!("array<vec4<f32>, {}>", set.words())),
             ("buffer", Buffer::Texture) => ("", "texture_2d<f32>".to_owned()),
-            (STEPS, Buffer::Storage | Buffer::Constant) => ("<storage, read>", "array<vec4<u32>>".to_owned()),
-            (STEPS, Buffer::Sized) => ("<storage, read>", format!("array<vec4<u32>, {}>", texels(set, entry.binding))),
-            (STEPS, Buffer::Texture) => ("", "texture_2d<u32>".to_owned()),
+            (BindingEntry::STEPS, Buffer::Storage | Buffer::Constant) => {
+                ("<storage, read>", "array<vec4<u32>>".to_owned())
+            }
+            (BindingEntry::STEPS, Buffer::Sized) => {
+                ("<storage, read>", format!("array<vec4<u32>, {}>", texels(set, entry.binding)))
+            }
+            (BindingEntry::STEPS, Buffer::Texture) => ("", "texture_2d<u32>".to_owned()),
             _ => ("", entry.resource),
         };
         let _ = writeln!(out, "@group(0) @binding({}) var{space} {}: {resource};", entry.binding, entry.name);

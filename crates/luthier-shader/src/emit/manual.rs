@@ -10,7 +10,7 @@ use luthier_manifest::{
 
 use super::Part;
 use crate::functions::FUNCTIONS;
-use crate::set::STEPS;
+use crate::identifiers::camel_case;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
 
 /// Longest line of the comment.
@@ -254,11 +254,11 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
         }
         ("buffer", Target::Hlsl) => format!("ByteAddressBuffer (a raw view), {words} float4"),
         ("buffer", Target::Msl) => format!("device LuthierMaterials const&, {words} float4"),
-        (STEPS, Target::Wgsl | Target::SpirV) => "storage buffer of vec4<u32>".to_owned(),
-        (STEPS, Target::Glsl450) => "storage block LuthierLobes (std430) of uvec4".to_owned(),
-        (STEPS, Target::GlslEs300) => "usampler2D, RGBA32UI".to_owned(),
-        (STEPS, Target::Hlsl) => "ByteAddressBuffer (a raw view) of uint4".to_owned(),
-        (STEPS, Target::Msl) => "device LuthierLobes const& of uint4".to_owned(),
+        (BindingEntry::STEPS, Target::Wgsl | Target::SpirV) => "storage buffer of vec4<u32>".to_owned(),
+        (BindingEntry::STEPS, Target::Glsl450) => format!("storage block {} (std430) of uvec4", camel_case(name)),
+        (BindingEntry::STEPS, Target::GlslEs300) => "usampler2D, RGBA32UI".to_owned(),
+        (BindingEntry::STEPS, Target::Hlsl) => "ByteAddressBuffer (a raw view) of uint4".to_owned(),
+        (BindingEntry::STEPS, Target::Msl) => format!("device {} const& of uint4", camel_case(name)),
         ("sampler", Target::Hlsl) => "SamplerState, linear, clamp to edge".to_owned(),
         ("sampler", _) => "sampler, linear, clamp to edge".to_owned(),
         ("texture_cube<f32>", Target::Glsl450 | Target::GlslEs300) => "samplerCube".to_owned(),
@@ -274,7 +274,7 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
         (Target::Hlsl, "sampler") => format!("s{binding} "),
         (Target::Hlsl, _) => format!("t{binding} "),
         (Target::Msl, "sampler") => format!("sampler({binding}) "),
-        (Target::Msl, "buffer" | STEPS) => format!("buffer({binding}) "),
+        (Target::Msl, _) if entry.is_buffer() => format!("buffer({binding}) "),
         (Target::Msl, _) => format!("texture({binding}) "),
         _ => format!("{binding} "),
     };

@@ -9,7 +9,6 @@ use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Option
 use crate::identifiers::{camel_case, rename};
 use crate::languages::lint;
 use crate::languages::text::{helper, layout};
-use crate::set::STEPS;
 use crate::validate::module;
 use crate::{ShaderError, Target};
 
@@ -56,7 +55,7 @@ fn type_of<'t>(text: &'t str, binding: &str) -> Option<(&'t str, String)> {
 fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
-        "buffer" | STEPS => BindTarget { buffer: Some(at), ..BindTarget::default() },
+        _ if entry.is_buffer() => BindTarget { buffer: Some(at), ..BindTarget::default() },
         "sampler" => BindTarget { sampler: Some(BindSamplerTarget::Resource(at)), ..BindTarget::default() },
         _ => BindTarget { texture: Some(at), ..BindTarget::default() },
     };

@@ -17,13 +17,8 @@ fn luthier_prepare(material: u32, wo: vec3<f32>) -> LuthierPrepared {
 
 /// f cos_theta_i of a light: GGX, Smith's masking, Schlick's reflectance at the half vector, and Lambert's base with the rest (Appendix B.3.5).
 fn luthier_light(prepared: LuthierPrepared, wi: vec3<f32>) -> vec3<f32> {
-    let cos_theta_o = prepared.wo.z;
-    if min(wi.z, cos_theta_o) <= 0.0 {
+    if min(wi.z, prepared.wo.z) <= 0.0 {
         return vec3<f32>(0.0);
     }
-    let bisector = wi + prepared.wo;
-    let fresnel = prepared.f0 + (1.0 - prepared.f0) * luthier_schlick(0.5 * length(bisector));
-    let lobe = luthier_density(prepared.alpha_sq, bisector)
-        * luthier_visibility(prepared.alpha_sq, prepared.root, cos_theta_o, wi.z);
-    return ((1.0 - fresnel) * prepared.diffuse + fresnel * lobe) * wi.z;
+    return wi.z * luthier_surface(prepared.f0, prepared.diffuse, prepared.alpha_sq, prepared.root, prepared.wo, wi);
 }

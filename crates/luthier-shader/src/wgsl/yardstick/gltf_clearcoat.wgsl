@@ -34,12 +34,8 @@ fn luthier_light(prepared: LuthierPrepared, wi: vec3<f32>) -> vec3<f32> {
     if min(wi.z, cos_theta_o) <= 0.0 {
         return vec3<f32>(0.0);
     }
-    let bisector = wi + prepared.wo;
-    let fresnel = prepared.f0 + (1.0 - prepared.f0) * luthier_schlick(0.5 * length(bisector));
-    let lobe = luthier_density(prepared.alpha_sq, bisector)
-        * luthier_visibility(prepared.alpha_sq, prepared.root, cos_theta_o, wi.z);
-    let surface = (1.0 - fresnel) * prepared.diffuse + fresnel * lobe;
-    let coat = luthier_density(prepared.coat_alpha_sq, bisector)
+    let surface = luthier_surface(prepared.f0, prepared.diffuse, prepared.alpha_sq, prepared.root, prepared.wo, wi);
+    let coat = luthier_density(prepared.coat_alpha_sq, wi + prepared.wo)
         * luthier_visibility(prepared.coat_alpha_sq, prepared.coat_root, cos_theta_o, wi.z);
     return mix(surface, vec3<f32>(coat), prepared.coat_fresnel) * wi.z;
 }

@@ -22,6 +22,15 @@ fn luthier_visibility(alpha_sq: f32, root_o: f32, cos_theta_o: f32, cos_theta_i:
     return 0.5 / (cos_theta_i * root_o + cos_theta_o * luthier_root(alpha_sq, cos_theta_i));
 }
 
+/// f of a rough surface over Lambert's base, whose light the reflectance at the half vector leaves; without the cosine of the light. `root` is that of
+/// the eye's masking.
+fn luthier_surface(f0: vec3<f32>, diffuse: vec3<f32>, alpha_sq: f32, root: f32, wo: vec3<f32>, wi: vec3<f32>) -> vec3<f32> {
+    let bisector = wi + wo;
+    let fresnel = f0 + (1.0 - f0) * luthier_schlick(0.5 * length(bisector));
+    let lobe = luthier_density(alpha_sq, bisector) * luthier_visibility(alpha_sq, root, wo.z, wi.z);
+    return (1.0 - fresnel) * diffuse + fresnel * lobe;
+}
+
 /// Weight of white in Schlick's formula (1994): (1 - cosine)^5.
 fn luthier_schlick(cosine: f32) -> f32 {
     let c = 1.0 - min(cosine, 1.0);
