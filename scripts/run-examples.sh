@@ -45,6 +45,14 @@ for name in "${materials[@]}"; do
   example difference "$out/wgpu-$name.png" "$out/plain-$name.png" "$limit"
 done
 
+step "rows of lobes in a buffer, and in a texture of whole numbers"
+for layout in filtered steps; do
+  luthier bake materials/papers/car-paint.toml --model lobes --layout "$layout" --no-zstd --out "$out/$layout" --quiet
+  example luthier-example-wgpu "$out/$layout" "$(scene car-paint)" "$out/wgpu-$layout.png"
+done
+node examples/browser.mjs examples/plain-webgl "$out/steps" "$(scene car-paint)" "$out/plain-steps.png"
+for picture in wgpu-steps plain-steps; do example difference "$out/wgpu-filtered.png" "$out/$picture.png" "$limit"; done
+
 step "three.js"
 npm ci --prefix examples/three --ignore-scripts --no-audit --no-fund --silent
 node examples/browser.mjs examples/three "$bake" "$(scene car-paint)" "$out/three.png"
