@@ -98,7 +98,7 @@ impl Features {
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Part 0 is the remainder, the last part the albedo. Each lobe has two parts in between.
+                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe.
                 names.extend(match parts.max as u32 {
                     3 => Some(Feature::OneLobe),
                     5 => Some(Feature::TwoLobes),
