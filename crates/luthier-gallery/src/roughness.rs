@@ -90,6 +90,7 @@ mod tests {
                 critical_cot_sq: 0.0,
                 critical_width: 0.0,
                 critical_plain_share: 0.0,
+                lobes: 2,
                 inverse_tails: [1.0; 2],
                 varying,
                 axes: None,

@@ -18,6 +18,7 @@ mod maps;
 mod papers;
 mod parity;
 mod places;
+mod sets;
 mod shapes;
 mod simulation;
 mod stability;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         Verb::Throughput(options) => throughput::run(options),
         Verb::Devices(options) => devices::run(options),
         Verb::Layouts(options) => layouts::run(options),
+        Verb::Sets(options) => sets::run(options),
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),
         Verb::Texels(options) => texels::run(options),

@@ -46,7 +46,7 @@ mod style;
 mod validate;
 mod yardstick;
 
-pub use count::{StaticCounts, count};
+pub use count::{Record, Sides, StaticCounts, count, count_sides};
 pub use emit::{complete, complete_spirv, emit, emit_constant, emit_spirv, interface};
 pub use error::ShaderError;
 pub use languages::spirv::{library_spirv, spirv_words};

@@ -222,6 +222,7 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_cot_sq: 0.0,
     critical_width: 0.0,
     critical_plain_share: 0.0,
+    lobes: 2,
     inverse_tails: [1.0; 2],
     varying: None,
     axes: None,
@@ -242,7 +243,8 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         let painted = base.map(|base| PaintedRecord { albedo: base.albedo, moments: None });
         return LobesRecord { axes, painted, ..UNFITTED };
     };
-    let Fit { varied, errors } = fits.of(settings.lobes);
+    let fit = fits.of(settings.lobes);
+    let Fit { varied, errors } = fit;
     let step = step(shape.x.size);
     let error = STEPS.iter().position(|known| *known == step).map(|i| {
         let FitError { lobe, lobe_noise, albedo, albedo_noise } = errors[i];
@@ -257,6 +259,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_cot_sq: cot_sq,
         critical_width: width,
         critical_plain_share: plain_share,
+        lobes: fit.lobes() as u32,
         inverse_tails: texels_of(varied.stored(0, 0).inverse_tails(), shape.format),
         varying: varied.varying().map(|varying| VaryingRecord {
             factor: match varying {

@@ -17,6 +17,7 @@ mod lean;
 // Materials by number, which the tests of the command bake too.
 #[path = "../../../luthier-material/examples/library/library.rs"]
 mod library;
+mod lobes;
 mod many;
 mod materials;
 mod sharing;

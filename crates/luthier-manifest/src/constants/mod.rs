@@ -70,8 +70,10 @@ pub struct LobesRecord {
     pub critical_width: f64,
     /// Share of `5 cos / (1 + 4 cos)` of the view in the axis of the rows; the rest is the cosine inside.
     pub critical_plain_share: f64,
-    /// 1 over the tail of each of two lobes, as the texels of the rows have it. All rows of one tile have the same; where there are several tiles, the
-    /// first decides, and shaders read the rows.
+    /// Number of lobes; rows of a set have as many as the material with the most.
+    pub lobes: u32,
+    /// 1 over the tail of each of two lobes, as the texels of the rows have it; 0 for a lobe that the first tile lacks. All rows of one tile have
+    /// the same. Where there are several tiles, these numbers are of the first, and shaders read the rows.
     pub inverse_tails: [f64; 2],
     /// Tiles over a factor of a texture, if there are such tiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -190,14 +192,15 @@ impl LobesRecord {
     }
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
-    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of other rows: the reciprocal tails, and 0.
+    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -2. Of tiles over another factor: 0, 0, -1. Of a single
+    /// tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
     fn sheet(&self) -> [f64; 3] {
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
-            return [1.0 / (least - most), most / (most - least), -1.0];
+            return [1.0 / (least - most), most / (most - least), -2.0];
         }
         let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.axes else {
             let [first, second] = self.inverse_tails;
-            return [first, second, 0.0];
+            return if self.varying.is_some() { [0.0, 0.0, -1.0] } else { [first, second, 0.0] };
         };
         [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
@@ -277,11 +280,11 @@ impl MaterialConstants {
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
-    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of lobes over a diffuse base without patina the albedo of that base RGB, -1 where rows have a and b, else 0 |
-    /// | 7 | patina: diffuse albedo RGB, 0; of such lobes the two integrals of [`PaintedRecord`], 0, 0 |
+    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of lobes over a diffuse base without patina the albedo of that base RGB, -2 where rows have a and b, else -1 |
+    /// | 7 | patina: diffuse albedo RGB; of such lobes the two integrals of [`PaintedRecord`], 0; in w the number of lobes |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of other lobes 1 over the tail of each, 0; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -2; of lobes over another factor 0, 0, -1; of lobes with one tile 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);
@@ -295,6 +298,7 @@ impl MaterialConstants {
             words[0] = vec4(lobes.varying(), lobes.critical_plain_share);
             words[1] = lobes.inside().map(|x| x as f32);
             words[2] = vec4([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
+            words[6][3] = lobes.lobes as f32;
         }
         if let Some(beams) = &self.beams {
             words[..2].copy_from_slice(&beams.words());
@@ -304,14 +308,15 @@ impl MaterialConstants {
             words[3] = [low, high, f.count as f32, f.tiling as f32];
             words[4] = vec4([f.spread, f.scale, f.fade_start], 0.0);
         }
+        let lobes = f64::from(words[6][3]);
         if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), &self.patina) {
             let [fifth, square] = base.moments.unwrap_or_default();
-            words[5] = vec4(base.albedo, if base.moments.is_some() { -1.0 } else { 0.0 });
-            words[6] = vec4([fifth, square, 0.0], 0.0);
+            words[5] = vec4(base.albedo, if base.moments.is_some() { -2.0 } else { -1.0 });
+            words[6] = vec4([fifth, square, 0.0], lobes);
         }
         if let Some(p) = &self.patina {
             words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
-            words[6] = vec4(p.diffuse_albedo, 0.0);
+            words[6] = vec4(p.diffuse_albedo, lobes);
             words[7] = vec4(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
         }
         if let Some(g) = &self.glitter {
@@ -393,6 +398,7 @@ mod tests {
             critical_cot_sq: 3.0,
             critical_width: 2.0,
             critical_plain_share: 0.25,
+            lobes: 2,
             inverse_tails: [2.0, 3.0],
             varying: None,
             axes: None,
@@ -402,8 +408,8 @@ mod tests {
         let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
         let albedo = [0.5, 0.0, 1.0];
         let over = |moments| words(LobesRecord { painted: Some(PaintedRecord { albedo, moments }), ..lobes });
-        assert_eq!(over(None)[5..8], [[0.5, 0.0, 1.0, 0.0], [0.0; 4], [0.0; 4]]);
-        assert_eq!(over(Some([0.25, 0.125]))[5..8], [[0.5, 0.0, 1.0, -1.0], [0.25, 0.125, 0.0, 0.0], [0.0; 4]]);
+        assert_eq!(over(None)[5..8], [[0.5, 0.0, 1.0, -1.0], [0.0, 0.0, 0.0, 2.0], [0.0; 4]]);
+        assert_eq!(over(Some([0.25, 0.125]))[5..8], [[0.5, 0.0, 1.0, -2.0], [0.25, 0.125, 0.0, 2.0], [0.0; 4]]);
         // Roots: of -3/4 + sqrt(9/16 + 1) = 1/2, and of 1/4 + sqrt(1/16 + 1).
         let horizon = f64::sqrt(0.5);
         let range = f64::sqrt(0.25 * (1.0 + f64::sqrt(17.0))) - horizon;
@@ -419,7 +425,7 @@ mod tests {
         let film =
             VaryingRecord { factor: VaryingFactor::FilmFactor, tiles: 9, least_spread: 1.0, factors: Some([1.5, 0.5]) };
         let of_film = words(LobesRecord { varying: Some(film), ..lobes });
-        assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -1.0]]);
+        assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -2.0]]);
         assert_eq!(film.nominal(), 4.0);
         assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
@@ -431,6 +437,8 @@ mod tests {
             ..MaterialConstants::default()
         };
         assert_eq!(of_patina.words()[0], [0.0, 0.0, 1e-3, 0.25]);
+        assert_eq!(of_patina.words()[9], [0.0, 0.0, 0.0, -1.0]);
+        assert_eq!(of_patina.words()[6], [11.0, 12.0, 13.0, 2.0]);
         assert_eq!(of_patina.words()[7], [14.0, 15.0, 16.0, 2.0]);
         let around = |is_mirrored| {
             let axes = Some(AxesRecord { turn: [0.6, 0.8], is_mirrored, tiles: 8 });

@@ -156,6 +156,7 @@ fn lacquered() -> (Bake, Vec<SurfaceMap>) {
         critical_cot_sq: cot_sq,
         critical_width: width,
         critical_plain_share: plain_share,
+        lobes: 2,
         inverse_tails: [1.0; 2],
         varying: Some(VaryingRecord {
             factor: VaryingFactor::SlabFactor,

@@ -25,6 +25,11 @@ fn is_clamped(model: ShadingModel, features: &Features) -> bool {
     features.has(if model.facts().is_isotropic { Feature::Clamped } else { Feature::RougherBelow })
 }
 
+/// Whether a material of a model has patina.
+fn has_patina(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    set.materials.iter().any(|material| material.model == model && material.constants.patina.is_some())
+}
+
 /// The function of a model that adds an interface to a `LuthierPath`.
 fn interface(model: ShadingModel, features: &Features) -> String {
     let owner = if is_clamped(model, features) { model.name().replace('-', "_") } else { "add".to_owned() };
@@ -36,7 +41,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
     let interface = &interface(model, features);
     let name = function(model);
     let layers = stacks(set, model);
-    let has_patina = features.has(Feature::ChainPatina);
+    let has_patina = has_patina(set, model);
     let (name, bare) =
         if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
     let without = if has_patina { "; where it is bare, without the first layer" } else { "" };
@@ -65,7 +70,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
             );
         }
         let _ = write!(out, "    return wi{here}.z * {base};\n}}\n");
-        return out + &patina(model, features) + &white(model, features);
+        return out + &patina(set, model, features) + &white(model, features);
     }
     let (least, depth) = depths(&layers);
     if least < depth || depth > 1 && has_patina {
@@ -108,7 +113,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         };
     }
     out.push_str("    return wi.z * path.total;\n}\n");
-    out + &patina(model, features) + &white(model, features)
+    out + &patina(set, model, features) + &white(model, features)
 }
 
 /// The function of a model for white light. Functions beside `luthier_eval` call it if that of the set takes light of a colour.
@@ -125,9 +130,9 @@ fn white(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// The function of a model in a set with patina: light with and without the first layer, blended.
-fn patina(model: ShadingModel, features: &Features) -> String {
-    if !features.has(Feature::ChainPatina) {
+/// The function of a model that shows patina: light with and without the first layer, blended.
+fn patina(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
+    if !has_patina(set, model) {
         return String::new();
     }
     let name = function(model);
@@ -153,13 +158,17 @@ fn patina(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// Number of interfaces down to the lowest one of a model's materials. With patina, those of the bare stacks follow.
-pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel, has_patina: bool) -> usize {
+/// Number of interfaces down to the lowest one of a model's materials.
+fn interfaces(set: &MaterialSet<'_>, model: ShadingModel) -> usize {
     let stacks = stacks(set, model);
     let lowest = stacks.iter().filter_map(|layers| layers.iter().rposition(|layer| !is_diffuse(layer)));
-    let depth = lowest.map(|last| last + 1).max().unwrap_or(0);
-    // Bare stacks begin one layer below the top.
-    if has_patina { (2 * depth).saturating_sub(1) } else { depth }
+    lowest.map(|last| last + 1).max().unwrap_or(0)
+}
+
+/// Number of the parts of a model: its interfaces, and with patina those of the bare stacks, which begin one layer below the top.
+pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel) -> usize {
+    let depth = interfaces(set, model);
+    if has_patina(set, model) { (2 * depth).saturating_sub(1) } else { depth }
 }
 
 /// `luthier_parts_<model>`: the interfaces as light from the mirror direction meets them, and the light of a base for light at a mean cosine.
@@ -172,7 +181,7 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
         parts_function(model)
     );
     let layers = stacks(set, model);
-    let count = parts_count(set, model, false);
+    let count = interfaces(set, model);
     if count == 0 {
         let diffuse = match features.has(Feature::Fluorescent) {
             true => "luthier_reradiated(layer, light, wo, vec3<f32>(1.0))",
@@ -181,7 +190,7 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
         let base = format!("let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * {diffuse};");
         return format!("{out}    {base}\n    return prepared;\n}}\n");
     }
-    let has_patina = features.has(Feature::ChainPatina);
+    let has_patina = has_patina(set, model);
     let (least, depth) = depths(&layers);
     if least < depth || has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");

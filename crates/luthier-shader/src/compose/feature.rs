@@ -167,6 +167,8 @@ luthier_lut::named! {
         OneLobe = "one_lobe",
         /// No material of the set has more than two lobes.
         TwoLobes = "two_lobes",
+        /// Materials of the set differ in the number of their lobes.
+        LobesMixed = "lobes_mixed",
         /// Rows of lobes are over something beside the view.
         LobesRows = "lobes_rows",
         /// Rows of lobes are over azimuths.

@@ -99,11 +99,15 @@ impl Features {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
                 // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe.
-                names.extend(match parts.max as u32 {
-                    3 => Some(Feature::OneLobe),
-                    5 => Some(Feature::TwoLobes),
-                    _ => None,
-                });
+                let (word, most) = match parts.max as u32 {
+                    3 => (Some(Feature::OneLobe), 1),
+                    5 => (Some(Feature::TwoLobes), 2),
+                    _ => (None, 0),
+                };
+                names.extend(word);
+                if set.materials.iter().filter_map(lobes_of).any(|lobes| lobes < most) {
+                    names.insert(Feature::LobesMixed);
+                }
             }
             if !table.format.is_filterable() && !table.format.has_steps() {
                 names.insert(Feature::Bilinear);
@@ -402,6 +406,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         _ => false,
     };
     names
+}
+
+/// Number of lobes of a material whose rows are read.
+fn lobes_of(material: &MaterialEntry) -> Option<u32> {
+    let has_rows = material.layers.first().is_some_and(|layer| layer.tiles[TableKind::Lobes].is_some());
+    Some(material.constants.lobes.filter(|_| has_rows)?.lobes)
 }
 
 /// Whether rows are over the amount of patina, so that bare places show the layer below it.

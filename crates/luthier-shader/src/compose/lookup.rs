@@ -190,10 +190,8 @@ fn texel(out: &mut String, table: &TableFace, is_between: bool) {
     let _ = match (is_between, layout.columns) {
         (true, _) => writeln!(
             out,
-            "    let first_tile = floor(tile);\n    let next_tile = min(first_tile + 1.0, {}.0);\n    \
-             let across = {across};\n    let texel = u32(first_tile) * {width}u + across;\n    \
-             let next = u32(next_tile) * {width}u + across;",
-            layout.tiles - 1
+            "    let first_tile = floor(tile);\n    let across = {across};\n    \
+             let texel = u32(first_tile) * {width}u + across;"
         ),
         (false, 1) if layout.tiles == 1 => writeln!(out, "    let texel = {across};"),
         (false, 1) => writeln!(out, "    let texel = u32(tile) * {width}u + {across};"),
@@ -205,11 +203,20 @@ fn texel(out: &mut String, table: &TableFace, is_between: bool) {
     };
     let name = table.kind.name();
     let read = |texel| format!("luthier_stepped(luthier_{name}[{texel}], x - node)");
-    let value = match is_between {
-        true => format!("mix({}, {}, tile - first_tile)", read("texel"), read("next")),
-        false => read("texel"),
-    };
-    let _ = writeln!(out, "    let value = {value};");
+    if !is_between {
+        let _ = writeln!(out, "    let value = {};", read("texel"));
+        return;
+    }
+    // Materials with one tile read it alone.
+    let _ = writeln!(
+        out,
+        "    var value = {};\n    if tile > first_tile {{\n        \
+             let next = min(u32(first_tile) + 1u, {}u) * {width}u + across;\n        \
+             value = mix(value, {}, tile - first_tile);\n    }}",
+        read("texel"),
+        layout.tiles - 1,
+        read("next")
+    );
 }
 
 fn read(table: &TableFace) -> String {

@@ -19,6 +19,8 @@ struct Node {
     arguments: Vec<Id>,
     kind: ScalarKind,
     region: Region,
+    /// The value that it has for the material on whose path the walk is. No compiler knows it.
+    held: Option<Constant>,
 }
 
 #[derive(Debug)]
@@ -26,6 +28,8 @@ struct Branch {
     condition: Id,
     parent: Region,
     sides: [Region; 2],
+    /// Whether the material on whose path the walk is decides the side. The other one is not followed, and the taken one stays in the parent.
+    is_decided: bool,
 }
 
 /// Operations with the regions where they stand.
@@ -50,8 +54,19 @@ impl Graph {
         let first = self.parents.len();
         self.parents.extend([Some(self.here); 2]);
         let sides = [first, first + 1];
-        self.branches.push(Branch { condition, parent: self.here, sides });
+        let is_decided = self.held(condition).is_some();
+        self.branches.push(Branch { condition, parent: self.here, sides, is_decided });
         sides
+    }
+
+    /// The value of a node for the material on whose path the walk is, if that decides it.
+    pub(super) fn held(&self, id: Id) -> Option<Constant> {
+        self.as_constant(id).or(self.nodes[id as usize].held)
+    }
+
+    /// States the value that a node has for the material on whose path the walk is.
+    pub(super) fn hold(&mut self, id: Id, value: Constant) {
+        self.nodes[id as usize].held = Some(value);
     }
 
     /// Whether a node of a region can be used in the present one.
@@ -98,8 +113,36 @@ impl Graph {
     }
 
     fn push(&mut self, operation: Operation, arguments: Vec<Id>, kind: ScalarKind, region: Region) -> Id {
-        self.nodes.push(Node { operation, arguments, kind, region });
+        let held = self.value(operation, &arguments);
+        self.nodes.push(Node { operation, arguments, kind, region, held });
         (self.nodes.len() - 1) as Id
+    }
+
+    /// The value of an operation for the material on whose path the walk is.
+    fn value(&self, operation: Operation, arguments: &[Id]) -> Option<Constant> {
+        let values = arguments.iter().map(|&id| self.held(id));
+        match operation {
+            Operation::Constant(_) | Operation::Read(..) | Operation::Component(_) => None,
+            Operation::Address => fold(Operation::Binary(BinaryOperator::Add), &values.collect::<Option<Vec<_>>>()?),
+            Operation::Select => match self.held(arguments[0])? {
+                Constant::Bool(condition) => self.held(arguments[if condition { 1 } else { 2 }]),
+                _ => None,
+            },
+            Operation::Binary(operator) => {
+                // One side decides some.
+                let decides = match operator {
+                    BinaryOperator::LogicalAnd | BinaryOperator::And => Some(Constant::Bool(false)),
+                    BinaryOperator::LogicalOr | BinaryOperator::InclusiveOr => Some(Constant::Bool(true)),
+                    _ => None,
+                };
+                let values: Vec<Option<Constant>> = values.collect();
+                if decides.is_some() && values.contains(&decides) {
+                    return decides;
+                }
+                fold(operation, &values.into_iter().collect::<Option<Vec<_>>>()?)
+            }
+            _ => fold(operation, &values.collect::<Option<Vec<_>>>()?),
+        }
     }
 
     /// The node of an operation, an equal one if there is any.
@@ -192,8 +235,8 @@ impl Graph {
         Some(self.constant(value))
     }
 
-    /// Counts of what some results need.
-    pub(super) fn total(&self, results: &[Id]) -> StaticCounts {
+    /// Counts of what some results need: of both sides of a branch, or of the dearer one.
+    pub(super) fn total(&self, results: &[Id], takes_both: bool) -> StaticCounts {
         let mut uses = vec![0_u32; self.nodes.len()];
         let mut open: Vec<Id> = results.to_vec();
         self.mark(&mut uses, &mut open);
@@ -202,7 +245,10 @@ impl Graph {
         loop {
             let has_work = self.regions_with_work(&uses);
             let new: Vec<usize> = (0..self.branches.len())
-                .filter(|&i| !taken[i] && self.branches[i].sides.iter().any(|&side| has_work[side]))
+                .filter(|&i| {
+                    let branch = &self.branches[i];
+                    !taken[i] && (branch.is_decided || branch.sides.iter().any(|&side| has_work[side]))
+                })
                 .collect();
             if new.is_empty() {
                 break;
@@ -222,9 +268,13 @@ impl Graph {
         // Regions come after their parents, and branches after those that they stand in.
         for (branch, _) in self.branches.iter().zip(&taken).rev().filter(|(_, taken)| **taken) {
             let [a, b] = branch.sides.map(|side| own[side]);
-            let dearer = if a.operations() >= b.operations() { a } else { b };
+            let taken = match takes_both {
+                true => a.and(&b),
+                false if a.operations() >= b.operations() => a,
+                false => b,
+            };
             let turn = StaticCounts { branches: 1, ..StaticCounts::default() };
-            own[branch.parent] = own[branch.parent].and(&dearer).and(&turn);
+            own[branch.parent] = own[branch.parent].and(&taken).and(&turn);
         }
         own[0]
     }

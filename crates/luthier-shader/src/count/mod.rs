@@ -2,7 +2,7 @@
 //!
 //! The text is followed from the evaluated function on, scalar by scalar, and becomes a graph of operations as a compiler's is: calls are inlined, constants
 //! folded, equal terms shared, and what no result needs is removed. Where a condition is not known, both sides are followed and the dearer one counts
-//! ([`StaticCounts::operations`] compares them). Loops are unrolled up to their constant bound; one without such a bound counts as one turn.
+//! ([`StaticCounts::operations`] compares them), unless other [`Sides`] are asked for. Loops are unrolled up to their constant bound; one without such a bound counts as one turn.
 
 mod expression;
 mod graph;
@@ -102,15 +102,43 @@ impl StaticCounts {
     }
 }
 
+/// Operations of a branch that count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sides<'a> {
+    /// Those of the dearer side.
+    Dearer,
+    /// Those of both sides, one after the other: neighbours of a group of threads take different ones.
+    Both,
+    /// Those of the side that the numbers of a material take, where they decide; elsewhere those of the dearer side.
+    Of(Record<'a>),
+}
+
+/// A material of a buffer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Record<'a> {
+    /// All words of `luthier_materials`.
+    pub words: &'a [[f32; 4]],
+    /// Index of the material.
+    pub material: u32,
+}
+
 /// Counts of one evaluation of a WGSL text under some lights: `luthier_eval` for one, `luthier_prepare` and `luthier_light` for more. A text
 /// without these two counts `luthier_eval` for each light, less what the lights share. `wide` names the textures with more than 4 bytes a texel
-/// ([`MaterialSet::wide_textures`](crate::MaterialSet::wide_textures)).
+/// ([`MaterialSet::wide_textures`](crate::MaterialSet::wide_textures)). Of branches the dearer side counts.
 ///
 /// # Errors
 /// [`ShaderError::Invalid`] for invalid WGSL, and [`ShaderError::Uncounted`] for a text without these functions or with statements that no evaluation has.
 pub fn count(wgsl: &str, wide: &[String], lights: u32) -> Result<StaticCounts, ShaderError> {
+    count_sides(wgsl, wide, lights, Sides::Dearer)
+}
+
+/// Counts as [`count`], with other sides of branches.
+///
+/// # Errors
+/// As [`count`], and [`ShaderError::Uncounted`] for a material that the buffer lacks.
+pub fn count_sides(wgsl: &str, wide: &[String], lights: u32, sides: Sides<'_>) -> Result<StaticCounts, ShaderError> {
     let (module, _) = module(wgsl)?;
-    Walk::new(&module, wide).evaluation(lights).map_err(|reason| ShaderError::Uncounted(reason.to_owned()))
+    Walk::new(&module, wide, sides).evaluation(lights).map_err(|reason| ShaderError::Uncounted(reason.to_owned()))
 }
 
 #[cfg(test)]

@@ -138,3 +138,25 @@ fn lights_share_what_a_view_decides() {
     assert!(matches!(count("fn f() {}\n", &[], 1), Err(ShaderError::Uncounted(_))));
     assert!(matches!(count("fn f(", &[], 1), Err(ShaderError::Invalid(_))));
 }
+
+/// The numbers of a material decide the side that counts; with both sides, neighbours of other materials do.
+#[test]
+fn sides_are_those_that_are_asked_for() {
+    let text = module_of(
+        "let numbers = luthier_materials[material];\nvar b = wi.x;\nif numbers.x > 0.5 && wi.y > 0.0 { b = sqrt(sqrt(b)); }\n\
+         switch u32(numbers.y) {\ncase 1u: { b = b * wo.x; }\ncase 2u: { b = exp2(b * b); }\ndefault: {}\n}\nreturn vec3<f32>(b);",
+    );
+    let words = [[0.0, 1.0, 0.0, 0.0], [1.0, 2.0, 0.0, 0.0]];
+    let of = |sides| count_sides(&text, &[], 1, sides);
+    let [plain, rich] = [0, 1].map(|material| of(Sides::Of(Record { words: &words, material })).unwrap());
+    // The condition that the record decides alone, and its branch; the conversion and a comparison of the switch, and the product.
+    assert_eq!(plain, StaticCounts { record_reads: 1, plain: 4, branches: 2, ..NONE });
+    // `&&` is a branch of its own. The direction is compared, too, which decides for no side: the dearer one counts, and the choice of its result. The switch
+    // converts and compares twice.
+    assert_eq!(rich, StaticCounts { record_reads: 1, special: 3, plain: 7, branches: 4, ..NONE });
+    let [dearer, both] = [Sides::Dearer, Sides::Both].map(|sides| of(sides).unwrap());
+    assert_eq!((dearer.special, both.special), (3, 3));
+    // The product of the first case counts beside the second.
+    assert_eq!(both.plain, dearer.plain + 1);
+    assert!(matches!(of(Sides::Of(Record { words: &words[..1], material: 1 })), Err(ShaderError::Uncounted(_))));
+}

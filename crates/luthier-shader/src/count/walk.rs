@@ -7,10 +7,10 @@ use naga::{
     Type, TypeInner,
 };
 
-use super::StaticCounts;
 use super::graph::{Graph, Id};
 use super::value::{Step, Value};
 use super::words::{Constant, Memory, Operation};
+use super::{Sides, StaticCounts};
 
 /// Reason why a text cannot be counted.
 pub(super) type Reason = &'static str;
@@ -24,6 +24,7 @@ pub(super) struct Walk<'a> {
     pub(super) graph: Graph,
     /// Names of textures with more than 4 bytes a texel.
     pub(super) wide: &'a [String],
+    sides: Sides<'a>,
     /// Variables of functions, and private ones.
     slots: Vec<Value>,
     privates: HashMap<usize, usize>,
@@ -60,8 +61,8 @@ enum Flow {
 const THROUGH: Flow = Flow::Through { is_cut: false };
 
 impl<'a> Walk<'a> {
-    pub(super) fn new(module: &'a Module, wide: &'a [String]) -> Self {
-        Self { module, graph: Graph::new(), wide, slots: Vec::new(), privates: HashMap::new(), inputs: 0 }
+    pub(super) fn new(module: &'a Module, wide: &'a [String], sides: Sides<'a>) -> Self {
+        Self { module, graph: Graph::new(), wide, sides, slots: Vec::new(), privates: HashMap::new(), inputs: 0 }
     }
 
     /// Counts of one evaluation under some lights.
@@ -81,7 +82,11 @@ impl<'a> Walk<'a> {
         let prepared = function("luthier_prepare").zip(function("luthier_light")).filter(|_| lights > 1);
         let eval = function("luthier_eval");
         let mut results = Vec::new();
-        let material = Value::Scalar(self.input(ScalarKind::Uint));
+        let material = self.input(ScalarKind::Uint);
+        if let Sides::Of(on) = self.sides {
+            self.graph.hold(material, Constant::Uint(on.material));
+        }
+        let material = Value::Scalar(material);
         let wo = self.direction();
         if let Some((prepare, light)) = prepared {
             let prepared = self.call(prepare, vec![material, wo])?.ok_or("`luthier_prepare` returns nothing")?;
@@ -98,7 +103,7 @@ impl<'a> Walk<'a> {
                 value.ok_or("`luthier_eval` returns nothing")?.scalars(&mut results);
             }
         }
-        Ok(self.graph.total(&results))
+        Ok(self.graph.total(&results, self.sides == Sides::Both))
     }
 
     fn input(&mut self, kind: ScalarKind) -> Id {
@@ -157,6 +162,11 @@ impl<'a> Walk<'a> {
                     if let Some(Constant::Bool(known)) = known {
                         let rest = Rest { statements: after, next: rest };
                         return self.run(frame, if known { accept } else { reject }, Some(&rest));
+                    }
+                    if let Some(Constant::Bool(held)) = self.graph.held(condition) {
+                        let rest = Rest { statements: after, next: rest };
+                        self.graph.branch(condition);
+                        return self.run(frame, if held { accept } else { reject }, Some(&rest));
                     }
                     match self.branch(frame, condition, [accept, reject], after, rest)? {
                         Flow::Through { is_cut: cut } if !leaves(accept) && !leaves(reject) => is_cut |= cut,
@@ -304,6 +314,10 @@ impl<'a> Walk<'a> {
         if let Some(Constant::Bool(known)) = self.graph.as_constant(condition) {
             return if known { self.case(frame, body, rest) } else { self.cases(frame, selector, others, rest) };
         }
+        if let Some(Constant::Bool(held)) = self.graph.held(condition) {
+            self.graph.branch(condition);
+            return if held { self.case(frame, body, rest) } else { self.cases(frame, selector, others, rest) };
+        }
         let (here, regions) = (self.graph.here, self.graph.branch(condition));
         let before = self.slots.clone();
         self.graph.here = regions[0];
@@ -351,7 +365,7 @@ impl<'a> Walk<'a> {
                 None => None,
                 Some(condition) => {
                     let condition = self.value(frame, condition)?.scalar()?;
-                    Some(self.graph.as_constant(condition) != Some(Constant::Bool(false)))
+                    Some(self.graph.held(condition) != Some(Constant::Bool(false)))
                 }
             };
             if ends == Some(true) || is_cut {
@@ -440,8 +454,20 @@ impl<'a> Walk<'a> {
             }
             TypeInner::Vector { size, scalar } => {
                 let addresses = self.addresses(path);
+                let word = match (self.sides, memory, addresses.as_slice()) {
+                    (Sides::Of(on), Memory::Record, [address]) => match self.graph.held(*address) {
+                        Some(Constant::Uint(index)) => Some(*on.words.get(index as usize).ok_or("a word is missing")?),
+                        _ => None,
+                    },
+                    _ => None,
+                };
                 let whole = self.graph.node(Operation::Read(memory, variable), addresses, scalar.kind);
-                return Ok(self.spread(whole, *size as usize, scalar.kind));
+                let parts = self.spread(whole, *size as usize, scalar.kind);
+                for (part, value) in parts.parts()?.iter().zip(word.iter().flatten()) {
+                    let id = part.scalar()?;
+                    self.graph.hold(id, Constant::float(*value));
+                }
+                return Ok(parts);
             }
             TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
             TypeInner::Array { base, size: ArraySize::Constant(count), .. } => vec![*base; count.get() as usize],

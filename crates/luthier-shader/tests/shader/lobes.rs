@@ -87,6 +87,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_cot_sq: cot_sq,
             critical_width: width,
             critical_plain_share: 0.25,
+            lobes: 2,
             inverse_tails: [1.0, 40.0],
             varying: None,
             axes: None,
@@ -256,6 +257,9 @@ fn lobes_in_axes_are_those_of_the_twin() {
             let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
             (record.index, record.integral) = (1.5, wide.integral());
             record.axes = record.axes.map(|axes| AxesRecord { is_mirrored, ..axes });
+            // Materials with one tile take the decays of its rows from their record.
+            let decays = bilinear(&image, layout.position(first, [0.0, 4.0]), WeightBits::Exact);
+            record.inverse_tails = [decays[0], decays[2]];
         }
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
@@ -322,6 +326,8 @@ fn patina_mixes_the_light_of_two_ends() {
             let Some(record) = &mut material.constants.lobes else { continue };
             material.layers[0].tiles[TableKind::Lobes] = Some(1);
             record.integral = Wide::new(record.falloff, ViewAxis::new(2, Critical::default())).integral();
+            let decays = bilinear(&image, layout.position(1, [0.0, 4.0]), WeightBits::Exact);
+            record.inverse_tails = [decays[0], decays[2]];
         }
         let given = materials[number].clone();
         let record = given.constants.lobes.unwrap();
@@ -563,6 +569,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_cot_sq: 0.0,
             critical_width: 0.0,
             critical_plain_share: 0.0,
+            lobes: 2,
             inverse_tails: [1.0, 40.0],
             varying,
             axes,

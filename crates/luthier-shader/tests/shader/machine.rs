@@ -375,6 +375,7 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
         (Op::Subtract, F(a), F(b)) => F(a - b),
         (Op::Multiply, F(a), F(b)) => F(a * b),
         (Op::Divide, F(a), F(b)) => F(a / b),
+        (Op::Equal, F(a), F(b)) => B(a == b),
         (Op::NotEqual, F(a), F(b)) => B(a != b),
         (Op::Add, U(a), U(b)) => U(a.wrapping_add(*b)),
         (Op::Subtract, U(a), U(b)) => U(a.wrapping_sub(*b)),

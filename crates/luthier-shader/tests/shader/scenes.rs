@@ -188,6 +188,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_cot_sq,
         critical_width: 0.02,
         critical_plain_share: 0.25,
+        lobes: 2,
         inverse_tails: [1.0, 40.0],
         varying: None,
         axes: None,

@@ -183,9 +183,11 @@ fn luthier_lobe_slope(shape: LuthierLobeShape, apart: vec2<f32>) -> vec2<f32> {
 /// A lobe of a row: its shift, its sharpness and decay, and the shear of its sharpness, as seen by an eye with coordinates along the surface in its frame.
 fn luthier_lobe_in_axes(shift: f32, numbers: vec3<f32>, shear: f32, eye: vec2<f32>, is_turned: bool) -> LuthierLobeShape {
     var shape: LuthierLobeShape;
-    // In axes the middle is the adjugate of the sharpness times the eye.
-    let turned = numbers.yx * eye - shear * eye.yx;
-    shape.middle = shift * select(vec2<f32>(numbers.x * eye.x, 0.0), turned, is_turned);
+    shape.middle = vec2<f32>(shift * numbers.x * eye.x, 0.0);
+    if is_turned {
+        // In axes the middle is the adjugate of the sharpness times the eye.
+        shape.middle = shift * (numbers.yx * eye - shear * eye.yx);
+    }
     shape.shear = shear;
     shape.sharpness = numbers.xy;
     shape.decay = numbers.z;
@@ -198,6 +200,14 @@ fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, sin_theta: f32) -> Luthier
     shape.middle = shift * sin_theta * numbers.x;
     shape.sharpness = numbers.xy;
     shape.decay = numbers.z;
+    return shape;
+}
+
+/// A lobe without light.
+fn luthier_dark_lobe() -> LuthierLobeShape {
+    var shape: LuthierLobeShape;
+    shape.sharpness = vec2<f32>(1.0);
+    shape.decay = 1.0;
     return shape;
 }
 
@@ -233,6 +243,9 @@ fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
 /// A material as seen from wo, above the horizon.
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     let header = luthier_header(material);
+    // Numbers of the tiles, and the decays of lobes with a single tile.
+    //? two_lobes|lobes_axes|lobes_film
+    let sheet = luthier_materials[header + $word_glitter_tilt];
     //? place
     {
         // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
@@ -240,9 +253,8 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         //? lobes_film
         {
             // Or at equal distances of the factor on the film, from the greatest to the least.
-            let sheet = luthier_materials[header + $word_glitter_tilt];
             let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
-            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < 0.0));
+            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < -1.5));
         }
         //? else
         let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
@@ -279,27 +291,32 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? lobes_patina
     {
         prepared.cover = cover;
+        prepared.bare = prepared.coat;
+        prepared.bare_masking = prepared.masking;
+    }
+    //? lobes_patina
+    if cover < 1.0 {
         var bare_place = place;
         bare_place.patina = -1.0;
         //? base_color
         bare_place.base_color = vec3<f32>(-1.0);
-        prepared.bare = luthier_layer_at(bare_place, material, select(0u, luthier_layer_count(material), is_grown));
+        prepared.bare = luthier_layer_at(bare_place, material, luthier_layer_count(material));
         prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_across_sq(prepared.bare, wo), wo.z);
     }
+    prepared.azimuth = across * inverse_sin;
     //? lobes_axes
     {
-        let axes = luthier_materials[header + $word_glitter_tilt];
-        let is_turned = axes.w > 0.0;
-        prepared.azimuth = select(across * inverse_sin, axes.yz, is_turned);
-        let eye = luthier_in_frame(prepared.azimuth, wo.xy);
-        let around = select(vec2<f32>(0.0), luthier_lobes_azimuth(eye, axes.w), is_turned);
+        var eye = vec2<f32>(sin_theta, 0.0);
+        var around = vec2<f32>(0.0);
+        if sheet.w > 0.0 {
+            prepared.azimuth = sheet.yz;
+            eye = luthier_in_frame(prepared.azimuth, wo.xy);
+            around = luthier_lobes_azimuth(eye, sheet.w);
+        }
         let tile = first_tile + around.x;
     }
     //? else
-    {
-        prepared.azimuth = across * inverse_sin;
-        let tile = first_tile;
-    }
+    let tile = first_tile;
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? lobes_tilted
@@ -313,46 +330,44 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? critical_view
     {
         prepared.inside = luthier_materials[header + $word_phong_specular];
-        // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
-        let plain = wo.z * (1.25 / (wo.z + 0.25));
-        let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
+        var cos_theta = wo.z;
+        if prepared.inside.x > 0.0 {
+            // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
+            let plain = wo.z * (1.25 / (wo.z + 0.25));
+            cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
+        }
     }
     //? else
     let cos_theta = wo.z;
     prepared.row = vec2<f32>(tile, cos_theta);
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
+    prepared.wide = wide.rgb;
     //? lobes_base
     {
         // Rows have a diffuse base apart. Under patina this word is patina's.
         let painted_word = luthier_materials[header + $word_patina];
-        let of_internal = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_INTERNAL);
-        let of_base = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_BASE);
         if painted_word.w < 0.0 {
-            // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
-            let falloff = vec2<f32>(of_base.a, of_internal.a);
-            let integral = 1.0 - dot(falloff, luthier_materials[header + $word_patina_diffuse_albedo].xy);
-            prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
+            let of_internal = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_INTERNAL);
+            let of_base = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_BASE);
+            if painted_word.w < -1.5 {
+                // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
+                let falloff = vec2<f32>(of_base.a, of_internal.a);
+                let integral = 1.0 - dot(falloff, luthier_materials[header + $word_patina_diffuse_albedo].xy);
+                prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
+            }
+            //? base_color
+            if place.base_color.x >= 0.0 {
+                // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
+                let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
+                let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
+                prepared.painted = max(of_base.rgb * (other / own - 1.0), -wide.rgb);
+                prepared.wide += prepared.painted;
+            }
         }
-        //? base_color
-        {
-            // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
-            let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
-            let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
-            let is_painted = place.base_color.x >= 0.0 && painted_word.w < 0.5;
-            let painted = select(vec3<f32>(0.0), max(of_base.rgb * (other / own - 1.0), -wide.rgb), is_painted);
-            prepared.painted = painted;
-            prepared.wide = wide.rgb + painted;
-        }
-        //? else
-        prepared.wide = wide.rgb;
     }
-    //? else
-    prepared.wide = wide.rgb;
     //? lobes_bare_base
-    {
-        let is_base = is_grown && prepared.bare.kind == LUTHIER_DIFFUSE;
-        let base = (1.0 - cover) * luthier_lookup_lobes(nominal_tile + bare_tile, cos_theta, 0.0).rgb;
-        prepared.base = select(vec3<f32>(0.0), base, is_base);
+    if cover < 1.0 && prepared.bare.kind == LUTHIER_DIFFUSE {
+        prepared.base = (1.0 - cover) * luthier_lookup_lobes(nominal_tile + bare_tile, cos_theta, 0.0).rgb;
     }
     //? one_lobe|two_lobes
     {
@@ -365,6 +380,17 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         //? else
         //? place
         let unresolved = 0.0;
+        //? lobes_mixed
+        {
+            let lobes = luthier_materials[header + $word_patina_diffuse_albedo].w;
+            prepared.first_shape = luthier_dark_lobe();
+            //? two_lobes
+            prepared.second_shape = luthier_dark_lobe();
+        }
+        //? lobes_mixed
+        if lobes < 0.5 {
+            return prepared;
+        }
         let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
         prepared.first_strength = first.rgb;
         //? two_lobes
@@ -372,15 +398,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             let sharpness = luthier_lookup_lobes(tile, cos_theta, 3.0);
             // Rows of one tile have one decay for each lobe.
             //? lobes_rows
-            let decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
+            {
+                var decays = sheet.yz;
+                if sheet.w != 0.0 {
+                    decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
+                }
+            }
             //? else
-            let decays = luthier_materials[header + $word_glitter_tilt].yz;
+            let decays = sheet.yz;
             let first_numbers = vec3<f32>(sharpness.xy, decays.x);
         }
         //? else
         let first_numbers = luthier_lookup_lobes(tile, cos_theta, 2.0).rgb;
         //? lobes_axes
-        let first_shape = luthier_lobe_in_axes(first.a, first_numbers, around.y * wide.a, eye, is_turned);
+        let first_shape = luthier_lobe_in_axes(first.a, first_numbers, around.y * wide.a, eye, sheet.w > 0.0);
         //? else
         let first_shape = luthier_lobe_shape(first.a, first_numbers, sin_theta);
         //? place
@@ -390,13 +421,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     }
     //? two_lobes
     {
+        //? lobes_mixed
+        if lobes < 1.5 {
+            return prepared;
+        }
         let second = luthier_lookup_lobes(tile, cos_theta, 2.0);
         prepared.second_strength = second.rgb;
         let second_numbers = vec3<f32>(sharpness.zw, decays.y);
         //? lobes_axes
         {
-            let second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
-            let second_shape = luthier_lobe_in_axes(second.a, second_numbers, second_shear, eye, is_turned);
+            var second_shear = 0.0;
+            if sheet.w > 0.0 {
+                second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
+            }
+            let second_shape = luthier_lobe_in_axes(second.a, second_numbers, second_shear, eye, sheet.w > 0.0);
         }
         //? else
         let second_shape = luthier_lobe_shape(second.a, second_numbers, sin_theta);
@@ -458,16 +496,19 @@ fn luthier_bare_lobes(prepared: LuthierPreparedLobes) -> LuthierPreparedLobes {
 
 /// Energy that the facets of the bare layer send to the eye, the mean of the channels: rows of isotropic stacks have it beside the albedo.
 fn luthier_bare_energy(prepared: LuthierPreparedLobes) -> f32 {
-    let energy = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).a;
-    return select(0.0, max(energy, 0.0), prepared.cover < 1.0);
+    if prepared.cover >= 1.0 {
+        return 0.0;
+    }
+    return max(luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).a, 0.0);
 }
 
 /// Shape of the remainder: its radiance towards a cosine, over that along the normal.
 fn luthier_wide_shape(prepared: LuthierPreparedLobes, cos_theta: f32) -> f32 {
+    var away = 1.0 - cos_theta;
     //? critical_view
-    let away = 1.0 - luthier_inside_cosine(prepared.inside, cos_theta);
-    //? else
-    let away = 1.0 - cos_theta;
+    if prepared.inside.x > 0.0 {
+        away = 1.0 - luthier_inside_cosine(prepared.inside, cos_theta);
+    }
     let away_sq = away * away;
     return max(1.0 - prepared.medium.y * (away_sq * away_sq * away) - prepared.medium.z * away_sq, 0.0);
 }
@@ -482,7 +523,9 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let cos_theta_d = min(0.5 * length(sum), 1.0);
     var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
     //? lobes_patina
-    value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
+    if prepared.cover < 1.0 {
+        value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
+    }
     let wide = luthier_wide_shape(prepared, wi.z) * wi.z * prepared.medium.w;
     //? lobes_bare_base
     value += (prepared.wide - prepared.base) * wide;
@@ -490,8 +533,16 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     value += prepared.wide * wide;
     //? one_lobe|two_lobes
     {
+        //? lobes_mixed
+        if prepared.first_shape.peak == 0.0 {
+            return value;
+        }
         let place = luthier_place_below(prepared, wi);
         value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);
+    }
+    //? lobes_mixed, two_lobes
+    if prepared.second_shape.peak == 0.0 {
+        return value;
     }
     //? two_lobes
     value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, place.xy) * place.z);

@@ -323,9 +323,9 @@ impl Row {
         parts
     }
 
-    /// 1 over the tail of each of two lobes, as [`Self::to_parts`] has it; for a lobe that the row lacks, that of a lobe without light.
+    /// 1 over the tail of each of two lobes, as [`Self::to_parts`] has it; 0 for a lobe that the row lacks.
     pub fn inverse_tails(&self) -> [f64; 2] {
-        [0, 1].map(|lobe: usize| 1.0 / self.lobes.get(lobe).map_or(0.0, |lobe| lobe.tail).max(TAIL_MIN))
+        [0, 1].map(|lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| 1.0 / lobe.tail.max(TAIL_MIN)))
     }
 
     /// The row of parts. With `has_base`, the first two belong to a diffuse base.

@@ -155,17 +155,16 @@ fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath
         next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
         next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
         next.across = path.across * layer.inverse_eta;
+        next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
         //? flakes
-        {
+        if dot(path.normal_below.xy, path.normal_below.xy) > 0.0 {
             // Flakes tilt all that lies below, the paths through the slab included.
             next.wi_local = luthier_local(path.normal_below, next.wi_local);
             next.wo_local = luthier_local(path.normal_below, next.wo_local);
             next.across = luthier_local(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
             next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
-            next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi_local.z, next.wo_local.z) > 0.0;
+            next.open = next.open && min(next.wi_local.z, next.wo_local.z) > 0.0;
         }
-        //? else
-        next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
         //? own_normals
         {
             // Back to the frame of the place: slabs are as thick along its normal as without bumps.

@@ -1,5 +1,8 @@
 /// BRDF of a rough diffuse base (Oren and Nayar 1994, eq. 26-30, with inter-reflection); Lambert at sigma 0.
 fn luthier_diffuse(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    if layer.sigma == 0.0 {
+        return layer.lambert;
+    }
     let sines = vec2<f32>(length(wi.xy), length(wo.xy));
     let cosines = max(vec2<f32>(wi.z, wo.z), vec2<f32>(1e-12));
     let theta = atan2(sines, cosines);

@@ -1,0 +1,61 @@
+//! Rows of lobes in both layouts, and the numbers of lobes that hold at all views.
+
+use luthier_bake::{Baked, Options, Silent, bake_with};
+use luthier_lut::{RowLayout, TableKind, WeightBits};
+use luthier_manifest::ShadingModel;
+use luthier_material::Material;
+
+use crate::materials::{STORE, atlas, conductor, dielectric, material, no_images};
+
+/// A coat over a base.
+fn coated(name: &str, coat: f64, base: &str) -> Material {
+    let layers = dielectric("1.5", coat) + base;
+    let mut coated = material(name, &layers, "");
+    coated.bake.model = Some(ShadingModel::Lobes);
+    coated
+}
+
+fn bake(materials: &[Material], layout: RowLayout) -> Baked {
+    let options = Options { layout: Some(layout), ..Options::default() };
+    bake_with(materials, &options, &no_images, &Silent, &*STORE).unwrap()
+}
+
+/// Shaders take the decays of lobes from the record of a material, and not from its rows: all rows of a tile have them. Steps hold the same rows.
+#[test]
+fn rows_have_the_decays_of_the_record_in_both_layouts() {
+    let mut last_parts = Vec::new();
+    let metal = conductor("{ n = 0.2, k = 3.0 }", 0.1);
+    let paint = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
+    for (name, coat, base) in [("two", 0.35, metal.as_str()), ("one", 0.3, paint)] {
+        let materials = [coated(name, coat, base)];
+        let [filtered, steps] = [RowLayout::Filtered, RowLayout::Steps].map(|layout| bake(&materials, layout));
+        let decays = filtered.materials[0].constants.lobes.unwrap().inverse_tails;
+        assert_eq!(steps.materials[0].constants.lobes.unwrap().inverse_tails, decays);
+        let [filtered, steps] = [&filtered, &steps].map(|baked| atlas(baked, TableKind::Lobes));
+        assert_eq!((filtered.format, steps.format), (RowLayout::Filtered.format(), RowLayout::Steps.format()));
+        assert_eq!((steps.bytes.len(), &steps.texels.data), (2 * filtered.bytes.len(), &filtered.texels.data));
+        let (x, y) = (&filtered.layout.x, filtered.layout.y.as_ref().unwrap());
+        last_parts.push(y.max);
+        // One lobe has a part with its decay in the third place, two have one with both, in the first and third.
+        let (part, places): (f64, &[usize]) = if y.max == 5.0 { (4.0, &[0, 2]) } else { (2.0, &[2]) };
+        for i in 0..x.size {
+            let texel = filtered.sample(0, [x.node(i), part], WeightBits::Exact);
+            for (place, decay) in places.iter().zip(decays) {
+                assert_eq!(texel[*place], decay, "{name}: node {i} of part {part}");
+            }
+        }
+        // Between nodes both layouts are a line; a step is a half float, whose eleven binary digits are right to half a unit of the last.
+        for (i, j) in (0..200).flat_map(|i| (0..y.size).map(move |j| (i, j))) {
+            let (at, part) = (f64::from(i) / 199.0, y.min + f64::from(j));
+            let node = (x.index(at) as u32).min(x.size - 2);
+            let [from, to] = [node, node + 1].map(|i| filtered.sample(0, [x.node(i), part], WeightBits::Exact));
+            let [line, stepped] = [filtered, steps].map(|atlas| atlas.sample(0, [at, part], WeightBits::Exact));
+            for c in 0..4 {
+                let most = (to[c] - from[c]).abs() / 2048.0 + libm::exp2(-25.0);
+                let off = (line[c] - stepped[c]).abs();
+                assert!(off <= most, "{name} part {part} at {at}: {line:?} {stepped:?}");
+            }
+        }
+    }
+    assert_eq!(last_parts, [5.0, 3.0], "two lobes and one");
+}
