@@ -8,7 +8,8 @@ const MARK: &str = "//?";
 
 /// The lines of a module whose conditions hold, without the marks.
 ///
-/// A mark `//? a, b|c, !d` keeps what follows if the set has `a`, has `b` or `c`, and lacks `d`. It governs a declaration, a member, a statement,
+/// A mark `//? a, b|c, !d, ~e` keeps what follows if the set has `a`, has `b` or `c`, and lacks `d`, and if `e` holds for some of its materials and not for
+/// others. It governs a declaration, a member, a statement,
 /// or a block whose braces stand on lines of their own; these braces are removed. A mark `//? else` behind it governs what follows if the
 /// condition fails. Marks may be nested.
 ///
@@ -112,9 +113,10 @@ impl<'m> Module<'m> {
 
 fn holds(condition: &str, features: &Features) -> bool {
     condition.split(',').all(|alternatives| {
-        alternatives.split('|').any(|word| match word.trim().strip_prefix('!') {
-            Some(word) => !features.has(named(word)),
-            None => features.has(named(word.trim())),
+        alternatives.split('|').any(|word| match word.trim() {
+            word if word.starts_with('!') => !features.has(named(&word[1..])),
+            word if word.starts_with('~') => features.are_mixed_in(named(&word[1..])),
+            word => features.has(named(word)),
         })
     })
 }
@@ -163,6 +165,8 @@ mod tests {
         assert_eq!(prune(&module, &below), "all\n// film|below\nx;\n");
         let both = below.with(Feature::Bent, true);
         assert_eq!(prune(&module, &both), "all\n// bent\nx;\n// bent, below\nx;\n// film|below\nx;\n");
+        // No material has it: it holds for the set, and not for all.
+        assert_eq!(prune("//? ~bent\nx;\n//? ~below\ny;\n", &none().with(Feature::Bent, true)), "x;\n");
     }
 
     #[test]

@@ -19,19 +19,25 @@ use crate::{Form, MaterialSet};
 const FREE: [Feature; 3] = [Feature::Blinn, Feature::Abc, Feature::Sgd];
 
 /// Features of a set: the words that hold in conditions of modules.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Features(BTreeSet<Feature>);
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Features {
+    /// Those that some material has.
+    any: BTreeSet<Feature>,
+    /// Those that all materials have.
+    all: BTreeSet<Feature>,
+}
 
 impl Features {
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
+        let mut all: Option<BTreeSet<Feature>> = None;
         for material in &*set.materials {
-            names.extend(of_model(material));
+            let mut own = of_model(material);
             if material.varies() {
-                names.insert(Feature::Place);
+                own.insert(Feature::Place);
             }
             for (_, slot) in material.shown_layer_maps(form) {
-                names.extend(match slot {
+                own.extend(match slot {
                     MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
                     MapSlot::Albedo => &[Feature::BaseColor],
                     MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
@@ -44,11 +50,13 @@ impl Features {
             }
             // Rows over a factor store the shape of the remainder with the light of the base.
             if painted(material).is_some_and(|base| base.moments.is_some()) {
-                names.insert(Feature::LobesBase);
+                own.insert(Feature::LobesBase);
             }
             if material.constants.glitter.is_some() {
-                names.insert(Feature::Glitter);
+                own.insert(Feature::Glitter);
             }
+            all = Some(all.map_or_else(|| own.clone(), |all| &all & &own));
+            names.extend(own);
         }
         if !set.surfaces.is_empty() {
             names.extend([Feature::Picks, Feature::Place]);
@@ -138,25 +146,30 @@ impl Features {
         if set.shows_environment(form) {
             names.insert(Feature::Environment);
         }
-        let mut features = Self(names);
-        features.0.extend(of_parts(set, form, &features));
+        let mut features = Self { any: names, all: all.unwrap_or_default() };
+        features.any.extend(of_parts(set, form, &features));
         if !set.functions.is_eval_alone() {
-            features.0.extend(of_face(set, &features));
+            features.any.extend(of_face(set, &features));
         }
         features
     }
 
     pub(crate) fn has(&self, name: Feature) -> bool {
-        self.0.contains(&name)
+        self.any.contains(&name)
+    }
+
+    /// Whether some materials have it, and others lack it.
+    pub(crate) fn are_mixed_in(&self, name: Feature) -> bool {
+        self.any.contains(&name) && !self.all.contains(&name)
     }
 
     /// The features, and a word that may hold for one module only.
     pub(crate) fn with(&self, name: Feature, holds: bool) -> Self {
-        let mut names = self.0.clone();
+        let mut features = self.clone();
         if holds {
-            names.insert(name);
+            features.any.insert(name);
         }
-        Self(names)
+        features
     }
 }
 
@@ -486,7 +499,7 @@ mod tests {
     #[test]
     fn modules_have_whole_blocks_and_name_known_features() {
         for (_, module) in modules() {
-            prune(&module, &Features(BTreeSet::new()));
+            prune(&module, &Features::default());
         }
     }
 }

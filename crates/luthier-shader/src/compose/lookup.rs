@@ -91,7 +91,7 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
             node_index(&mut out, "y", y, value, 1.0);
         } else if line.contains("$position") {
             match table.format.has_steps() {
-                true => texel(&mut out, table, features.has(Feature::LobesRows)),
+                true => texel(&mut out, table, &features),
                 false => position(&mut out, table),
             }
         } else {
@@ -173,9 +173,11 @@ fn position(out: &mut String, table: &TableFace) {
     };
 }
 
-/// Writes the place of the interval about node (x, y) of a tile in a buffer, row by row, and the way from its first node to the second. With
-/// `is_between` a tile may be fractional: the place in the next one, and the way there, follow.
-fn texel(out: &mut String, table: &TableFace, is_between: bool) {
+/// Writes the place of the interval about node (x, y) of a tile in a buffer, row by row, and the way from its first node to the second. Where
+/// rows are over more than the view a tile may be fractional: the place in the next one, and the way there, follow.
+fn texel(out: &mut String, table: &TableFace, features: &Features) {
+    let is_between = features.has(Feature::LobesRows);
+    let are_mixed = features.are_mixed_in(Feature::LobesRows);
     let layout = &table.layout;
     let ([width, _], [tile_width, _]) = (layout.size(), layout.tile_size());
     // At the last node the way to the next is 0.
@@ -207,16 +209,23 @@ fn texel(out: &mut String, table: &TableFace, is_between: bool) {
         let _ = writeln!(out, "    let value = {};", read("texel"));
         return;
     }
-    // Materials with one tile read it alone.
-    let _ = writeln!(
-        out,
-        "    var value = {};\n    if tile > first_tile {{\n        \
-             let next = min(u32(first_tile) + 1u, {}u) * {width}u + across;\n        \
-             value = mix(value, {}, tile - first_tile);\n    }}",
-        read("texel"),
-        layout.tiles - 1,
-        read("next")
-    );
+    let next = format!("min(u32(first_tile) + 1u, {}u) * {width}u + across", layout.tiles - 1);
+    let _ = match are_mixed {
+        false => writeln!(
+            out,
+            "    let next = {next};\n    let value = mix({}, {}, tile - first_tile);",
+            read("texel"),
+            read("next")
+        ),
+        // Materials with one tile read it alone.
+        true => writeln!(
+            out,
+            "    var value = {};\n    if tile > first_tile {{\n        let next = {next};\n        \
+                 value = mix(value, {}, tile - first_tile);\n    }}",
+            read("texel"),
+            read("next")
+        ),
+    };
 }
 
 fn read(table: &TableFace) -> String {

@@ -116,6 +116,10 @@ fn luthier_coat_across_sq(coat: LuthierLayer, w: vec3<f32>) -> f32 {
 /// from 0 at the horizon to 1 at the normal. The numbers: squared cosine of the angle, four times the squared width of the kink, factor
 /// and offset.
 fn luthier_inside_cosine(inside: vec4<f32>, cos_theta: f32) -> f32 {
+    //? ~critical_view
+    if inside.x == 0.0 {
+        return cos_theta;
+    }
     let beyond = cos_theta * cos_theta - inside.x;
     let root = sqrt(max(beyond + sqrt(beyond * beyond + inside.y), 0.0));
     return root * inside.z + inside.w;
@@ -183,11 +187,9 @@ fn luthier_lobe_slope(shape: LuthierLobeShape, apart: vec2<f32>) -> vec2<f32> {
 /// A lobe of a row: its shift, its sharpness and decay, and the shear of its sharpness, as seen by an eye with coordinates along the surface in its frame.
 fn luthier_lobe_in_axes(shift: f32, numbers: vec3<f32>, shear: f32, eye: vec2<f32>, is_turned: bool) -> LuthierLobeShape {
     var shape: LuthierLobeShape;
-    shape.middle = vec2<f32>(shift * numbers.x * eye.x, 0.0);
-    if is_turned {
-        // In axes the middle is the adjugate of the sharpness times the eye.
-        shape.middle = shift * (numbers.yx * eye - shear * eye.yx);
-    }
+    // In axes the middle is the adjugate of the sharpness times the eye.
+    let turned = numbers.yx * eye - shear * eye.yx;
+    shape.middle = shift * select(vec2<f32>(numbers.x * eye.x, 0.0), turned, is_turned);
     shape.shear = shear;
     shape.sharpness = numbers.xy;
     shape.decay = numbers.z;
@@ -240,11 +242,35 @@ fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(dot(azimuth, across), azimuth.x * across.y - azimuth.y * across.x);
 }
 
+//? lobes_base
+/// A material whose rows have the light of its diffuse base apart, with the colour that this base has at a place.
+fn luthier_over_base(given: LuthierPreparedLobes, $place_parameter material: u32, painted_word: vec4<f32>) -> LuthierPreparedLobes {
+    var prepared = given;
+    let of_internal = luthier_lookup_lobes(given.row.x, given.row.y, LUTHIER_LOBES_INTERNAL);
+    let of_base = luthier_lookup_lobes(given.row.x, given.row.y, LUTHIER_LOBES_BASE);
+    if painted_word.w < -1.5 {
+        // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
+        let falloff = vec2<f32>(of_base.a, of_internal.a);
+        let moments = luthier_materials[luthier_header(material) + $word_patina_diffuse_albedo].xy;
+        let integral = 1.0 - dot(falloff, moments);
+        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
+    }
+    //? base_color
+    if place.base_color.x >= 0.0 {
+        // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
+        let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
+        let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
+        prepared.painted = max(of_base.rgb * (other / own - 1.0), -given.wide);
+        prepared.wide += prepared.painted;
+    }
+    return prepared;
+}
+
 /// A material as seen from wo, above the horizon.
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     let header = luthier_header(material);
     // Numbers of the tiles, and the decays of lobes with a single tile.
-    //? two_lobes|lobes_axes|lobes_film
+    //? two_lobes|lobes_axes|lobes_film, !lobes_rows|~lobes_rows|lobes_axes|lobes_film
     let sheet = luthier_materials[header + $word_glitter_tilt];
     //? place
     {
@@ -254,7 +280,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         {
             // Or at equal distances of the factor on the film, from the greatest to the least.
             let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
-            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < -1.5));
+            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < -1.0));
         }
         //? else
         let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
@@ -303,9 +329,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         prepared.bare = luthier_layer_at(bare_place, material, luthier_layer_count(material));
         prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_across_sq(prepared.bare, wo), wo.z);
     }
-    prepared.azimuth = across * inverse_sin;
-    //? lobes_axes
+    //? ~lobes_axes
     {
+        prepared.azimuth = across * inverse_sin;
         var eye = vec2<f32>(sin_theta, 0.0);
         var around = vec2<f32>(0.0);
         if sheet.w > 0.0 {
@@ -316,7 +342,18 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let tile = first_tile + around.x;
     }
     //? else
-    let tile = first_tile;
+    //? lobes_axes
+    {
+        prepared.azimuth = sheet.yz;
+        let eye = luthier_in_frame(prepared.azimuth, wo.xy);
+        let around = luthier_lobes_azimuth(eye, sheet.w);
+        let tile = first_tile + around.x;
+    }
+    //? else
+    {
+        prepared.azimuth = across * inverse_sin;
+        let tile = first_tile;
+    }
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? lobes_tilted
@@ -330,12 +367,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? critical_view
     {
         prepared.inside = luthier_materials[header + $word_phong_specular];
-        var cos_theta = wo.z;
-        if prepared.inside.x > 0.0 {
-            // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
-            let plain = wo.z * (1.25 / (wo.z + 0.25));
-            cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
-        }
+        // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
+        let plain = wo.z * (1.25 / (wo.z + 0.25));
+        let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
     }
     //? else
     let cos_theta = wo.z;
@@ -346,24 +380,12 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     {
         // Rows have a diffuse base apart. Under patina this word is patina's.
         let painted_word = luthier_materials[header + $word_patina];
+        //? ~lobes_base
         if painted_word.w < 0.0 {
-            let of_internal = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_INTERNAL);
-            let of_base = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_BASE);
-            if painted_word.w < -1.5 {
-                // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
-                let falloff = vec2<f32>(of_base.a, of_internal.a);
-                let integral = 1.0 - dot(falloff, luthier_materials[header + $word_patina_diffuse_albedo].xy);
-                prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / integral);
-            }
-            //? base_color
-            if place.base_color.x >= 0.0 {
-                // The base has its light times R / (1 - r R), r being what the layers send back; rows have that of the albedo of the material.
-                let own = max(painted_word.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * place.base_color, vec3<f32>(1e-3));
-                let other = place.base_color * (1.0 - of_internal.rgb * painted_word.rgb);
-                prepared.painted = max(of_base.rgb * (other / own - 1.0), -wide.rgb);
-                prepared.wide += prepared.painted;
-            }
+            prepared = luthier_over_base(prepared, $place_argument material, painted_word);
         }
+        //? else
+        prepared = luthier_over_base(prepared, $place_argument material, painted_word);
     }
     //? lobes_bare_base
     if cover < 1.0 && prepared.bare.kind == LUTHIER_DIFFUSE {
@@ -397,13 +419,16 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         {
             let sharpness = luthier_lookup_lobes(tile, cos_theta, 3.0);
             // Rows of one tile have one decay for each lobe.
-            //? lobes_rows
+            //? ~lobes_rows
             {
                 var decays = sheet.yz;
                 if sheet.w != 0.0 {
                     decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
                 }
             }
+            //? else
+            //? lobes_rows
+            let decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
             //? else
             let decays = sheet.yz;
             let first_numbers = vec3<f32>(sharpness.xy, decays.x);
@@ -430,10 +455,15 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let second_numbers = vec3<f32>(sharpness.zw, decays.y);
         //? lobes_axes
         {
-            var second_shear = 0.0;
-            if sheet.w > 0.0 {
-                second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
+            //? ~lobes_axes
+            {
+                var second_shear = 0.0;
+                if sheet.w > 0.0 {
+                    second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
+                }
             }
+            //? else
+            let second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
             let second_shape = luthier_lobe_in_axes(second.a, second_numbers, second_shear, eye, sheet.w > 0.0);
         }
         //? else
@@ -504,11 +534,10 @@ fn luthier_bare_energy(prepared: LuthierPreparedLobes) -> f32 {
 
 /// Shape of the remainder: its radiance towards a cosine, over that along the normal.
 fn luthier_wide_shape(prepared: LuthierPreparedLobes, cos_theta: f32) -> f32 {
-    var away = 1.0 - cos_theta;
     //? critical_view
-    if prepared.inside.x > 0.0 {
-        away = 1.0 - luthier_inside_cosine(prepared.inside, cos_theta);
-    }
+    let away = 1.0 - luthier_inside_cosine(prepared.inside, cos_theta);
+    //? else
+    let away = 1.0 - cos_theta;
     let away_sq = away * away;
     return max(1.0 - prepared.medium.y * (away_sq * away_sq * away) - prepared.medium.z * away_sq, 0.0);
 }

@@ -42,6 +42,18 @@ fn luthier_onto(path: LuthierPath, normal: vec3<f32>) -> LuthierPath {
     return next;
 }
 
+//? flakes
+/// A path in the frame of a normal that tilts all that lies below, the way through the slab included: closed where either direction does not meet it.
+fn luthier_into(path: LuthierPath, normal: vec3<f32>) -> LuthierPath {
+    var next = path;
+    next.wi_local = luthier_local(normal, path.wi_local);
+    next.wo_local = luthier_local(normal, path.wo_local);
+    next.across = luthier_local(normal, vec3<f32>(path.across, path.wi_local.z + path.wo_local.z)).xy;
+    next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
+    next.open = path.open && min(next.wi_local.z, next.wo_local.z) > 0.0;
+    return next;
+}
+
 /// Adds what a diffuse base reflects. It ends the stack.
 fn luthier_add_diffuse(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
     //? own_normals
@@ -156,15 +168,13 @@ fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath
         next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
         next.across = path.across * layer.inverse_eta;
         next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
-        //? flakes
+        //? ~flakes
         if dot(path.normal_below.xy, path.normal_below.xy) > 0.0 {
-            // Flakes tilt all that lies below, the paths through the slab included.
-            next.wi_local = luthier_local(path.normal_below, next.wi_local);
-            next.wo_local = luthier_local(path.normal_below, next.wo_local);
-            next.across = luthier_local(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
-            next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
-            next.open = next.open && min(next.wi_local.z, next.wo_local.z) > 0.0;
+            next = luthier_into(next, path.normal_below);
         }
+        //? else
+        //? flakes
+        next = luthier_into(next, path.normal_below);
         //? own_normals
         {
             // Back to the frame of the place: slabs are as thick along its normal as without bumps.

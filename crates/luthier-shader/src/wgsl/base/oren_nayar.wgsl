@@ -1,5 +1,6 @@
 /// BRDF of a rough diffuse base (Oren and Nayar 1994, eq. 26-30, with inter-reflection); Lambert at sigma 0.
 fn luthier_diffuse(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    //? ~oren_nayar
     if layer.sigma == 0.0 {
         return layer.lambert;
     }
