@@ -192,15 +192,15 @@ impl LobesRecord {
     }
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
-    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -2. Of tiles over another factor: 0, 0, -1. Of a single
+    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of tiles over another factor: zeros. Of a single
     /// tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
     fn sheet(&self) -> [f64; 3] {
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
-            return [1.0 / (least - most), most / (most - least), -2.0];
+            return [1.0 / (least - most), most / (most - least), -1.0];
         }
         let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.axes else {
             let [first, second] = self.inverse_tails;
-            return if self.varying.is_some() { [0.0, 0.0, -1.0] } else { [first, second, 0.0] };
+            return if self.varying.is_some() { [0.0; 3] } else { [first, second, 0.0] };
         };
         [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
@@ -284,7 +284,7 @@ impl MaterialConstants {
     /// | 7 | patina: diffuse albedo RGB; of such lobes the two integrals of [`PaintedRecord`], 0; in w the number of lobes |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -2; of lobes over another factor 0, 0, -1; of lobes with one tile 1 over the tail of each, 0; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of lobes with one tile 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);
@@ -425,7 +425,7 @@ mod tests {
         let film =
             VaryingRecord { factor: VaryingFactor::FilmFactor, tiles: 9, least_spread: 1.0, factors: Some([1.5, 0.5]) };
         let of_film = words(LobesRecord { varying: Some(film), ..lobes });
-        assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -2.0]]);
+        assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -1.0]]);
         assert_eq!(film.nominal(), 4.0);
         assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
@@ -437,7 +437,7 @@ mod tests {
             ..MaterialConstants::default()
         };
         assert_eq!(of_patina.words()[0], [0.0, 0.0, 1e-3, 0.25]);
-        assert_eq!(of_patina.words()[9], [0.0, 0.0, 0.0, -1.0]);
+        assert_eq!(of_patina.words()[9], [0.0; 4]);
         assert_eq!(of_patina.words()[6], [11.0, 12.0, 13.0, 2.0]);
         assert_eq!(of_patina.words()[7], [14.0, 15.0, 16.0, 2.0]);
         let around = |is_mirrored| {

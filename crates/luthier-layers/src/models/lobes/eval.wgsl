@@ -269,9 +269,6 @@ fn luthier_over_base(given: LuthierPreparedLobes, $place_parameter material: u32
 /// A material as seen from wo, above the horizon.
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     let header = luthier_header(material);
-    // Numbers of the tiles, and the decays of lobes with a single tile.
-    //? two_lobes|lobes_axes|lobes_film, !lobes_rows|~lobes_rows|lobes_axes|lobes_film
-    let sheet = luthier_materials[header + $word_glitter_tilt];
     //? place
     {
         // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
@@ -279,8 +276,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         //? lobes_film
         {
             // Or at equal distances of the factor on the film, from the greatest to the least.
+            let sheet = luthier_materials[header + $word_glitter_tilt];
             let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
-            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < -1.0));
+            let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < 0.0));
         }
         //? else
         let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
@@ -299,6 +297,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     }
     //? else
     let first_tile = luthier_materials[header].w;
+    // Numbers of the tiles.
+    //? lobes_axes, !lobes_film
+    let sheet = luthier_materials[header + $word_glitter_tilt];
     // Along the normal the azimuth is 0.
     let across = vec2<f32>(wo.x + 1e-15, wo.y);
     let sin_theta_sq = dot(across, across);
@@ -419,10 +420,12 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         {
             let sharpness = luthier_lookup_lobes(tile, cos_theta, 3.0);
             // Rows of one tile have one decay for each lobe.
+            //? !lobes_axes, !lobes_film, !lobes_rows|~lobes_rows
+            let sheet = luthier_materials[header + $word_glitter_tilt];
             //? ~lobes_rows
             {
                 var decays = sheet.yz;
-                if sheet.w != 0.0 {
+                if sheet.w != 0.0 || sheet.y == 0.0 {
                     decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
                 }
             }

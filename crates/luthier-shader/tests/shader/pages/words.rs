@@ -14,7 +14,10 @@ fn texts(folder: &Path) -> Vec<String> {
 fn named(modules: &[String]) -> BTreeSet<&str> {
     let marks = modules.iter().flat_map(|module| module.lines()).filter_map(|line| line.split_once("//?"));
     let words = marks.flat_map(|(_, condition)| condition.split([',', '|']));
-    words.map(|word| word.trim().trim_start_matches(['!', '~'])).filter(|word| !matches!(*word, "else" | "end")).collect()
+    words
+        .map(|word| word.trim().trim_start_matches(['!', '~']))
+        .filter(|word| !matches!(*word, "else" | "end"))
+        .collect()
 }
 
 /// Words in the first column of the tables under "Words".
