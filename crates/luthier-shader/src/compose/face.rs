@@ -91,7 +91,7 @@ fn count_of(set: &MaterialSet<'_>, material: &MaterialEntry, features: &Features
         // With a tilted inner boundary the beams of the channels part.
         Family::Beams if features.has(Feature::GranierTilted) => 4,
         Family::Beams => 2,
-        Family::Path => chain::parts_count(set, material.model, features.has(Feature::ChainPatina)),
+        Family::Path => chain::parts_count(set, material.model, features.has(Feature::ChainCover)),
         Family::Statistics => material.layers.iter().rposition(|layer| !is_diffuse(layer)).map_or(0, |i| i + 1),
     }
 }
