@@ -147,8 +147,8 @@ fn check_weight(at: &Section<'_>, number: usize, below: usize, sink: &mut Sink<'
     let Some(span) = effects::weight_span(at) else { return };
     let (message, hint) = match (number, below) {
         (0, 0) => (
-            "a weight is that of a coat, and this layer lies on nothing: there is no surface where it is not",
-            "add the layers below it, or leave the weight out",
+            "a weight needs layers below this one: where it is not, there would be no surface",
+            "add the layers below, or leave the weight out",
         ),
         (0, _) => return,
         _ => (

@@ -100,32 +100,20 @@ pub(super) fn check_bare(document: &Section<'_>, stack: &Stack, sink: &mut Sink<
     }
 }
 
-/// Reports a weight of a coat over a dielectric whose index follows from that of the coat: where the coat is not, it would be another one. A
-/// `metallic-roughness` layer bends nothing, neither below the coat nor in its place.
-pub(super) fn check_below_weight(document: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) {
+/// Reports a weight of a coat over a dielectric with an F0, whose index follows from the medium above or bends light by it: where the coat is not, that is
+/// the exterior. A `metallic-roughness` layer bends nothing, neither below the coat nor in its place.
+pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     let sections = document.sections("layer");
     let layers: Vec<&Section<'_>> = sections.iter().filter(|at| at.text("type") != Some("thin-film")).collect();
-    let (Some(span), [_, below, ..]) = (layers.first().and_then(|at| effects::weight_span(at)), layers.as_slice())
-    else {
-        return;
-    };
-    if below.text("type") != Some("dielectric") || !below.has("f0") {
-        return;
+    let [first, below, ..] = layers.as_slice() else { return };
+    if let Some(span) = effects::weight_span(first)
+        && below.text("type") == Some("dielectric")
+        && below.has("f0")
+    {
+        let message = "below this coat lies a dielectric with an `f0`: the medium above decides how that bends light, and the coat is there in places only";
+        let hint = "give that layer an `ior` in place of its `f0`, or write it as `type = \"metallic-roughness\"`";
+        sink.error(span, message, Some(hint.to_owned()));
     }
-    let least = stack.layers.get(1).and_then(|layer| match &layer.base {
-        Base::Dielectric { ior, .. } => ior.samples().iter().map(|s| s.n).reduce(f64::min),
-        _ => None,
-    });
-    let message = match least {
-        _ if !below.has("ior") => {
-            "the `f0` of the layer below this coat has an index that follows from the coat, which is not everywhere"
-        }
-        Some(least) if least < most(&stack.exterior) => {
-            "the layer below this coat has an `f0` and a lower index than the exterior, which it meets where the coat is not"
-        }
-        _ => return,
-    };
-    sink.error(span, message, Some("give that layer an `ior` in place of its `f0`".to_owned()));
 }
 
 /// Reports films on an interface that they cannot coat.

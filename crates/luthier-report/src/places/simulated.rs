@@ -39,9 +39,6 @@ impl Default for SimulatedSettings {
     }
 }
 
-/// Factor that makes weights whole: of the least normal f32 it makes more than 1.
-const WHOLE: f32 = 1e38;
-
 /// Limit on the lobe error of rows at a place, beside noise.
 const LOBE_AT_PLACES: f64 = 0.08;
 
@@ -203,9 +200,9 @@ fn seen(
 fn upright(number: u64, values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
     let PlaceValues { normal, flake_normal, .. } = PlaceValues::NONE;
     let patina = values.patina.map(|amount| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 });
-    // Weights are 1 at most: this factor makes any of them whole that is not 0.
-    let is_covered = number.is_multiple_of(2) && entry.constants.coat.as_ref().is_some_and(|coat| coat.weight > 0.0);
-    let weight_factor = if is_covered { WHOLE } else { 0.0 };
+    let weight = entry.constants.coat.as_ref().map_or(1.0, |coat| coat.weight);
+    let is_covered = weight > 0.0 && number.is_multiple_of(2);
+    let weight_factor = if is_covered { (1.0 / weight) as f32 } else { 0.0 };
     PlaceValues { normal, flake_normal, patina, weight_factor, ..values }
 }
 
