@@ -76,7 +76,7 @@ fn varying(material: &Material) -> Option<Varying> {
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
     let scaled =
         maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack));
-    let covers = material.is_bare_in_places().then(|| match &material.effects.patina {
+    let covers = material.is_bare_in_places().then_some(match &material.effects.patina {
         &Some(Patina { diffuse_albedo, base_alpha, tarnish, .. }) => Cover { diffuse_albedo, base_alpha, tarnish },
         None => Cover::PLAIN,
     });
