@@ -50,8 +50,7 @@ pub struct BakedMaterial {
 impl BakedMaterial {
     /// Removes the tile numbers of every layer, for shaders that read no tables.
     pub fn forget_tables(&mut self) {
-        let bare = self.constants.patina.as_mut().map(|patina| &mut patina.bare);
-        self.records.iter_mut().chain(bare).for_each(|record| record.tiles = Tiles::default());
+        self.records.iter_mut().chain(self.constants.bare_mut()).for_each(|record| record.tiles = Tiles::default());
     }
 }
 

@@ -3,13 +3,15 @@
 use luthier_layers::models::phong::Coefficients;
 use luthier_layers::monochrome::Monochrome;
 use luthier_manifest::ModelPart;
-use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord};
+use luthier_manifest::{
+    CoatRecord, FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord,
+};
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 
 use crate::veil::veil;
 
-/// The constants of a material. `bare` is the record of the layer below its patina, `lobes` the fitted numbers.
+/// The constants of a material. `bare` is the record of the layer below its patina or its coat, `lobes` the fitted numbers.
 pub(crate) fn constants(
     material: &Material,
     bare: Option<LayerRecord>,
@@ -33,7 +35,8 @@ pub(crate) fn constants(
             .filter(|_| material.model().takes(ModelPart::DiffuseTerm))
             .unwrap_or_default(),
         flakes: flakes(&material.effects),
-        patina: bare.and_then(|bare| patina(&material.effects, bare)),
+        patina: bare.clone().and_then(|bare| patina(&material.effects, bare)),
+        coat: bare.and_then(|bare| Some(CoatRecord { weight: material.weight()?, bare })),
         glitter: glitter(&material.effects),
     }
 }

@@ -42,7 +42,7 @@ pub(crate) struct Plan {
 #[derive(Debug)]
 pub(crate) struct PlannedLayers {
     pub(crate) layers: Vec<LayerRecord>,
-    /// The layer below a patina, as it is without patina.
+    /// The layer below a patina or a coat, as it is without that.
     pub(crate) bare: Option<LayerRecord>,
 }
 

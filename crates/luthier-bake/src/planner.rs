@@ -46,7 +46,7 @@ struct Wanted {
 enum Reader {
     /// The record of a layer.
     Layer(usize),
-    /// The record of the layer below a patina, as it is without patina.
+    /// The record of the layer below a patina or a coat, as it is without that.
     Bare,
     /// A look-up in the tile before it.
     Run,
@@ -106,9 +106,10 @@ impl Part {
         let mut part = Self::default();
         part.layers =
             part.records(material, settings, &material.reflecting_stack(), &material.layers, None, read_image)?;
-        if material.effects.patina.is_some() && material.stack.layers.len() > 1 {
-            let stack =
-                Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };
+        if material.is_bare_in_places() {
+            let Stack { exterior, mut layers } = material.stack.without_first();
+            layers.truncate(1);
+            let stack = Stack { exterior, layers };
             let extras = &material.layers[1..2];
             part.bare = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?.into_iter().next();
             // The base beside it is no layer of this stack.
@@ -119,7 +120,7 @@ impl Part {
     }
 
     /// The records of a stack of a material. A tile is named after the material, then `bare` (a label for the layer
-    /// below a patina), then the number of the layer.
+    /// below a patina or a coat), then the number of the layer.
     fn records(
         &mut self,
         material: &Material,

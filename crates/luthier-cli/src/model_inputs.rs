@@ -79,6 +79,9 @@ struct Textures {
     /// Factor on the thickness of the films on the first interface
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     film_factor: Option<f64>,
+    /// Factor on the weight of the first layer, a coat
+    #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
+    weight_factor: Option<f64>,
     /// Variance, along either axis, of the slopes of the normals that a pixel sees
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     slope_variance: Option<f64>,
@@ -135,6 +138,22 @@ impl ModelInputs {
         }
     }
 
+    /// The factor on the weight of a coat at the place.
+    pub(crate) fn weight_factor(&self) -> f64 {
+        self.textures.weight_factor.unwrap_or(1.0)
+    }
+
+    /// The map of the weight of a coat, unless maps of the file are left out.
+    pub(crate) fn weight_map<'m>(&self, material: &'m Material) -> Option<&'m PictureRef> {
+        material.layers.first()?.maps.weight.as_ref().filter(|_| !self.no_effects)
+    }
+
+    /// Whether a model shows the weight of a coat: some with a shader do, and models without one are evaluated with and without it.
+    pub(crate) fn shows_weight(material: &Material, model: &dyn Model) -> bool {
+        let Some(shading) = model.info().shading() else { return true };
+        left_out(material, shading).iter().all(|part| part.feature != Feature::Weight)
+    }
+
     /// The effects of a file that a model shows, and the names of the other effects.
     pub(crate) fn shown(&self, material: &Material, model: &dyn Model) -> (Effects, Vec<&'static str>) {
         if self.no_effects {
@@ -151,7 +170,9 @@ impl ModelInputs {
         let has_patina = is_path || has_lobes && !lacks_patina();
         let below =
             [("flakes", effects.flakes.is_some() && !has_flakes), ("patina", effects.patina.is_some() && !has_patina)];
-        let dropped = below.into_iter().filter(|(_, is_dropped)| *is_dropped).map(|(name, _)| name).collect();
+        let weight = ("weight of the coat", material.weight().is_some() && !Self::shows_weight(material, model));
+        let below = below.into_iter().chain([weight]);
+        let dropped = below.filter(|(_, is_dropped)| *is_dropped).map(|(name, _)| name).collect();
         let shown = Effects {
             flakes: effects.flakes.clone().filter(|_| has_flakes),
             patina: effects.patina.clone().filter(|_| has_patina),

@@ -64,6 +64,7 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
             let of_surface = match map.slot {
                 MapSlot::Normal => Feature::NormalMap,
                 MapSlot::Roughness => Feature::RoughnessMap,
+                MapSlot::Weight => Feature::Weight,
                 _ => Feature::ThicknessMap,
             };
             let feature = map.slot.layer_feature(number as u32).unwrap_or(of_surface);
@@ -74,6 +75,7 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
     for (is_there, key, feature) in [
         (effects.flakes.is_some(), "effects.flakes", Feature::Flakes),
         (effects.patina.is_some(), "effects.patina", Feature::Patina),
+        (material.layers.first().is_some_and(|first| first.weight < 1.0), "layer.0.weight", Feature::Weight),
         (effects.glitter.is_some(), "effects.glitter", Feature::Glitter),
     ] {
         if is_there {

@@ -82,6 +82,7 @@ fn slot(slot: MapSlot) -> Option<usize> {
         MapSlot::FlakeNormal => Some(4),
         MapSlot::Albedo => Some(5),
         MapSlot::Lean => Some(6),
+        MapSlot::Weight => Some(7),
         _ => None,
     }
 }

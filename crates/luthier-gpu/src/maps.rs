@@ -7,7 +7,7 @@ use crate::context::word;
 use crate::{GpuError, Map, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
-pub(crate) const MAP_WORDS: usize = 9;
+pub(crate) const MAP_WORDS: usize = 10;
 
 /// Texels of a map that a picture is made with: 2048 x 2048 take 64 MiB of the buffer.
 const TEXELS_MAX: usize = 1 << 22;
@@ -50,6 +50,9 @@ impl Scene {
             let [albedo, tarnish] = [patina.diffuse_albedo, patina.tarnish].map(|rgb| rgb.map(|v| v as f32));
             headers[5] = word(albedo, patina.base_alpha.unwrap_or(-1.0) as f32).map(f32::to_bits);
             headers[6] = word(tarnish, 0.0).map(f32::to_bits);
+        } else if entry.constants.coat.is_some() {
+            headers[5] = word([0.0; 3], -1.0).map(f32::to_bits);
+            headers[6] = word([1.0; 3], 0.0).map(f32::to_bits);
         }
         headers.extend(texels);
         headers
@@ -175,12 +178,23 @@ impl Scene {
                  surface.inner_normal = normalize(vec3<f32>(film.xy * own.z + own.xy * film.z, film.z * own.z));\n    }",
             );
         }
+        let has_weight = self.interface.fills("LuthierPlace", "weight_factor");
+        if has_weight {
+            fill.push(
+                "let weight = shading_map_header(material, 9u);\n    if weight.y > 0u {\n        \
+                 surface.weight_factor = shading_bilinear(weight, maps.uv).x;\n    }",
+            );
+        }
         let below = if self.interface.fills("LuthierPlace", "flake_normal") {
             "surface.flake_normal"
         } else {
             "vec3<f32>(0.0, 0.0, 1.0)"
         };
-        let patina = if self.interface.fills("LuthierPlace", "patina") { "surface.patina" } else { "-1.0" };
+        let patina = match self.interface.fills("LuthierPlace", "patina") {
+            _ if has_weight => "luthier_cover(surface, material)",
+            true => "surface.patina",
+            false => "-1.0",
+        };
         let functions = include_str!("wgsl/surface.wgsl")
             .replace("$fill", &fill.join("\n    "))
             .replace("$lit", lit)
@@ -208,6 +222,7 @@ fn slot_word(slot: MapSlot) -> usize {
         MapSlot::FlakeNormal => 4,
         MapSlot::Albedo => 7,
         MapSlot::Lean => 8,
+        MapSlot::Weight => 9,
         // No whole surface has these.
         MapSlot::Bumps
         | MapSlot::Alpha

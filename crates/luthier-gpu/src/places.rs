@@ -8,7 +8,7 @@ use crate::{GpuError, Scene};
 const KERNEL: &str = include_str!("wgsl/places.wgsl");
 
 /// Number of words of a pair and its place, without the layers.
-const PAIR_WORDS: usize = 7;
+const PAIR_WORDS: usize = 8;
 
 /// Number of words of a layer.
 const LAYER_WORDS: usize = 2;
@@ -41,6 +41,7 @@ impl Scene {
             ("inner_normal", format!("place.inner_normal = {};", input(3, "xyz"))),
             ("flake_normal", format!("place.flake_normal = {};", input(4, "xyz"))),
             ("base_color", format!("place.base_color = {};", input(5, "xyz"))),
+            ("weight_factor", format!("place.weight_factor = {};", input(7, "x"))),
             ("patina", format!("place.patina = {};", input(5, "w"))),
             ("slope_variance", format!("place.slope_variance = {};", input(1, "w"))),
         ]
@@ -86,6 +87,7 @@ fn words(material: u32, (place, wi, wo): &Spot, layers: usize) -> Vec<[f32; 4]> 
         word(place.flake_normal, place.film_factor),
         word(place.base_color.unwrap_or([-1.0; 3]), place.patina.unwrap_or(-1.0)),
         word(color, metallic),
+        [place.weight_factor, 0.0, 0.0, 0.0],
     ];
     for layer in 0..layers {
         let own = place.layers.get(layer).unwrap_or(&LayerValues::NONE);

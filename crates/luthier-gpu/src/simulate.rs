@@ -227,7 +227,7 @@ fn beyond(entry: &MaterialEntry) -> Option<&'static str> {
         return Some("diffuse bases beside an interface");
     }
     if entry.varies() {
-        return Some("textures, flakes, patina and glitter");
+        return Some("textures, flakes, patina, weights of coats and glitter");
     }
     (entry.layers.len() > LAYERS_MOST).then_some("more than 8 layers")
 }

@@ -10,7 +10,7 @@ use crate::record::{LAYER_WORDS, whole};
 pub const MATERIAL_WORDS: usize = 11;
 
 /// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
-/// layers of a material with patina, the layer of [`crate::PatinaRecord::bare`].
+/// layers of a material with patina, or with a coat that has a weight, the layer of [`MaterialConstants::bare`].
 ///
 /// Whole numbers n that shaders count with, here and the kind of a layer, are 2^23 + n: the low 23 bits of such an f32 are n, and no
 /// conversion is needed.

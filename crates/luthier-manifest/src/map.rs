@@ -16,6 +16,8 @@ luthier_lut::named! {
         Roughness = "roughness",
         /// Factor on the thickness of the slab below the layer.
         Thickness = "thickness",
+        /// Factor on the weight of the first layer, a coat.
+        Weight = "weight",
         /// Order in which patina develops; dark places come first.
         Patina = "patina",
         /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
@@ -79,7 +81,7 @@ impl MapSlot {
             Self::BaseColor | Self::Metallic => Some(Feature::MetallicMap),
             Self::Lean => Some(Feature::LeanMap),
             Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
-            Self::Normal | Self::Roughness | Self::Patina | Self::FlakeNormal => None,
+            Self::Normal | Self::Roughness | Self::Weight | Self::Patina | Self::FlakeNormal => None,
         }
     }
 

@@ -48,8 +48,8 @@ pub struct MaterialEntry {
 impl MaterialEntry {
     /// Whether textures make the surface differ from place to place.
     pub fn varies(&self) -> bool {
-        let MaterialConstants { flakes, patina, glitter, .. } = &self.constants;
-        let has_effect = flakes.is_some() || patina.is_some() || glitter.is_some();
+        let MaterialConstants { flakes, glitter, .. } = &self.constants;
+        let has_effect = flakes.is_some() || self.constants.bare().is_some() || glitter.is_some();
         has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
     }
 
@@ -111,20 +111,20 @@ impl MaterialEntry {
     /// of slope parameters grow by the square of half the radius, because the half vector turns half as far as the light.
     pub fn widened(&self, angular_radius: f64) -> Self {
         let mut entry = self.clone();
-        let MaterialEntry { layers, constants: MaterialConstants { patina, .. }, .. } = &mut entry;
-        for layer in layers.iter_mut().chain(patina.as_mut().map(|patina| &mut patina.bare)) {
+        let MaterialEntry { layers, constants, .. } = &mut entry;
+        for layer in layers.iter_mut().chain(constants.bare_mut()) {
             layer.alpha = wider(layer.alpha, angular_radius);
             layer.alpha_xy = layer.alpha_xy.map(|alpha| wider(alpha, angular_radius));
         }
-        if let Some(patina) = patina {
+        if let Some(patina) = &mut constants.patina {
             patina.base_alpha = patina.base_alpha.map(|alpha| wider(alpha, angular_radius));
         }
         entry
     }
 
-    /// The layers, then the bare layer of a patina: what the material buffer holds.
+    /// The layers, then the bare layer below a patina or a coat: what the material buffer holds.
     pub fn records(&self) -> impl Iterator<Item = &LayerRecord> {
-        self.layers.iter().chain(self.constants.patina.as_ref().map(|patina| &patina.bare))
+        self.layers.iter().chain(self.constants.bare())
     }
 
     /// Maps of single layers that the model shows, in order: number of the layer, and quantity. `LuthierPlace` has their values; the value of

@@ -21,6 +21,8 @@ pub struct PlaceValues {
     pub base_color: Option<[f32; 3]>,
     /// Amount of patina, 0 to 1; `None` for a material without patina.
     pub patina: Option<f32>,
+    /// Factor on the weight of a coat.
+    pub weight_factor: f32,
     /// Base colour and metal of a metallic-roughness surface, if maps have them. The albedo that follows replaces `base_color`.
     pub metallic: Option<([f32; 3], f32)>,
     /// Values of textures of single layers, from the top down; a missing layer has no textures.
@@ -57,6 +59,7 @@ impl PlaceValues {
         flake_normal: UP,
         base_color: None,
         patina: None,
+        weight_factor: 1.0,
         metallic: None,
         layers: Vec::new(),
     };

@@ -116,6 +116,10 @@ mod tests {
 
     const PATINA: &str = "[effects.patina]\nextent = 0.5\ntransition = 0.5\nmap = { noise = {} }\n";
 
+    const WEIGHT: &str = "weight = 0.5\n";
+    const WEIGHT_MAP: &str = "weight = \"w.png\"\n";
+    const PAINT: &str = "maps = { albedo = \"paint.png\" }\n";
+
     fn material(body: &str) -> Material {
         let text = format!("schema = 1\nname = \"x\"\n{body}");
         let parsed = crate::parse("x.toml", &text, &|_| Err(std::io::Error::other("none")));
@@ -189,6 +193,12 @@ mod tests {
             (COAT.to_owned() + smooth + GOLD + brushed + PATINA, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
             (COAT.to_owned() + smooth + COAT + rough + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
+            (COAT.to_owned() + smooth + WEIGHT + GOLD + rough, "lobes", "elek", None),
+            (COAT.to_owned() + smooth + WEIGHT + WHITE + PAINT, "elek", "elek", Some("layer.1.maps.albedo")),
+            (COAT.to_owned() + smooth + "weight = 1\n" + WHITE + PAINT, "lobes", "elek", None),
+            (COAT.to_owned() + scratched + WEIGHT_MAP + WHITE, "elek", "elek", Some("layer.0.maps.weight")),
+            (VARYING.to_owned() + COAT + rough + WEIGHT + WHITE, "elek", "elek", Some("layer.0.weight")),
+            (COAT.to_owned() + smooth + WEIGHT + GOLD + brushed, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + smooth + GOLD + brushed + FLAKES, "lobes", "weidlich-wilkie", None),
         ] {
             let found = material(&body);

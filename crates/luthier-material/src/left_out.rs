@@ -92,6 +92,7 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         (maps.is_some_and(|maps| maps.thickness.is_some()), Feature::ThicknessMap, "layer.0.maps.thickness"),
         (effects.flakes.is_some(), Feature::Flakes, "effects.flakes"),
         (effects.patina.is_some(), Feature::Patina, "effects.patina"),
+        (material.weight().is_some(), Feature::Weight, weight_key(material)),
         (effects.glitter.is_some(), Feature::Glitter, "effects.glitter"),
     ] {
         if is_asked {
@@ -105,18 +106,26 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         let is_turned = layers.iter().any(Layer::is_anisotropic);
         let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());
         let film = layers.first().and_then(|first| first.films.first()).is_some_and(Film::varies);
-        // Flakes lie below the patina alone, and rows do not tell its lobes from those of several layers that are bare.
+        // Flakes lie below the patina or the coat alone, and rows do not tell its lobes from those of several layers that are bare.
         let has_flakes_above_lobes = effects.flakes.is_some() && layers.len() > 2;
-        let covers = effects.patina.is_some() && layers.len() > 1;
+        let cover = if effects.patina.is_some() {
+            (Feature::Patina, "effects.patina")
+        } else {
+            (Feature::Weight, weight_key(material))
+        };
+        let albedo = material.layers.iter().position(|layer| layer.maps.albedo.is_some());
+        let albedo_key = format!("layer.{}.maps.albedo", albedo.unwrap_or(0));
         for (lacks, feature, key) in [
             (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
             (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
             (film && (is_turned || roughness || thickness), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
             (
-                covers && (is_turned || roughness || thickness || film || has_flakes_above_lobes),
-                Feature::Patina,
-                "effects.patina",
+                material.is_bare_in_places() && (is_turned || roughness || thickness || film || has_flakes_above_lobes),
+                cover.0,
+                cover.1,
             ),
+            // Rows have the light of a base and that of the bare base together.
+            (material.weight().is_some() && albedo.is_some(), Feature::AlbedoMap, &albedo_key),
         ] {
             if lacks {
                 found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });
@@ -124,6 +133,12 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
     }
     found
+}
+
+/// The key that gives the first layer a weight.
+fn weight_key(material: &Material) -> &'static str {
+    let is_stated = material.layers.first().is_some_and(|first| first.weight < 1.0);
+    if is_stated { "layer.0.weight" } else { "layer.0.maps.weight" }
 }
 
 /// The forms of a model that leave a feature out.

@@ -131,6 +131,17 @@ impl Material {
         format!("{label}:{line}")
     }
 
+    /// Weight of its first layer, a coat, if that is below 1 or a map multiplies it.
+    pub fn weight(&self) -> Option<f64> {
+        let LayerExtras { weight, maps, .. } = self.layers.first()?;
+        (*weight < 1.0 || maps.weight.is_some()).then_some(*weight)
+    }
+
+    /// Whether its first layer leaves the others bare in places: a patina, or a coat with a weight.
+    pub fn is_bare_in_places(&self) -> bool {
+        self.stack.layers.len() > 1 && (self.effects.patina.is_some() || self.weight().is_some())
+    }
+
     /// The re-radiation of its base, if that is fluorescent.
     pub fn reradiation(&self) -> Option<[Rgb; 3]> {
         self.layers.last().and_then(|layer| layer.reradiation)
@@ -164,8 +175,10 @@ impl Material {
 }
 
 /// Properties of a layer beyond its physics.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LayerExtras {
+    /// Share of the surface that the layer covers, 0 to 1: of the first layer, where the others are bare elsewhere.
+    pub weight: f64,
     /// Rows of the matrix from light to light of a fluorescent base, linear Rec.709 under D65 ([`luthier_optics::reradiation::rgb`]). The
     /// albedo in the stack is its colour under white light, within 0..1.
     pub reradiation: Option<[Rgb; 3]>,
@@ -177,6 +190,14 @@ pub struct LayerExtras {
     pub maps: Maps,
     /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
+}
+
+impl Default for LayerExtras {
+    /// A layer that is nothing but physics, and covers all of the surface.
+    fn default() -> Self {
+        let (reradiation, film_variation, exponents, metallic) = (None, None, None, None);
+        Self { weight: 1.0, reradiation, film_variation, exponents, maps: Maps::default(), metallic }
+    }
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.
@@ -197,6 +218,8 @@ pub struct Maps {
     pub roughness: Option<PictureRef>,
     /// Multiplies the slab's thickness.
     pub thickness: Option<PictureRef>,
+    /// Multiplies the layer's weight.
+    pub weight: Option<PictureRef>,
     /// Tangent-space normal map of this layer alone.
     pub bumps: Option<PictureRef>,
     /// Multiplies the slope parameters of this layer alone.
@@ -247,6 +270,7 @@ impl Maps {
             ("normal", MapSlot::Normal, &self.normal),
             ("roughness", MapSlot::Roughness, &self.roughness),
             ("thickness", MapSlot::Thickness, &self.thickness),
+            ("weight", MapSlot::Weight, &self.weight),
             ("bumps", MapSlot::Bumps, &self.bumps),
             ("alpha", MapSlot::Alpha, &self.alpha),
             ("alpha_x", MapSlot::AlphaX, &self.alpha_x),

@@ -38,7 +38,7 @@ const MAPS: &[Feature] = &[NormalMap, RoughnessMap, ThicknessMap, LayerAlpha, In
 /// Maps of colour.
 const COLOR: &[Feature] = &[AlbedoMap, MetallicMap];
 /// Effects of layers that are there in places.
-const EFFECTS: &[Feature] = &[Flakes, Patina, Glitter];
+const EFFECTS: &[Feature] = &[Flakes, Patina, Weight, Glitter];
 
 /// Headings that models share.
 const ONE_LAYER: &str = "One layer";

@@ -33,6 +33,25 @@ impl Stack {
         }
         here
     }
+
+    /// The stack without its first layer. An interface that reflects by an F0 and has the index of the medium above bends no light, and bends none
+    /// below the exterior either: its index there is that of the exterior.
+    #[must_use]
+    pub fn without_first(&self) -> Self {
+        let mut layers = self.layers.iter();
+        let first = layers.next();
+        let mut here = Self { exterior: self.exterior.clone(), layers: layers.cloned().collect() };
+        if let (Some(Base::Dielectric { ior: above, .. }), Some(Base::Dielectric { ior, .. })) =
+            (first.map(|layer| &layer.base), here.layers.first_mut().map(|layer| &mut layer.base))
+        {
+            let (a, b) = (above.samples(), ior.samples());
+            let is_unbent = a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.n == b.n);
+            if let Some(f0) = ior.f0().filter(|_| is_unbent) {
+                *ior = self.exterior.clone().with_f0(f0);
+            }
+        }
+        here
+    }
 }
 
 /// One interface, and the material below it.

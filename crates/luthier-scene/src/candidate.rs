@@ -62,7 +62,7 @@ impl Candidate {
     /// The candidates for a material, cheapest first. Among equal costs, those that leave out fewer parts come first, then those in the colour of
     /// the material.
     ///
-    /// A candidate leaves out a part of the material only if it becomes cheaper. No candidate leaves out flakes or a patina.
+    /// A candidate leaves out a part of the material only if it becomes cheaper. No candidate leaves out flakes, a patina or the weight of a coat.
     pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
         let own = material.bake.color.unwrap_or_default();
         let colors: &[ColorMode] = match (form, own) {
@@ -73,6 +73,7 @@ impl Candidate {
         let effects = [
             (Feature::Flakes, material.effects.flakes.is_some()),
             (Feature::Patina, material.effects.patina.is_some()),
+            (Feature::Weight, material.weight().is_some()),
         ];
         let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map.slot)));
         let mut asked: Vec<Feature> = maps.filter_map(|(i, slot)| slot.layer_feature(i)).collect();

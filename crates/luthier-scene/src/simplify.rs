@@ -62,11 +62,11 @@ fn leave_out(material: &mut Material, part: LeaveOut) -> bool {
     match part {
         LeaveOut::Feature(feature) => leave_out_feature(material, feature),
         LeaveOut::Layer(index) => {
+            let is_bare_in_places = material.is_bare_in_places();
             let layers = &mut material.stack.layers;
             let is_coat = layers.get(index).is_some_and(|layer| matches!(layer.base, Base::Dielectric { .. }));
-            // Flakes, patina and maps name their layer by number, which a removed layer would shift.
-            let effects = &material.effects;
-            let stays = effects.flakes.is_some() || effects.patina.is_some();
+            // Flakes, patina, a weight and maps name their layer by number, which a removed layer would shift.
+            let stays = material.effects.flakes.is_some() || is_bare_in_places;
             let found = is_coat && index + 1 < layers.len() && !stays;
             if found {
                 layers.remove(index);
@@ -188,6 +188,12 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
         }
         Feature::Flakes => found = effects.flakes.take().is_some(),
         Feature::Patina => found = effects.patina.take().is_some(),
+        Feature::Weight => {
+            if let Some(first) = material.layers.first_mut() {
+                found = first.weight < 1.0 || first.maps.weight.is_some();
+                (first.weight, first.maps.weight) = (1.0, None);
+            }
+        }
         Feature::Glitter => found = effects.glitter.take().is_some(),
         Feature::Reradiation => {
             for extras in &mut material.layers {

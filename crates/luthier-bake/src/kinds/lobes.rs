@@ -76,11 +76,11 @@ fn varying(material: &Material) -> Option<Varying> {
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
     let scaled =
         maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack));
-    let covers = material.effects.patina.as_ref().filter(|_| material.stack.layers.len() > 1);
-    scaled.or_else(|| {
-        let Patina { diffuse_albedo, base_alpha, tarnish, .. } = *covers?;
-        Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
-    })
+    let covers = material.is_bare_in_places().then_some(match &material.effects.patina {
+        &Some(Patina { diffuse_albedo, base_alpha, tarnish, .. }) => Cover { diffuse_albedo, base_alpha, tarnish },
+        None => Cover::PLAIN,
+    });
+    scaled.or_else(|| covers.map(Varying::Patina))
 }
 
 /// A budget that cannot be met, with the error of each material, by number, under the nearest candidate.
@@ -100,8 +100,8 @@ pub fn is_too_deep(material: &Material) -> bool {
 
 /// Whether rows of a material contain the light of a diffuse base.
 fn has_base(material: &Material) -> bool {
-    let is_under_patina = matches!(varying(material), Some(Varying::Patina(_)));
-    material.model().is_fitted() && !is_under_patina && base_below(&material.stack).is_some()
+    let is_covered = matches!(varying(material), Some(Varying::Patina(_)));
+    material.model().is_fitted() && !is_covered && base_below(&material.stack).is_some()
 }
 
 /// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].
@@ -266,6 +266,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
                 Varying::Alpha => VaryingFactor::AlphaFactor,
                 Varying::Slab => VaryingFactor::SlabFactor,
                 Varying::Film(_) => VaryingFactor::FilmFactor,
+                Varying::Patina(_) if material.weight().is_some() => VaryingFactor::WeightFactor,
                 Varying::Patina(_) => VaryingFactor::Patina,
             },
             factors: match varying {
@@ -382,6 +383,7 @@ fn factor_name(varying: Varying) -> &'static str {
         Varying::Alpha => "slope parameters",
         Varying::Slab => "thickness of the first slab",
         Varying::Film(_) => "thickness of the film",
+        Varying::Patina(cover) if cover.is_plain() => "first layer",
         Varying::Patina(_) => "patina",
     }
 }

@@ -25,6 +25,28 @@ fn patina_brings_the_layer_below_as_it_is_in_air() {
     assert!((patina.bare.ior_n[0] - 1.5 * bake.materials[0].records[1].ior_n[0]).abs() < 1e-12);
 }
 
+/// The bare layer is that of a material without the first, also where that bends no light. A weight of 1 is no weight, in every byte.
+#[test]
+fn a_weight_brings_the_layer_below_as_it_is_in_air() {
+    let engine = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.6, 0.3, 0.1]\nroughness = 0.5\n";
+    for below in [conductor("{ n = 0.3, k = 3.0 }", 0.1), engine.to_owned()] {
+        let coated = |weight: &str| material("coated", &(dielectric("1.5", 0.2) + weight + &below), SMALL);
+        let bake = bake_all(&[coated("weight = 0.4\n"), material("below", &below, SMALL)]);
+        let [coated_constants, alone] = [&bake.materials[0].constants, &bake.materials[1].constants];
+        let coat = coated_constants.coat.as_ref().unwrap();
+        // The set shares their tiles too.
+        assert_eq!((coat.weight, &coat.bare), (0.4, &bake.materials[1].records[0]));
+        assert!(coated_constants.patina.is_none() && alone.coat.is_none());
+        let [one, plain] = ["weight = 1\n", ""].map(|weight| bake_all(&[coated(weight)]));
+        assert!(one == plain && one.materials[0].constants.coat.is_none());
+    }
+    let mapped = dielectric("1.5", 0.2) + "maps = { weight = \"w.png\" }\n" + &conductor("{ n = 0.3, k = 3.0 }", 0.1);
+    let bake = bake_all(&[material("mapped", &mapped, SMALL)]);
+    assert_eq!(bake.materials[0].constants.coat.as_ref().unwrap().weight, 1.0);
+    let maps: Vec<_> = bake.materials[0].maps.iter().map(|map| (map.slot, map.layer, map.factor)).collect();
+    assert_eq!(maps, [(MapSlot::Weight, Some(0), None)]);
+}
+
 #[test]
 fn noise_becomes_a_map_that_fills_its_range_and_repeats() {
     let bake = bake_all(&[material("grown", &(coated() + PATINA), SMALL)]);

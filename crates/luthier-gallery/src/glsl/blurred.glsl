@@ -11,7 +11,7 @@ struct ViewFactors {
     float patina;
 };
 
-ViewFactors view_factors(ViewSurface surface) {
+ViewFactors view_factors(uint material, ViewSurface surface) {
     ViewFactors factors = ViewFactors(vec3(0.0, 0.0, 1.0), 1.0, 1.0, 1.0, vec3(0.0, 0.0, 1.0), -1.0);
 #ifdef VIEW_PLACES
     factors.normal = surface.normal;
@@ -23,6 +23,9 @@ ViewFactors view_factors(ViewSurface surface) {
 #endif
 #ifdef VIEW_PATINA
     factors.patina = surface.patina;
+#endif
+#ifdef VIEW_WEIGHTS
+    factors.patina = luthier_cover(surface, material);
 #endif
 #endif
     return factors;
@@ -178,7 +181,7 @@ vec3 view_environment(uint material, ViewSurface surface, ViewFactors factors, m
 #endif
 
 vec3 view_surroundings(uint material, ViewSurface surface, mat3 frame, vec3 wo_world, uint seed) {
-    ViewFactors factors = view_factors(surface);
+    ViewFactors factors = view_factors(material, surface);
     float turn = float(view_sample) / float(view_samples * view_samples);
     return view_environment(material, surface, factors, view_turned_frame(frame, factors.normal), wo_world, turn);
 }

@@ -132,12 +132,12 @@ ViewLayer view_layer(uint material, uint index) {
 }
 
 #ifdef VIEW_PLACES
-// Textures of the material one below the other: normals, roughness, thickness, patina, flakes, albedo, lean. First row, columns, rows; no columns
+// Textures of the material one below the other: normals, roughness, thickness, patina, flakes, albedo, lean, weight. First row, columns, rows; no columns
 // where there is none.
 uniform highp sampler2D view_textures;
-uniform ivec3 view_slots[7];
+uniform ivec3 view_slots[8];
 // Two rows for each, which make its texture coordinates of the surface's.
-uniform highp vec3 view_turns[14];
+uniform highp vec3 view_turns[16];
 
 vec2 view_uv(int map, vec2 uv) {
     return vec2(dot(view_turns[2 * map], vec3(uv, 1.0)), dot(view_turns[2 * map + 1], vec3(uv, 1.0)));
@@ -188,6 +188,11 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
 #ifdef VIEW_PATINA
     float grown = view_slots[3].y > 0 ? view_bilinear(3, uv).x : 0.5;
     place.patina = luthier_patina_amount(material, grown);
+#endif
+#ifdef VIEW_WEIGHTS
+    if (view_slots[7].y > 0) {
+        place.weight_factor = view_bilinear(7, uv).x;
+    }
 #endif
 #ifdef VIEW_GLITTER
     vec3 glitter = luthier_glitter_normal(material, uv);

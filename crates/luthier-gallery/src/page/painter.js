@@ -109,8 +109,8 @@ class Painter {
   /** Textures of a material: all in one, and where those of each slot are. */
   async loadTextures(number) {
     const { maps } = data.materials[number];
-    const slots = Array(21).fill(0);
-    const turns = Array(7).fill([1, 0, 0, 0, 1, 0]);
+    const slots = Array(24).fill(0);
+    const turns = Array(8).fill([1, 0, 0, 0, 1, 0]);
     if (!maps) return { texture: this.black, slots, turns: turns.flat() };
     const images = await inflateImages(maps.texels, maps.sizes);
     const { texture, headers } = this.stacked(images);

@@ -11,7 +11,7 @@ fn shading_surface(material: u32, maps: ShadingMaps, distance: f32) -> ShadingSu
     return surface;
 }
 
-fn shading_factors(surface: ShadingSurface) -> ShadingFactors {
+fn shading_factors(material: u32, surface: ShadingSurface) -> ShadingFactors {
     return ShadingFactors(
         surface.normal, surface.alpha_factor, surface.slab_factor, surface.film_factor, $below, $patina,
     );

@@ -5,7 +5,7 @@ fn shading_surface(material: u32, maps: ShadingMaps, distance: f32) -> ShadingSu
     return 0.0;
 }
 
-fn shading_factors(surface: ShadingSurface) -> ShadingFactors {
+fn shading_factors(material: u32, surface: ShadingSurface) -> ShadingFactors {
     let up = vec3<f32>(0.0, 0.0, 1.0);
     return ShadingFactors(up, 1.0, 1.0, 1.0, up, -1.0);
 }

@@ -9,7 +9,8 @@ use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::terms::Terms;
 use luthier_lut::Image;
 use luthier_manifest::{
-    FileEntry, FlakesRecord, GlitterRecord, LayerRecord, MapEntry, MapSlot, MaterialConstants, PatinaRecord,
+    CoatRecord, FileEntry, FlakesRecord, GlitterRecord, LayerRecord, MapEntry, MapSlot, MaterialConstants,
+    PatinaRecord, PlaceValues,
 };
 use luthier_shader::{Form, MaterialSet, Target};
 
@@ -202,6 +203,36 @@ fn patina_blends_two_stacks_on_the_device() {
             let layered = grown_value[c] + passed * albedo * wi.z / std::f64::consts::PI;
             let expected = amount * layered + (1.0 - amount) * bare_value[c];
             assert!((f64::from(found[c]) - expected).abs() < 1e-4 * expected, "{map}: {found:?} {expected}");
+        }
+    }
+}
+
+/// A coat covers a share of the place: its weight where nothing is said of the place, and that times a factor, 1 at most.
+#[test]
+fn weights_blend_two_stacks_on_the_device() {
+    let Some(gpu) = gpu() else { return };
+    let bare = effects().patina.unwrap().bare;
+    let mut made = artefacts(Form::Full, vec![coated()], &[]);
+    let coat = CoatRecord { weight: 0.6, bare: bare.clone() };
+    made.manifest.materials[0].constants = MaterialConstants { coat: Some(coat), ..MaterialConstants::default() };
+    let set = MaterialSet::from_manifest(&made.manifest);
+    let wgsl = luthier_shader::emit(&set, Form::Full, Target::Wgsl).unwrap();
+    let made = Package::from_parts(made.manifest, Vec::new(), vec![Shader::wgsl(Form::Full, wgsl)]).unwrap();
+    let scene = gpu.scene(&made, Form::Full).unwrap();
+    let (wi, wo) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.36, 0.48, 0.8));
+    let eval =
+        |records: &[LayerRecord]| Elek::default().eval_with(&model_layers(records), &RecordTerms(records), wi, wo);
+    let (all, below) = (eval(&coated()), eval(&[bare]));
+    let pair = (wi.as_vec3().to_array(), wo.as_vec3().to_array());
+    let factors = [0.0_f32, 0.25, 1.0, 1.5, 4.0];
+    let spots = factors.map(|weight_factor| (PlaceValues { weight_factor, ..PlaceValues::NONE }, pair.0, pair.1));
+    let mut found = scene.evaluate_at(0, &spots).unwrap();
+    found.extend(scene.evaluate(0, &[pair]).unwrap());
+    let shares = factors.map(|factor| (0.6 * f64::from(factor)).min(1.0)).into_iter().chain([0.6]);
+    for (found, share) in found.iter().zip(shares) {
+        for c in 0..3 {
+            let expected = share * all[c] + (1.0 - share) * below[c];
+            assert!((f64::from(found[c]) - expected).abs() < 1e-4 * expected, "{share}: {found:?} {expected}");
         }
     }
 }

@@ -22,6 +22,11 @@ pub trait ShaderTerms: Terms + Energy<3> {
 
     /// Light from below the first interface as seen from `wo`; `None` below the horizon, or if the terms have no lobes.
     fn below(&self, wo: DVec3) -> Option<Below>;
+
+    /// Terms of the stack without its first layer, for a twin of a coat with a weight ([`Twin::covering`](crate::twins::real_time::Twin::covering)).
+    fn bare(&self) -> Option<&dyn ShaderTerms> {
+        None
+    }
 }
 
 /// Values at a place that act below the first interface, as in `LuthierPlace`. Normals are unit.

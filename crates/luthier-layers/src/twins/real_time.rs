@@ -32,6 +32,8 @@ pub struct Twin {
     reradiation: Option<[Rgb; 3]>,
     /// Own normals of interfaces, from the top down.
     normals: Vec<DVec3>,
+    /// Weight of the first layer, a coat, and the twin of the layers below it.
+    cover: Option<(f64, Box<Twin>)>,
 }
 
 impl Twin {
@@ -46,7 +48,7 @@ impl Twin {
         let is_chosen = model.takes(ModelPart::Reflectance) && parts.reflectance != Reflectance::Table;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
         let shade = (room(model).twin)(&Given { stack, wavelengths_nm, color, parts });
-        Self { model, shade, reflectances, reradiation: None, normals: Vec::new() }
+        Self { model, shade, reflectances, reradiation: None, normals: Vec::new(), cover: None }
     }
 
     /// The twin over a fluorescent base, given rows of a matrix from light to light (linear Rec.709, [`luthier_optics::reradiation::rgb`]). They replace
@@ -60,6 +62,13 @@ impl Twin {
     #[must_use]
     pub fn tilting(self, normals: Vec<DVec3>) -> Self {
         Self { normals, ..self }
+    }
+
+    /// The twin of a surface that the first layer covers by a weight. `bare` is the twin of the layers below it, and its terms are those that the terms of
+    /// this one have beside them ([`ShaderTerms::bare`]).
+    #[must_use]
+    pub fn covering(self, weight: f64, bare: Self) -> Self {
+        Self { cover: Some((weight, Box::new(bare))), ..self }
     }
 
     /// `f cos_theta_i`, RGB; zero if either direction is at or below the horizon. Each term is asked for once, for all channels.
@@ -102,10 +111,13 @@ impl Twin {
         if self.reradiation.is_some() {
             return self.eval_lit(terms, under, [1.0; 3], wi, wo);
         }
-        match &self.reflectances {
+        let covered = match &self.reflectances {
             Some(reflectances) => self.eval_on(&reflectances.over(terms), under, wi, wo),
             None => self.eval_on(terms, under, wi, wo),
-        }
+        };
+        let (Some((weight, twin)), Some(bare)) = (&self.cover, terms.bare()) else { return covered };
+        let bare = twin.eval(bare, wi, wo);
+        [0, 1, 2].map(|c: usize| weight * covered[c] + (1.0 - weight) * bare[c])
     }
 
     fn eval_on(&self, terms: &dyn ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {

@@ -32,7 +32,7 @@ pub struct Place {
     pub sample: TextureSample,
     /// Normals below the first interface.
     pub under: Under,
-    /// Patina; `None` for all layers, without the patina's diffuse term and tarnish.
+    /// Patina, or a coat with a weight; `None` for all layers, without the patina's diffuse term and tarnish.
     pub patina: Option<Growth>,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
@@ -66,6 +66,14 @@ pub struct Growth {
     pub base_alpha: Option<f64>,
     /// Factor on the reflection of the layers below grown patina.
     pub tarnish: Rgb,
+}
+
+impl Growth {
+    /// A coat that covers a share of the surface, held to 0..=1.
+    pub fn of_coat(weight: f64) -> Self {
+        let Cover { diffuse_albedo, base_alpha, tarnish } = Cover::PLAIN;
+        Self { amount: weight.clamp(0.0, 1.0), diffuse_albedo, base_alpha, tarnish }
+    }
 }
 
 /// A model with a shader, at one place, with exact terms or those of tables.
@@ -198,7 +206,8 @@ impl<T: ShaderTerms> Shaded<T> {
             }
             // The twin takes chosen reflectances from its terms, because tarnish dims these, too.
             let facets = Parts { reflectance: Reflectance::Table, ..parts };
-            let normals = place.layers.iter().map(|layer| layer.normal).collect();
+            let above = usize::from(part == Part::Bare);
+            let normals = place.layers.iter().skip(above).map(|layer| layer.normal).collect();
             let twin =
                 Twin::with(model, &first, wavelengths_nm, color, facets).reradiating(reradiation).tilting(normals);
             let reflectance = if model.takes(ModelPart::Reflectance) { parts.reflectance } else { Reflectance::Table };

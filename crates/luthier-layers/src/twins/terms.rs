@@ -27,6 +27,8 @@ pub struct Exact {
     lobes: OnceLock<Lobes>,
     /// The stack whose layers veil a diffuse base, if it is another one.
     nominal: Option<Box<Exact>>,
+    /// Terms of the stack without its first layer, if that covers a share of it.
+    bare: Option<Box<Exact>>,
 }
 
 #[derive(Debug, Clone)]
@@ -52,6 +54,13 @@ impl Exact {
         Self { varying, ..Self::new(stack, color) }
     }
 
+    /// The terms with those of the layers below the first beside them ([`ShaderTerms::bare`]). Where the terms vary with the amount of the first layer,
+    /// lobes of both are fitted together.
+    #[must_use]
+    pub fn over_bare(self) -> Self {
+        Self { bare: Some(Box::new(Self::new(&self.stack.without_first(), self.color))), ..self }
+    }
+
     /// The terms with the tables and the record of a nominal stack, as in shaders. The record has the veil of a diffuse base for layers of nominal
     /// thickness and slope. Tables have energies for the nominal F0. For another F0, the light that is not reflected is scaled by a constant factor.
     #[must_use]
@@ -70,17 +79,28 @@ impl Exact {
         let interfaces = (0..stack.layers.len())
             .map(|i| Interface::of(stack, i).map(|interface| interface.sampled(&color)))
             .collect();
-        Self { stack: stack.clone(), color, interfaces, energies, varying: None, lobes: OnceLock::new(), nominal: None }
+        let (varying, lobes, nominal, bare) = (None, OnceLock::new(), None, None);
+        Self { stack: stack.clone(), color, interfaces, energies, varying, lobes, nominal, bare }
     }
 
     /// The lobes of the stack.
     pub fn lobes(&self) -> &Lobes {
-        self.lobes.get_or_init(|| Varied::of(&self.stack, &self.color, self.varying).nominal())
+        self.lobes_by(&|| Varied::of(&self.stack, &self.color, self.varying).ends())
     }
 
-    /// Takes lobes from a function, in place of a fit, unless the terms have some already.
-    pub fn take_lobes(&self, lobes: &dyn Fn() -> Lobes) {
-        self.lobes.get_or_init(lobes);
+    /// Takes lobes from a function, in place of a fit, unless the terms have some already: what [`Varied::ends`] returns.
+    pub fn take_lobes(&self, ends: &dyn Fn() -> (Lobes, Option<Lobes>)) {
+        self.lobes_by(ends);
+    }
+
+    fn lobes_by(&self, ends: &dyn Fn() -> (Lobes, Option<Lobes>)) -> &Lobes {
+        self.lobes.get_or_init(|| {
+            let (lobes, of_bare) = ends();
+            if let (Some(bare), Some(of_bare)) = (&self.bare, of_bare) {
+                bare.lobes.get_or_init(|| of_bare);
+            }
+            lobes
+        })
     }
 
     /// The inputs of the fit of lobes: the stack, its colour, and what varies.
@@ -155,5 +175,12 @@ impl ShaderTerms for Exact {
 
     fn below(&self, wo: DVec3) -> Option<Below> {
         self.lobes().below(wo)
+    }
+
+    fn bare(&self) -> Option<&dyn ShaderTerms> {
+        if let (Some(_), Some(Varying::Patina(_))) = (&self.bare, self.varying) {
+            self.lobes();
+        }
+        self.bare.as_deref().map(|bare| bare as &dyn ShaderTerms)
     }
 }

@@ -47,6 +47,9 @@ pub struct MaterialConstants {
     pub flakes: Option<FlakesRecord>,
     /// Patina: the first layer has grown over the others in places.
     pub patina: Option<PatinaRecord>,
+    /// A coat whose weight is below 1 or in a map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coat: Option<CoatRecord>,
     /// Cells of the surface that glitter.
     pub glitter: Option<GlitterRecord>,
 }
@@ -120,7 +123,7 @@ pub struct LobesError {
 /// The last tile has the factor 0 of a slab, and for slope parameters the factor one step above 0. Shaders mix rows of two tiles linearly in
 /// the root. Tiles over a film are at equal steps of the factor itself, between `factors`.
 ///
-/// Over patina, the last tile has the bare layers and the one before it patina that has grown whole: the place of an amount lies that amount
+/// Over patina, or over the weight of a coat, the last tile has the bare layers and the one before it patina that has grown whole: the place of an amount lies that amount
 /// before the last. If scattering, tarnish or another base come with patina, there are three tiles, and the first has all layers without
 /// these.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -168,11 +171,13 @@ pub enum VaryingFactor {
     FilmFactor,
     /// Amount of patina; see [`VaryingRecord`].
     Patina,
+    /// Factor on the weight of a coat, whose tiles are those of an amount of patina: weight and factor make the amount.
+    WeightFactor,
 }
 
 impl LobesRecord {
     /// Number of tiles after the first over the factor on slope parameters, then over the factor on the first slab or film, and the least
-    /// factor on slopes. [`Self::beyond_cover`] has the number over patina.
+    /// factor on slopes. [`Self::beyond_cover`] has the number over patina or a weight.
     fn varying(&self) -> [f64; 3] {
         let Some(VaryingRecord { factor, tiles, least_spread, .. }) = self.varying else {
             return [0.0, 0.0, SPREAD_MIN];
@@ -181,13 +186,13 @@ impl LobesRecord {
         match factor {
             VaryingFactor::AlphaFactor => [beyond, 0.0, least_spread],
             VaryingFactor::SlabFactor | VaryingFactor::FilmFactor => [0.0, beyond, SPREAD_MIN],
-            VaryingFactor::Patina => [0.0, 0.0, SPREAD_MIN],
+            VaryingFactor::Patina | VaryingFactor::WeightFactor => [0.0, 0.0, SPREAD_MIN],
         }
     }
 
-    /// Number of tiles after the first over the amount of patina; 0 without such tiles.
+    /// Number of tiles after the first over the amount of patina or of a coat; 0 without such tiles.
     fn beyond_cover(&self) -> f64 {
-        let over = self.varying.filter(|varying| varying.factor == VaryingFactor::Patina);
+        let over = self.varying.filter(|varying| varying.factor.is_cover());
         over.map_or(0.0, |varying| f64::from(varying.tiles) - 1.0)
     }
 
@@ -214,6 +219,13 @@ impl LobesRecord {
         let [horizon, normal] =
             [-cos_sq, 1.0 - cos_sq].map(|x: f64| (x + (x * x + four_width_sq).sqrt()).max(0.0).sqrt());
         [cos_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
+    }
+}
+
+impl VaryingFactor {
+    /// Whether it is the share of the surface that the first layer covers.
+    pub fn is_cover(self) -> bool {
+        matches!(self, Self::Patina | Self::WeightFactor)
     }
 }
 
@@ -254,6 +266,15 @@ pub struct PatinaRecord {
     pub bare: LayerRecord,
 }
 
+/// A coat that covers a share of the surface, as patina does that scatters nothing and leaves the layer below as it is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CoatRecord {
+    /// Share of the surface that the first layer covers, 0 to 1; maps and places multiply it.
+    pub weight: f64,
+    /// The layer below the first where the first is not, as it meets the medium above the surface.
+    pub bare: LayerRecord,
+}
+
 /// Glitter (Weidlich and Wilkie 2009, section 5.2.1): a share of the Voronoi cells of the surface is tilted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GlitterRecord {
@@ -268,6 +289,18 @@ pub struct GlitterRecord {
 }
 
 impl MaterialConstants {
+    /// The layer below the first where a patina has not grown or a coat is not.
+    pub fn bare(&self) -> Option<&LayerRecord> {
+        let of_coat = || self.coat.as_ref().map(|coat| &coat.bare);
+        self.patina.as_ref().map(|patina| &patina.bare).or_else(of_coat)
+    }
+
+    /// [`Self::bare`], to change.
+    pub fn bare_mut(&mut self) -> Option<&mut LayerRecord> {
+        let Self { patina, coat, .. } = self;
+        patina.as_mut().map(|patina| &mut patina.bare).or_else(|| coat.as_mut().map(|coat| &mut coat.bare))
+    }
+
     /// `vec4` words of the constants in the material buffer.
     pub const WORDS: usize = 10;
 
@@ -280,9 +313,9 @@ impl MaterialConstants {
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
-    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of lobes over a diffuse base without patina the albedo of that base RGB, -2 where rows have a and b, else -1 |
+    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1 |
     /// | 7 | patina: diffuse albedo RGB; of such lobes the two integrals of [`PaintedRecord`], 0; in w the number of lobes |
-    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first |
+    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of lobes with one tile 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
@@ -309,7 +342,7 @@ impl MaterialConstants {
             words[4] = vec4([f.spread, f.scale, f.fade_start], 0.0);
         }
         let lobes = f64::from(words[6][3]);
-        if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), &self.patina) {
+        if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), self.bare()) {
             let [fifth, square] = base.moments.unwrap_or_default();
             words[5] = vec4(base.albedo, if base.moments.is_some() { -2.0 } else { -1.0 });
             words[6] = vec4([fifth, square, 0.0], lobes);
@@ -318,6 +351,9 @@ impl MaterialConstants {
             words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
             words[6] = vec4(p.diffuse_albedo, lobes);
             words[7] = vec4(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
+        } else if let Some(coat) = &self.coat {
+            words[5] = vec4([coat.weight, 0.0, -1.0], 2.0);
+            words[7] = vec4([1.0; 3], self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
         }
         if let Some(g) = &self.glitter {
             let [low, high] = [g.seed & 0xffff, g.seed >> 16].map(|bits| bits as f32);
@@ -362,6 +398,7 @@ mod tests {
             diffuse_term: DiffuseTerm::None,
             flakes: Some(flakes),
             patina: Some(patina),
+            coat: None,
             glitter: Some(glitter),
         };
         assert_eq!(
@@ -440,6 +477,15 @@ mod tests {
         assert_eq!(of_patina.words()[9], [0.0; 4]);
         assert_eq!(of_patina.words()[6], [11.0, 12.0, 13.0, 2.0]);
         assert_eq!(of_patina.words()[7], [14.0, 15.0, 16.0, 2.0]);
+        let coat = CoatRecord { weight: 0.75, bare: LayerRecord::default() };
+        let over_weight = VaryingRecord { factor: VaryingFactor::WeightFactor, tiles: 2, ..over_patina };
+        let of_coat = MaterialConstants {
+            lobes: Some(LobesRecord { varying: Some(over_weight), ..lobes }),
+            coat: Some(coat),
+            ..MaterialConstants::default()
+        };
+        assert_eq!(of_coat.words()[5..8], [[0.75, 0.0, -1.0, 2.0], [0.0, 0.0, 0.0, 2.0], [1.0, 1.0, 1.0, 1.0]]);
+        assert_eq!(of_coat.words()[0], of_patina.words()[0]);
         let around = |is_mirrored| {
             let axes = Some(AxesRecord { turn: [0.6, 0.8], is_mirrored, tiles: 8 });
             words(LobesRecord { axes, ..lobes })[9]

@@ -253,6 +253,9 @@ fn roughness(surface: &Surface) -> Vec<PartNumber> {
 /// Properties of a layer beyond its physics.
 fn beyond(extras: &LayerExtras) -> Vec<PartNumber> {
     let mut numbers = Vec::new();
+    if extras.weight < 1.0 {
+        numbers.push(PartNumber { name: "weight", value: short(extras.weight) });
+    }
     if extras.reradiation.is_some() {
         numbers.push(PartNumber { name: "light", value: "fluorescent".to_owned() });
     }

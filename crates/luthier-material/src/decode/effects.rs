@@ -1,5 +1,7 @@
 //! Decoder of the section `[effects]`.
 
+use std::ops::Range;
+
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Stack};
 
@@ -13,6 +15,7 @@ use crate::suggest::short;
 
 /// The effects of a material.
 pub(super) fn decode(document: &Section<'_>, stack: &Stack, is_fluorescent: bool, sink: &mut Sink<'_>) -> Effects {
+    check_weight(document, is_fluorescent, sink);
     let Some(at) = document.section("effects") else { return Effects::default() };
     for effect in ["flakes", "patina"] {
         if at.has(effect) && stack.layers.len() == 1 {
@@ -28,6 +31,28 @@ pub(super) fn decode(document: &Section<'_>, stack: &Stack, is_fluorescent: bool
         flakes: at.section("flakes").and_then(|at| flakes(&at, sink)),
         patina: at.section("patina").and_then(|at| patina(&at, stack, sink)),
         glitter: at.section("glitter").map(|at| glitter(&at)),
+    }
+}
+
+/// Where a layer says that it covers a part of the surface: its weight below 1, or a map of it.
+pub(super) fn weight_span(layer: &Section<'_>) -> Option<Range<usize>> {
+    let is_partial = layer.number("weight").is_some_and(|weight| weight < 1.0);
+    let map = layer.section("maps").filter(|maps| maps.has("weight"));
+    if is_partial { Some(layer.key_span("weight")) } else { map.map(|maps| maps.key_span("weight")) }
+}
+
+/// Refuses a weight of the first layer beside what no model shows with it.
+fn check_weight(document: &Section<'_>, is_fluorescent: bool, sink: &mut Sink<'_>) {
+    let layers = document.sections("layer");
+    let Some(span) = layers.iter().find(|at| at.text("type") != Some("thin-film")).and_then(weight_span) else {
+        return;
+    };
+    if document.section("effects").is_some_and(|effects| effects.has("patina")) {
+        let hint = "leave one of them out: the map of the patina says where the first layer has grown".to_owned();
+        sink.error(span, "`weight` beside `patina`: both say where the first layer is", Some(hint));
+    } else if is_fluorescent {
+        let hint = "give the base an `albedo` in place of `reradiation`, or leave the weight out".to_owned();
+        sink.error(span, "no model has a coat with a weight over a base with `reradiation`", Some(hint));
     }
 }
 

@@ -4,7 +4,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
 use super::ior::Read;
-use super::{films, ior, maps, reradiation, schlick, surface};
+use super::{effects, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
@@ -85,12 +85,14 @@ pub(super) fn decode(
         films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         let metallic = if kind == "metallic-roughness" { schlick::textured(at) } else { None };
         let extra = LayerExtras {
+            weight: at.number("weight").unwrap_or(1.0),
             reradiation: matrix,
             film_variation: variation(&films, sink),
             exponents: surface::exponents(at),
             maps: maps::decode(at),
             metallic,
         };
+        check_weight(at, number, sections.len() - 1 - i, sink);
         if number > 0 {
             only_the_first_has_exponents(at, sink);
             only_the_first_film_varies(&films, sink);
@@ -138,6 +140,23 @@ fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<FilmVa
         sink.error(film.thickness_span.clone(), message, film.evened());
     }
     top.variation.clone()
+}
+
+/// Reports a weight of a layer that is none of a coat: the first one, with layers below that are bare elsewhere. A weight of 1 says nothing.
+fn check_weight(at: &Section<'_>, number: usize, below: usize, sink: &mut Sink<'_>) {
+    let Some(span) = effects::weight_span(at) else { return };
+    let (message, hint) = match (number, below) {
+        (0, 0) => (
+            "a weight needs layers below this one: where it is not, there would be no surface",
+            "add the layers below, or leave the weight out",
+        ),
+        (0, _) => return,
+        _ => (
+            "only the first layer has a weight: it says where the layers below it are bare",
+            "leave it out, or move the layer to the top",
+        ),
+    };
+    sink.error(span, message, Some(hint.to_owned()));
 }
 
 /// Reports exponents of a layer below the first: the model has lobes of the first alone.

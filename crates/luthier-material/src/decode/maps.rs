@@ -12,6 +12,7 @@ pub(super) fn decode(at: &Section<'_>) -> Maps {
         normal: picture::under(&maps, "normal"),
         roughness: picture::under(&maps, "roughness"),
         thickness: picture::under(&maps, "thickness"),
+        weight: picture::under(&maps, "weight"),
         bumps: picture::under(&maps, "bumps"),
         alpha: picture::under(&maps, "alpha"),
         alpha_x: picture::under(&maps, "alpha_x"),
@@ -87,7 +88,8 @@ pub(super) fn check_effects(document: &Section<'_>, extras: &[LayerExtras], sink
     let maps: Vec<(usize, &str)> = maps.collect();
     let bumps = maps.iter().find(|(_, key)| *key == "bumps");
     let any = maps.iter().find(|(i, key)| match *key {
-        "normal" | "roughness" => false,
+        // A weight beside a patina is refused by itself.
+        "normal" | "roughness" | "weight" => false,
         "thickness" => *i > 0,
         _ => true,
     });

@@ -50,6 +50,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     if effects.patina.is_some() {
         schlick::check_bare(document, &stack, sink);
     }
+    schlick::check_below_weight(document, sink);
     let Sources { spectra, places } = sources;
     let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),

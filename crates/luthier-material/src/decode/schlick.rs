@@ -6,7 +6,7 @@ use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::schlick::index_of_f0;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
-use super::films;
+use super::{effects, films};
 use crate::bake_settings::SODIUM_D_NM;
 use crate::diagnostic::Sink;
 use crate::grammar::INDEX;
@@ -97,6 +97,22 @@ pub(super) fn check_bare(document: &Section<'_>, stack: &Stack, sink: &mut Sink<
         let span = document.section("effects").map_or(0..0, |effects| effects.key_span("patina"));
         let message = "the layer below the patina has an `f0` and a lower index than the exterior, which it meets where none has grown";
         sink.error(span, message, Some("give that layer an `ior` in place of its `f0`".to_owned()));
+    }
+}
+
+/// Reports a weight of a coat over a dielectric with an F0, whose index follows from the medium above or bends light by it: where the coat is not, that is
+/// the exterior. A `metallic-roughness` layer bends nothing, neither below the coat nor in its place.
+pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
+    let sections = document.sections("layer");
+    let layers: Vec<&Section<'_>> = sections.iter().filter(|at| at.text("type") != Some("thin-film")).collect();
+    let [first, below, ..] = layers.as_slice() else { return };
+    if let Some(span) = effects::weight_span(first)
+        && below.text("type") == Some("dielectric")
+        && below.has("f0")
+    {
+        let message = "below this coat lies a dielectric with an `f0`: the medium above decides how that bends light, and the coat is there in places only";
+        let hint = "give that layer an `ior` in place of its `f0`, or write it as `type = \"metallic-roughness\"`";
+        sink.error(span, message, Some(hint.to_owned()));
     }
 }
 

@@ -9,7 +9,8 @@ const TRANSMISSION: &str =
     "light that passes through is the host's business; a last layer of `type = \"dielectric\"` reflects as glass does";
 const SUBSURFACE: &str = "light that travels sideways is not simulated: a layer of `type = \"diffuse\"` stands for it";
 const SHEEN: &str = "sheen is not a layer yet: leave it out";
-const COAT: &str = "a coat is a layer of its own: write a `[[layer]]` of `type = \"dielectric\"` above";
+const COAT: &str =
+    "a coat is a layer of its own: write a `[[layer]]` of `type = \"dielectric\"` above, with its `weight`";
 const FILM: &str = "a film is a layer of its own: write a `[[layer]]` of `type = \"thin-film\"` above";
 const ANISOTROPY: &str = "write `alpha_x` and `alpha_y`, and `rotation_deg` to turn them";
 const GLOSS: &str = "write `roughness`, which is 1 less the gloss";
@@ -95,6 +96,9 @@ pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
         ("diffuse-maps", "base_color") => Some("write `albedo`"),
         ("metallic-maps", "bumps") => {
             Some("only the first layer's normal map turns a metallic-roughness layer: write `normal` there")
+        }
+        ("thin-film", "weight") => {
+            Some("a film covers the interface that it lies on; a first layer of `type = \"dielectric\"` has a weight")
         }
         ("metallic-roughness", "ior" | "f0" | "specular") => {
             Some("its F0 without metal is 0.04; for another write a dielectric with `ior` over a diffuse base")

@@ -186,10 +186,19 @@ static SGD_TABLE: Table = Table {
     exactly_one: None,
 };
 
+const WEIGHT: Key = Key::with_default(
+    "weight",
+    Kind::Number(UNIT),
+    "1",
+    "Share of the surface that the first layer covers, 0 to 1; the layers below are bare elsewhere.",
+);
+
 const MAPS_DOC: &str = "Textures that modulate the layer.";
 const NORMAL_MAP: Key = Key::optional("normal", PICTURE, "A tangent-space normal map.");
 const ROUGHNESS_MAP: Key = Key::optional("roughness", PICTURE, "A map that multiplies the roughness.");
 const THICKNESS_MAP: Key = Key::optional("thickness", PICTURE, "A map that multiplies the slab's thickness.");
+
+const WEIGHT_MAP: Key = Key::optional("weight", PICTURE, "A map that multiplies `weight`, of the first layer.");
 
 const BUMPS: Key = Key::optional("bumps", PICTURE, "A tangent-space normal map that tilts this layer alone.");
 const ALPHA_MAP: Key =
@@ -215,6 +224,7 @@ static DIELECTRIC_MAPS: Table = Table {
         NORMAL_MAP,
         ROUGHNESS_MAP,
         THICKNESS_MAP,
+        WEIGHT_MAP,
         BUMPS,
         ALPHA_MAP,
         ALPHA_X_MAP,
@@ -278,6 +288,7 @@ pub(super) static DIELECTRIC: Table = Table {
             "0",
             "Absorption coefficient of the slab in 1/um: a number, or one for each of R, G, B. It takes the colour away.",
         ),
+        WEIGHT,
         Key::optional("maps", Kind::Table(&DIELECTRIC_MAPS), MAPS_DOC),
     ],
     exactly_one: Some(Alternatives { and: Some(&TRANSPARENT), ..SURFACE }),

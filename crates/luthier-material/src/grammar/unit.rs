@@ -28,7 +28,7 @@ const NAMES: [(&str, &str, &str); 14] = [
 ];
 
 /// Keys of pure numbers.
-const PURES: [&str; 36] = [
+const PURES: [&str; 37] = [
     "offset",
     "f0",
     "roughness",
@@ -56,6 +56,7 @@ const PURES: [&str; 36] = [
     "max_albedo_err",
     "specular_weight",
     "diffuse_weight",
+    "weight",
     "n",
     "k",
     "ior",

@@ -417,6 +417,11 @@ impl ShaderTerms for Mixed<'_> {
         let [expected, sampled] = [self.exact.below(wo), self.tables.below(wo)];
         self.record(0, Term::Lobes { cos_theta: wo.z }, expected, sampled)
     }
+
+    /// Reads of the layers below a coat with a weight are no parts: they have records of their own.
+    fn bare(&self) -> Option<&dyn ShaderTerms> {
+        self.exact.bare()
+    }
 }
 
 impl Read {

@@ -83,10 +83,10 @@ impl<'a> Remembered<'a> {
         let (stack, color, varying) = references.fitted();
         let inputs = json!({ "stack": stack, "color": format!("{color:?}"), "varying": format!("{varying:?}") });
         references.baked().take_lobes(&|| {
-            self.recall("judge-fit", &inputs).unwrap_or_else(|| {
-                let lobes: Lobes = Varied::of(stack, color, *varying).nominal();
-                self.keep("judge-fit", &inputs, &lobes);
-                lobes
+            self.recall("judge-fits", &inputs).unwrap_or_else(|| {
+                let ends: (Lobes, Option<Lobes>) = Varied::of(stack, color, *varying).ends();
+                self.keep("judge-fits", &inputs, &ends);
+                ends
             })
         });
     }
@@ -188,8 +188,8 @@ fn nameless(entry: &MaterialEntry) -> MaterialEntry {
     for text in [&mut entry.name, &mut entry.source, &mut entry.source_hash] {
         text.clear();
     }
-    let bare = entry.constants.patina.as_mut().map(|patina| &mut patina.bare);
-    entry.layers.iter_mut().chain(bare).for_each(|record| record.tiles = Tiles::default());
+    let MaterialEntry { layers, constants, .. } = &mut entry;
+    layers.iter_mut().chain(constants.bare_mut()).for_each(|record| record.tiles = Tiles::default());
     entry
 }
 

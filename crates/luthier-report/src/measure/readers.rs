@@ -38,9 +38,9 @@ pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<Us
     out
 }
 
-/// The materials whose bare layers under a patina read a tile.
+/// The materials whose bare layers under a patina or a coat read a tile.
 pub(crate) fn bare_users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<usize> {
     let materials = subject.manifest.materials.iter().enumerate();
-    let reads = |m: &MaterialEntry| m.constants.patina.as_ref().is_some_and(|p| p.bare.tiles[kind] == Some(tile));
+    let reads = |m: &MaterialEntry| m.constants.bare().is_some_and(|bare| bare.tiles[kind] == Some(tile));
     materials.filter(|(_, material)| reads(material)).map(|(number, _)| number).collect()
 }

@@ -29,19 +29,23 @@ pub(crate) struct References {
 
 impl References {
     pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Self {
-        let three = Color::ThreeWavelengths(material.wavelengths_nm);
+        let three_nm = Color::ThreeWavelengths(material.wavelengths_nm);
         let color = color(material);
         let model = material.model;
         let varying = varying(material);
-        let twin = Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
-        Self {
-            layers: Layers::isotropic_rgb(stack).layers,
-            twin: twin.reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
-            spectral: Exact::varying(stack, Color::Spectral, varying),
-            three: Exact::varying(stack, three, varying),
-            level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
-            color: material.color,
-        }
+        let twin_of = |stack: &Stack| Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
+        let twin = twin_of(stack).reradiating(material.layers.last().and_then(|layer| layer.reradiation));
+        let [spectral, three] = [Color::Spectral, three_nm].map(|color| Exact::varying(stack, color, varying));
+        let level = model.is_statistical().then(|| Exact::level(stack, three_nm, recorded_veil(material)));
+        let coat = material.constants.coat.as_ref().filter(|_| shows_cover(material));
+        let (twin, spectral, three) = match coat {
+            Some(coat) => {
+                let twin = twin.covering(coat.weight, twin_of(&stack.without_first()));
+                (twin, spectral.over_bare(), three.over_bare())
+            }
+            None => (twin, spectral, three),
+        };
+        Self { layers: Layers::isotropic_rgb(stack).layers, twin, spectral, three, level, color: material.color }
     }
 
     /// The inputs of the fit of lobes.
@@ -74,6 +78,12 @@ pub(crate) fn parts(material: &MaterialEntry) -> Parts {
     })
 }
 
+/// Whether the model of a material shows where its first layer, a coat, is not: rows of lobes may be over something else.
+pub(crate) fn shows_cover(material: &MaterialEntry) -> bool {
+    let varying = material.constants.lobes.and_then(|lobes| lobes.varying);
+    material.model.is_path() || material.model.is_fitted() && varying.is_some_and(|varying| varying.factor.is_cover())
+}
+
 /// The varying factor of a material that its rows of lobes span.
 fn varying(material: &MaterialEntry) -> Option<Varying> {
     let record = material.constants.lobes?.varying?;
@@ -85,6 +95,7 @@ fn varying(material: &MaterialEntry) -> Option<Varying> {
             let PatinaRecord { diffuse_albedo, base_alpha, tarnish, .. } = *material.constants.patina.as_ref()?;
             Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
         }
+        VaryingFactor::WeightFactor => Some(Varying::Patina(Cover::PLAIN)),
     }
 }
 

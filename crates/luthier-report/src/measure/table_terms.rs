@@ -141,6 +141,8 @@ pub struct TableTerms<'a> {
     records: Cow<'a, [LayerRecord]>,
     weights: Weights,
     here: Here,
+    /// Terms of the layers below a coat with a weight.
+    bare: Option<Box<TableTerms<'a>>>,
 }
 
 /// Rows of lobes, and what all of them have in common.
@@ -197,7 +199,7 @@ impl Here {
                 let [most, least] = varying.factors.unwrap_or([1.0, 0.0]);
                 ((most - self.film_factor) / (most - least)).clamp(0.0, 1.0) * last
             }
-            VaryingFactor::Patina => match self.part {
+            VaryingFactor::Patina | VaryingFactor::WeightFactor => match self.part {
                 Part::All => 0.0,
                 Part::Grown => last - 1.0,
                 Part::Bare => last,
@@ -213,6 +215,15 @@ impl<'a> TableTerms<'a> {
     /// # Errors
     /// A table that does not fit its layout, or a layer that needs a tile and has none.
     pub fn new(subject: &'a Subject<'_>, material: usize, weights: Weights) -> Result<Self, ReportError> {
+        let mut terms = Self::whole(subject, material, weights)?;
+        if subject.manifest.materials[material].constants.coat.is_some() {
+            terms.bare = Some(Box::new(Self::at(subject, material, weights, &Place::NONE, Part::Bare)?));
+        }
+        Ok(terms)
+    }
+
+    /// The terms of all layers of a material.
+    fn whole(subject: &'a Subject<'_>, material: usize, weights: Weights) -> Result<Self, ReportError> {
         let Some(entry) = subject.manifest.materials.get(material) else {
             return Err(ReportError::MaterialCount {
                 manifest: subject.manifest.materials.len(),
@@ -236,6 +247,7 @@ impl<'a> TableTerms<'a> {
             records: Cow::Borrowed(&entry.layers),
             weights,
             here: Here::NOMINAL,
+            bare: None,
         };
         for (layer, kind) in read_by(entry) {
             let is_computed = match kind {
@@ -262,7 +274,7 @@ impl<'a> TableTerms<'a> {
         place: &Place,
         part: Part,
     ) -> Result<Self, ReportError> {
-        let mut terms = Self::new(subject, material, weights)?;
+        let mut terms = Self::whole(subject, material, weights)?;
         let entry = &subject.manifest.materials[material];
         let passing = entry.layers.iter().enumerate().find_map(|(layer, record)| {
             let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
@@ -276,8 +288,9 @@ impl<'a> TableTerms<'a> {
             film_factor: sample.film_factor,
             passing,
         };
-        if let (Part::Bare, Some(patina)) = (part, &entry.constants.patina) {
-            terms.records = std::iter::once(&patina.bare).chain(entry.layers.iter().skip(2)).cloned().collect();
+        if let (Part::Bare, Some(bare)) = (part, entry.constants.bare()) {
+            terms.here.passing = passing.and_then(|(layer, passing)| Some((layer.checked_sub(1)?, passing)));
+            terms.records = std::iter::once(bare).chain(entry.layers.iter().skip(2)).cloned().collect();
         }
         Ok(terms)
     }
@@ -410,5 +423,9 @@ impl ShaderTerms for TableTerms<'_> {
             (None, None) => table.row(*tile, cos_theta, self.weights),
         };
         Some(Below::new(*frame, row, wo))
+    }
+
+    fn bare(&self) -> Option<&dyn ShaderTerms> {
+        self.bare.as_deref().map(|bare| bare as &dyn ShaderTerms)
     }
 }

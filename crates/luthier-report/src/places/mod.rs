@@ -192,6 +192,7 @@ pub(crate) fn words(place: &PlaceValues) -> String {
         ("slab_factor", place.slab_factor, none.slab_factor),
         ("film_factor", place.film_factor, none.film_factor),
         ("patina", place.patina.unwrap_or(-1.0), -1.0),
+        ("weight_factor", place.weight_factor, none.weight_factor),
     ] {
         if value != plain {
             out.push(format!("{name} {value:.4}"));

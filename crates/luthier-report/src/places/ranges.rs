@@ -82,6 +82,7 @@ impl Places {
                 MapSlot::Normal => place.normal = normal([drawn[0], drawn[1]]),
                 MapSlot::Roughness => place.alpha_factor *= r * r,
                 MapSlot::Thickness if layer.is_none_or(|layer| layer == 0) => place.slab_factor = r,
+                MapSlot::Weight => place.weight_factor = r,
                 MapSlot::Patina => {
                     let shape = constants.patina.as_ref();
                     place.patina = shape.map(|p| {

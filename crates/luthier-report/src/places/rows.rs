@@ -61,6 +61,16 @@ pub(super) fn exact(subject: &Subject<'_>, material: usize, values: &PlaceValues
     Shaded::with(entry.model, stack, nm, color(entry), &place(values, entry), parts(entry))
 }
 
+/// The share of the first layer at a place: of a patina, or of a coat.
+fn cover(values: &PlaceValues, entry: &MaterialEntry) -> Option<Growth> {
+    if let Some(coat) = &entry.constants.coat {
+        return Some(Growth::of_coat(coat.weight * f64::from(values.weight_factor)));
+    }
+    let (amount, patina) = (values.patina?, entry.constants.patina.as_ref()?);
+    let (diffuse_albedo, base_alpha, tarnish) = (patina.diffuse_albedo, patina.base_alpha, patina.tarnish);
+    Some(Growth { amount: amount.into(), diffuse_albedo, base_alpha, tarnish })
+}
+
 /// The place of the f64 twin, with exactly the numbers of the device.
 pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
     let layers = values.layers.iter().map(|own| LayerSample {
@@ -86,11 +96,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             inner_normal: wide(values.inner_normal),
             ..Under::NONE
         },
-        patina: values.patina.and_then(|amount: f32| {
-            let patina = entry.constants.patina.as_ref()?;
-            let (diffuse_albedo, base_alpha, tarnish) = (patina.diffuse_albedo, patina.base_alpha, patina.tarnish);
-            Some(Growth { amount: amount.into(), diffuse_albedo, base_alpha, tarnish })
-        }),
+        patina: cover(values, entry),
         base_color: values.base_color.map(|color| color.map(f64::from)),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
         layers: layers.collect(),

@@ -126,8 +126,8 @@ impl SimulatedErrors {
 /// and for a diffuse base alone.
 ///
 /// Places have the quantities that maps vary, with three exceptions. Normals are left out, because they only turn the frame of the eye. Flakes are left
-/// out, because their shift of the lobes is an approximation that is measured elsewhere (`luthier_layers::models::lobes::Below::tilted`). Patina is whole or
-/// absent, because light is linear between.
+/// out, because their shift of the lobes is an approximation that is measured elsewhere (`luthier_layers::models::lobes::Below::tilted`). Patina and coats with a
+/// weight are whole or absent, because light is linear between.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -155,7 +155,7 @@ pub fn simulated(
         })
         .collect();
     let found = views.par_iter().map(|&(number, theta_deg)| {
-        let values = upright(places.place(settings.seed, number), entry);
+        let values = upright(number, places.place(settings.seed, number), entry);
         let Some(here) = meant(stack, &rows::place(&values, entry), entry) else { return Ok(None) };
         let view = ColorView::new(&here, &color, entry.wavelengths_nm, theta_deg, settings.reference);
         let rows = Rows::new(subject, material, &values, Weights::Exact)?;
@@ -175,7 +175,7 @@ pub fn simulated_by(
     fit: &dyn Fn(&Stack, &Color) -> Lobes,
 ) -> Option<SimulatedAt> {
     let entry = subject.manifest.materials.get(material)?;
-    let values = upright(Places::of(subject, material)?.place(settings.seed, at.number), entry);
+    let values = upright(at.number, Places::of(subject, material)?.place(settings.seed, at.number), entry);
     let here = meant(&subject.stacks[material], &rows::place(&values, entry), entry)?;
     let color = color(entry);
     let view = ColorView::new(&here, &color, entry.wavelengths_nm, at.theta_deg, settings.reference);
@@ -196,11 +196,14 @@ fn seen(
     (SimulatedAt { number, place: words(place), theta_deg, lobe, albedo, albedos, grazing }, paths)
 }
 
-/// The place without normals, and with patina whole or absent.
-fn upright(values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
+/// The place without normals, and with patina or a coat whole or absent: a coat by turns.
+fn upright(number: u64, values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
     let PlaceValues { normal, flake_normal, .. } = PlaceValues::NONE;
     let patina = values.patina.map(|amount| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 });
-    PlaceValues { normal, flake_normal, patina, ..values }
+    let weight = entry.constants.coat.as_ref().map_or(1.0, |coat| coat.weight);
+    let is_covered = weight > 0.0 && number.is_multiple_of(2);
+    let weight_factor = if is_covered { (1.0 / weight) as f32 } else { 0.0 };
+    PlaceValues { normal, flake_normal, patina, weight_factor, ..values }
 }
 
 /// Whether fully grown patina is nothing but its layers.
@@ -213,7 +216,7 @@ fn scatters_nothing(entry: &MaterialEntry) -> bool {
 /// The stack that the material file means at a place; `None` for a diffuse base alone, whose light has a closed form.
 fn meant(stack: &Stack, place: &Place, entry: &MaterialEntry) -> Option<Stack> {
     let whole = place.stack(stack);
-    let is_bare = entry.constants.patina.is_some() && place.patina.is_some_and(|growth| growth.amount < 0.5);
+    let is_bare = entry.constants.bare().is_some() && place.patina.is_some_and(|growth| growth.amount < 0.5);
     let here = if is_bare { lobes::bare(&whole) } else { whole };
     let is_interface = here.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
     is_interface.then_some(here)

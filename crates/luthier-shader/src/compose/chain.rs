@@ -25,6 +25,11 @@ fn is_clamped(model: ShadingModel, features: &Features) -> bool {
     features.has(if model.facts().is_isotropic { Feature::Clamped } else { Feature::RougherBelow })
 }
 
+/// Whether layers of a material of a model are bare in places.
+fn has_cover(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    set.materials.iter().any(|material| material.model == model && material.constants.bare().is_some())
+}
+
 /// Whether a material of a model has patina.
 fn has_patina(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     set.materials.iter().any(|material| material.model == model && material.constants.patina.is_some())
@@ -41,10 +46,10 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
     let interface = &interface(model, features);
     let name = function(model);
     let layers = stacks(set, model);
-    let has_patina = has_patina(set, model);
+    let has_cover = has_cover(set, model);
     let (name, bare) =
-        if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
-    let without = if has_patina { "; where it is bare, without the first layer" } else { "" };
+        if has_cover { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
+    let without = if has_cover { "; where it is bare, without the first layer" } else { "" };
     let is_lit = features.has(Feature::Fluorescent);
     let (lit, given, what) = match is_lit {
         true => ("_lit", ", light: vec3<f32>", "Light to the eye, of light of a colour, by"),
@@ -70,13 +75,13 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
             );
         }
         let _ = write!(out, "    return wi{here}.z * {base};\n}}\n");
-        return out + &patina(set, model, features) + &white(model, features);
+        return out + &cover(set, model, features) + &white(model, features);
     }
     let (least, depth) = depths(&layers);
-    if least < depth || depth > 1 && has_patina {
+    if least < depth || depth > 1 && has_cover {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    let below = match (features.has(Feature::Flakes), has_patina) {
+    let below = match (features.has(Feature::Flakes), has_cover) {
         (false, _) => "",
         (true, false) => ", place.flake_normal",
         (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
@@ -92,8 +97,8 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
              var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below}{outer});"
     );
     for i in 0..depth {
-        // The layer below patina has a second record, for bare places.
-        let index = if has_patina && i == 1 { "select(1u, count, is_bare)".to_owned() } else { format!("{i}u") };
+        // The layer below patina or a coat has a second record, for bare places.
+        let index = if has_cover && i == 1 { "select(1u, count, is_bare)".to_owned() } else { format!("{i}u") };
         let diffuse = diffuse_at(&layers, i);
         let (mut lines, mut layer) = (Vec::new(), format!("$layer(material, {index})"));
         if diffuse == (true, false) {
@@ -103,17 +108,17 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         }
         let base = [format!("path = luthier_add_diffuse(path, {layer});")];
         lines.extend(step(diffuse, &layer, base, [format!("path = {interface}(path, {layer});")]));
-        let indent = if i == 0 && !has_patina { "    " } else { "        " };
+        let indent = if i == 0 && !has_cover { "    " } else { "        " };
         let step: String = lines.iter().map(|line| format!("{indent}{line}\n")).collect();
         let _ = match i {
-            0 if has_patina => write!(out, "    if !is_bare {{\n{step}    }}\n"),
+            0 if has_cover => write!(out, "    if !is_bare {{\n{step}    }}\n"),
             0 => write!(out, "{step}"),
             _ if i < least => write!(out, "    if path.open {{\n{step}    }}\n"),
             _ => write!(out, "    if path.open & (count > {i}u) {{\n{step}    }}\n"),
         };
     }
     out.push_str("    return wi.z * path.total;\n}\n");
-    out + &patina(set, model, features) + &white(model, features)
+    out + &cover(set, model, features) + &white(model, features)
 }
 
 /// The function of a model for white light. Functions beside `luthier_eval` call it if that of the set takes light of a colour.
@@ -130,9 +135,18 @@ fn white(model: ShadingModel, features: &Features) -> String {
     )
 }
 
-/// The function of a model that shows patina: light with and without the first layer, blended.
-fn patina(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
-    if !has_patina(set, model) {
+/// Statements that find the share of the surface that the first layer covers.
+fn amount(features: &Features) -> &'static str {
+    if features.has(Feature::Weight) {
+        "let cover = luthier_cover(place, material);\n    let amount = select(1.0, cover, cover >= 0.0);"
+    } else {
+        "let amount = select(1.0, place.patina, place.patina >= 0.0);"
+    }
+}
+
+/// The function of a model that shows patina or the weight of a coat: light with and without the first layer, blended.
+fn cover(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
+    if !has_cover(set, model) {
         return String::new();
     }
     let name = function(model);
@@ -141,11 +155,18 @@ fn patina(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> St
         true => ("_lit", ", light: vec3<f32>", ", light", "light * "),
         false => ("", "", "", ""),
     };
+    let (what, scattered) = match has_patina(set, model) {
+        true => {
+            ("with patina (Elek 2010, section 4.2)", format!("{factor}luthier_patina_diffuse(place, material, wi, wo)"))
+        }
+        false => ("with and without a coat, by its weight", "vec3<f32>(0.0)".to_owned()),
+    };
+    let amount = amount(features);
     format!(
-        "\n/// f cos_theta_i of the model `{}` with patina (Elek 2010, section 4.2).\n\
+        "\n/// f cos_theta_i of the model `{}` {what}.\n\
          fn {name}{lit}(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>{given}) -> vec3<f32> {{\n    \
-             var value = {factor}luthier_patina_diffuse(place, material, wi, wo);\n    \
-             let amount = select(1.0, place.patina, place.patina >= 0.0);\n    \
+             var value = {scattered};\n    \
+             {amount}\n    \
              if amount < 1.0 {{\n        \
                  value += (1.0 - amount) * {stack}{lit}(place, material, true, wi, wo{light});\n    \
              }}\n    \
@@ -165,10 +186,10 @@ fn interfaces(set: &MaterialSet<'_>, model: ShadingModel) -> usize {
     lowest.map(|last| last + 1).max().unwrap_or(0)
 }
 
-/// Number of the parts of a model: its interfaces, and with patina those of the bare stacks, which begin one layer below the top.
+/// Number of the parts of a model: its interfaces, and with patina or a weight those of the bare stacks, which begin one layer below the top.
 pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel) -> usize {
     let depth = interfaces(set, model);
-    if has_patina(set, model) { (2 * depth).saturating_sub(1) } else { depth }
+    if has_cover(set, model) { (2 * depth).saturating_sub(1) } else { depth }
 }
 
 /// `luthier_parts_<model>`: the interfaces as light from the mirror direction meets them, and the light of a base for light at a mean cosine.
@@ -190,16 +211,18 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
         let base = format!("let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * {diffuse};");
         return format!("{out}    {base}\n    return prepared;\n}}\n");
     }
-    let has_patina = has_patina(set, model);
+    let has_cover = has_cover(set, model);
     let (least, depth) = depths(&layers);
-    if least < depth || has_patina {
+    if least < depth || has_cover {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    if has_patina {
-        out.push_str(
-            "    prepared.wide = luthier_patina_diffuse(place, material, light, wo) * (LUTHIER_PI / light.z);\n    \
-             let amount = select(1.0, place.patina, place.patina >= 0.0);\n    if amount > 0.0 {\n",
-        );
+    if has_cover {
+        if has_patina(set, model) {
+            out.push_str(
+                "    prepared.wide = luthier_patina_diffuse(place, material, light, wo) * (LUTHIER_PI / light.z);\n",
+            );
+        }
+        let _ = write!(out, "    {}\n    if amount > 0.0 {{\n", amount(features));
         out.push_str(&walk(&layers, model, features, &Walk { share: "amount", is_bare: false, first_part: 0 }));
         out.push_str("    }\n    if amount < 1.0 {\n");
         out.push_str(&walk(
@@ -320,6 +343,6 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
         lines.extend(steps.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
         lines.push("}".to_owned());
     }
-    let indent = if features.has(Feature::ChainPatina) { "        " } else { "    " };
+    let indent = if walk.share == "1.0" { "    " } else { "        " };
     lines.iter().map(|line| format!("{indent}{line}\n")).collect()
 }

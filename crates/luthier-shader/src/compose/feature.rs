@@ -175,9 +175,9 @@ luthier_lut::named! {
         LobesAxes = "lobes_axes",
         /// Rows of lobes are over the thickness of a film.
         LobesFilm = "lobes_film",
-        /// Rows of lobes are over patina.
+        /// Rows of lobes are over patina, or over the weight of a coat.
         LobesPatina = "lobes_patina",
-        /// Rows of lobes are over patina, and bare places show a base.
+        /// Such rows are there, and bare places show a base.
         LobesBareBase = "lobes_bare_base",
         /// Lobes have the light of a base as a part.
         LobesBase = "lobes_base",
@@ -211,6 +211,8 @@ luthier_lut::named! {
         Flakes = "flakes",
         /// A material has patina, and its model shows it.
         Patina = "patina",
+        /// A material has a coat with a weight, and its model shows it.
+        Weight = "weight",
         /// A material has glitter.
         Glitter = "glitter",
         /// The function group `surface` was asked for.

@@ -270,7 +270,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     let is_path = material.model.is_path();
     let is_covered = is_under_patina(material);
     let shows_patina = is_path || is_covered;
-    let bare = material.constants.patina.as_ref().filter(|_| shows_patina).map(|patina| &patina.bare);
+    let bare = material.constants.bare().filter(|_| shows_patina);
     for layer in layers.iter().chain(bare) {
         if is_diffuse(layer) && facts.reach == Reach::FirstAndBase {
             continue;
@@ -351,7 +351,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
                 names.extend([Feature::Flakes, Feature::LobesTilted]);
             }
             if is_covered {
-                names.extend([Feature::Patina, Feature::LobesPatina]);
+                names.extend([cover(material), Feature::LobesPatina]);
             }
             if is_covered && has_diffuse {
                 names.insert(Feature::LobesBareBase);
@@ -376,8 +376,11 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             if material.constants.flakes.is_some() && names.contains(&Feature::Below) {
                 names.insert(Feature::Flakes);
             }
+            if material.constants.bare().is_some() {
+                names.insert(cover(material));
+            }
             if material.constants.patina.is_some() {
-                names.extend([Feature::Patina, Feature::ChainPatina]);
+                names.insert(Feature::ChainPatina);
             }
             names.insert(Feature::Chain)
         }
@@ -427,11 +430,16 @@ fn lobes_of(material: &MaterialEntry) -> Option<u32> {
     Some(material.constants.lobes.filter(|_| has_rows)?.lobes)
 }
 
-/// Whether rows are over the amount of patina, so that bare places show the layer below it.
+/// The word for what leaves the layers below the first bare in places.
+fn cover(material: &MaterialEntry) -> Feature {
+    if material.constants.patina.is_some() { Feature::Patina } else { Feature::Weight }
+}
+
+/// Whether rows are over the amount of patina or of a coat, so that bare places show the layer below it.
 fn is_under_patina(material: &MaterialEntry) -> bool {
     let lobes = material.constants.lobes.filter(|_| material.model.is_fitted());
-    lobes.and_then(|lobes| lobes.varying).is_some_and(|varying| varying.factor == VaryingFactor::Patina)
-        && material.constants.patina.is_some()
+    lobes.and_then(|lobes| lobes.varying).is_some_and(|varying| varying.factor.is_cover())
+        && material.constants.bare().is_some()
 }
 
 /// Whether rows are over the thickness of a film.
@@ -446,12 +454,12 @@ fn has_base_light(material: &MaterialEntry) -> bool {
 
 /// The base below lobes that places may recolour.
 fn painted(material: &MaterialEntry) -> Option<PaintedRecord> {
-    material.constants.lobes.filter(|_| material.constants.patina.is_none())?.painted
+    material.constants.lobes.filter(|_| material.constants.bare().is_none())?.painted
 }
 
-/// Whether patina covers a diffuse base alone.
+/// Whether patina or a coat covers a diffuse base alone.
 fn is_bare_base(material: &MaterialEntry) -> bool {
-    material.constants.patina.as_ref().is_some_and(|patina| is_diffuse(&patina.bare))
+    material.constants.bare().is_some_and(is_diffuse)
 }
 
 /// Whether lobes come from below a slab, in which flakes may tilt them.

@@ -69,6 +69,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (true, include_str!("../wgsl/surface/hash.wgsl")),
         (features.has(Feature::Flakes), include_str!("../wgsl/surface/flakes.wgsl")),
         (features.has(Feature::Patina), include_str!("../wgsl/surface/patina.wgsl")),
+        (features.has(Feature::Weight), include_str!("../wgsl/surface/cover.wgsl")),
         (true, include_str!("../wgsl/surface/glitter.wgsl")),
         (true, include_str!("../wgsl/surface/perlin.wgsl")),
         (true, include_str!("../wgsl/surface/pick.wgsl")),

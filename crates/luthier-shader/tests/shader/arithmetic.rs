@@ -57,7 +57,12 @@ fn full_form_agrees_with_the_paper() {
         let mut worst = 0.0f64;
         for (number, material) in materials.iter().enumerate().filter(|(_, m)| m.model == ShadingModel::Elek) {
             for (wi, wo) in directions(800) {
-                let expected = paper::eval(&material.layers, wi, wo);
+                let mut expected = paper::eval(&material.layers, wi, wo);
+                if let Some(coat) = &material.constants.coat {
+                    let below = [std::slice::from_ref(&coat.bare), &material.layers[2..]].concat();
+                    let below = paper::eval(&below, wi, wo);
+                    expected = [0, 1, 2].map(|c| coat.weight * expected[c] + (1.0 - coat.weight) * below[c]);
+                }
                 let found = eval(&machine, number as u32, wi, wo);
                 for (e, f) in expected.iter().zip(&found) {
                     let error = (f64::from(*f) - e).abs() / e.abs().max(FLOOR);

@@ -11,15 +11,17 @@ use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::noise::perlin::Perlin;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_manifest::{
-    CellsRecord, FunctionGroup, LayerRecord, MaterialEntry, ParticlesRecord, ShadingModel, SurfaceEntry, SwitchBy,
-    SwitchRecord, material_buffer,
+    CellsRecord, FunctionGroup, LayerRecord, MaterialConstants, MaterialEntry, ParticlesRecord, ShadingModel,
+    SurfaceEntry, SwitchBy, SwitchRecord, material_buffer,
 };
 use luthier_optics::stack::Surface;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 use num_complex::Complex64;
 
 use crate::machine::{Machine, Value, vector};
-use crate::scenes::{FLAKES, GLITTER, conductor, dielectric, diffuse, flaked, glitter, material, patina, tables};
+use crate::scenes::{
+    FLAKES, GLITTER, conductor, dielectric, diffuse, flaked, glitter, material, patina, tables, weighted,
+};
 
 /// Sines, logarithms and square roots of f32, a few operations deep.
 const NORMAL_TOLERANCE: f64 = 2e-6;
@@ -409,6 +411,36 @@ fn patina_without_transition_is_a_step() {
     }
 }
 
+/// The value at a weight is the mean of those of two sets, one with the layers and one with those below the first. Other materials of a set change nothing.
+#[test]
+fn a_weight_is_the_share_of_the_first_layer() {
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
+        let of = |material: MaterialEntry| MaterialEntry { model, ..material };
+        let coated = of(weighted());
+        let bare = coated.constants.bare().unwrap().clone();
+        let whole = MaterialEntry { constants: MaterialConstants::default(), ..coated.clone() };
+        let [whole, bare] = [whole, of(material("bare", &[bare]))].map(|material| machine(&[material]));
+        for (materials, number) in [(vec![coated.clone()], 0), (vec![flaked(), of(patina()), coated.clone()], 2)] {
+            let machine = machine(&materials);
+            let neutral = machine.call("luthier_place", Vec::new());
+            for (i, (wi, wo)) in directions(300).enumerate() {
+                // Products beyond 1 count as 1.
+                let factor = [0.0, 0.5, 1.0, 1.25, 3.0_f64][i % 5];
+                let mut place = neutral.clone();
+                *place.members_mut().last_mut().unwrap() = Value::F(factor as f32);
+                let found = machine.call("luthier_eval_at", vec![place, Value::U(number), single(wi), single(wo)]);
+                let arguments = |number| vec![Value::U(number), single(wi), single(wo)];
+                let [all, below] = [&whole, &bare].map(|machine| machine.call("luthier_eval", arguments(0)).floats());
+                let mean =
+                    |weight: f64| [0, 1, 2].map(|c| weight * f64::from(all[c]) + (1.0 - weight) * f64::from(below[c]));
+                assert!(error(&found, mean((0.6 * factor).min(1.0))) < 1e-5, "{model:?} {factor} {wi} {wo}");
+                let plain = machine.call("luthier_eval", arguments(number));
+                assert!(error(&plain, mean(0.6)) < 1e-5, "{model:?} {wi} {wo}");
+            }
+        }
+    }
+}
+
 /// Every model of the group `surface` that reads a diffuse base shows another colour of it as the material of that albedo.
 #[test]
 fn a_base_color_is_the_albedo_of_the_base() {
@@ -460,12 +492,19 @@ fn without_textures_only_the_layers_are_left() {
 
 #[test]
 fn sets_without_effects_carry_no_word_of_them() {
-    let words = ["flake", "patina", "glitter", "voronoi", "luthier_mix", "tarnish", "is_bare", "normal_below"];
+    let words =
+        ["flake", "patina", "glitter", "voronoi", "luthier_mix", "tarnish", "is_bare", "normal_below", "weight_factor"];
     let text =
         |materials: &[MaterialEntry], form| emit(&MaterialSet::new(materials, tables()), form, Target::Wgsl).unwrap();
     for form in Form::ALL {
         let plain = text(&[material("coated", &[dielectric(), conductor()])], form);
         let [flakes, patina, glitter] = [flaked(), patina(), glitter()].map(|m| text(&[m], form));
+        let weight = text(&[weighted()], form);
+        for word in
+            ["flake_", "glitter_", "patina_amount", "patina_diffuse", "place.patina", "mix(vec3<f32>(1.0), tarnish"]
+        {
+            assert!(!weight.contains(word), "{word} in\n{weight}");
+        }
         for word in words {
             assert!(!plain.contains(word), "{word}");
         }

@@ -254,18 +254,27 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
         // The baker writes no matrix for models that do not show it.
         Feature::Reradiation if !model.honours(feature, form) => return None,
         Feature::Reradiation => moved(&shader(&[coat(), fluorescent()]), &shader(&[coat(), diffuse(0.0)])),
-        Feature::Flakes | Feature::Patina | Feature::Glitter => {
+        Feature::Flakes | Feature::Patina | Feature::Weight | Feature::Glitter => {
             let plain = || of(model, &[coat(), gold()]);
             let patina = || LayerRecord { tiles: gold().tiles.with([(TableKind::Fgd, Some(2))]), ..gold() };
             let constants = match feature {
                 Feature::Flakes => MaterialConstants { flakes: Some(FLAKES), ..plain().constants },
                 Feature::Glitter => MaterialConstants { glitter: Some(GLITTER), ..plain().constants },
+                Feature::Weight => {
+                    let coat = luthier_manifest::CoatRecord { weight: 0.5, bare: patina() };
+                    MaterialConstants { coat: Some(coat), ..plain().constants }
+                }
                 _ => {
                     let record = self::patina().constants.patina.unwrap();
                     let record = luthier_manifest::PatinaRecord { bare: patina(), ..record };
                     MaterialConstants { patina: Some(record), ..plain().constants }
                 }
             };
+            if feature == Feature::Weight {
+                // A place without textures shows the weight.
+                let shader = |constants| Shader::new(MaterialEntry { constants, ..plain() }, form);
+                return Some(moved(&shader(constants), &shader(plain().constants)));
+            }
             let shader = || Shader::new(MaterialEntry { constants: constants.clone(), ..plain() }, form);
             let with = match feature {
                 Feature::Flakes => shader().at("flake_normal", tilted()),

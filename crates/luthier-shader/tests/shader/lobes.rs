@@ -8,7 +8,7 @@ use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, 
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
     AxesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry, PaintedRecord,
-    VaryingFactor, VaryingRecord, material_buffer,
+    PatinaRecord, VaryingFactor, VaryingRecord, material_buffer,
 };
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Diffuse, Distribution};
@@ -391,6 +391,61 @@ fn patina_mixes_the_light_of_two_ends() {
     }
 }
 
+/// Light is linear in the share that a coat covers, from that of the layers below it to that of all layers: the ends of rows over a patina that is nothing
+/// but a layer, of the same rows. Beside a patina, too.
+#[test]
+fn a_weight_mixes_the_light_of_two_ends() {
+    let (layout, image) = covered_rows();
+    let machine = |mut materials: Vec<MaterialEntry>| {
+        for material in &mut materials {
+            let MaterialEntry { layers, constants, .. } = material;
+            layers.iter_mut().chain(constants.bare_mut()).for_each(|layer| layer.tiles[TableKind::Distribution] = None);
+            if constants.lobes.is_some() {
+                layers[0].tiles[TableKind::Lobes] = Some(2);
+            }
+        }
+        let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
+        let gray = Image { data: vec![GRAY; 36], ..Image::zeros(3, 3, 4) };
+        let textures = [("luthier_fresnel", gray), ("luthier_lobes", image.clone())];
+        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        Machine::new(&text, &material_buffer(&materials), textures)
+    };
+    let mut grown = set("lobes-weight");
+    let coat = grown[0].constants.coat.take().unwrap();
+    grown[0].constants.patina = Some(PatinaRecord {
+        extent: 0.5,
+        transition: 0.5,
+        diffuse_albedo: [0.0; 3],
+        base_alpha: None,
+        tarnish: [1.0; 3],
+        bare: coat.bare,
+    });
+    if let Some(varying) = grown[0].constants.lobes.as_mut().and_then(|lobes| lobes.varying.as_mut()) {
+        varying.factor = VaryingFactor::Patina;
+    }
+    let grown = machine(grown);
+    for name in ["lobes-weight", "lobes-weight-mixed"] {
+        let weighed = machine(set(name));
+        for (wi, wo) in directions(100) {
+            let at = |machine: &Machine, value: f32| {
+                let mut place = machine.call("luthier_place", Vec::new());
+                *place.members_mut().last_mut().unwrap() = Value::F(value);
+                let arguments = vec![place, Value::U(0), vector(&wi.map(|w| w as f32)), vector(&wo.map(|w| w as f32))];
+                machine.call("luthier_eval_at", arguments).floats()
+            };
+            let [all, below] = [1.0, 0.0].map(|amount| at(&grown, amount));
+            for factor in [0.0, 0.3, 1.0, 4.0_f32] {
+                let (found, share) = (at(&weighed, factor), (0.6 * factor).min(1.0));
+                for c in 0..3 {
+                    let expected = share * all[c] + (1.0 - share) * below[c];
+                    let error = (found[c] - expected).abs() / expected.abs().max(0.03);
+                    assert!(error < 1e-4, "{name} {factor} {wi:?} {wo:?}: {} {expected}", found[c]);
+                }
+            }
+        }
+    }
+}
+
 /// Reflectance of all interfaces, for all channels.
 const GRAY: f32 = 0.1;
 
@@ -559,6 +614,7 @@ fn directions_are_drawn_as_their_density_says() {
         ("lobes-axes", [0.1, 0.4], Some(AxesRecord { turn: [0.6, 0.8], is_mirrored: false, tiles: 8 }), turned_rows()),
         ("lobes-patina", [0.3; 2], None, covered_rows()),
         ("lobes-patina-base", [0.3; 2], None, covered_rows()),
+        ("lobes-weight", [0.3; 2], None, covered_rows()),
     ] {
         let mut materials = set(name);
         let varying = materials[0].constants.lobes.unwrap().varying;
@@ -577,8 +633,12 @@ fn directions_are_drawn_as_their_density_says() {
             error: None,
         };
         materials[0].constants.lobes = Some(lobes);
-        if let Some(patina) = &mut materials[0].constants.patina {
-            patina.bare.tiles[TableKind::Distribution] = None;
+        if let Some(bare) = materials[0].constants.bare_mut() {
+            bare.tiles[TableKind::Distribution] = None;
+        }
+        if name == "lobes-weight" {
+            // The last two of those rows.
+            materials[0].layers[0].tiles[TableKind::Lobes] = Some(2);
         }
         let first = &mut materials[0].layers[0];
         (first.alpha, first.alpha_xy) = (libm::sqrt(coat[0] * coat[1]), coat);

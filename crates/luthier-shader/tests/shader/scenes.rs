@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
-    AxesRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MaterialConstants,
-    MaterialEntry, PatinaRecord, ShadingModel, Tiles, VaryingFactor, VaryingRecord,
+    AxesRecord, CoatRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord,
+    MaterialConstants, MaterialEntry, PatinaRecord, ShadingModel, Tiles, VaryingFactor, VaryingRecord,
 };
 use luthier_shader::{Form, MaterialSet, TableFace, Target, complete, emit, emit_constant};
 
@@ -147,6 +147,16 @@ pub(crate) fn patina() -> MaterialEntry {
     MaterialEntry { constants, ..material("patina", &[LayerRecord { alpha: 0.2, ..achromatic() }, base]) }
 }
 
+/// A coat that covers 0.6 of gold.
+pub(crate) fn weighted() -> MaterialEntry {
+    let MaterialEntry { layers, constants, .. } = patina();
+    let coat = constants.patina.map(|patina| CoatRecord { weight: 0.6, bare: patina.bare });
+    MaterialEntry {
+        constants: MaterialConstants { coat, ..MaterialConstants::default() },
+        ..material("weighted", &layers)
+    }
+}
+
 /// Gold in cells, some of them tilted.
 pub(crate) fn glitter() -> MaterialEntry {
     let constants = MaterialConstants { glitter: Some(GLITTER), ..MaterialConstants::default() };
@@ -207,6 +217,14 @@ pub(crate) fn covered(material: MaterialEntry) -> MaterialEntry {
     material
 }
 
+/// The material with rows over the weight of its coat, which are all that its two tiles have.
+pub(crate) fn weighed(material: MaterialEntry) -> MaterialEntry {
+    let mut material = covered(material);
+    let over = VaryingRecord { factor: VaryingFactor::WeightFactor, tiles: 2, least_spread: 1.0, factors: None };
+    material.constants.lobes = material.constants.lobes.map(|lobes| LobesRecord { varying: Some(over), ..lobes });
+    material
+}
+
 /// Paint under a patina.
 pub(crate) fn covered_paint(sigma: f64) -> MaterialEntry {
     let mut material = covered(patina());
@@ -255,6 +273,8 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("soap", vec![material("soap", &[filmed()])]),
         ("flakes", vec![flaked()]),
         ("patina", vec![patina(), lacquer()]),
+        ("weight", vec![weighted(), lacquer()]),
+        ("weight-and-patina", vec![patina(), of(ShadingModel::WeidlichWilkie, weighted()), flaked()]),
         ("glitter", vec![glitter()]),
         ("effects", vec![of(ShadingModel::WeidlichWilkie, patina()), flaked(), glitter(), house(), oil()]),
         ("effects-without-layers", [flaked(), patina()].map(|m| of(ShadingModel::Microfacet, m)).into()),
@@ -336,6 +356,8 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lobes-patina-base", vec![covered_paint(0.3)]),
         ("lobes-patina-mixed", vec![house(), covered_paint(0.0), covered(patina()), with_axes(coated_brushed())]),
         ("lobes-patina-chains", vec![covered(patina()), named("grown", patina()), with_lobes(house())]),
+        ("lobes-weight", vec![weighed(weighted())]),
+        ("lobes-weight-mixed", vec![weighed(weighted()), covered(patina()), named("weighted-chain", weighted())]),
         ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]

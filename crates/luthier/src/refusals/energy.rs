@@ -10,7 +10,7 @@ use luthier_layers::directional_albedo::integral;
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::glam::DVec3;
 use luthier_layers::references::layered_mc::ColorPaths;
-use luthier_layers::twins::shaded::{Place, Shaded};
+use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Metallic, Severity};
 use luthier_model::Family;
@@ -136,7 +136,13 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
     let reflecting = if model.is_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
     let mut all = Vec::new();
     for place in places(material) {
-        let paths = is_simulated.then(|| ColorPaths::new(&at(&material.stack, &place), &color));
+        let stack = at(&material.stack, &place);
+        let ends = match place.patina {
+            Some(coat) => vec![(coat.amount, stack.clone()), (1.0 - coat.amount, stack.without_first())],
+            None => vec![(1.0, stack)],
+        };
+        let paths = is_simulated
+            .then(|| ends.iter().map(|(share, stack)| (*share, ColorPaths::new(stack, &color))).collect::<Vec<_>>());
         let Some(shaded) = Shaded::with(model, &reflecting, nm, color, &place, parts_of(material, model)) else {
             continue;
         };
@@ -158,23 +164,29 @@ fn has_walks(layer: &Layer) -> bool {
     matches!(layer.base, Base::Diffuse(_)) || layer.surface.distribution.has_walks()
 }
 
-/// Mean albedo of paths.
-fn simulated(paths: &ColorPaths, wo: DVec3) -> Rgb {
+/// Mean albedo of paths on stacks, each of which has a share of the surface.
+fn simulated(ends: &[(f64, ColorPaths)], wo: DVec3) -> Rgb {
     let mut sum = [0.0; 3];
-    paths.trace(SEED, PATHS, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c] / PATHS as f64));
+    for (share, paths) in ends {
+        paths.trace(SEED, PATHS, wo, |path| (0..3).for_each(|c| sum[c] += share * path.weight[c] / PATHS as f64));
+    }
     sum
 }
 
 /// Places of a material where its albedos are compared.
 fn places(material: &Material) -> Vec<Place> {
     let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
-    let Some((number, Metallic { base_color, metallic })) = textured else { return vec![Place::NONE] };
+    // Where a coat has its greatest weight, no texel makes it less.
+    let patina = material.weight().map(Growth::of_coat);
+    let Some((number, Metallic { base_color, metallic })) = textured else {
+        return vec![Place { patina, ..Place::NONE }];
+    };
     let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
     let places = shares.into_iter().map(|metallic| {
         let (f0, albedo) = metallic_roughness(base_color, metallic);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
-        Place { base_color: Some(albedo), layers, ..Place::NONE }
+        Place { patina, base_color: Some(albedo), layers, ..Place::NONE }
     });
     places.collect()
 }

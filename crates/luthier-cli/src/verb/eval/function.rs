@@ -95,6 +95,8 @@ pub(crate) struct Function<'a> {
     columns: usize,
     normal: DVec3,
     how: How,
+    /// The share that the first layer covers, and the function where it is not, of a model without a shader.
+    bare: Option<(f64, Box<Function<'a>>)>,
 }
 
 enum How {
@@ -108,18 +110,26 @@ enum How {
 
 impl<'a> Function<'a> {
     pub(crate) fn new(subject: &'a Subject, kind: &Kind) -> Self {
+        let stack = &subject.material.stack;
+        let whole = Self::of(subject, stack, kind);
+        let bare = subject.weight.filter(|_| subject.model.info().shading().is_none());
+        let bare = bare.map(|weight| (weight, Box::new(Self::of(subject, &stack.without_first(), kind))));
+        Self { bare, ..whole }
+    }
+
+    fn of(subject: &'a Subject, stack: &Stack, kind: &Kind) -> Self {
         let (model, material) = (subject.model.as_ref(), &subject.material);
         let wavelengths_nm = material.bake.wavelengths_nm();
         let how = shaded(subject, kind).unwrap_or_else(|| {
             let channels = [0, 1, 2].map(|c: usize| {
                 let nm = wavelengths_nm[c];
-                (nm, Monochrome::new(&material.stack, nm, c))
+                (nm, Monochrome::new(stack, nm, c))
             });
             let is_own =
                 *kind == Kind::Color(Color::Spectral) && model.eval_rgb(&channels, DVec3::Z, DVec3::Z).is_some();
-            if is_own { How::Own(Box::new(channels)) } else { How::Sum(kind.parts(&material.stack)) }
+            if is_own { How::Own(Box::new(channels)) } else { How::Sum(kind.parts(stack)) }
         });
-        Self { model, columns: kind.columns("").len(), normal: subject.place.sample.normal, how }
+        Self { model, columns: kind.columns("").len(), normal: subject.place.sample.normal, how, bare: None }
     }
 
     /// Whether values are means of random samples.
@@ -129,9 +139,15 @@ impl<'a> Function<'a> {
 
     /// One estimate per column.
     pub(crate) fn values(&self, wi: DVec3, wo: DVec3) -> Vec<Estimate> {
+        let found = self.covered(wi, wo);
+        let Some((weight, bare)) = &self.bare else { return found };
+        blended(*weight, found, bare.values(wi, wo))
+    }
+
+    fn covered(&self, wi: DVec3, wo: DVec3) -> Vec<Estimate> {
         match (&self.how, self.estimator()) {
             (How::Sum(parts), Some(estimator)) => self.summed(parts, |stack| estimator.eval_with_error(stack, wi, wo)),
-            _ => self.eval(wi, wo)[..self.columns].iter().map(|&value| Estimate::exact(value)).collect(),
+            _ => self.eval_covered(wi, wo)[..self.columns].iter().map(|&value| Estimate::exact(value)).collect(),
         }
     }
 
@@ -139,6 +155,10 @@ impl<'a> Function<'a> {
     pub(crate) fn albedo(&self, wo: DVec3) -> Albedo {
         if let (How::Sum(parts), Some(estimator)) = (&self.how, self.estimator()) {
             let values = self.summed(parts, |stack| estimator.albedo_with_error(stack, wo, DVec3::Z));
+            let values = match &self.bare {
+                Some((weight, bare)) => blended(*weight, values, bare.albedo(wo).values),
+                None => values,
+            };
             return Albedo { values, changes: None };
         }
         if wo.z <= 0.0 {
@@ -159,6 +179,13 @@ impl<'a> Function<'a> {
 
     /// The values of a model that is a function. A single column takes the first channel.
     fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
+        let found = self.eval_covered(wi, wo);
+        let Some((weight, bare)) = &self.bare else { return found };
+        let bare = bare.eval(wi, wo);
+        [0, 1, 2].map(|c: usize| weight * found[c] + (1.0 - weight) * bare[c])
+    }
+
+    fn eval_covered(&self, wi: DVec3, wo: DVec3) -> Rgb {
         match &self.how {
             How::Shader(shaded, channel) if self.columns == 1 => [shaded.eval(wi, wo)[*channel], 0.0, 0.0],
             How::Shader(shaded, _) => shaded.eval(wi, wo),
@@ -173,6 +200,12 @@ impl<'a> Function<'a> {
             }
         }
     }
+}
+
+/// Values of a surface that is covered by a weight, and bare elsewhere.
+fn blended(weight: f64, covered: Vec<Estimate>, bare: Vec<Estimate>) -> Vec<Estimate> {
+    let pairs = covered.into_iter().zip(bare);
+    pairs.map(|(covered, bare)| Estimate::sum([(weight, covered), (1.0 - weight, bare)].into_iter())).collect()
 }
 
 /// The parts that the file chooses, as far as the evaluated model has them.

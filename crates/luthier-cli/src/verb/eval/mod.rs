@@ -15,7 +15,7 @@ use luthier_layers::model::{Estimate, Model, ModelInfo};
 use luthier_layers::models::lobes::{Fit, Fitted, Varied};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
-use luthier_layers::twins::shaded::Place;
+use luthier_layers::twins::shaded::{Growth, Place};
 use luthier_manifest::ShadingModel;
 use luthier_material::{FileKind, Material};
 use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
@@ -32,7 +32,7 @@ use function::Kind;
 use luthier::refusals::of_function;
 use luthier::{Files, Source, Sources, TomlFile, surface_map};
 use luthier_terminal::{Failure, Outcome, complain, valid};
-use place::{add_layers, place};
+use place::{add_layers, place, weight};
 use sweep::{Sweep, sweep};
 use values::values;
 
@@ -46,6 +46,8 @@ struct Subject {
     /// Gives the model `lobes` its lobes.
     fit: Arc<Fit<'static>>,
     place: Place,
+    /// Share of the surface that the first layer covers, if that is a coat with a weight and the model shows it.
+    weight: Option<f64>,
     /// Name of the surface, if the material is the one at a place of a surface.
     surface: Option<String>,
     /// Whether effects of the file are in the place.
@@ -60,6 +62,9 @@ impl Subject {
         let mut head = json!({"model": self.model.info().name, "material": self.material.name});
         if let Some(surface) = &self.surface {
             head["surface"] = json!(surface);
+        }
+        if let Some(weight) = self.weight {
+            head["weight"] = json!(weight);
         }
         if self.has_effects || self.surface.is_some() {
             head["place"] = json!({
@@ -139,7 +144,8 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     }
     let (shown, dropped) = inputs.shown(&materials[0], known.as_ref());
     let (maps, unshown) = inputs.layer_maps(&materials[0], known.as_ref());
-    inputs.check(known.as_ref(), &shown, !maps.is_empty(), picked.is_some(), options.environment)?;
+    let has_weight_map = inputs.weight_map(&materials[0]).is_some();
+    inputs.check(known.as_ref(), &shown, has_weight_map || !maps.is_empty(), picked.is_some(), options.environment)?;
     if !maps.is_empty() && (options.furnace || options.environment) {
         let text = "a furnace and an environment have no place: leave the maps of layers out with `--no-effects`";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
@@ -171,6 +177,14 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     }
     let mut place = place(&material, inputs, &shown)?;
     add_layers(&mut place, &material, inputs, &maps)?;
+    let weight = weight(&material, inputs)?.filter(|_| ModelInputs::shows_weight(&material, model.as_ref()));
+    if let Some(weight) = weight.filter(|_| model.info().shading().is_some()) {
+        place.patina = Some(Growth::of_coat(weight));
+    } else if weight.is_some() && (place.sample.slab_factor, place.sample.film_factor) != (1.0, 1.0) {
+        let text =
+            format!("model `{name}` has no place: leave --slab-factor and --film-factor out for a coat with a weight");
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
     if let Some((_, normal)) = picked.as_ref().filter(|(_, normal)| !inputs.has_normal() && normal.z < 1.0) {
         place.sample.normal = *normal;
     }
@@ -181,6 +195,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         material,
         fit,
         place,
+        weight,
         surface,
         has_effects,
         bins_nm,

@@ -68,6 +68,19 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     Ok(place)
 }
 
+/// The share of the surface that the first layer covers at the place, if it is a coat with a weight.
+pub(crate) fn weight(material: &Material, inputs: &ModelInputs) -> Outcome<Option<f64>> {
+    let Some(weight) = material.weight() else { return Ok(None) };
+    let texel = match inputs.weight_map(material) {
+        Some(named) => {
+            let image = picture(material, named, TexelUse::Number)?.channel(0);
+            filtered(&image, moved(named, inputs.uv().unwrap_or(DVec2::ZERO)))
+        }
+        None => 1.0,
+    };
+    Ok(Some((weight * texel * inputs.weight_factor()).clamp(0.0, 1.0)))
+}
+
 /// Gives the place the values of layer textures: those of `maps`, which include the albedo of the base.
 pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelInputs, maps: &[LayerMap]) -> Outcome {
     let uv = inputs.uv().unwrap_or(DVec2::ZERO);
@@ -108,7 +121,7 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
                     _ => *metal *= texel(0),
                 }
             }
-            MapSlot::Normal | MapSlot::Roughness | MapSlot::Patina | MapSlot::FlakeNormal => {}
+            MapSlot::Normal | MapSlot::Roughness | MapSlot::Weight | MapSlot::Patina | MapSlot::FlakeNormal => {}
         }
     }
     if let Some((layer, color, metal)) = metallic {

@@ -52,6 +52,44 @@ fn flakes_at_a_place_and_a_distance() {
     assert!(mean != here && here != there && mean != plain);
 }
 
+/// A coat with a weight is the mean, by that, of the file without the weight and of the file without the coat: in models that show it, and in those that have no
+/// shader. `lobes` is fitted at both ends, and is within its own error.
+#[test]
+fn a_weight_is_the_mean_of_two_files() {
+    let workshop = workshop();
+    let coated = PATINATED.replacen("roughness = 0.6\n", "roughness = 0.6\nweight = 0.4\n", 1);
+    let bare = PATINATED.split("\n\n").filter(|part| !part.contains("dielectric")).collect::<Vec<_>>().join("\n\n");
+    workshop.write("w.toml", &coated);
+    workshop.write("w0.toml", coated.replace("0.4\n\n", "0\n\n"));
+    workshop.write("b.toml", &bare);
+    for (model, more, tolerance) in [
+        ("elek", &[][..], 1e-12),
+        ("weidlich-wilkie", &[], 1e-12),
+        ("layered-mc", &["--samples", "256"], 1e-12),
+        ("lobes", &[], 0.02),
+    ] {
+        let of = |file: &str, at: &[&str]| eval(&workshop, file, model, &[more, at].concat()).0;
+        let [all, below] = [of("p.toml", &[]), of("b.toml", &[])];
+        assert!((all / below - 1.0).abs() > 0.01);
+        let mean = |weight: f64| weight * all + (1.0 - weight) * below;
+        let near = |found: f64, expected: f64| {
+            assert!((found / expected - 1.0).abs() < tolerance, "{model}: {found} {expected}")
+        };
+        near(of("w.toml", &[]), mean(0.4));
+        near(of("w0.toml", &[]), below);
+        near(of("w.toml", &["--weight-factor", "0.5"]), mean(0.2));
+        near(of("w.toml", &["--weight-factor", "9"]), all);
+    }
+    // What a model leaves out is told, and is not there.
+    let args = [&["eval", "w.toml", "--model", "belcour"], &PAIR[..]].concat();
+    let run = workshop.run(&args).exits(0);
+    assert!(run.stderr.contains("does not show the weight of the coat"), "{}", run.stderr);
+    assert_eq!(eval(&workshop, "w.toml", "belcour", &[]).0, eval(&workshop, "p.toml", "belcour", &[]).0);
+    workshop
+        .run(&[&["eval", "w.toml", "--model", "layered-mc", "--slab-factor", "2"], &PAIR[..]].concat())
+        .fails(2, &["--slab-factor"]);
+}
+
 /// None below 0, all above 1; the ends are the stack without and with its first layer.
 #[test]
 fn patina_grows_with_its_extent() {

@@ -230,6 +230,49 @@ fn lower_layers_below_a_patina_are_those_of_the_twin() {
     }
 }
 
+/// Coats with weights, of every model that shows them, with choices of lower layers and with maps: shaders against the twin, which has the weight of the
+/// file, without a place and at places. Rows of both ends are judged by their own fit.
+#[test]
+fn coats_with_weights_are_those_of_the_twin() {
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\nthickness_um = 10\nabsorption_per_um = [0.01, 0.02, 0.04]\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nalpha = 0.3\n";
+    let paint = "[[layer]]\ntype = \"dielectric\"\nior = 1.3\nalpha = 0.1\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.3, 0.1]\n";
+    let engine =
+        "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.6, 0.3, 0.1]\nmetallic = 0.5\nroughness = 0.5\n";
+    let chosen = "lower_facets = \"phong\"\ndiffuse_part = \"beside\"\nmasking = \"kelemen\"\n";
+    let mapped = "maps = { weight = \"mask.png\", bumps = \"mask.png\" }\n";
+    let workshop = Workshop::new();
+    let mask = image::RgbImage::from_fn(8, 8, |x, y| image::Rgb([(30 * x) as u8, (200 - 20 * y) as u8, 255]));
+    std::fs::create_dir_all(workshop.path("m")).unwrap();
+    mask.save(workshop.path("m/mask.png")).unwrap();
+    for (name, model, weight, below, more) in [
+        ("elek", "elek", "weight = 0.3\n", paint, chosen),
+        ("course", "weidlich-wilkie", "weight = 0.7\n", paint, "lower_alpha = \"at-least-above\"\n"),
+        ("bumpy", "weidlich-wilkie", mapped, metal, ""),
+        ("engine", "elek", "weight = 0.4\n", engine, ""),
+        ("metal", "lobes", "weight = 0.6\n", metal, ""),
+        ("paint", "lobes", "weight = 0.6\nmaps = { weight = \"mask.png\" }\n", paint, ""),
+    ] {
+        let text = format!("schema = 1\nname = \"{name}\"\n{coat}{weight}{below}[bake]\nmodel = \"{model}\"\n{more}");
+        workshop.write(&format!("m/{name}.toml"), text);
+    }
+    workshop.run(&["bake", "m", "-q"]).exits(0);
+    let run = workshop.run(&["report", "--pairs", "512", "--picture-size", "0", "--max-error", "2e-2"]);
+    if run.lacks_adapter() {
+        workshop.run(&TABLES_ONLY).exits(0);
+    } else {
+        run.exits(0);
+    }
+    let report = workshop.json("out/report/report.json");
+    let findings = report["findings"].as_array().unwrap();
+    assert!(!findings.iter().any(|finding| finding.to_string().contains("no layer reads it")), "{findings:?}");
+    assert!(report["max_error"].as_f64().unwrap() < 2e-2);
+    for material in report["materials"].as_array().unwrap() {
+        let errors = &material["at_places"]["shader"]["relative"];
+        assert!(errors.is_null() || errors["max"].as_f64().unwrap() < 1e-4, "{}: {errors}", material["name"]);
+    }
+}
+
 /// The whole path on a device: tables of the default size, both shaders, all materials.
 #[cfg(feature = "gpu")]
 #[test]

@@ -31,7 +31,7 @@ fn shading_density(alpha: f32, wi: vec3<f32>, wo: vec3<f32>) -> f32 {
 // The environment through luthier_eval: the same number of directions for each interface and for the cosine, Hammersley
 // points shifted by the seed, weighed by the balance heuristic (Veach 1997, eq. 9.8).
 fn shading_around(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32$place) -> vec3<f32> {
-    let factors = shading_factors(surface);
+    let factors = shading_factors(material, surface);
     let turn = shading_turned_frame(mat3x3<f32>(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), factors.normal);
     let wo_there = wo * turn;
     if wo_there.z <= 0.0 {

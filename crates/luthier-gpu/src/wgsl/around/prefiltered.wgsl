@@ -110,7 +110,7 @@ fn shading_environment(material: u32, factors: ShadingFactors, frame: mat3x3<f32
 
 // The environment as a place sends it along wo.
 fn shading_around(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32$place) -> vec3<f32> {
-    let factors = shading_factors(surface);
+    let factors = shading_factors(material, surface);
     let turned = shading_turned_frame(frame, factors.normal);
     let wo_there = (frame * wo) * turned;
     if kernel_inputs.words[kernel_inputs.materials + material].w > 0.0 {

@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 36] = [
+pub(super) static SAMPLES: [Sample; 37] = [
     sample(
         "material.exterior",
         "exterior",
@@ -144,6 +144,12 @@ pub(super) static SAMPLES: [Sample; 36] = [
         "layer.0.absorption_per_um|layer.1.type",
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 50, absorption_per_um = @ }, { type = 'diffuse', albedo = 0.8 }]\nbake = { model = 'elek' }",
         &["[0.001, 0.006, 0.015]", "[0.03, 0.004, 0.02]", "0.02"],
+    ),
+    sample(
+        "dielectric.weight",
+        "layer.0.weight",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.002, 0.012, 0.03], weight = @ }, { type = 'conductor', ior = 'al', alpha = 0.3 }]\nbake = { model = 'elek' }",
+        &["0", "0.5", "1"],
     ),
     sample(
         "thin-film.ior",

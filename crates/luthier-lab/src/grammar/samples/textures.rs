@@ -4,7 +4,7 @@ use super::{Sample, sample};
 
 const FILM: &str = "layer.0.film.0.thickness_nm";
 
-pub(super) static SAMPLES: [Sample; 22] = [
+pub(super) static SAMPLES: [Sample; 23] = [
     sample(
         "noise.seed",
         FILM,
@@ -40,6 +40,12 @@ pub(super) static SAMPLES: [Sample; 22] = [
         "layer.0.maps.thickness",
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.002, 0.012, 0.03], maps = { @ } }, { type = 'diffuse', albedo = 0.8 }]\nbake = { model = 'elek' }",
         &["absent|", "'thickness.png'|thickness = 'thickness.png'", "'patina.png'|thickness = 'patina.png'"],
+    ),
+    sample(
+        "dielectric-maps.weight",
+        "layer.0.maps.weight",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.002, 0.012, 0.03], maps = { @ } }, { type = 'conductor', ior = 'al', alpha = 0.3 }]\nbake = { model = 'elek' }",
+        &["absent|", "'thickness.png'|weight = 'thickness.png'", "'patina.png'|weight = 'patina.png'"],
     ),
     sample(
         "dielectric-maps.bumps",

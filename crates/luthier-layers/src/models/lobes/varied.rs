@@ -220,6 +220,13 @@ impl Varied {
         self.nodes.swap_remove(node)
     }
 
+    /// The lobes of the stack itself, and those of its bare layers, if rows are over the amount of the first one.
+    pub fn ends(self) -> (Lobes, Option<Lobes>) {
+        let over_cover = matches!(self.varying(), Some(Varying::Patina(_)));
+        let bare = self.nodes.last().filter(|_| over_cover).cloned();
+        (self.nominal(), bare)
+    }
+
     /// The lobes at a factor. If any patina has grown, it is their first interface.
     pub fn at(&self, factor: f64) -> Lobes {
         let mut lobes = self.nodes[0].clone();

@@ -6,7 +6,6 @@ use luthier_lut::{TableKind, incident_cosine};
 use luthier_manifest::LayerRecord;
 use luthier_optics::Rgb;
 use luthier_optics::interface::Interface;
-use luthier_optics::stack::Stack;
 
 use super::{Measured, Scan, User, coordinate, coordinates};
 use crate::error::ReportError;
@@ -26,7 +25,7 @@ const GRAZING_POINTS: u32 = 256;
 /// Degrees between the points of a drawn curve.
 const CURVE_STEP_DEG: f64 = 1.5;
 
-/// Compares a Fresnel row with every interface that reads it, those of bare layers under a patina among them. A row that two different interfaces share is wrong for one of them.
+/// Compares a Fresnel row with every interface that reads it, those of bare layers under a patina or a coat among them. A row that two different interfaces share is wrong for one of them.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -47,11 +46,10 @@ pub(super) fn scan(
     });
     let bare = bare_users(subject, TableKind::Fresnel, tile).into_iter().filter_map(|material| {
         let (entry, stack) = (&materials[material], &subject.stacks[material]);
-        // What no patina covers meets the light without the first layer.
-        let uncovered = Stack { exterior: stack.exterior.clone(), layers: stack.layers.get(1..)?.to_vec() };
-        let interface = Interface::of(&uncovered, 0)?.sampled(&color(entry));
+        // What the first layer does not cover meets the light without it.
+        let interface = Interface::of(&stack.without_first(), 0)?.sampled(&color(entry));
         let expected: Reflectance<'_> = Box::new(move |c| interface.rgb(c));
-        Some((&entry.constants.patina.as_ref()?.bare, expected))
+        Some((entry.constants.bare()?, expected))
     });
     let readers: Vec<(&LayerRecord, Reflectance<'_>)> = layers.chain(bare).collect();
     for (record, expected) in &readers {

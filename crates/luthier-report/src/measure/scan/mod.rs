@@ -111,7 +111,7 @@ pub(crate) fn scan(
     Ok(reports)
 }
 
-/// Names of the readers of a tile: layers, and the bare layers under a patina.
+/// Names of the readers of a tile: layers, and the bare layers under a patina or a coat.
 fn names(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<String> {
     let materials = &subject.manifest.materials;
     let layers = materials.iter().flat_map(|m| m.layers.iter().enumerate().map(move |(l, layer)| (m, l, layer)));

@@ -5,6 +5,9 @@ fn luthier_patina_amount(material: u32, map_value: f32) -> f32 {
     let ahead = shape.x - map_value;
     let soft = saturate(0.5 + ahead / (2.0 * max(shape.y, 1e-30)));
     let amount = select(select(0.0, 1.0, ahead >= 0.0), soft, shape.y > 0.0);
+    //? weight
+    return select(-1.0, amount, abs(shape.w - 1.0) < 0.5);
+    //? else
     return select(-1.0, amount, shape.w > 0.5);
 }
 

@@ -71,6 +71,9 @@ struct LuthierPlace {
     //? patina
     /// Amount of patina, 0 to 1; below 0 all layers are there, without its diffuse term and tarnish.
     patina: f32,
+    //? weight
+    /// Factor on the weight of a coat.
+    weight_factor: f32,
     //? layered
     /// Values of textures of single layers, from the top down.
     layers: array<LuthierLayerPlace, $layers>,
@@ -86,6 +89,7 @@ fn luthier_place() -> LuthierPlace {
     place.inner_normal = vec3<f32>(0.0, 0.0, 1.0);
     place.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
     place.patina = -1.0;
+    place.weight_factor = 1.0;
     place.base_color = vec3<f32>(-1.0);
     $each_layer
     return place;
@@ -98,6 +102,15 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     {
         var layers = place.layers;
         var own = luthier_layer_place();
+        //? weight
+        {
+            // The record behind the others is the second layer where the first is not.
+            let number = select(index, 1u, index == luthier_layer_count(material));
+            if number < $layers {
+                own = layers[number];
+            }
+        }
+        //? else
         if index < $layers {
             own = layers[index];
         }

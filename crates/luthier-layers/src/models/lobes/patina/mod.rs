@@ -28,9 +28,12 @@ pub struct Cover {
 }
 
 impl Cover {
+    /// A first layer that is there, and nothing else: that of a coat with a weight.
+    pub const PLAIN: Self = Self { diffuse_albedo: [0.0; 3], base_alpha: None, tarnish: [1.0; 3] };
+
     /// Whether all three parameters change nothing.
-    fn is_plain(&self) -> bool {
-        self.diffuse_albedo == [0.0; 3] && self.base_alpha.is_none() && self.tarnish == [1.0; 3]
+    pub fn is_plain(&self) -> bool {
+        *self == Self::PLAIN
     }
 
     /// Number of nodes: all layers without these parameters, all layers with them if they change anything, and the bare layers.
@@ -105,7 +108,7 @@ const COSINES: u32 = 64;
 
 /// The stack without its first layer: places without patina.
 pub fn bare(stack: &Stack) -> Stack {
-    Stack { layers: stack.layers.iter().skip(1).cloned().collect(), ..stack.clone() }
+    stack.without_first()
 }
 
 /// Simulations of a stack with a patina, all in the same cells: all layers, all layers with the slopes below a grown patina if these differ, and last

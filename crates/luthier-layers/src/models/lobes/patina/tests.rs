@@ -16,7 +16,7 @@ use crate::references::layered_mc::ColorPaths;
 
 const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);
 const SETTINGS: FitSettings = FitSettings { rows: 10, paths: 16000, seed: 3 };
-const PLAIN: Cover = Cover { diffuse_albedo: [0.0; 3], base_alpha: None, tarnish: [1.0; 3] };
+const PLAIN: Cover = Cover::PLAIN;
 const GROWN: Cover = Cover { diffuse_albedo: [0.25, 0.55, 0.42], base_alpha: Some(0.45), tarnish: [0.8, 0.45, 0.25] };
 
 fn layer(alpha: f64, base: Base) -> Layer {
