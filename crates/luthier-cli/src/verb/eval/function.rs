@@ -205,7 +205,7 @@ impl<'a> Function<'a> {
 /// Values of a surface that is covered by a weight, and bare elsewhere.
 fn blended(weight: f64, covered: Vec<Estimate>, bare: Vec<Estimate>) -> Vec<Estimate> {
     let pairs = covered.into_iter().zip(bare);
-    pairs.map(|(covered, bare)| Estimate::sum([(weight, covered), (1.0 - weight, bare)].into_iter())).collect()
+    pairs.map(|(covered, bare)| Estimate::sum([(weight, covered), (1.0 - weight, bare)])).collect()
 }
 
 /// The parts that the file chooses, as far as the evaluated model has them.
