@@ -7,8 +7,8 @@ use luthier_layers::formulas::oren_nayar;
 use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
-    AxesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry, PaintedRecord,
-    PatinaRecord, VaryingFactor, VaryingRecord, material_buffer,
+    AxesRecord, FlakesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry,
+    PaintedRecord, PatinaRecord, VaryingFactor, VaryingRecord, material_buffer,
 };
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Diffuse, Distribution};
@@ -388,6 +388,82 @@ fn patina_mixes_the_light_of_two_ends() {
                 }
             }
         }
+    }
+}
+
+/// Flakes of a patina turn the lobes of the layers that it covers, and not the lobe of a bare interface, which is the second. Over a bare base both lobes
+/// are those of the patina.
+#[test]
+fn flakes_turn_the_lobes_that_patina_covers() {
+    let (layout, image) = covered_rows();
+    for name in ["lobes-patina", "lobes-patina-base"] {
+        let mut materials = set(name);
+        let material = &mut materials[0];
+        let is_base = material.constants.bare().is_some_and(|bare| bare.kind == LayerKind::Diffuse);
+        let MaterialEntry { layers, constants, .. } = material;
+        layers.iter_mut().chain(constants.bare_mut()).for_each(|layer| layer.tiles[TableKind::Distribution] = None);
+        layers[0].tiles[TableKind::Lobes] = Some(1);
+        constants.flakes =
+            Some(FlakesRecord { seed: 1, count: 9, tiling: 1.0, spread: 0.1, scale: 1.0, fade_start: 1.0 });
+        let record = constants.lobes.unwrap();
+        let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
+        let frame = Frame { index: record.index, wide, axes: None, base: None };
+        let index = layers[0].eta;
+        let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
+        let number = |structure: &str, name: &str| {
+            let members = text.split(&format!("struct {structure} {{\n")).nth(1).unwrap().lines();
+            let members = members.take_while(|line| *line != "}").map(str::trim).filter(|line| !line.starts_with("//"));
+            members.map(|line| line.split_once(": ").unwrap().0).position(|member| member == name).unwrap()
+        };
+        // Facets of the first interface and of the bare layer reflect nothing.
+        let black = Image::zeros(3, 3, 4);
+        let textures = [("luthier_fresnel", black), ("luthier_lobes", image.clone())];
+        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let normal = DVec3::new(0.1, -0.06, 1.0).normalize();
+        let mut place = machine.call("luthier_place", Vec::new());
+        place.members_mut()[number("LuthierPlace", "flake_normal")] = vector(&normal.to_array().map(|x| x as f32));
+        place.members_mut()[number("LuthierPlace", "patina")] = Value::F(0.3);
+        let mut brightest = 0.0_f64;
+        for (wi, wo) in directions(200) {
+            let [light, eye] = [wi, wo].map(DVec3::from);
+            if light.z <= 0.0 || eye.z <= 0.0 {
+                continue;
+            }
+            let read =
+                |tile, part: u32| bilinear(&image, layout.position(tile, [eye.z, part.into()]), WeightBits::Exact);
+            let mixed = |part: u32| {
+                let (grown, bare) = (read(2, part), read(3, part));
+                [0, 1, 2, 3].map(|i: usize| grown[i] + 0.7 * (bare[i] - grown[i]))
+            };
+            let row = Row::of_parts(&(0..6).map(mixed).collect::<Vec<_>>(), false);
+            let [mut first, mut second] = [0; 2].map(|_| row.clone());
+            first.lobes[1].strength = [0.0; 3];
+            second.lobes[0].strength = [0.0; 3];
+            (first.wide, second.wide) = ([0.0; 3], [0.0; 3]);
+            let [first, second] = [first, second].map(|row| Below::new(frame, row, eye));
+            let second = if is_base { second.tilted(normal, index) } else { second };
+            let expected = [first.tilted(normal, index).eval(light), second.eval(light)];
+            let arguments = [Value::U(0), vector(&wo.map(|w| w as f32))];
+            let mut prepared =
+                machine.call("luthier_prepare_lobes", [place.clone()].into_iter().chain(arguments).collect());
+            let lit = |prepared: &Value| {
+                machine.call("luthier_light_lobes", vec![prepared.clone(), vector(&wi.map(|w| w as f32))]).floats()
+            };
+            let all = lit(&prepared);
+            for name in ["first_strength", "second_strength"] {
+                prepared.members_mut()[number("LuthierPreparedLobes", name)] = vector(&[0.0; 3]);
+            }
+            let rest = lit(&prepared);
+            for c in 0..3 {
+                let expected = expected[0][c] + expected[1][c];
+                let found = f64::from(all[c]) - f64::from(rest[c]);
+                let error = (found - expected).abs() / expected.abs().max(0.03);
+                assert!(error < 1e-3, "{name} {wi:?} {wo:?}: {found} {expected}");
+                brightest = brightest.max(expected);
+            }
+        }
+        assert!(brightest > 0.3, "{name}: {brightest}");
     }
 }
 

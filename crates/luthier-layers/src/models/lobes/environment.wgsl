@@ -122,11 +122,7 @@ fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<
 
 /// A lobe of rows.
 fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, turn: vec2<f32>) -> LuthierShownLobe {
-    let straight = luthier_lobe_slope(shape, vec2<f32>(0.0));
-    //? lobes_tilted
-    let middle = straight + prepared.tilt;
-    //? else
-    let middle = straight;
+    let middle = luthier_lobe_slope(shape, vec2<f32>(0.0));
     //? lobes_axes
     {
         // The square of the inverse of the sharpness, over the decay.

@@ -17,7 +17,7 @@ const LUTHIER_LOBES_BASE: f32 = -1.0;
 /// A lobe over slopes: elliptic, in the plane of the eye and across it, or in axes.
 struct LuthierLobeShape {
     /// The sharpness times the slope of its middle.
-    //? lobes_axes
+    //? lobes_axes|lobes_tilted
     middle: vec2<f32>,
     //? else
     middle: f32,
@@ -47,8 +47,6 @@ struct LuthierPreparedLobes {
     inside_cos: f32,
     /// The index squared less 1, the coefficients of the remainder's shape, and 1 over its integral.
     medium: vec4<f32>,
-    /// Slope by which flakes turn the lobes, in their frame.
-    tilt: vec2<f32>,
     /// Numbers of the cosine inside, see `luthier_inside_cosine`.
     inside: vec4<f32>,
     /// Energy of the remainder, RGB.
@@ -181,6 +179,9 @@ fn luthier_lobe_slope(shape: LuthierLobeShape, apart: vec2<f32>) -> vec2<f32> {
         return (shape.sharpness.yx * scaled - shape.shear * scaled.yx) / luthier_lobe_determinant(shape);
     }
     //? else
+    //? lobes_tilted
+    return (shape.middle + apart) / shape.sharpness;
+    //? else
     return vec2<f32>(shape.middle + apart.x, apart.y) / shape.sharpness;
 }
 
@@ -199,9 +200,23 @@ fn luthier_lobe_in_axes(shift: f32, numbers: vec3<f32>, shear: f32, eye: vec2<f3
 /// A lobe of a row: its shift, its sharpness and decay, as seen by an eye at an angle of this sine.
 fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, sin_theta: f32) -> LuthierLobeShape {
     var shape: LuthierLobeShape;
+    //? lobes_tilted
+    shape.middle = vec2<f32>(shift * sin_theta * numbers.x, 0.0);
+    //? else
     shape.middle = shift * sin_theta * numbers.x;
     shape.sharpness = numbers.xy;
     shape.decay = numbers.z;
+    return shape;
+}
+
+//? lobes_tilted
+/// The lobe where the layers below lean by a slope.
+fn luthier_lobe_about(given: LuthierLobeShape, slope: vec2<f32>) -> LuthierLobeShape {
+    var shape = given;
+    //? lobes_axes
+    shape.middle += given.sharpness * slope + given.shear * slope.yx;
+    //? else
+    shape.middle += given.sharpness * slope;
     return shape;
 }
 
@@ -372,7 +387,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
         let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
         let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
-        prepared.tilt = luthier_in_frame(prepared.azimuth, turned);
+        let tilt = luthier_in_frame(prepared.azimuth, turned);
     }
     //? critical_view
     {
@@ -452,7 +467,13 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         //? else
         let first_shape = luthier_lobe_shape(first.a, first_numbers, sin_theta);
         //? place
-        prepared.first_shape = luthier_with_peak(luthier_spread(first_shape, spread, unresolved));
+        {
+            let first_spread = luthier_spread(first_shape, spread, unresolved);
+            //? lobes_tilted
+            prepared.first_shape = luthier_with_peak(luthier_lobe_about(first_spread, tilt));
+            //? else
+            prepared.first_shape = luthier_with_peak(first_spread);
+        }
         //? else
         prepared.first_shape = luthier_with_peak(first_shape);
     }
@@ -481,7 +502,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         //? else
         let second_shape = luthier_lobe_shape(second.a, second_numbers, sin_theta);
         //? place
-        prepared.second_shape = luthier_with_peak(luthier_spread(second_shape, spread, unresolved));
+        {
+            let second_spread = luthier_spread(second_shape, spread, unresolved);
+            //? lobes_tilted
+            {
+                // Over patina on an interface the second lobe is that of the bare layer, which flakes of the first do not cover.
+                //? lobes_patina
+                let second_tilt = select(tilt, vec2<f32>(0.0), cover < 1.0 && prepared.bare.kind != LUTHIER_DIFFUSE);
+                //? else
+                let second_tilt = tilt;
+                prepared.second_shape = luthier_with_peak(luthier_lobe_about(second_spread, second_tilt));
+            }
+            //? else
+            prepared.second_shape = luthier_with_peak(second_spread);
+        }
         //? else
         prepared.second_shape = luthier_with_peak(second_shape);
     }
@@ -494,12 +528,15 @@ fn luthier_half_slope_density(shape: LuthierLobeShape, slope: vec2<f32>) -> f32 
     //? lobes_axes
     let apart = shape.sharpness * slope + shape.shear * slope.yx - shape.middle;
     //? else
+    //? lobes_tilted
+    let apart = shape.sharpness * slope - shape.middle;
+    //? else
     let apart = vec2<f32>(slope.x * shape.sharpness.x - shape.middle, slope.y * shape.sharpness.y);
     let falloff = (1.0 + shape.decay) * log2(1.0 + dot(apart, apart));
     return exp2(-falloff) * shape.peak;
 }
 
-/// The half vector with light from wi between refracted directions: its slopes in the frame of the lobes, against the tilt, and the factor from half
+/// The half vector with light from wi between refracted directions: its slopes in the frame of the lobes, and the factor from half
 /// densities of slopes to densities of solid angle outside.
 fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     // Directions inside times the index.
@@ -510,9 +547,6 @@ fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
     let inverse_z = 1.0 / z;
     let factor = (dot(sum, sum) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
-    //? lobes_tilted
-    return vec3<f32>(across * inverse_z - prepared.tilt, factor);
-    //? else
     return vec3<f32>(across * inverse_z, factor);
 }
 

@@ -138,11 +138,7 @@ fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, 
     let series = y * (1.0 + y * (0.5 + y * (1.0 / 6.0)));
     let radius = sqrt(select(exp(y) - 1.0, series, y < 0.02));
     let phi = 2.0 * LUTHIER_PI * u.y;
-    let straight = luthier_lobe_slope(shape, radius * vec2<f32>(cos(phi), sin(phi)));
-    //? lobes_tilted
-    let slope = straight + prepared.tilt;
-    //? else
-    let slope = straight;
+    let slope = luthier_lobe_slope(shape, radius * vec2<f32>(cos(phi), sin(phi)));
     let wh = normalize(vec3<f32>(slope, 1.0));
     // Directions inside times the index, in the frame of the lobes.
     let eye = vec3<f32>(luthier_in_frame(prepared.azimuth, prepared.wo.xy), prepared.inside_cos);
