@@ -139,6 +139,10 @@ impl ModelInputs {
     }
 
     /// The factor on the weight of a coat at the place.
+    pub(crate) fn has_weight_factor(&self) -> bool {
+        self.textures.weight_factor.is_some()
+    }
+
     pub(crate) fn weight_factor(&self) -> f64 {
         self.textures.weight_factor.unwrap_or(1.0)
     }

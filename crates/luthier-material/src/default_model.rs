@@ -39,11 +39,15 @@ impl Material {
         self.bake.model.unwrap_or_else(|| self.most_whole(DefaultFor::Closed.models()))
     }
 
-    /// The features that keep the material from the model `lobes`, each once. None if its file names a model, and if there is nothing to
-    /// simulate.
+    /// The features that keep the material from the model `lobes`, each once; those that its model leaves out, too, if there are no others. None if its
+    /// file names a model, and if there is nothing to simulate.
     pub fn unfit_for_lobes(&self) -> Vec<LeftOut> {
         let is_open = self.bake.model.is_none() && self.has_further_bounces() && !self.model().is_fitted();
         let mut parts = if is_open { self.lacks(ShadingModel::Lobes) } else { Vec::new() };
+        let others: BTreeSet<Feature> = self.lacks(self.model()).iter().map(|part| part.feature).collect();
+        if parts.iter().any(|part| !others.contains(&part.feature)) {
+            parts.retain(|part| !others.contains(&part.feature));
+        }
         let mut told = BTreeSet::new();
         parts.retain(|part| told.insert(part.feature));
         parts

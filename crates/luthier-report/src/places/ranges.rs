@@ -9,6 +9,7 @@ use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
 use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};
 
+use crate::measure::references::shows_cover;
 use crate::measure::subject::Subject;
 
 /// Quantities that vary over the surface of a material, with their ranges.
@@ -61,11 +62,19 @@ impl Places {
             _ => slot.name().to_owned(),
         });
         let mut names: Vec<String> = maps.collect();
+        names.extend(self.has_free_weight().then(|| MapSlot::Weight.name().to_owned()));
         let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
         names.extend(self.film.map(|_| "film".to_owned()));
         names.extend(constants.flakes.filter(|_| !has_flake_map).map(|_| "flakes".to_owned()));
         names.extend(constants.glitter.map(|_| "glitter".to_owned()));
         names
+    }
+
+    /// Whether a program sets the weight of a coat, which has no map.
+    fn has_free_weight(&self) -> bool {
+        shows_cover(&self.entry)
+            && self.entry.constants.coat.is_some()
+            && !self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::Weight)
     }
 
     /// The n-th random place of a seed.
@@ -116,6 +125,10 @@ impl Places {
                     }
                 }
             }
+        }
+        if let Some(coat) = constants.coat.as_ref().filter(|_| self.has_free_weight()) {
+            // Up to the weight 1.
+            place.weight_factor = numbers.between([0.0, 1.0 / coat.weight.max(0.1)]) as f32;
         }
         if color.is_some() || metal.is_some() {
             place.metallic = Some((color.unwrap_or_else(|| self.base_color()), metal.unwrap_or(0.0)));

@@ -89,6 +89,16 @@ pub(crate) struct Albedo {
     pub(crate) changes: Option<Vec<f64>>,
 }
 
+impl Albedo {
+    /// That of a surface of which a share has this one, and the rest another.
+    pub(super) fn over(self, share: f64, bare: Self) -> Self {
+        let changes = self.changes.zip(bare.changes).map(|(covered, bare)| {
+            covered.iter().zip(bare).map(|(covered, bare)| share * covered + (1.0 - share) * bare).collect()
+        });
+        Self { values: blended(share, self.values, bare.values), changes }
+    }
+}
+
 /// The function of two directions.
 pub(crate) struct Function<'a> {
     model: &'a dyn Model,

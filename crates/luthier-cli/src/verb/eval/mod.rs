@@ -70,7 +70,7 @@ impl Subject {
             head["place"] = json!({
                 "normal": self.place.sample.normal.to_array(),
                 "flake_normal": self.place.under.flake_normal.to_array(),
-                "patina": self.place.patina.map(|patina| patina.amount),
+                "patina": self.place.patina.filter(|_| self.weight.is_none()).map(|patina| patina.amount),
             });
             if !self.place.layers.is_empty() {
                 let layers = self.place.layers.iter().map(|own| {
@@ -177,6 +177,11 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     }
     let mut place = place(&material, inputs, &shown)?;
     add_layers(&mut place, &material, inputs, &maps)?;
+    if inputs.has_weight_factor() && material.weight().is_none() {
+        let file = &material.source;
+        let text = format!("{file} has no coat with a weight below 1 or in a map: leave --weight-factor out");
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
     let weight = weight(&material, inputs)?.filter(|_| ModelInputs::shows_weight(&material, model.as_ref()));
     if let Some(weight) = weight.filter(|_| model.info().shading().is_some()) {
         place.patina = Some(Growth::of_coat(weight));

@@ -85,16 +85,22 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
     let own = if what == Sweep::Furnace { of_file(subject)? } else { None };
     let model = own.as_deref().unwrap_or(subject.model.as_ref());
     let function = (what == Sweep::Albedo).then(|| Function::new(subject, kind));
+    // A furnace and an environment are of all layers; a coat with a weight is a blend of two surfaces.
+    let bare = subject.weight.map(|weight| (weight, at(&subject.material.stack.without_first(), wavelength_nm)));
+    let of_stack = |stack: &_, wo| match what {
+        Sweep::Albedo | Sweep::Furnace => single(furnace(model, stack, wo)),
+        Sweep::Environment => {
+            Albedo { values: vec![Estimate::exact(environment(stack, wo, |_| 1.0))], changes: Some(vec![0.0]) }
+        }
+    };
     let rows: Vec<(f64, Albedo)> = thetas_deg(options)
         .par_iter()
         .map(|&theta_deg| {
             let wo = Angles { theta_deg, phi_deg: options.azimuth }.direction();
-            let row = match (what, &function) {
-                (Sweep::Albedo, Some(function)) => function.albedo(wo),
-                (Sweep::Albedo | Sweep::Furnace, _) => single(furnace(model, &stack, wo)),
-                (Sweep::Environment, _) => {
-                    Albedo { values: vec![Estimate::exact(environment(&stack, wo, |_| 1.0))], changes: Some(vec![0.0]) }
-                }
+            let row = match (&function, &bare) {
+                (Some(function), _) => function.albedo(wo),
+                (None, None) => of_stack(&stack, wo),
+                (None, Some((weight, bare))) => of_stack(&stack, wo).over(*weight, of_stack(bare, wo)),
             };
             (theta_deg, row)
         })

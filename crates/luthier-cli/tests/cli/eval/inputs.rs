@@ -80,6 +80,18 @@ fn a_weight_is_the_mean_of_two_files() {
         near(of("w.toml", &["--weight-factor", "0.5"]), mean(0.2));
         near(of("w.toml", &["--weight-factor", "9"]), all);
     }
+    // A furnace and an environment are blends, too.
+    for what in ["--furnace", "--environment"] {
+        let of = |file: &str| -> f64 {
+            let run = workshop.run(&["eval", file, "--model", "elek", what, "--angles", "40"]).exits(0);
+            run.stdout.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap()
+        };
+        let [all, below, blend] = ["p.toml", "b.toml", "w.toml"].map(of);
+        assert!((blend - (0.4 * all + 0.6 * below)).abs() < 2e-6 && (all - below).abs() > 0.01, "{what}: {blend}");
+    }
+    workshop
+        .run(&[&["eval", "b.toml", "--model", "elek", "--weight-factor", "1"], &PAIR[..]].concat())
+        .fails(2, &["b.toml has no coat with a weight", "leave --weight-factor out"]);
     // What a model leaves out is told, and is not there.
     let args = [&["eval", "w.toml", "--model", "belcour"], &PAIR[..]].concat();
     let run = workshop.run(&args).exits(0);

@@ -299,21 +299,21 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
         //? lobes_patina
         {
-            // Of the last two tiles one is that of patina grown whole, and the other that of bare layers.
+            // Of the last two tiles one is that of all layers, and the other that of the bare ones.
             let bare_tile = luthier_materials[header + $word_patina_tarnish].w;
             //? weight
             {
                 let amount = luthier_cover(place, material);
-                let is_grown = bare_tile > 0.0 && amount >= 0.0;
-                let cover = select(1.0, saturate(amount), is_grown);
+                let is_covered = bare_tile > 0.0 && amount >= 0.0;
+                let cover = select(1.0, saturate(amount), is_covered);
             }
             //? else
             {
-                let is_grown = bare_tile > 0.0 && place.patina >= 0.0;
-                let cover = select(1.0, saturate(place.patina), is_grown);
+                let is_covered = bare_tile > 0.0 && place.patina >= 0.0;
+                let cover = select(1.0, saturate(place.patina), is_covered);
             }
             let nominal_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
-            let first_tile = nominal_tile + select(0.0, bare_tile - cover, is_grown);
+            let first_tile = nominal_tile + select(0.0, bare_tile - cover, is_covered);
         }
         //? else
         let first_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
@@ -550,7 +550,7 @@ fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     return vec3<f32>(across * inverse_z, factor);
 }
 
-/// f cos_theta_i of the layer that is bare where no patina has grown, without lobes; `sum` is that of the directions.
+/// f cos_theta_i of the layer that is bare where the first is not, without lobes; `sum` is that of the directions.
 fn luthier_light_bare(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3<f32>, cos_theta_d: f32) -> vec3<f32> {
     let layer = prepared.bare;
     //? lobes_bare_base
