@@ -90,7 +90,7 @@ pub(crate) struct Albedo {
 }
 
 impl Albedo {
-    /// That of a surface of which a share has this one, and the rest another.
+    /// The albedo of a surface of which a share has this one, and the rest another.
     pub(super) fn over(self, share: f64, bare: Self) -> Self {
         let changes = self.changes.zip(bare.changes).map(|(covered, bare)| {
             covered.iter().zip(bare).map(|(covered, bare)| share * covered + (1.0 - share) * bare).collect()
