@@ -302,16 +302,11 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             // Of the last two tiles one is that of all layers, and the other that of the bare ones.
             let bare_tile = luthier_materials[header + $word_patina_tarnish].w;
             //? weight
-            {
-                let amount = luthier_cover(place, material);
-                let is_covered = bare_tile > 0.0 && amount >= 0.0;
-                let cover = select(1.0, saturate(amount), is_covered);
-            }
+            let amount = luthier_cover(place, material);
             //? else
-            {
-                let is_covered = bare_tile > 0.0 && place.patina >= 0.0;
-                let cover = select(1.0, saturate(place.patina), is_covered);
-            }
+            let amount = place.patina;
+            let is_covered = bare_tile > 0.0 && amount >= 0.0;
+            let cover = select(1.0, saturate(amount), is_covered);
             let nominal_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
             let first_tile = nominal_tile + select(0.0, bare_tile - cover, is_covered);
         }
