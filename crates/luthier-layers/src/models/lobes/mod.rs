@@ -35,6 +35,7 @@ mod axes;
 mod below;
 mod ellipse;
 mod eval;
+mod family;
 mod fit;
 mod fitted;
 mod half_vector;
@@ -51,6 +52,7 @@ mod varied;
 
 pub use axes::Axes;
 pub use below::Below;
+pub use family::{Family, Paint, SlopeAxis, base_interface};
 pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};

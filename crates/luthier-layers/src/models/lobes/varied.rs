@@ -6,7 +6,7 @@ use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::tally::mean;
-use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, Lobes, Row, ViewAxis, most_lobes, patina, shown};
+use super::{Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Lobes, Paint, Row, ViewAxis, most_lobes, patina, shown};
 use crate::layers::ALPHA_MIN;
 
 /// The part of a stack that a texture decides.
@@ -22,6 +22,8 @@ pub enum Varying {
     /// The amount of the first layer, a patina. The factor is this amount in 0..=1. Node 0 (all layers, no patina parameters) lies one step above 1,
     /// or at 1 if the patina has no parameters.
     Patina(Cover),
+    /// Slope parameters and colours of single layers, see [`Family`]. The factor is the number of a node.
+    Family(Family),
 }
 
 impl Varying {
@@ -42,13 +44,14 @@ impl Varying {
             // Interference has a period of about half a wavelength. The number is odd so that the nominal thickness is in the middle.
             Self::Film(_) => 15,
             Self::Patina(cover) => cover.nodes(),
+            Self::Family(family) => family.nodes(),
         }
     }
 
     /// The nominal node traces all paths, and others one in so many. Neighbours among many nodes see nearly the same light, so fewer paths do.
     fn path_share(self) -> u64 {
         match self {
-            Self::Alpha | Self::Patina(_) => 1,
+            Self::Alpha | Self::Patina(_) | Self::Family(_) => 1,
             Self::Slab | Self::Film(_) => 2,
         }
     }
@@ -56,7 +59,7 @@ impl Varying {
     /// The node of the stack itself: at factor 1, or with all layers.
     pub fn nominal(self) -> usize {
         match self {
-            Self::Alpha | Self::Slab | Self::Patina(_) => 0,
+            Self::Alpha | Self::Slab | Self::Patina(_) | Self::Family(_) => 0,
             Self::Film(_) => self.nodes() / 2,
         }
     }
@@ -69,6 +72,7 @@ impl Varying {
             Self::Alpha | Self::Slab => (1.0 - share) * (1.0 - share),
             Self::Film([most, least]) => most + share * (least - most),
             Self::Patina(_) => self.steps() - place,
+            Self::Family(_) => place,
         }
     }
 
@@ -76,13 +80,14 @@ impl Varying {
     fn steps(self) -> f64 {
         match self {
             Self::Alpha => self.nodes() as f64,
-            Self::Slab | Self::Film(_) | Self::Patina(_) => (self.nodes() - 1) as f64,
+            Self::Slab | Self::Film(_) | Self::Patina(_) | Self::Family(_) => (self.nodes() - 1) as f64,
         }
     }
 
     /// The fractional number of the node of a factor.
     pub fn place(self, factor: f64) -> f64 {
         let share = match self {
+            Self::Family(_) => return factor.clamp(0.0, self.steps()),
             Self::Alpha | Self::Slab => 1.0 - factor.clamp(0.0, 1.0).sqrt(),
             Self::Film([most, least]) => ((most - factor) / (most - least)).clamp(0.0, 1.0),
             Self::Patina(_) => (1.0 - factor / self.steps()).clamp(0.0, 1.0),
@@ -111,6 +116,7 @@ impl Varying {
             }
             Self::Patina(_) if factor > 0.0 => {}
             Self::Patina(_) => return patina::bare(stack),
+            Self::Family(family) => return family.apply(stack, family.alphas(factor as usize)),
         }
         here
     }
@@ -144,7 +150,7 @@ impl Over {
     fn spread(&self, factor: f64) -> f64 {
         match self.varying {
             Varying::Alpha => factor.max(self.least),
-            Varying::Slab | Varying::Film(_) | Varying::Patina(_) => 1.0,
+            Varying::Slab | Varying::Film(_) | Varying::Patina(_) | Varying::Family(_) => 1.0,
         }
     }
 
@@ -227,6 +233,30 @@ impl Varied {
         (self.nominal(), bare)
     }
 
+    /// The lobes of a family at slope parameters of coat and base, held to the ranges, and in colours; the first interface is that of the stack.
+    pub fn painted(&self, alphas: [f64; 2], paint: &Paint) -> Option<Lobes> {
+        let over = self.varying.as_ref()?;
+        let Varying::Family(family) = over.varying else { return None };
+        let [coat, base] = [family.coat.place(alphas[0]), family.base.place(alphas[1])];
+        let held = [family.coat.alpha(coat), family.base.alpha(base)];
+        let [next_coat, next_base] = [(coat, family.coat), (base, family.base)].map(|(place, axis)| {
+            let first = (place as usize).min(axis.nodes.saturating_sub(2));
+            (first, (first + 1).min(axis.nodes - 1), place - first as f64)
+        });
+        let mut lobes = self.nodes[0].clone();
+        let spreads = Family::spreads(held);
+        let rows = (0..lobes.rows.len()).map(|row| {
+            let [low, high] = [next_coat.0, next_coat.1].map(|coat| {
+                let [low, high] = [next_base.0, next_base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
+                low.between(&high, next_base.2)
+            });
+            family.painted(&low.between(&high, next_coat.2), spreads, paint)
+        });
+        lobes.rows = rows.collect();
+        lobes.first = FirstInterface::of(&family.apply(&over.stack, alphas), &over.color);
+        Some(lobes)
+    }
+
     /// The lobes at a factor. If any patina has grown, it is their first interface.
     pub fn at(&self, factor: f64) -> Lobes {
         let mut lobes = self.nodes[0].clone();
@@ -248,6 +278,7 @@ impl Varied {
 pub struct Traced {
     simulations: Vec<Simulation>,
     varying: Option<Over>,
+    settings: FitSettings,
 }
 
 impl Traced {
@@ -255,16 +286,23 @@ impl Traced {
     pub fn new(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
         let stack = shown(stack);
         let Some(varying) = over(&stack, varying) else {
-            return Self { simulations: vec![Simulation::new(&stack, color, settings)], varying: None };
+            let simulations = vec![Simulation::new(&stack, color, settings)];
+            return Self { simulations, varying: None, settings };
         };
         let alphas = (stack.layers.iter())
             .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
             .map(|layer| layer.surface.alpha_x.clamp(ALPHA_MIN, 1.0));
         let least = ALPHA_MIN / alphas.fold(ALPHA_MIN, f64::max);
+        if let Varying::Family(_) = varying {
+            // Nodes trace their paths as they are fitted: all at once would be too much memory.
+            let varying = Some(Over { varying, least: 1.0, stack, color: *color });
+            return Self { simulations: Vec::new(), varying, settings };
+        }
         let axis = ViewAxis::of(&stack, settings.rows);
         if let Varying::Patina(cover) = varying {
             let simulations = patina::simulations(&cover, axis, &stack, color, settings);
-            return Self { simulations, varying: Some(Over { varying, least: 1.0, stack, color: *color }) };
+            let varying = Some(Over { varying, least: 1.0, stack, color: *color });
+            return Self { simulations, varying, settings };
         }
         let indices = indices(&stack);
         let simulations = (0..varying.nodes()).map(|node| {
@@ -274,7 +312,7 @@ impl Traced {
             Simulation::within(&indices, axis, &here, color, FitSettings { paths: settings.paths / share, ..settings })
         });
         let simulations = simulations.collect();
-        Self { simulations, varying: Some(Over { varying, least, stack, color: *color }) }
+        Self { simulations, varying: Some(Over { varying, least, stack, color: *color }), settings }
     }
 
     /// The fewest lobes, up to `most`, that are no farther from the light than the best by more than `excess`, see [`Simulation::fit_fewest`].
@@ -284,6 +322,10 @@ impl Traced {
         };
         if let Varying::Patina(cover) = over.varying {
             let nodes = patina::nodes(&cover, &self.simulations, most, excess);
+            return Varied { nodes, varying: self.varying.clone() };
+        }
+        if let Varying::Family(family) = over.varying {
+            let nodes = family.lobes(&over.stack, &over.color, self.settings);
             return Varied { nodes, varying: self.varying.clone() };
         }
         let (count, nominal) = (self.simulations.len(), over.varying.nominal());

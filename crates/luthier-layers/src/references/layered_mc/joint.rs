@@ -46,6 +46,12 @@ pub struct JointPath {
     pub is_first_facet: bool,
     /// How often it met a diffuse base.
     pub base_visits: u32,
+    /// How often the lowest interface, which may be the first, reflected it back up.
+    pub reflections: u32,
+    /// How many facets of that interface it met on these occasions.
+    pub facets: u32,
+    /// Length of its way through the slab below the first interface, over the thickness.
+    pub length: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -109,16 +115,30 @@ impl JointPaths {
     pub(super) fn path(&self, stream: &mut Stream, wo: DVec3) -> Option<JointPath> {
         let mut from = Sided { side: Side::Above, direction: wo };
         let (mut number, mut events, mut base_visits) = (0, 0, 0);
+        let (mut reflections, mut facets, mut length) = (0, 0, 0.0);
+        let lowest = self.interfaces.iter().rposition(|interface| !matches!(interface.kind, Kind::Diffuse(_)));
         let mut weight = [0, 1, 2].map(|c: usize| if self.channels[c] { 1.0 } else { 0.0 });
         loop {
             let interface = self.interfaces.get(number)?;
-            let (to, kept, is_single) = interface.scatter(stream, from)?;
+            let (to, kept, met) = interface.scatter(stream, from)?;
             base_visits += u32::from(matches!(interface.kind, Kind::Diffuse(_)));
+            if lowest == Some(number) && [from.side, to.side] == [Side::Above; 2] {
+                reflections += 1;
+                facets += met;
+            }
             weight = weight.times(kept);
             let (next, slab, side) = match to.side {
                 Side::Above if number == 0 => {
-                    let is_first_facet = events == 0 && is_single;
-                    return Some(JointPath { wi: to.direction, weight, is_first_facet, base_visits });
+                    let is_first_facet = events == 0 && met == 1;
+                    return Some(JointPath {
+                        wi: to.direction,
+                        weight,
+                        is_first_facet,
+                        base_visits,
+                        reflections,
+                        facets,
+                        length,
+                    });
                 }
                 Side::Above => (number - 1, number - 1, Side::Below),
                 Side::Below => (number + 1, number, Side::Above),
@@ -126,6 +146,9 @@ impl JointPaths {
             let depth = self.optical_depths[slab];
             if depth != [0.0; 3] {
                 weight = weight.times(depth.map(|depth| libm::exp(-depth / to.direction.z)));
+            }
+            if slab == 0 {
+                length += 1.0 / to.direction.z;
             }
             let DVec3 { x, y, z } = to.direction;
             from = Sided { side, direction: DVec3::new(-x, -y, z) };
@@ -186,23 +209,24 @@ impl JointInterface {
         Some(Self { kind, rotation: turn(surface) })
     }
 
-    /// Direction in which light from `a` goes on, what is left of it, and whether it met one facet alone, by chance; `None` when it is lost.
-    fn scatter(&self, stream: &mut Stream, a: Sided) -> Option<(Sided, Rgb, bool)> {
+    /// Direction in which light from `a` goes on, what is left of it, and how many facets it met, by chance; `None` when it is lost. A diffuse base has
+    /// no facets.
+    fn scatter(&self, stream: &mut Stream, a: Sided) -> Option<(Sided, Rgb, u32)> {
         match &self.kind {
             Kind::Smooth(optics) => {
                 let (b, kept) = scatter_smooth(optics, stream, a);
-                Some((b, kept, true))
+                Some((b, kept, 1))
             }
             Kind::Diffuse(diffuse) => {
                 let (direction, u) = stream.direction_and_uniform();
                 let sin = u.sqrt();
                 let b = DVec3::new(sin * direction.x, sin * direction.y, (1.0 - u).sqrt());
                 let brdf = oren_nayar::brdf(diffuse.albedo, diffuse.sigma, b, a.direction);
-                Some((Sided { direction: b, ..a }, brdf.map(|brdf| PI * brdf), false))
+                Some((Sided { direction: b, ..a }, brdf.map(|brdf| PI * brdf), 0))
             }
             Kind::Rough(rough) => {
                 let (b, kept, facets_before) = walk::scatter(rough, stream, a.inside(self.rotation))?;
-                Some((b.outside(self.rotation), kept, facets_before == 0))
+                Some((b.outside(self.rotation), kept, facets_before + 1))
             }
         }
     }

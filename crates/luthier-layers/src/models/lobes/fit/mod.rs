@@ -5,6 +5,7 @@
 //! projection, Golub and Pereyra 1973). Cells have residuals `(e - r) / sqrt(r + c)`. One fit has all views, so that lobes keep their identity
 //! from view to view; with an anisotropic stack it has all azimuths, too ([`Basis`]).
 
+mod part;
 mod problem;
 
 use luthier_optics::Rgb;
@@ -18,7 +19,8 @@ use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide,
 use crate::formulas::facets::ALPHA_MIN;
 use crate::least_squares::{LeastSquares, Place};
 use crate::references::layered_mc::ColorPaths;
-use problem::{Lobed, Problem, seen_from};
+pub(super) use problem::seen_from;
+use problem::{Lobed, Problem};
 
 /// Settings of a simulation and of the fit to it. The same settings give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,6 +95,8 @@ pub struct Simulation {
     pub(super) base: Option<Painted>,
     /// Coefficients of the remainder of a Lambertian base.
     pub(super) base_falloff: Option<[f64; 2]>,
+    /// Whether the light has a wide remainder beside its lobes: all but the parts that a family splits it into.
+    has_remainder: bool,
 }
 
 /// Numbers of views: from grazing views up, one azimuth after the other. All azimuths share the view along the normal, which comes last.
@@ -230,7 +234,7 @@ impl Simulation {
         });
         let tallies: Vec<Tally> = tallies.collect();
         let base_falloff = Wide::falloff_of(axis, &tallies);
-        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff }
+        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff, has_remainder: true }
     }
 
     /// The light in one set of its cells.

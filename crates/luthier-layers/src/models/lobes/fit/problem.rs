@@ -19,6 +19,10 @@ const SHARE_WANTED: f64 = 0.35;
 
 /// Weight of a share's lack to [`SHARE_WANTED`].
 const SHARE_WEIGHT: f64 = 0.5;
+
+/// That weight for lobes without a remainder beside them: rows of such lobes are mixed with others.
+const SHARE_WEIGHT_ALONE: f64 = 5.0;
+
 /// Weight of second differences between nodes.
 const RIPPLE_WEIGHT: f64 = 0.03;
 /// Weight of shifts and of ratios of widths, which are pulled to 0.
@@ -48,8 +52,10 @@ pub(super) struct Problem<'a> {
 }
 
 /// One view of a problem.
-pub(super) struct ViewProblem {
+pub(in crate::models::lobes) struct ViewProblem {
     axis: ViewAxis,
+    /// Whether the light has a wide remainder beside its lobes.
+    has_remainder: bool,
     basis: Basis,
     wo: DVec3,
     plane: Plane,
@@ -158,6 +164,7 @@ impl<'a> Problem<'a> {
             let terms = basis.terms(sin_theta * sin_theta, [(cos - sin) * (cos + sin), 2.0 * cos * sin]);
             ViewProblem {
                 axis,
+                has_remainder: simulation.has_remainder,
                 basis,
                 wo,
                 plane: if simulation.axes.is_some() {
@@ -420,7 +427,7 @@ impl ViewProblem {
     }
 
     /// A lobe with its energy by channel, in the half vectors of a medium of relative index `index`.
-    fn lobe(&self, p: &[f64], lobe: usize, index: f64, energy: Rgb) -> Lobe {
+    pub(in crate::models::lobes) fn lobe(&self, p: &[f64], lobe: usize, index: f64, energy: Rgb) -> Lobe {
         let shape = self.shape(p, lobe);
         let share = share_above(&shape, self.wo, index);
         let [x, y, shear] = shape.sharpness();
@@ -465,14 +472,16 @@ impl ViewProblem {
     }
 
     pub(super) fn profiles(&self, p: &[f64], lobes: usize) -> Profiles {
-        let mut cells = vec![vec![0.0; self.found.len()]; lobes + 1];
+        let mut cells = vec![vec![0.0; self.found.len()]; lobes + usize::from(self.has_remainder)];
         for (lobe, profile) in cells[..lobes].iter_mut().enumerate() {
             let shape = self.shape(p, lobe);
             self.points.iter().for_each(|point| profile[point.cell] += shape.density(point.slope) * point.area);
         }
-        let wide = wide_of(p, self.axis);
-        for point in &self.points {
-            cells[lobes][point.cell] += wide.value(point.cos_theta) * point.cos_theta * point.solid_angle;
+        if let Some(remainder) = cells.get_mut(lobes) {
+            let wide = wide_of(p, self.axis);
+            for point in &self.points {
+                remainder[point.cell] += wide.value(point.cos_theta) * point.cos_theta * point.solid_angle;
+            }
         }
         let shares: Vec<f64> = cells.iter().map(|profile| profile.iter().sum()).collect();
         for (profile, share) in cells.iter_mut().zip(&shares) {
@@ -489,8 +498,9 @@ impl ViewProblem {
             let sent: f64 = cells.iter().zip(&energies).map(|(profile, energy)| profile[cell] * energy).sum();
             self.roots[cell] * (self.found[cell] - sent)
         });
-        let lobes = shares.len() - 1;
-        residuals.chain(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0))).collect()
+        let lobes = shares.len() - usize::from(self.has_remainder);
+        let weight = if self.has_remainder { SHARE_WEIGHT } else { SHARE_WEIGHT_ALONE };
+        residuals.chain(shares[..lobes].iter().map(|share| weight * (SHARE_WANTED - share).max(0.0))).collect()
     }
 
     /// Difference quotients of the residuals, which are `now`, along slopes of a part's cells and share.
@@ -527,6 +537,9 @@ impl ViewProblem {
             let [.., tail] = &sent;
             columns.push((of_lobe + self.basis.per_lobe() - 1, self.along(&mut profiles, lobe, tail, now)));
         }
+        if !self.has_remainder {
+            return columns;
+        }
         let wide = wide_of(p, self.axis);
         let mut sent = Sent::<2>::new(self.found.len());
         for point in &self.points {
@@ -554,7 +567,7 @@ fn mixed(sent: &[(Vec<f64>, f64); 6], factors: [f64; 5]) -> (Vec<f64>, f64) {
 }
 
 /// The view of a row at the azimuth of a cosine and a sine.
-pub(super) fn seen_from(axis: ViewAxis, [cos, sin]: [f64; 2], row: usize) -> DVec3 {
+pub(in crate::models::lobes) fn seen_from(axis: ViewAxis, [cos, sin]: [f64; 2], row: usize) -> DVec3 {
     let DVec3 { x, z, .. } = direction(axis.cos_theta(row as f64));
     DVec3::new(cos * x, sin * x, z)
 }
