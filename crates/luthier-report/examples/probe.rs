@@ -13,9 +13,10 @@ fn stack(kind: &str, d: Distribution, a: [f64; 2], f0: [f64; 3], albedo: [f64; 3
     let none = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
     let diffuse = layer(0.0, Base::Diffuse(Diffuse { albedo, sigma: 0.0 }));
     let layers = match kind {
-        "metal" => vec![coat, layer(a[1], Base::Conductor { ior: Ior::constant(1.5, 0.0).unwrap().with_f0(f0) })],
+        "metal" | "mixmetal" => vec![coat, layer(a[1], Base::Conductor { ior: Ior::constant(1.5, 0.0).unwrap().with_f0(f0) })],
         "plastic" => vec![coat, layer(a[1], Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap().with_f0(f0), slab: none }), diffuse],
         "bare" => vec![layer(a[1], Base::Dielectric { ior: Ior::constant(1.0, 0.0).unwrap().with_f0(f0), slab: none }), diffuse],
+        "baremetal" => vec![layer(a[1], Base::Conductor { ior: Ior::constant(1.5, 0.0).unwrap().with_f0(f0) })],
         "ag" => vec![coat, layer(a[1], Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() })],
         _ => panic!(),
     };
@@ -30,8 +31,9 @@ fn main() {
     let tint = args.get(4).map_or(0.0, |x: &String| x.parse().unwrap());
     let d = Distribution::Ggx;
     let color = Color::ThreeWavelengths([645.0, 525.0, 445.0]);
-    let nominal = stack(kind, d, [1.0, 1.0], [0.5; 3], [0.5; 3], [0.0; 3]);
-    let family = Family::new(&nominal, [0.001, 0.8], [0.001, 1.0]).unwrap();
+    let is_m = kind == "plastic" || kind == "bare";
+    let nominal = stack(kind, d, [1.0, 1.0], if is_m { [0.04; 3] } else { [0.5; 3] }, [0.5; 3], [0.0; 3]);
+    let family = if std::env::var("OWN").is_ok() { Family::new(&nominal, [0.5; 2], [0.5; 2], is_m) } else { Family::new(&nominal, [0.001, 0.8], [0.001, 1.0], is_m) }.unwrap();
     println!("{family:?}");
     let start = std::time::Instant::now();
     let varied = Varied::with(&nominal, &color, Some(Varying::Family(family)), FitSettings { rows, ..FitSettings::default() });
@@ -49,14 +51,21 @@ fn main() {
             (f, alb)
         };
         let tau = [tint * next(), tint * next(), tint * next()];
-        (a, f0, albedo, tau, m)
+        (a, f0, albedo, tau, m, c)
     }).collect();
     let thetas = [0.0, 30.0, 60.0, 75.0, 85.0];
-    let results: Vec<_> = all.par_iter().map(|&(a, f0, albedo, tau, m)| {
-        let here = stack(kind, d, a, f0, albedo, tau);
+    let results: Vec<_> = all.par_iter().map(|&(a, f0, albedo, tau, m, c)| {
+        let kind_here = match (kind, m == 1.0) { ("plastic", true) => "metal", ("bare", true) => "baremetal", _ => kind };
+        let here = stack(kind_here, d, a, f0, albedo, tau);
         let subject = ModelSubject { name: String::new(), stack: here.clone(), wavelengths_nm: [645.0, 525.0, 445.0] };
         let reference = Reference::new(&subject, &thetas, ReferenceSettings { noise: 0.005, albedo_std_err: 7e-4, most: 1 << 22, seed: 1 << 40 });
-        let lobes = varied.painted(a, &Paint::of(&here, &color)).unwrap();
+        let own_family;
+        let used = if std::env::var("OWN").is_ok() {
+            let one = Family::new(&nominal, [a[0]; 2], [a[1]; 2], is_m).unwrap();
+            own_family = Varied::with(&nominal, &color, Some(Varying::Family(one)), FitSettings { rows, ..FitSettings::default() });
+            &own_family
+        } else { &varied };
+        let lobes = used.painted(a, &if is_m { Paint::of(&here).metallic(c, m) } else { Paint::of(&here) }).unwrap();
         let errors = reference.errors(Shown::Lobes(&lobes));
         let own = if args.len() > 5 { let l = Lobes::of(&here, &color); reference.errors(Shown::Lobes(&l)).iter().map(|e| e.lobe.error).fold(0.0, f64::max) } else { 0.0 };
         let worst = errors.iter().max_by(|x, y| x.lobe.error.total_cmp(&y.lobe.error)).unwrap();

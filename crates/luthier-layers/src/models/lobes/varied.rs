@@ -244,16 +244,16 @@ impl Varied {
             (first, (first + 1).min(axis.nodes - 1), place - first as f64)
         });
         let mut lobes = self.nodes[0].clone();
-        let spreads = Family::spreads(held);
+        let (spreads, simulated) = (Family::spreads(held), lobes.frame.base.map_or([0.0; 3], |base| base.albedo));
         let rows = (0..lobes.rows.len()).map(|row| {
             let [low, high] = [next_coat.0, next_coat.1].map(|coat| {
                 let [low, high] = [next_base.0, next_base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
                 low.between(&high, next_base.2)
             });
-            family.painted(&low.between(&high, next_coat.2), spreads, paint)
+            family.painted(&low.between(&high, next_coat.2), spreads, simulated, paint)
         });
         lobes.rows = rows.collect();
-        lobes.first = FirstInterface::of(&family.apply(&over.stack, alphas), &over.color);
+        lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, alphas), family), &over.color);
         Some(lobes)
     }
 

@@ -1,24 +1,31 @@
 //! Families: one small table for every texel of a stack whose textures vary the slopes and the colours of single layers.
 //!
-//! Textures of a coated base vary its slope parameters, its colour and how metallic it is; the coat has its own slopes and tint. Slopes are axes of a
-//! table, and colours are not: light is split by how often it was reflected by the *base*, the lowest interface, and each part has a closed form in the
-//! colour.
+//! Slope parameters of the first interface and of the *base*, the lowest interface, are axes of a table. Colours are not. Light is split by how often the base
+//! reflected it, once or more often, each in a lobe of its own: the shapes of these lobes do not hang on the colour of the base, and their energies have closed
+//! forms in it.
 //!
-//! | light | number of the row | its energy over the F0 f of the base and the albedo r of a diffuse base below |
+//! A base that is metallic in places ([`Family::is_metallic`]) is a mix of two surfaces: a metal of the F0 c with the share m, and a dielectric over a
+//! diffuse base of the albedo r with the share 1 - m. Its rows have
+//!
+//! | part | x, y, z | w |
 //! |---|---|---|
-//! | reflected by the base once | first lobe, strength (e, E, R) | `(p + q f) / (1 - R f)`, which is e at f = 0 and E at f = 1 |
-//! | reflected by it more often | second lobe, strength (e, E, R) | `f^2 (p + q f) / (1 - R f)`, which is e at f = 1/2 and E at f = 1 |
-//! | from a diffuse base | light of the base: energy (t0, t1, l), internal (r0, r1, l) | `(1 - f)^2 (t0 + t1 f) r / (1 - R(f) r)`, `R(f) = r0 + r1 f + (1 - r0 - r1) f^2` |
-//! | neither: bounces among the facets of the first interface | remainder (e, E, R) | the same; E = e and R = 0 below a coat |
-//! | one facet of the first interface | albedo (a0, a1, -) of one interface; (a0, l, l) of a coat | `a0 + a1 f` |
+//! | -2 | share of the light of the diffuse base that is sent back to it, once more than once reflected by the dielectric, length | b of the remainder |
+//! | -1 | light of a white diffuse base that sends nothing back, light that the dielectric reflected once, length | a of the remainder |
+//! | 0 | facets of the coat alone above the metal, and above the dielectric, 0 | share of the trapped light that is wide |
+//! | 1 | reflected by the metal once: energies at c = 0, .8, 1 | shift |
+//! | 2 | reflected by the metal more often: energies at c = .5, .9, 1 | shift |
+//! | 3, 4 | sharpness; tails and shares, as in other rows | |
+//! | 5 | one facet of the first interface, lengths of the light of both lobes | |
 //!
-//! Reflectances of the base are Schlick's, linear in f, so that the first form is exact for a base whose facets do not pass light on. Light near the
-//! critical angle of the coat is trapped, other light is not: one pole alone would not do. Shapes of lobes do not hang on the colour once light is split
-//! so. An absorbing slab below the coat multiplies each energy by `exp(-l depth)`: l is a length of its paths over the thickness, one number of a node.
+//! Between its energies light of one visit is `(p + q c) / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
+//! linear in c, and trapped light is reflected by the metal again and again. The light of the diffuse base is `t r / (1 - s r)`. A slab multiplies each
+//! energy by `exp(-length depth)`. Without a coat, the first lobe has the light of several facets of the dielectric, the second that of the metal, and the
+//! last part the albedo of one facet, `x + y F0`.
 //!
-//! A base that keeps its own colour, a metal of a complex index for instance, has energies by channel in place of these numbers ([`Family::is_colored`]).
+//! Any other base keeps its colours, and rows have energies by channel. Strengths of all families are energies, not yet over the share above the horizon.
 //!
-//! Slopes of lobes are stored over closed forms ([`Family::spreads`]): ratios are of order 1 at all nodes, and lines between nodes hold.
+//! Slopes of lobes are stored over closed forms ([`Family::spreads`]): ratios are of order 1 at all nodes, and lines between nodes hold. Tails are one number
+//! of the family. Some of the trapped light is wide, by the same share in all channels.
 
 mod fit;
 mod paint;
@@ -89,21 +96,18 @@ pub struct Family {
     pub base: SlopeAxis,
     /// Number of the base among the layers: the lowest interface.
     pub interface: usize,
-    /// Whether the base reflects by an F0, whose place among energies is in closed form. Else energies are those of the channels.
-    pub is_colored: bool,
+    /// Whether the base is metallic in places, whose colours are in closed form. Else energies are those of the channels.
+    pub is_metallic: bool,
 }
 
 impl Family {
-    /// The family of an isotropic stack with its slope parameters in ranges, those of the coat and those of the base; `None` without an interface.
-    pub fn new(stack: &Stack, coat: [f64; 2], base: [f64; 2]) -> Option<Self> {
+    /// The family of an isotropic stack with its slope parameters in ranges, those of the coat and those of the base; `None` without an interface. A base
+    /// that is metallic in places is the lowest interface over a diffuse base, as it is without metal.
+    pub fn new(stack: &Stack, coat: [f64; 2], base: [f64; 2], is_metallic: bool) -> Option<Self> {
         let interface = base_interface(stack)?;
-        let is_colored = match &stack.layers[interface].base {
-            Base::Conductor { ior } | Base::Dielectric { ior, .. } => ior.f0().is_some(),
-            Base::Diffuse(_) => false,
-        };
         let [base, own] = [base, coat].map(|[least, most]| SlopeAxis::new(least, most));
         let coat = if interface > 0 { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-        Some(Self { coat, base, interface, is_colored })
+        Some(Self { coat, base, interface, is_metallic })
     }
 
     /// Whether interfaces lie above the base.

@@ -1,31 +1,27 @@
 //! Colours of a place, and rows of a family in them.
 
 use luthier_optics::Rgb;
-use luthier_optics::color::Color;
-use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
-use super::{Family, base_interface};
+use super::Family;
 use crate::models::lobes::{BaseLight, Lobe, Row};
 
 /// The colours of a family at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paint {
-    /// F0 of the base, RGB; of no use where that keeps its own colour.
-    pub f0: Rgb,
-    /// Albedo of the diffuse base below, RGB; 0 without one.
+    /// F0 of the metal, RGB.
+    pub metal: Rgb,
+    /// Share of the metal in the base, 0 to 1.
+    pub metallic: f64,
+    /// Albedo of the diffuse base, RGB.
     pub albedo: Rgb,
     /// Optical depth of the slab below the coat along the normal, RGB.
     pub depth: Rgb,
 }
 
 impl Paint {
-    /// The colours of a stack.
-    pub fn of(stack: &Stack, color: &Color) -> Self {
-        let f0 = base_interface(stack).and_then(|number| {
-            let interface = Interface::of(stack, number)?;
-            Some(interface.below.f0().unwrap_or_else(|| interface.sampled(color).rgb(1.0)))
-        });
+    /// The colours of a stack without metal.
+    pub fn of(stack: &Stack) -> Self {
         let albedo = match stack.layers.last().map(|layer| &layer.base) {
             Some(Base::Diffuse(base)) => base.albedo,
             _ => [0.0; 3],
@@ -34,74 +30,108 @@ impl Paint {
             Some(Base::Dielectric { slab, .. }) => slab.optical_depth(),
             _ => [0.0; 3],
         };
-        Self { f0: f0.unwrap_or([0.0; 3]), albedo, depth }
+        Self { metal: [0.0; 3], metallic: 0.0, albedo, depth }
+    }
+
+    /// These colours with a base of a `metallic-roughness` surface: the F0 of its metal and the colour that its diffuse base shows below an interface of an
+    /// F0 of 0.04 (Saunderson 1942, as in material files).
+    #[must_use]
+    pub fn metallic(self, base_color: Rgb, metallic: f64) -> Self {
+        let passed = (1.0 - PLASTIC_F0) * (20.0 / 21.0);
+        let albedo = base_color.map(|c| c / (passed + c * (1.0 - passed)));
+        Self { metal: base_color, metallic, albedo, ..self }
+    }
+
+    /// The first interface of a family in these colours, if that is the base: F0 of the mix.
+    pub(in crate::models::lobes) fn on(&self, stack: &Stack, family: Family) -> Stack {
+        let mut painted = stack.clone();
+        if let (true, Base::Conductor { ior } | Base::Dielectric { ior, .. }) =
+            (family.is_metallic, &mut painted.layers[family.interface].base)
+        {
+            let f0 = [0, 1, 2].map(|c: usize| PLASTIC_F0 + self.metallic * (self.metal[c] - PLASTIC_F0));
+            *ior = ior.clone().with_f0(f0);
+        }
+        painted
     }
 }
 
+/// F0 of a `metallic-roughness` surface without metal.
+const PLASTIC_F0: f64 = 0.04;
+
 impl Family {
     /// A row in colours, from a row of numbers; `spreads` are those of [`Self::spreads`]. The albedo is at most 1: what exceeds it is taken from the
-    /// light from below.
-    pub(in crate::models::lobes) fn painted(self, row: &Row, spreads: [f64; 2], paint: &Paint) -> Row {
+    /// light from below. `simulated` is the albedo of the diffuse base in the simulation of rows by channel.
+    pub(in crate::models::lobes) fn painted(self, row: &Row, spreads: [f64; 2], simulated: Rgb, paint: &Paint) -> Row {
         let mut here = row.clone();
         for (lobe, spread) in here.lobes.iter_mut().zip(spreads) {
             *lobe = Lobe {
                 shift: lobe.shift * spread,
                 sharpness: lobe.sharpness.map(|sharpness| sharpness * lobe.tail.sqrt() / spread),
+                shear: 0.0,
                 ..*lobe
             };
-            if !self.is_colored {
-                lobe.strength = lobe.strength.map(|energy| energy / lobe.share.max(SHARE_MIN));
-            }
         }
-        if !self.is_colored {
-            return here;
-        }
-        let Paint { f0, albedo, depth } = *paint;
-        let [first, once, more] = row.albedo_dir;
-        let [_, slope, _] = row.albedo_dir;
+        let wide_share = row.lobes.first().map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt());
+        let base = row.base.unwrap_or_default();
+        let more = base.more(simulated, paint.albedo);
         for c in 0..3 {
-            let f = f0[c];
-            let passed = |length: f64| libm::exp(-length * depth[c]);
-            let base = row.base.map_or(0.0, |base| from_below(&base, f, albedo[c], depth[c]));
-            here.wide[c] = chain(row.wide, f).max(0.0) + base;
-            if let Some(lobe) = here.lobes.first_mut() {
-                lobe.strength[c] = chain(row.lobes[0].strength, f).max(0.0) * passed(once) / lobe.share.max(SHARE_MIN);
-            }
-            if let Some(lobe) = here.lobes.get_mut(1) {
-                lobe.strength[c] = trapped(row.lobes[1].strength, f) * passed(more) / lobe.share.max(SHARE_MIN);
-            }
-            let facet = if self.is_coated() { first } else { first + slope * f };
-            let below = here.wide[c] + here.lobes.iter().map(|lobe| lobe.strength[c] * lobe.share).sum::<f64>();
+            let [facet, wide, once, trapped] = if self.is_metallic {
+                self.mixed(row, &base, paint, c)
+            } else {
+                let [once, trapped] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
+                let facet = row.albedo_dir[c] - row.wide[c] - once - trapped;
+                [facet, row.wide[c] + more[c].max(-row.wide[c]), once, trapped]
+            };
+            let below = wide + once + trapped;
             let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };
-            here.wide[c] *= kept;
-            here.lobes.iter_mut().for_each(|lobe| lobe.strength[c] *= kept);
+            here.wide[c] = kept * (wide + wide_share * trapped);
+            for (lobe, energy) in here.lobes.iter_mut().zip([once, (1.0 - wide_share) * trapped]) {
+                lobe.strength[c] = kept * energy / lobe.share.max(SHARE_MIN);
+            }
             here.albedo_dir[c] = facet + kept * below;
         }
         // The shape of the remainder stays: its light is in the remainder.
         here.base = row.base.map(|base| BaseLight { falloff: base.falloff, ..BaseLight::default() });
         here
     }
+
+    /// Energies of a base that is metallic in places, by channel: one facet of the first interface, the remainder without trapped light, and light that the
+    /// base reflected once, and more often.
+    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, c: usize) -> [f64; 4] {
+        let (metal, metallic) = (paint.metal[c], paint.metallic);
+        let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
+        let passed = |length: f64| libm::exp(-length * paint.depth[c]);
+        let ([light, once, length], [sent_back, more, around]) = (base.energy, base.internal);
+        let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
+        let [first, second, third] = row.albedo_dir;
+        let facet = if self.is_coated() { first } else { first + second * mix(metal, PLASTIC_F0) };
+        let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
+        let wide = mix(row.wide[0], row.wide[1] + diffuse);
+        let once = mix(chain(of_once, metal), once) * passed(second);
+        let trapped = mix(trapped(of_more, metal), more) * passed(third);
+        [facet, wide, once, trapped]
+    }
 }
 
 /// Least share above the horizon by which an energy is divided.
 const SHARE_MIN: f64 = 1e-3;
 
-/// Energy of light that visited the base once, from that at an F0 of 0 and of 1, and the pole.
-pub(super) fn chain([none, whole, pole]: Rgb, f: f64) -> f64 {
-    (none + f * (whole * (1.0 - pole) - none)) / (1.0 - pole * f).max(1e-3)
+/// Energy of light of one visit to the base at an F0: `(p + q f) / (1 - R f)` through its energies at 0, .8 and 1.
+pub(super) fn chain([none, bright, white]: Rgb, f: f64) -> f64 {
+    let beyond = 0.8 * (white - bright);
+    let pole = if beyond > 0.0 { ((0.2 * none + 0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX) } else { 0.0 };
+    (none + f * (white * (1.0 - pole) - none)) / (1.0 - pole * f)
 }
 
-/// Energy of light that the base reflected twice and more, from that at an F0 of 1/2 and of 1, and the pole.
-pub(super) fn trapped([half, whole, pole]: Rgb, f: f64) -> f64 {
-    let [middle, bright] = [4.0 * half * (1.0 - 0.5 * pole), whole * (1.0 - pole)];
-    f * f * (middle + (2.0 * f - 1.0) * (bright - middle)).max(0.0) / (1.0 - pole * f).max(1e-3)
+/// Energy of light of more visits at an F0: `f^2 (p + q f) / (1 - R f)` through its energies at .5, .9 and 1.
+pub(super) fn trapped([half, bright, white]: Rgb, f: f64) -> f64 {
+    let [half, bright] = [4.0 * half, bright / 0.81];
+    let beyond = 0.4 * (white - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half);
+    let curve = 0.4 * (white - bright) - 0.1 * (bright - half);
+    let pole = if beyond > 0.0 { (curve / beyond).clamp(0.0, POLE_MAX) } else { 0.0 };
+    let [half, white] = [half * (1.0 - 0.5 * pole), white * (1.0 - pole)];
+    f * f * (half + (2.0 * f - 1.0) * (white - half)).max(0.0) / (1.0 - pole * f)
 }
 
-/// Light of a diffuse base of an albedo below an interface of an F0.
-fn from_below(base: &BaseLight, f: f64, albedo: f64, depth: f64) -> f64 {
-    let [t0, t1, length] = base.energy;
-    let [r0, r1, around] = base.internal;
-    let sent_back = (r0 + f * (r1 + f * (1.0 - r0 - r1))) * libm::exp(-around * depth);
-    let passed = (1.0 - f) * (1.0 - f) * (t0 + t1 * f) * libm::exp(-length * depth);
-    passed.max(0.0) * albedo / (1.0 - sent_back * albedo).max(1e-3)
-}
+/// Largest pole.
+const POLE_MAX: f64 = 0.99;

@@ -2,13 +2,13 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Base, Stack};
+use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::Family;
 use crate::models::lobes::fit::{Simulation, seen_from};
 use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{FirstInterface, FitSettings, ViewAxis, Wide};
-use crate::references::layered_mc::ColorPaths;
+use crate::references::layered_mc::{ColorPaths, JointPath};
 
 /// F0 of the base in the channels of a simulation whose energies are in closed form. A quadratic goes through all three; the middle one is also where the
 /// absorption of slabs is measured.
@@ -22,22 +22,24 @@ pub(super) const DEPTH: f64 = 0.5;
 
 /// Light of a node.
 pub(super) struct Node {
-    /// Light that the base reflected once, and more often; nothing without a coat.
-    pub(super) lobes: Vec<Simulation>,
+    /// Light that the base reflected once, and more often.
+    pub(super) lobes: [Simulation; 2],
     /// The rest, by view: that of a diffuse base apart from what neither base has sent.
     pub(super) rest: Vec<Rest>,
     /// Coefficients of the remainder.
     pub(super) falloff: Option<[f64; 2]>,
 }
 
-/// An F0 between the last two of [`SHADES`], where light of many reflections is far from a line.
-pub(super) const BETWEEN: f64 = 0.8;
+/// F0 where the closed forms have energies beside those of [`SHADES`]: of light of one visit to the base, and of more.
+pub(super) const BETWEEN: [f64; 2] = [0.8, 0.9];
 
 /// Energies of a view.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Rest {
     /// Light that the base reflected once, and more often.
     pub(super) reflected: [Energies; 2],
+    /// Light of a colourless dielectric in place of the metal, in the first channel: what it reflected once, more often, and facets alone.
+    pub(super) plastic: [f64; 3],
     /// Light of a diffuse base.
     pub(super) base: Energies,
     /// Light that met the diffuse base exactly once.
@@ -53,13 +55,13 @@ pub(super) struct Rest {
 pub(super) struct Energies {
     pub(super) clear: Rgb,
     pub(super) dimmed: Rgb,
-    /// Without a slab, at an F0 of [`BETWEEN`].
-    pub(super) between: f64,
+    /// Without a slab, at each F0 of [`BETWEEN`].
+    pub(super) between: [f64; 2],
 }
 
 impl Energies {
-    fn add(&mut self, weight: Rgb, dimmed: f64, between: f64) {
-        self.between += between;
+    fn add(&mut self, weight: Rgb, dimmed: f64, between: [f64; 2]) {
+        (0..2).for_each(|i| self.between[i] += between[i]);
         for c in 0..3 {
             self.clear[c] += weight[c];
             self.dimmed[c] += weight[c] * dimmed;
@@ -67,36 +69,44 @@ impl Energies {
     }
 }
 
-/// Weight of a path at an F0 of [`BETWEEN`]. Its reflectances are `f + (1 - f) s` with Schlick's s of each facet; those of equal facets are known from two
-/// weights.
-fn between([_, half, whole]: Rgb, facets: u32) -> f64 {
+/// Weights of a path at each F0 of [`BETWEEN`]. Its reflectances are `f + (1 - f) s` with Schlick's s of each facet; those of equal facets are known from
+/// two weights.
+fn between([_, half, whole]: Rgb, facets: u32) -> [f64; 2] {
     if half <= 0.0 || whole <= 0.0 || facets == 0 {
-        return whole;
+        return [whole; 2];
     }
     let mean = libm::pow(half / whole, 1.0 / f64::from(facets));
     let steep = ((mean - SHADES[1]) / (1.0 - SHADES[1])).clamp(0.0, 1.0);
-    whole * libm::pow(BETWEEN + (1.0 - BETWEEN) * steep, f64::from(facets))
+    BETWEEN.map(|f| whole * libm::pow(f + (1.0 - f) * steep, f64::from(facets)))
 }
 
-/// The stack that stands for all colours of a family.
-fn in_shades(family: Family, stack: &Stack) -> Stack {
-    let mut shaded = stack.clone();
-    for (number, layer) in shaded.layers.iter_mut().enumerate() {
-        match &mut layer.base {
-            Base::Conductor { ior } if number == family.interface => *ior = ior.clone().with_f0(SHADES),
-            Base::Dielectric { ior, slab } => {
-                if number == family.interface {
-                    *ior = ior.clone().with_f0(SHADES);
-                }
-                if number == 0 {
-                    slab.absorption_per_um = [0.0; 3];
-                }
-            }
-            Base::Diffuse(base) => base.albedo = [WHITE; 3],
-            Base::Conductor { .. } => {}
-        }
+/// The stack whose base is a metal of all shades.
+fn of_metal(family: Family, stack: &Stack) -> Stack {
+    let mut metal = clear(stack);
+    metal.layers.truncate(family.interface + 1);
+    if let Some(Layer { base, .. }) = metal.layers.last_mut()
+        && let Base::Conductor { ior } | Base::Dielectric { ior, .. } = base
+    {
+        *base = Base::Conductor { ior: ior.clone().with_f0(SHADES) };
     }
-    shaded
+    metal
+}
+
+/// The stack without metal, over a diffuse base of [`WHITE`].
+fn of_plastic(stack: &Stack) -> Option<Stack> {
+    let mut plastic = clear(stack);
+    let [.., Layer { base: Base::Diffuse(base), .. }] = plastic.layers.as_mut_slice() else { return None };
+    base.albedo = [WHITE; 3];
+    Some(plastic)
+}
+
+/// The stack without the absorption of its first slab.
+fn clear(stack: &Stack) -> Stack {
+    let mut clear = stack.clone();
+    if let Some(Base::Dielectric { slab, .. }) = clear.layers.first_mut().map(|layer| &mut layer.base) {
+        slab.absorption_per_um = [0.0; 3];
+    }
+    clear
 }
 
 impl Node {
@@ -111,13 +121,15 @@ impl Node {
         settings: FitSettings,
     ) -> Self {
         let alphas = family.alphas(node);
-        let here = family.apply(stack, alphas);
-        let here = if family.is_colored { in_shades(family, &here) } else { here };
+        let plain = family.apply(stack, alphas);
+        // A base that is metallic in places has two simulations.
+        let (here, below) =
+            if family.is_metallic { (of_metal(family, &plain), of_plastic(&plain)) } else { (plain, None) };
         let spreads = Family::spreads(alphas);
         let cells = spreads.map(|spread| Cells::new(index, spread));
-        let paths = ColorPaths::new(&here, color);
+        let (paths, paths_below) = (ColorPaths::new(&here, color), below.map(|below| ColorPaths::new(&below, color)));
         let first = FirstInterface::of(&here, color);
-        let has_base = here.layers.len() > family.interface + 1;
+        let has_base = stack.layers.len() > family.interface + 1;
         let (mut once, mut more, mut wide, mut rest) = (vec![], vec![], vec![], vec![]);
         for row in 0..axis.size() {
             let wo = seen_from(axis, [1.0, 0.0], row);
@@ -126,34 +138,51 @@ impl Node {
             let mut energies = Rest::default();
             // Nodes have families of random numbers of their own.
             let seed = settings.seed.wrapping_add(((node * axis.size() + row) as u64) << 8);
+            let share = |path: &JointPath| path.weight.map(|w| w / settings.paths as f64);
+            let mut add_base = |path: &JointPath, energies: &mut Rest| {
+                let (weight, dimmed) = (share(path), libm::exp(-DEPTH * path.length));
+                energies.base.add(weight, dimmed, [0.0; 2]);
+                if path.base_visits == 1 {
+                    energies.base_once.add(weight, dimmed, [0.0; 2]);
+                }
+                of_rest.add(&[], [path.wi, wo], weight, path.base_visits);
+            };
+            let mut of_facets = Vec::new();
+            if let Some(paths) = &paths_below {
+                paths.trace(seed.wrapping_add(1), settings.paths, wo, |path| match path.reflections {
+                    _ if path.is_first_facet => {}
+                    _ if path.base_visits > 0 => add_base(&path, &mut energies),
+                    0 if family.is_coated() => energies.plastic[2] += share(&path)[0],
+                    reflections => {
+                        energies.plastic[usize::from(family.is_coated() && reflections > 1)] += share(&path)[0];
+                        if !family.is_coated() {
+                            of_once.add(&cells[..1], [path.wi, wo], share(&path), 0);
+                        }
+                    }
+                });
+            }
             paths.trace(seed, settings.paths, wo, |path| {
-                if path.is_first_facet {
-                    return;
-                }
-                let weight = path.weight.map(|w| w / settings.paths as f64);
-                let dimmed = libm::exp(-DEPTH * path.length);
-                if path.base_visits > 0 {
-                    energies.base.add(weight, dimmed, 0.0);
-                    if path.base_visits == 1 {
-                        energies.base_once.add(weight, dimmed, 0.0);
+                let (weight, dimmed) = (share(&path), libm::exp(-DEPTH * path.length));
+                let more = match path.reflections {
+                    _ if path.is_first_facet => return,
+                    _ if path.base_visits > 0 => return add_base(&path, &mut energies),
+                    0 if family.is_coated() => {
+                        energies.facets.add(weight, 1.0, [0.0; 2]);
+                        of_facets.push((path.wi, weight));
+                        return;
                     }
-                    of_rest.add(&[], [path.wi, wo], weight, path.base_visits);
-                    return;
-                }
-                match path.reflections {
-                    1.. if family.is_coated() => {
-                        let more = usize::from(path.reflections > 1);
-                        energies.reflected[more].add(weight, dimmed, between(weight, path.facets));
-                        let tally = if more == 0 { &mut of_once } else { &mut of_more };
-                        tally.add(&cells[more..=more], [path.wi, wo], weight, 0);
-                    }
-                    _ => {
-                        energies.facets.add(weight, 1.0, between(weight, path.facets));
-                        // Without a diffuse base this light decides the shape of the remainder.
-                        of_rest.add(&[], [path.wi, wo], weight, u32::from(!has_base));
-                    }
-                }
+                    // Without a coat the second lobe has what several facets of the metal reflect, and the first that of any other base.
+                    reflections => if family.is_coated() { reflections > 1 } else { family.is_metallic },
+                };
+                energies.reflected[usize::from(more)].add(weight, dimmed, between(weight, path.facets));
+                let tally = if more { &mut of_more } else { &mut of_once };
+                let cells = if more { &cells[1..] } else { &cells[..1] };
+                tally.add(cells, [path.wi, wo], weight, 0);
             });
+            // Without a diffuse base this light decides the shape of the remainder.
+            for (wi, weight) in of_facets {
+                of_rest.add(&[], [wi, wo], weight, u32::from(!has_base));
+            }
             energies.first_facet = first.as_ref().map_or([0.0; 3], |first| first.energy(wo));
             once.push(of_once);
             more.push(of_more);
@@ -161,12 +190,12 @@ impl Node {
             rest.push(energies);
         }
         let falloff = Wide::falloff_of(axis, &wide);
-        let mut lobes = Vec::new();
-        if family.is_coated() {
-            let [narrow, broad] = cells;
-            lobes.push(Simulation::of_part(axis, narrow, spreads[0], once));
-            lobes.push(Simulation::of_part(axis, broad, spreads[1], more));
-        }
+        let of_base = falloff.filter(|_| has_base);
+        let [narrow, broad] = cells;
+        let lobes = [
+            Simulation::of_part(axis, narrow, spreads[0], once, false, of_base),
+            Simulation::of_part(axis, broad, spreads[1], more, true, of_base),
+        ];
         Self { lobes, rest, falloff }
     }
 }

@@ -97,6 +97,8 @@ pub struct Simulation {
     pub(super) base_falloff: Option<[f64; 2]>,
     /// Whether the light has a wide remainder beside its lobes: all but the parts that a family splits it into.
     has_remainder: bool,
+    /// Whether tails of lobes are unknowns of a fit.
+    has_tail: bool,
 }
 
 /// Numbers of views: from grazing views up, one azimuth after the other. All azimuths share the view along the normal, which comes last.
@@ -234,7 +236,7 @@ impl Simulation {
         });
         let tallies: Vec<Tally> = tallies.collect();
         let base_falloff = Wide::falloff_of(axis, &tallies);
-        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff, has_remainder: true }
+        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff, has_remainder: true, has_tail: true }
     }
 
     /// The light in one set of its cells.
@@ -547,7 +549,7 @@ impl Found {
         lobes.collect()
     }
 
-    fn wide_falloff(&self) -> [f64; 2] {
+    pub(super) fn wide_falloff(&self) -> [f64; 2] {
         let p = &self.place.parameters;
         [p[p.len() - 2], p[p.len() - 1]]
     }

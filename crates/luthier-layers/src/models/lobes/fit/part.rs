@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 
 use super::problem::{Lobed, Problem};
-use super::{FIRST_STEPS, Found, LAST_STEPS, SEARCH, START_WIDTHS, Simulation, TAIL_STARTS};
+use super::{FIRST_STEPS, Found, LAST_STEPS, REMAINDER_START, SEARCH, START_WIDTHS, Simulation};
 use crate::least_squares::Place;
 use crate::models::lobes::ellipse::logarithm;
 use crate::models::lobes::parameters::{Basis, Start, parameters};
@@ -11,8 +11,15 @@ use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{Lobe, ViewAxis};
 
 impl Simulation {
-    /// A part of the light of an isotropic stack, by view; its lobe is about `width` wide.
-    pub(in crate::models::lobes) fn of_part(axis: ViewAxis, cells: Cells, width: f64, views: Vec<Tally>) -> Self {
+    /// A part of the light of an isotropic stack, by view: one lobe about `width` wide, and a remainder beside it, or none.
+    pub(in crate::models::lobes) fn of_part(
+        axis: ViewAxis,
+        cells: Cells,
+        width: f64,
+        views: Vec<Tally>,
+        has_remainder: bool,
+        base_falloff: Option<[f64; 2]>,
+    ) -> Self {
         Self {
             first: None,
             axis,
@@ -23,25 +30,32 @@ impl Simulation {
             widths: Vec::new(),
             views,
             base: None,
-            base_falloff: None,
-            has_remainder: false,
+            base_falloff,
+            has_remainder,
+            has_tail: false,
         }
     }
 
-    /// The lobe that is nearest to the light at all views. It stays near that of a neighbour, `factor` times as wide as it.
-    pub(in crate::models::lobes) fn lobe(&self, beside: Option<(&Found, f64)>) -> Found {
-        let problem = Problem::new(self, 0);
+    /// The lobe of a tail that is nearest to the light at all views. It stays near that of a neighbour, `factor` times as wide as it.
+    pub(in crate::models::lobes) fn lobe(&self, tail: f64, beside: Option<(&Found, f64)>) -> Found {
         if let Some((from, factor)) = beside {
             return self.follow(from, factor);
         }
-        let starts = TAIL_STARTS.map(|tail| {
-            let lobed = Lobed::new(&problem, 1);
-            let start = Start::new(Basis::Isotropic, self.starts[0], tail);
-            let place = Place::new(parameters(vec![start], [0.0; 2]), &lobed);
-            SEARCH.descend(SEARCH.descend(place, &lobed, FIRST_STEPS), &lobed, LAST_STEPS)
+        let problem = Problem::new(self, 0);
+        let lobed = Lobed::new(&problem, 1);
+        let start = Start::new(Basis::Isotropic, self.starts[0], libm::asin(tail.sqrt()));
+        let place = Place::new(parameters(vec![start], self.base_falloff.unwrap_or(REMAINDER_START)), &lobed);
+        Found { set: 0, place: SEARCH.descend(place, &lobed, FIRST_STEPS + LAST_STEPS) }
+    }
+
+    /// Share of the light at each view that is in the remainder.
+    pub(in crate::models::lobes) fn wide_shares(&self, found: &Found) -> Vec<f64> {
+        let energies = Problem::new(self, 0).energies(&found.place.parameters, 1);
+        let shares = energies.iter().map(|parts| {
+            let [lobe, wide] = [0, 1].map(|part: usize| parts[part].iter().sum::<f64>().max(0.0));
+            if wide > 0.0 { wide / (lobe + wide) } else { 0.0 }
         });
-        let best = starts.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
-        Found { set: 0, place: best.unwrap_or_else(|| unreachable!("there are starts")) }
+        shares.collect()
     }
 
     /// The lobe found at each view, with energies.

@@ -20,8 +20,8 @@ const SHARE_WANTED: f64 = 0.35;
 /// Weight of a share's lack to [`SHARE_WANTED`].
 const SHARE_WEIGHT: f64 = 0.5;
 
-/// That weight for lobes without a remainder beside them: rows of such lobes are mixed with others.
-const SHARE_WEIGHT_ALONE: f64 = 5.0;
+/// Both for a lobe without a remainder beside it, which has all the light.
+const SHARE_ALONE: [f64; 2] = [0.2, 5.0];
 
 /// Weight of second differences between nodes.
 const RIPPLE_WEIGHT: f64 = 0.03;
@@ -56,6 +56,8 @@ pub(in crate::models::lobes) struct ViewProblem {
     axis: ViewAxis,
     /// Whether the light has a wide remainder beside its lobes.
     has_remainder: bool,
+    /// Whether tails are unknowns.
+    has_tail: bool,
     basis: Basis,
     wo: DVec3,
     plane: Plane,
@@ -165,6 +167,7 @@ impl<'a> Problem<'a> {
             ViewProblem {
                 axis,
                 has_remainder: simulation.has_remainder,
+                has_tail: simulation.has_tail,
                 basis,
                 wo,
                 plane: if simulation.axes.is_some() {
@@ -189,7 +192,7 @@ impl<'a> Problem<'a> {
     /// At views where parts look alike, light does not tell how much each of them has. Noise would decide, and between rows the energy of one part
     /// would be seen with the shape of another. So the energies of a view are pulled to those of the views beside it. All light of a Lambertian
     /// base goes to the remainder: a lobe with some of it would keep the base's colour.
-    fn energies(&self, p: &[f64], count: usize) -> Vec<Vec<Rgb>> {
+    pub(super) fn energies(&self, p: &[f64], count: usize) -> Vec<Vec<Rgb>> {
         let profiles: Vec<Vec<Vec<f64>>> = self.views.iter().map(|view| view.profiles(p, count).cells).collect();
         let amounts: Vec<Amounts<'_>> =
             self.views.iter().zip(&profiles).map(|(view, profiles)| Amounts::new(profiles, &view.weights)).collect();
@@ -499,8 +502,8 @@ impl ViewProblem {
             self.roots[cell] * (self.found[cell] - sent)
         });
         let lobes = shares.len() - usize::from(self.has_remainder);
-        let weight = if self.has_remainder { SHARE_WEIGHT } else { SHARE_WEIGHT_ALONE };
-        residuals.chain(shares[..lobes].iter().map(|share| weight * (SHARE_WANTED - share).max(0.0))).collect()
+        let [wanted, weight] = if self.has_remainder { [SHARE_WANTED, SHARE_WEIGHT] } else { SHARE_ALONE };
+        residuals.chain(shares[..lobes].iter().map(|share| weight * (wanted - share).max(0.0))).collect()
     }
 
     /// Difference quotients of the residuals, which are `now`, along slopes of a part's cells and share.
@@ -533,6 +536,10 @@ impl ViewProblem {
                         columns.push((number, column.iter().map(|x| term.factor * share * x).collect()));
                     }
                 }
+            }
+            // A part of the light keeps its tail, so that rows of it can be mixed.
+            if !self.has_tail {
+                continue;
             }
             let [.., tail] = &sent;
             columns.push((of_lobe + self.basis.per_lobe() - 1, self.along(&mut profiles, lobe, tail, now)));
