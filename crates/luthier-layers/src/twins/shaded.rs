@@ -38,8 +38,8 @@ pub struct Place {
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
-    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` and `phong` show
-    /// none, and no model shows them beside patina.
+    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` shows slope
+    /// parameters and F0, `phong` shows none, and no model shows them beside patina.
     pub layers: Vec<LayerSample>,
 }
 
@@ -302,6 +302,16 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
         if let ([Layer { base: Base::Diffuse(base), .. }], Some(color)) = (here.layers.as_mut_slice(), place.base_color)
         {
             base.albedo = color;
+        }
+        let is_family = place.layers.iter().any(LayerSample::has_slopes_or_f0);
+        for (number, layer) in here.layers.iter_mut().enumerate().filter(|_| is_family) {
+            let own = place.layers.get(number).unwrap_or(&LayerSample::NONE);
+            own.apply(layer);
+            layer.surface = lobes::scaled_surface(layer.surface, own.alpha_factor());
+            // Lobes of a family are those of the base in its colour.
+            if let (Base::Diffuse(base), Some(color)) = (&mut layer.base, place.base_color) {
+                base.albedo = color;
+            }
         }
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));

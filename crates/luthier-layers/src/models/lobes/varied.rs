@@ -59,8 +59,10 @@ impl Varying {
     /// The node of the stack itself: at factor 1, or with all layers.
     pub fn nominal(self) -> usize {
         match self {
-            Self::Alpha | Self::Slab | Self::Patina(_) | Self::Family(_) => 0,
+            Self::Alpha | Self::Slab | Self::Patina(_) => 0,
             Self::Film(_) => self.nodes() / 2,
+            // Textures scale the largest slope parameters down.
+            Self::Family(family) => family.nodes() - 1,
         }
     }
 
@@ -186,6 +188,23 @@ impl Varied {
         self
     }
 
+    /// Rows between each two beside them: `parts` steps in place of one. Light read from either is the same.
+    #[must_use]
+    pub fn refined(mut self, parts: usize) -> Self {
+        for lobes in &mut self.nodes {
+            let size = lobes.axis.size();
+            let refined = lobes.rows.chunks(size).flat_map(|tile| {
+                (0..(size - 1) * parts + 1).map(|place| {
+                    let first = (place / parts).min(size - 2);
+                    tile[first].between(&tile[first + 1], place as f64 / parts as f64 - first as f64)
+                })
+            });
+            lobes.rows = refined.collect();
+            lobes.axis = lobes.axis.refined(parts);
+        }
+        self
+    }
+
     /// Number of tiles of a stack: over the azimuth if it is anisotropic, and else over the nodes.
     pub fn tiles_of(stack: &Stack, varying: Option<Varying>) -> usize {
         if Axes::of(stack).is_some() { Axes::TILES } else { varying.map_or(1, Varying::nodes) }
@@ -222,6 +241,12 @@ impl Varied {
 
     /// The lobes of the stack itself, without a texture.
     pub fn nominal(mut self) -> Lobes {
+        if let Some(Over { varying: Varying::Family(family), stack, color, .. }) = &self.varying {
+            let alphas = [0, family.interface].map(|layer| stack.layers[layer].surface.alpha_x);
+            if let Some(lobes) = self.painted(alphas, &Paint::of(stack, color)) {
+                return lobes;
+            }
+        }
         let node = self.varying().map_or(0, Varying::nominal);
         self.nodes.swap_remove(node)
     }
@@ -253,7 +278,15 @@ impl Varied {
             family.painted(&low.between(&high, next_coat.2), spreads, paint)
         });
         lobes.rows = rows.collect();
-        lobes.first = FirstInterface::of(&family.apply(&over.stack, alphas), &over.color);
+        let mut here = family.apply(&over.stack, alphas);
+        // Without a coat, the first interface has the colour of the place.
+        if let Base::Dielectric { ior, .. } | Base::Conductor { ior } = &mut here.layers[0].base
+            && family.is_colored
+            && !family.is_coated()
+        {
+            *ior = ior.clone().with_f0(paint.f0);
+        }
+        lobes.first = FirstInterface::of(&here, &over.color);
         Some(lobes)
     }
 
@@ -270,6 +303,24 @@ impl Varied {
         lobes.rows = rows.collect();
         lobes.first = FirstInterface::of(&over.varying.apply(&over.stack, factor), &over.color);
         lobes
+    }
+}
+
+impl Family {
+    /// A row of numbers, read between nodes, at slope parameters of coat and base that are held to the ranges, and in colours.
+    pub fn row_in(self, row: &Row, alphas: [f64; 2], paint: &Paint) -> Row {
+        self.painted(row, Self::spreads(self.held(alphas)), paint)
+    }
+
+    /// Fractional numbers of the nodes of slope parameters of coat and base.
+    pub fn places(self, [coat, base]: [f64; 2]) -> [f64; 2] {
+        [self.coat.place(coat), self.base.place(base)]
+    }
+
+    /// Slope parameters of coat and base held to the ranges.
+    fn held(self, alphas: [f64; 2]) -> [f64; 2] {
+        let [coat, base] = self.places(alphas);
+        [self.coat.alpha(coat), self.base.alpha(base)]
     }
 }
 
@@ -353,7 +404,7 @@ fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
 }
 
 /// A surface with a factor on its slope parameters, within the range of layer records before and after.
-fn scaled_surface(surface: Surface, factor: f64) -> Surface {
+pub(crate) fn scaled_surface(surface: Surface, factor: f64) -> Surface {
     if factor == 1.0 {
         return surface;
     }

@@ -95,6 +95,17 @@ fn luthier_place() -> LuthierPlace {
     return place;
 }
 
+//? layered, lobes_family
+/// Values of textures of a layer, counted from the top.
+fn luthier_own_place(place: LuthierPlace, index: u32) -> LuthierLayerPlace {
+    var layers = place.layers;
+    var own = luthier_layer_place();
+    if index < $layers {
+        own = layers[index];
+    }
+    return own;
+}
+
 /// A layer of a material, counted from the top, as it is at a place.
 fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
     var layer = luthier_layer(material, index);
