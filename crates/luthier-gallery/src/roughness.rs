@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn lobes_over_a_factor_follow_it_down() {
         let over = |factor| {
-            let varying = Some(VaryingRecord { factor, tiles: 8, least_spread: 0.1, factors: None });
+            let varying = Some(VaryingRecord { factor, tiles: 8, least_spread: 0.1, factors: None, family: None });
             let lobes = LobesRecord {
                 index: 1.5,
                 falloff: [0.0; 2],

@@ -137,9 +137,18 @@ impl MaterialEntry {
             // Models of the first interface may have the base, which is the last layer.
             let has_base = self.model.honours(Feature::Base, form) || self.constants.diffuse_term == DiffuseTerm::Added;
             let is_base = map.slot == MapSlot::Albedo && has_base;
-            let is_shown = (layer == 0 || reads_all || is_base) && self.model.honours(feature, form);
-            is_shown.then_some((layer, map.slot))
+            let is_shown = match feature {
+                Feature::LayerAlpha | Feature::MetallicMap if self.model.is_fitted() => self.has_axis_of(layer),
+                _ => layer == 0 || reads_all || is_base,
+            };
+            (is_shown && self.model.honours(feature, form)).then_some((layer, map.slot))
         })
+    }
+
+    /// Whether rows of lobes are those of a family whose coat or base is this layer.
+    fn has_axis_of(&self, layer: u32) -> bool {
+        let family = self.constants.lobes.and_then(|lobes| lobes.family());
+        family.is_some_and(|family| layer == 0 || layer == family.interface)
     }
 }
 

@@ -122,6 +122,7 @@ mod tests {
 
     const WEIGHT: &str = "weight = 0.5\n";
     const WEIGHT_MAP: &str = "weight = \"w.png\"\n";
+    const OWN: &str = "maps = { alpha = \"a.png\" }\n";
     const PAINT: &str = "maps = { albedo = \"paint.png\" }\n";
 
     fn material(body: &str) -> Material {
@@ -151,7 +152,16 @@ mod tests {
             (GOLD.to_owned() + "distribution = \"blinn\"\n" + rough, "elek", "elek", Some("layer.0.distribution")),
             (WHITE.to_owned(), "elek", "elek", None),
             (VARYING.to_owned() + GOLD + rough, "lobes", "elek", None),
-            (COAT.to_owned() + smooth + METALLIC + rough + painted, "belcour", "elek", Some("layer.1.maps.metallic")),
+            (COAT.to_owned() + smooth + METALLIC + rough + painted, "lobes", "elek", None),
+            (METALLIC.to_owned() + rough + painted, "lobes", "elek", None),
+            (COAT.to_owned() + rough + OWN + GOLD + rough + OWN, "lobes", "elek", None),
+            (
+                COAT.to_owned() + rough + COAT + rough + OWN + GOLD + rough,
+                "belcour",
+                "elek",
+                Some("layer.1.maps.alpha"),
+            ),
+            (COAT.to_owned() + rough + WEIGHT + OWN + GOLD + rough, "elek", "elek", Some("layer.0.maps.alpha")),
             (
                 COAT.to_owned() + smooth + METALLIC + brushed + painted,
                 "yamaguchi",

@@ -1,6 +1,6 @@
 //! Features of a material that its model leaves out.
 
-use luthier_manifest::{Feature, Form, ModelPart, ShadingModel};
+use luthier_manifest::{Feature, Form, MapSlot, ModelPart, ShadingModel};
 use luthier_optics::stack::{Base, Distribution, Film, Layer};
 
 use crate::material::Material;
@@ -113,6 +113,23 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         } else {
             (Feature::Weight, weight_key(material))
         };
+        let family = material.family();
+        // A family has the factors of a roughness map in its axes, and what slabs absorb in closed form.
+        let (roughness, thickness) = if family.is_some() { (false, false) } else { (roughness, thickness) };
+        for (number, layer) in material.layers.iter().enumerate() {
+            for map in layer.maps.named() {
+                let has_axis = family.is_some_and(|family| number == 0 || number == family.interface);
+                let lacks = match map.slot {
+                    MapSlot::Alpha | MapSlot::BaseColor | MapSlot::Metallic => !has_axis,
+                    MapSlot::AlphaX | MapSlot::AlphaY => true,
+                    _ => false,
+                };
+                if let Some(feature) = map.slot.layer_feature(number as u32).filter(|_| lacks) {
+                    let key = format!("layer.{number}.maps.{}", map.key);
+                    found.push(LeftOut { feature, key, forms: Form::ALL.to_vec() });
+                }
+            }
+        }
         let albedo = material.layers.iter().position(|layer| layer.maps.albedo.is_some());
         let albedo_key = format!("layer.{}.maps.albedo", albedo.unwrap_or(0));
         for (lacks, feature, key) in [

@@ -55,7 +55,9 @@ pub use diagnostic::{Diagnostic, Severity};
 pub use doubt::ALPHA_MIN;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use left_out::{LeftOut, distribution_key, left_out};
-pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap};
+pub use material::{
+    FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, SlopeRanges, TexelRanges,
+};
 pub use parse::{FileKind, Parsed, parse, parse_partly};
 pub use picture::{Channel, PictureRef, TexelUse, UvTransform, VariationSource};
 pub use places::Places;

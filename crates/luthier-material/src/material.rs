@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use luthier_model::ModelPart;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::Stack;
+use luthier_optics::stack::{Base, Film, Layer, Stack};
 
 use luthier_manifest::{BeamsRecord, Budget, ColorMode, DiffuseTerm, LowerReflectance, MapSlot, ShadingModel};
 
@@ -142,6 +142,34 @@ impl Material {
         self.stack.layers.len() > 1 && (self.effects.patina.is_some() || self.weight().is_some())
     }
 
+    /// The ranges of slope parameters that textures give to the first interface and to the lowest one, if textures vary these, or base colour and metal, and
+    /// nothing else that decides shapes of light varies. Model `lobes` then has rows over both slope parameters, with colours in closed form.
+    ///
+    /// Texels multiply slope parameters; those of a roughness map do so squared.
+    pub fn family(&self) -> Option<SlopeRanges> {
+        let layers = &self.stack.layers;
+        let interface = layers.iter().rposition(|layer| !matches!(layer.base, Base::Diffuse(_)))?;
+        let is_asked = [0, interface].into_iter().any(|i| self.layers[i].maps.alpha.is_some())
+            || self.layers[interface].metallic.is_some();
+        let is_turned = layers.iter().any(Layer::is_anisotropic)
+            || self.layers.iter().any(|layer| layer.maps.alpha_x.is_some() || layer.maps.alpha_y.is_some());
+        let has_film = layers[0].films.first().is_some_and(Film::varies);
+        let is_metallic = self.layers[interface].metallic.is_some();
+        let first = &self.layers[0];
+        let has_slab = first.maps.thickness.is_some() && !is_metallic;
+        if !is_asked || is_turned || has_film || has_slab || self.is_bare_in_places() {
+            return None;
+        }
+        let of_surface = if first.maps.roughness.is_some() { first.texels.roughness.map(|r| r * r) } else { [1.0; 2] };
+        let range = |number: usize| {
+            let own =
+                if self.layers[number].maps.alpha.is_some() { self.layers[number].texels.alpha } else { [1.0; 2] };
+            let alpha = layers[number].surface.alpha_x;
+            [0, 1].map(|end: usize| alpha * own[end] * of_surface[end])
+        };
+        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic })
+    }
+
     /// The re-radiation of its base, if that is fluorescent.
     pub fn reradiation(&self) -> Option<[Rgb; 3]> {
         self.layers.last().and_then(|layer| layer.reradiation)
@@ -190,14 +218,45 @@ pub struct LayerExtras {
     pub maps: Maps,
     /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
+    /// Smallest and largest texel of the maps of slope parameters.
+    pub texels: TexelRanges,
 }
 
 impl Default for LayerExtras {
     /// A layer that is nothing but physics, and covers all of the surface.
     fn default() -> Self {
         let (reradiation, film_variation, exponents, metallic) = (None, None, None, None);
-        Self { weight: 1.0, reradiation, film_variation, exponents, maps: Maps::default(), metallic }
+        let (maps, texels) = (Maps::default(), TexelRanges::default());
+        Self { weight: 1.0, reradiation, film_variation, exponents, maps, metallic, texels }
     }
+}
+
+/// Smallest and largest texel of maps of a layer: 0 and 1 unless the pictures were measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TexelRanges {
+    /// Of the map of its own slope parameters.
+    pub alpha: [f64; 2],
+    /// Of the map of the roughness of the surface.
+    pub roughness: [f64; 2],
+}
+
+impl Default for TexelRanges {
+    fn default() -> Self {
+        Self { alpha: [0.0, 1.0], roughness: [0.0, 1.0] }
+    }
+}
+
+/// Ranges of slope parameters of a stack whose textures vary single layers, see [`Material::family`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlopeRanges {
+    /// Number of the base among the layers: the lowest interface.
+    pub interface: usize,
+    /// Least and greatest slope parameter of the first interface.
+    pub coat: [f64; 2],
+    /// Those of the base.
+    pub base: [f64; 2],
+    /// Whether the base is metallic in places.
+    pub is_metallic: bool,
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.

@@ -246,8 +246,8 @@ const LOBES: Facts = Facts {
     reach: Reach::First,
     is_isotropic: false,
     forms: &[Form::Baked],
-    // Rows are over azimuths against axes that stay, and for one F0; the light of a base, which is in proportion to its albedo, is a part of
-    // its own.
+    // Rows are over azimuths against axes that stay, or over slope parameters of coat and base; the light of a base, which is in proportion to its
+    // albedo, is a part of its own.
     shows: Shows {
         always: &[
             STACK,
@@ -263,6 +263,8 @@ const LOBES: Facts = Facts {
                 RoughnessMap,
                 ThicknessMap,
                 AlbedoMap,
+                LayerAlpha,
+                MetallicMap,
             ],
         ],
         baked: &[],

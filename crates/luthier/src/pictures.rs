@@ -1,7 +1,7 @@
 //! Pictures that materials name: read, and made into the maps that ship.
 
 use luthier_lut::{Image, Picture, PictureSamples, srgb};
-use luthier_material::{Channel, PictureRef, TexelUse};
+use luthier_material::{Channel, LayerExtras, Material, PictureRef, TexelRanges, TexelUse};
 use luthier_texture::picture::{Decoded, decode};
 use luthier_texture::{Container, png};
 
@@ -49,6 +49,22 @@ pub(crate) fn file(read: Read, picture: &PictureRef) -> Result<(Picture, Vec<u8>
     }
     let bytes = png::encode_picture(&read.picture).map_err(|source| source.to_string())?;
     Ok((read.picture, bytes))
+}
+
+/// Finds the smallest and the largest texel of the maps that make rows of lobes span slope parameters. A picture that cannot be read keeps the whole range: its
+/// error is told where it ships.
+pub(crate) fn measure_texels(material: &mut Material) {
+    if material.family().is_none() {
+        return;
+    }
+    let (source, [low, high]) = (material.source.clone(), TexelRanges::default().alpha);
+    for LayerExtras { maps, texels, .. } in &mut material.layers {
+        for (picture, range) in [(&maps.alpha, &mut texels.alpha), (&maps.roughness, &mut texels.roughness)] {
+            let Some(Ok(image)) = picture.as_ref().map(|picture| read_image(&source, picture)) else { continue };
+            let values = image.data.iter().map(|value| f64::from(*value).clamp(low, high));
+            *range = values.fold([high, low], |[least, most], value| [least.min(value), most.max(value)]);
+        }
+    }
 }
 
 /// The texels of a picture as a material asks for them.

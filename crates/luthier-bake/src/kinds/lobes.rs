@@ -3,20 +3,21 @@
 use std::sync::Arc;
 
 use luthier_layers::models::lobes::{
-    Axes, Cover, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Painted, Row, Traced, Varied, Varying,
-    base_below, most_lobes, shown,
+    Axes, Cover, Critical, EXCESS, Family, FitError, FitSettings, Judge, LOBES, Painted, Row, SlopeAxis, Traced,
+    Varied, Varying, base_below, most_lobes, shown,
 };
 use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, RowLayout, Scan, TableKind, TexelFormat, WeightBits,
     measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, PaintedRecord,
-    Search, VaryingFactor, VaryingRecord,
+    AxesRecord, Budget, Candidate, CandidateForm, Decision, FamilyRecord, LobesError, LobesRecord, MeasuredError,
+    PaintedRecord, Search, SlopesRecord, VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
+use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::Stack;
+use luthier_optics::stack::{Base, Stack};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -38,6 +39,12 @@ const ROWS: usize = FitSettings::DEFAULT_ROWS;
 /// Steps between the rows that are kept, among which a search chooses.
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
+/// Steps of [`ROWS`] from row to row of a family. With half as many steps, lines between rows err no more than shapes do.
+const FAMILY_STEP: usize = 2;
+
+/// Rows of the fit of a family.
+const FAMILY_ROWS: usize = (ROWS - 1) / FAMILY_STEP + 1;
+
 /// Jobs that fit lobes.
 pub(crate) const FIT: JobKind = JobKind::part("fit");
 
@@ -46,7 +53,10 @@ pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
-        Ok(shape(LOBES, materials.iter().any(has_base), 1, RowLayout::Filtered.format()))
+        let mut fitted = materials.iter().filter(|material| material.model().is_fitted()).peekable();
+        let are_families = fitted.peek().is_some() && fitted.all(|material| is_family(varying(material)));
+        let step = if are_families { FAMILY_STEP } else { 1 };
+        Ok(shape(LOBES, materials.iter().any(has_base), step, RowLayout::Filtered.format()))
     }
 
     /// A tile for the first layer, whose lobes contain the light of all layers below.
@@ -70,9 +80,15 @@ impl Kind for Table {
     }
 }
 
-/// The factor that a texture varies and that rows are over. A material has at most one.
+/// The factor that a texture varies and that rows are over, or the slope parameters and colours of single layers. A material has at most one of these.
 fn varying(material: &Material) -> Option<Varying> {
     let maps = &material.layers.first()?.maps;
+    let family = material
+        .family()
+        .and_then(|ranges| Family::new(&shown(&material.stack), ranges.coat, ranges.base, ranges.is_metallic));
+    if let Some(family) = family {
+        return Some(Varying::Family(family));
+    }
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
     let scaled =
         maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack));
@@ -81,6 +97,11 @@ fn varying(material: &Material) -> Option<Varying> {
         None => Cover::PLAIN,
     });
     scaled.or_else(|| covers.map(Varying::Patina))
+}
+
+/// Whether rows are those of a family.
+fn is_family(varying: Option<Varying>) -> bool {
+    matches!(varying, Some(Varying::Family(_)))
 }
 
 /// A budget that cannot be met, with the error of each material, by number, under the nearest candidate.
@@ -101,12 +122,17 @@ pub fn is_too_deep(material: &Material) -> bool {
 /// Whether rows of a material contain the light of a diffuse base.
 fn has_base(material: &Material) -> bool {
     let is_covered = matches!(varying(material), Some(Varying::Patina(_)));
-    material.model().is_fitted() && !is_covered && base_below(&material.stack).is_some()
+    // Rows of a family have the shape of the remainder there, with or without a base.
+    let has_shape = is_family(varying(material));
+    material.model().is_fitted() && !is_covered && (has_shape || base_below(&material.stack).is_some())
 }
 
 /// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].
 pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budget) -> RowLayout {
-    let is_alone = |material: &Material| Varied::tiles_of(&shown(&material.stack), varying(material)) == 1;
+    let is_alone = |material: &Material| {
+        let varying = varying(material);
+        !is_family(varying) && Varied::tiles_of(&shown(&material.stack), varying) == 1
+    };
     let mut fitted = materials.iter().filter(|material| material.model().is_fitted());
     options.layout.unwrap_or_else(|| {
         let has_room = asked.max_bytes.is_none() && options.formats.has(RowLayout::Steps.format());
@@ -155,7 +181,9 @@ pub(crate) fn decide(
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     let format = settings.fixed(TableKind::Lobes).format;
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(lobes_of(&fits, None), has_base, 1, format));
+        let are_families = !fits.is_empty() && fits.iter().all(|fits| is_family(fits.of(None).varied.varying()));
+        let step = if are_families { FAMILY_STEP } else { 1 };
+        settings.take_lobes(shape(lobes_of(&fits, None), has_base, step, format));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
@@ -202,8 +230,27 @@ fn measured(error: FitError) -> MeasuredError {
 /// The job that fits a material; for every number of lobes, if a search chooses among them.
 fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
     let (stack, color, varying) = (shown(&material.stack), material.color(), varying(material));
+    let stack = match varying {
+        Some(Varying::Family(family)) => alike(&stack, family),
+        _ => stack,
+    };
     Arc::new(FitJob { stack, color, varying, is_searched })
 }
+
+/// The stack of a family with the same numbers in place of all that its rows do not hang on: slope parameters that are axes, and colours in closed
+/// form. Materials that differ in these alone share a fit.
+fn alike(stack: &Stack, family: Family) -> Stack {
+    let mut stack = family.apply(stack, family.alphas(0));
+    if family.is_metallic
+        && let Some(Base::Diffuse(base)) = stack.layers.last_mut().map(|layer| &mut layer.base)
+    {
+        base.albedo = ANY_COLOR;
+    }
+    stack
+}
+
+/// A colour that stands for others.
+const ANY_COLOR: Rgb = [0.5; 3];
 
 /// The lobes of a stack, as in bakes without limits on their errors. They come from the store, or are fitted now and
 /// kept.
@@ -241,7 +288,17 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
     let Some((fits, shape)) = fits.zip(settings.shape(TableKind::Lobes)) else {
         let base = base_below(&material.stack).filter(|_| has_base(material));
         let painted = base.map(|base| PaintedRecord { albedo: base.albedo, moments: None });
-        return LobesRecord { axes, painted, ..UNFITTED };
+        let varying = varying(material).and_then(|varying| match varying {
+            Varying::Family(family) => Some(VaryingRecord {
+                factor: VaryingFactor::Family,
+                tiles: family.nodes() as u32,
+                least_spread: 1.0,
+                factors: None,
+                family: Some(family_record(family)),
+            }),
+            _ => None,
+        });
+        return LobesRecord { axes, painted, varying, ..UNFITTED };
     };
     let fit = fits.of(settings.lobes);
     let Fit { varied, errors } = fit;
@@ -268,20 +325,37 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
                 Varying::Film(_) => VaryingFactor::FilmFactor,
                 Varying::Patina(_) if material.weight().is_some() => VaryingFactor::WeightFactor,
                 Varying::Patina(_) => VaryingFactor::Patina,
+                Varying::Family(_) => VaryingFactor::Family,
             },
             factors: match varying {
                 Varying::Film(factors) => Some(factors),
-                Varying::Alpha | Varying::Slab | Varying::Patina(_) => None,
+                Varying::Alpha | Varying::Slab | Varying::Patina(_) | Varying::Family(_) => None,
+            },
+            family: match varying {
+                Varying::Family(family) => Some(family_record(family)),
+                Varying::Alpha | Varying::Slab | Varying::Film(_) | Varying::Patina(_) => None,
             },
             tiles: varied.nodes.len() as u32,
             least_spread: varied.least_spread(),
         }),
         axes,
         painted: lobes.frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
-            albedo,
+            // Fits of families have any colour.
+            albedo: base_below(&material.stack).map_or(albedo, |base| base.albedo),
             moments: varied.varying().filter(|_| is_lambertian).map(|_| wide.moments()),
         }),
         error,
+    }
+}
+
+/// The axes of a family for the manifest.
+fn family_record(family: Family) -> FamilyRecord {
+    let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
+    FamilyRecord {
+        coat: family.is_coated().then(|| axis(family.coat)),
+        base: axis(family.base),
+        interface: family.interface as u32,
+        is_metallic: family.is_metallic,
     }
 }
 
@@ -304,6 +378,17 @@ impl Fit {
     fn lobes(&self) -> usize {
         self.varied.nodes[0].rows[0].lobes.len()
     }
+
+    /// The lobes with every `step`-th of [`ROWS`].
+    fn thinned(&self, step: usize) -> Varied {
+        thinned(self.varied.clone(), step)
+    }
+}
+
+/// Lobes with every `step`-th of [`ROWS`]. A family has fewer, and gets those between.
+fn thinned(varied: Varied, step: usize) -> Varied {
+    let varied = if is_family(varied.varying()) { varied.refined(FAMILY_STEP) } else { varied };
+    varied.thinned(step)
 }
 
 /// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on.
@@ -326,6 +411,13 @@ struct FitJob {
     is_searched: bool,
 }
 
+impl FitJob {
+    fn settings(&self) -> FitSettings {
+        let rows = if is_family(self.varying) { FAMILY_ROWS } else { ROWS };
+        FitSettings { rows, ..FitSettings::default() }
+    }
+}
+
 impl Job for FitJob {
     fn kind(&self) -> JobKind {
         FIT
@@ -336,7 +428,7 @@ impl Job for FitJob {
     }
 
     fn inputs(&self) -> Value {
-        let FitSettings { rows, paths, seed } = FitSettings::default();
+        let FitSettings { rows, paths, seed } = self.settings();
         json!({
             "stack": json::stack(&self.stack),
             "color": json::color(&self.color),
@@ -352,14 +444,16 @@ impl Job for FitJob {
 
     fn run(&self, _: &Inputs<'_>) -> Artefact {
         let Self { stack, color, varying, is_searched } = self;
-        let traced = Traced::new(stack, color, *varying, FitSettings::default());
+        let traced = Traced::new(stack, color, *varying, self.settings());
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
+        // A family has two lobes: there is nothing to choose.
+        let is_chosen = *is_searched && !is_family(*varying);
         let wanted: Vec<(usize, f64)> =
-            if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
+            if is_chosen { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
         let fits = wanted.into_iter().map(|(most, excess)| {
             let varied: Varied = traced.fit(most, excess);
-            Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
+            Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }
         });
         Artefact::new(Fits(fits.collect()))
     }
@@ -374,6 +468,10 @@ fn numbers(varying: Varying) -> Value {
     match varying {
         Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
         Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }) => json!([diffuse_albedo, base_alpha, tarnish]),
+        Varying::Family(Family { coat, base, interface, is_metallic }) => {
+            let axis = |SlopeAxis { least, most, nodes }| json!([least, most, nodes]);
+            json!([axis(coat), axis(base), interface, is_metallic])
+        }
     }
 }
 
@@ -385,6 +483,7 @@ fn factor_name(varying: Varying) -> &'static str {
         Varying::Film(_) => "thickness of the film",
         Varying::Patina(cover) if cover.is_plain() => "first layer",
         Varying::Patina(_) => "patina",
+        Varying::Family(_) => "slope parameters of single layers",
     }
 }
 
@@ -432,7 +531,7 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
-        let varied = fits.of(self.most).varied.clone().thinned(step(x.size));
+        let varied = fits.of(self.most).thinned(step(x.size));
         let (lobes, tile) = varied.tile(self.tile);
         let (has_base, last) = (y.min < 0.0, y.max as usize);
         let most = (last + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
@@ -479,6 +578,11 @@ impl Job for LobesJob {
         let factors = varied.varying().map(|varying: Varying| match (varying, varying.factor(self.tile as f64)) {
             (Varying::Patina(_), amount) if amount > 1.0 => {
                 " with all layers, and none of the light of its patina".to_owned()
+            }
+            (Varying::Family(family), _) => {
+                let [coat, base] = family.alphas(self.tile);
+                let of_coat = if family.is_coated() { format!("{coat:.4} of the coat and ") } else { String::new() };
+                format!(" at slope parameters {of_coat}{base:.4} of the base")
             }
             (_, factor) => format!(" with {factor:.4} of its {}", factor_name(varying)),
         });

@@ -15,7 +15,7 @@ use crate::effects::layer_sample::LayerSample;
 use crate::effects::textured::TextureSample;
 use crate::frame;
 use crate::layers::ALPHA_MIN;
-use crate::models::lobes::{self, Below, Cover, Fit, Lobes, Varied, Varying};
+use crate::models::lobes::{self, Below, Cover, Fit, Lobes, Paint, Varied, Varying, base_below};
 use crate::models::parts::{Chosen, Parts, Reflectances};
 use crate::models::shade::ShaderTerms;
 use crate::models::shade::Under;
@@ -38,9 +38,11 @@ pub struct Place {
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
-    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` and `phong` show
-    /// none, and no model shows them beside patina.
+    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` shows slope
+    /// parameters and F0, `phong` shows none, and no model shows them beside patina.
     pub layers: Vec<LayerSample>,
+    /// Base colour of a `metallic-roughness` base, and how metallic it is. `lobes` reads it: there such a base is a mix of a metal and of a dielectric.
+    pub metal: Option<(Rgb, f64)>,
 }
 
 impl Place {
@@ -52,6 +54,7 @@ impl Place {
         base_color: None,
         reradiation: None,
         layers: Vec::new(),
+        metal: None,
     };
 }
 
@@ -85,6 +88,8 @@ pub struct Shaded<T = Exact> {
     bare: Option<PartTwin<T>>,
     /// Whether the model is `lobes`, whose light is linear in the amount of patina.
     has_lobes: bool,
+    /// Share of a place that is metal in a mix, and the metal: of the model `lobes`.
+    metal: Option<(f64, Box<Shaded<T>>)>,
 }
 
 /// Part of a stack that covers a place, wholly or in part.
@@ -162,6 +167,24 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
+        if let (true, Some((base_color, metallic)), Some(_)) = (model.is_fitted(), place.metal, base_below(stack)) {
+            let paint = Paint::of(stack).metallic(base_color, metallic);
+            let layers = place.layers.iter().map(|own| LayerSample { f0: None, ..*own }).collect();
+            let of_plastic = Place { metal: None, base_color: Some(paint.albedo), layers, ..place.clone() };
+            let of_metal = Place { base_color: None, ..of_plastic.clone() };
+            let exact =
+                |stack: &Stack, place: &Place| Self::exact(fit, model, stack, wavelengths_nm, color, place, parts);
+            if metallic >= 1.0 {
+                return exact(&paint.metal_of(stack), &of_metal);
+            }
+            let plastic = exact(&paint.plastic_of(stack), &of_plastic)?;
+            let metal = if metallic > 0.0 {
+                Some((metallic, Box::new(exact(&paint.metal_of(stack), &of_metal)?)))
+            } else {
+                None
+            };
+            return Some(Self { metal, ..plastic });
+        }
         let ends: OnceCell<Vec<Lobes>> = OnceCell::new();
         let terms = |part: Part, here: &Stack, whole: &Stack| {
             if !model.is_fitted() || part == Part::All && Interface::of(here, 0).is_none() {
@@ -220,7 +243,7 @@ impl<T: ShaderTerms> Shaded<T> {
         };
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let place = Place { patina, under, ..place.clone() };
-        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted() })
+        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted(), metal: None })
     }
 
     /// Radiance under light of a colour, see [`Twin::eval_lit`]. Places with patina have no fluorescent base.
@@ -236,6 +259,13 @@ impl<T: ShaderTerms> Shaded<T> {
     /// `f cos_theta_i`, RGB, with the cosine against the place's normal. It is zero if either direction is at or below the horizon of the surface or of
     /// the place.
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
+        let value = self.eval_unmixed(wi, wo);
+        let Some((share, metal)) = &self.metal else { return value };
+        let metal = metal.eval_unmixed(wi, wo);
+        [0, 1, 2].map(|c: usize| value[c] + share * (metal[c] - value[c]))
+    }
+
+    fn eval_unmixed(&self, wi: DVec3, wo: DVec3) -> Rgb {
         let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
         if [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
             return [0.0; 3];
@@ -302,6 +332,16 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
         if let ([Layer { base: Base::Diffuse(base), .. }], Some(color)) = (here.layers.as_mut_slice(), place.base_color)
         {
             base.albedo = color;
+        }
+        let is_family = place.layers.iter().any(LayerSample::has_slopes_or_f0);
+        for (number, layer) in here.layers.iter_mut().enumerate().filter(|_| is_family) {
+            let own = place.layers.get(number).unwrap_or(&LayerSample::NONE);
+            own.apply(layer);
+            layer.surface = lobes::scaled_surface(layer.surface, own.alpha_factor());
+            // Lobes of a family are those of the base in its colour.
+            if let (Base::Diffuse(base), Some(color)) = (&mut layer.base, place.base_color) {
+                base.albedo = color;
+            }
         }
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));

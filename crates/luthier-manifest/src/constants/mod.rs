@@ -137,11 +137,61 @@ pub struct VaryingRecord {
     /// Factors on the nominal thickness of the film at the first tile and at the last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factors: Option<[f64; 2]>,
+    /// Axes of a family, whose tiles are over slope parameters of single layers in place of one factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub family: Option<FamilyRecord>,
+}
+
+/// Axes of a family: textures vary slope parameters and colours of a coat, the first interface, and of the base, the lowest one. Tiles over the base follow
+/// each other for each node of the coat: tile `coat * base.nodes + base`. Rows hold numbers from which energies follow for the colours of a place
+/// (docs/manifest.md), and slopes of lobes over `sqrt(base^2 + 0.09 coat^2)` and `min(1, sqrt(4.84 base^2 + coat^2))` of the slope parameters there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FamilyRecord {
+    /// Slope parameter of the first interface; absent where the base is the first interface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coat: Option<SlopesRecord>,
+    /// Slope parameter of the base.
+    pub base: SlopesRecord,
+    /// Number of the base among the layers.
+    pub interface: u32,
+    /// Whether the base is metallic in places, whose colours are in closed form. Else rows have energies of the channels.
+    pub is_metallic: bool,
+}
+
+/// Nodes over a range of slope parameters, at equal steps of the root.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SlopesRecord {
+    /// Slope parameter of the first node: places with less are held to it.
+    pub least: f64,
+    /// That of the last.
+    pub most: f64,
+    /// Number of nodes; 1 where the slope parameter does not vary.
+    pub nodes: u32,
+}
+
+impl SlopesRecord {
+    /// The roots of both ends, and the number of steps in a unit of the root.
+    fn words(&self) -> [f64; 3] {
+        let [least, most] = [self.least, self.most].map(f64::sqrt);
+        let steps = f64::from(self.nodes) - 1.0;
+        [least, most, if self.nodes > 1 { steps / (most - least) } else { 0.0 }]
+    }
+}
+
+impl FamilyRecord {
+    /// Whether rows are over both slope parameters: shaders then read two of them.
+    pub fn has_two_axes(&self) -> bool {
+        self.base.nodes > 1 && self.coat.is_some_and(|coat| coat.nodes > 1)
+    }
 }
 
 impl VaryingRecord {
-    /// Fractional number of the tile of the nominal surface, where all factors are 1.
+    /// Fractional number of the tile of the nominal surface, where all factors are 1. A family has the largest slope parameters in its last tile, and
+    /// factors are at most 1.
     pub fn nominal(&self) -> f64 {
+        if self.family.is_some() {
+            return f64::from(self.tiles) - 1.0;
+        }
         let [most, least] = self.factors.unwrap_or([1.0, 0.0]);
         (most - 1.0) / (most - least) * (f64::from(self.tiles) - 1.0)
     }
@@ -173,6 +223,8 @@ pub enum VaryingFactor {
     Patina,
     /// Factor on the weight of a coat, whose tiles are those of an amount of patina: weight and factor make the amount.
     WeightFactor,
+    /// Slope parameters and colours of single layers; see [`FamilyRecord`].
+    Family,
 }
 
 impl LobesRecord {
@@ -182,12 +234,20 @@ impl LobesRecord {
         let Some(VaryingRecord { factor, tiles, least_spread, .. }) = self.varying else {
             return [0.0, 0.0, SPREAD_MIN];
         };
+        if let Some(family) = self.family() {
+            return family.base.words();
+        }
         let beyond = f64::from(tiles) - 1.0;
         match factor {
             VaryingFactor::AlphaFactor => [beyond, 0.0, least_spread],
             VaryingFactor::SlabFactor | VaryingFactor::FilmFactor => [0.0, beyond, SPREAD_MIN],
-            VaryingFactor::Patina | VaryingFactor::WeightFactor => [0.0, 0.0, SPREAD_MIN],
+            VaryingFactor::Patina | VaryingFactor::WeightFactor | VaryingFactor::Family => [0.0, 0.0, SPREAD_MIN],
         }
+    }
+
+    /// The axes of a family.
+    pub fn family(&self) -> Option<FamilyRecord> {
+        self.varying?.family
     }
 
     /// Number of tiles after the first over the amount of patina or of a coat; 0 without such tiles.
@@ -197,9 +257,12 @@ impl LobesRecord {
     }
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
-    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of tiles over another factor: zeros. Of a single
-    /// tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
+    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of a family: 0, the number of the base among the
+    /// layers, 0. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
     fn sheet(&self) -> [f64; 3] {
+        if let Some(family) = self.family() {
+            return [0.0, f64::from(family.interface), 0.0];
+        }
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
             return [1.0 / (least - most), most / (most - least), -1.0];
         }
@@ -308,16 +371,16 @@ impl MaterialConstants {
     ///
     /// | header word | x, y, z, w |
     /// |---|---|
-    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, number of the lobes' height |
+    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, of a family the roots of the least and the most slope parameter of the base and its steps in a unit of the root, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, number of the lobes' height |
     /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of beams the normal of the inner boundary, 1; of `microfacet` with an added diffuse term 1 in w |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
-    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1 |
-    /// | 7 | patina: diffuse albedo RGB; of such lobes the two integrals of [`PaintedRecord`], 0; in w the number of lobes |
-    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number |
+    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
+    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; in w the number of lobes |
+    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of lobes with one tile 1 over the tail of each, 0; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 0, number of the base among the layers, 0; of lobes with one tile 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);
@@ -346,6 +409,12 @@ impl MaterialConstants {
             let [fifth, square] = base.moments.unwrap_or_default();
             words[5] = vec4(base.albedo, if base.moments.is_some() { -2.0 } else { -1.0 });
             words[6] = vec4([fifth, square, 0.0], lobes);
+        }
+        if let Some(family) = self.lobes.and_then(|lobes| lobes.family()) {
+            let nodes = f64::from(family.base.nodes);
+            words[5][3] = -3.0;
+            let nodes = if family.is_metallic { nodes } else { -nodes };
+            words[7] = vec4(family.coat.map_or([0.0; 3], |coat| coat.words()), nodes);
         }
         if let Some(p) = &self.patina {
             words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
@@ -456,18 +525,24 @@ mod tests {
         assert_eq!(words(without)[1], [0.0, 0.0, f32::sqrt(0.5), 0.0]);
         assert_eq!(words(lobes)[9], [0.0, 2.0, 3.0, 0.0]);
         let over = |factor| {
-            let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None });
+            let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None, family: None });
             words(LobesRecord { varying, ..lobes })[0]
         };
-        let film =
-            VaryingRecord { factor: VaryingFactor::FilmFactor, tiles: 9, least_spread: 1.0, factors: Some([1.5, 0.5]) };
+        let film = VaryingRecord {
+            factor: VaryingFactor::FilmFactor,
+            tiles: 9,
+            least_spread: 1.0,
+            factors: Some([1.5, 0.5]),
+            family: None,
+        };
         let of_film = words(LobesRecord { varying: Some(film), ..lobes });
         assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -1.0]]);
         assert_eq!(film.nominal(), 4.0);
         assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
         assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
-        let over_patina = VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None };
+        let over_patina =
+            VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None, family: None };
         let of_patina = MaterialConstants {
             lobes: Some(LobesRecord { varying: Some(over_patina), ..lobes }),
             patina: constants.patina.clone(),

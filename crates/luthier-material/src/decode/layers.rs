@@ -8,7 +8,7 @@ use super::{effects, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
-use crate::material::{FilmVariation, LayerExtras};
+use crate::material::{FilmVariation, LayerExtras, TexelRanges};
 use crate::section::Section;
 
 /// The layers of the stack, and the properties of each beyond its physics.
@@ -91,6 +91,7 @@ pub(super) fn decode(
             exponents: surface::exponents(at),
             maps: maps::decode(at),
             metallic,
+            texels: TexelRanges::default(),
         };
         check_weight(at, number, sections.len() - 1 - i, sink);
         if number > 0 {

@@ -1,12 +1,12 @@
 //! The f64 side of a comparison: the twin of a material's shader, and its exact terms.
 
 use luthier_layers::layers::{Layer, Layers};
-use luthier_layers::models::lobes::{Cover, Varying};
+use luthier_layers::models::lobes::{Cover, Family, SlopeAxis, Varying};
 use luthier_layers::models::parts::Parts;
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::Exact;
-use luthier_manifest::{ColorMode, MaterialEntry, PatinaRecord, VaryingFactor};
+use luthier_manifest::{ColorMode, FamilyRecord, MaterialEntry, PatinaRecord, SlopesRecord, VaryingFactor};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -96,7 +96,16 @@ fn varying(material: &MaterialEntry) -> Option<Varying> {
             Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
         }
         VaryingFactor::WeightFactor => Some(Varying::Patina(Cover::PLAIN)),
+        VaryingFactor::Family => record.family.map(|family| Varying::Family(family_of(family))),
     }
+}
+
+/// The axes of a family by its record.
+pub(crate) fn family_of(record: FamilyRecord) -> Family {
+    let FamilyRecord { coat, base, interface, is_metallic } = record;
+    let axis = |SlopesRecord { least, most, nodes }| SlopeAxis { least, most, nodes: nodes as usize };
+    let coat = coat.map_or(SlopeAxis { least: 0.0, most: 0.0, nodes: 1 }, axis);
+    Family { coat, base: axis(base), interface: interface as usize, is_metallic }
 }
 
 /// The model in f64 at exactly the f32 directions that the device gets.

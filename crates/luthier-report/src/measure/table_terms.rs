@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Axes, Below, Critical, Family, Frame, Paint, Painted, Row, ViewAxis, Wide};
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
 use luthier_layers::models::statistics::energy::Energy;
@@ -18,6 +18,7 @@ use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
+use crate::measure::references::family_of;
 use crate::measure::subject::{Subject, Table};
 
 /// Precision of the weights of a filtering sampler. Formats that core WebGPU does not filter have exact weights in any case: the shader fetches four
@@ -153,6 +154,8 @@ struct Lobes {
     axis: ViewAxis,
     frame: Frame,
     varying: Option<VaryingRecord>,
+    /// A family, with slope parameters of coat and base and the colours of the place.
+    family: Option<(Family, [f64; 2], Paint)>,
 }
 
 impl Lobes {
@@ -168,7 +171,25 @@ impl Lobes {
             .painted
             .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
         let frame = Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base };
-        Self { tile, axis, frame, varying: record.varying }
+        Self { tile, axis, frame, varying: record.varying, family: None }
+    }
+
+    /// Takes the slope parameters and colours of a place, if rows are those of a family.
+    fn place(&mut self, entry: &MaterialEntry, place: &Place) {
+        let Some(record) = self.varying.and_then(|varying| varying.family) else { return };
+        let family = family_of(record);
+        let alphas = [0, family.interface].map(|number| {
+            let [x, y] = place.layers.get(number).map_or([1.0; 2], |own| own.alpha_factors);
+            entry.layers[number].alpha * (x * y).sqrt() * place.sample.alpha_factor
+        });
+        let plain = Paint {
+            metal: [0.0; 3],
+            metallic: 0.0,
+            albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
+            depth: entry.layers[0].optical_depth.map(|depth| depth * place.sample.slab_factor),
+        };
+        let paint = place.metal.map_or(plain, |(color, metallic)| plain.metallic(color, metallic));
+        self.family = Some((family, alphas, paint));
     }
 }
 
@@ -199,6 +220,7 @@ impl Here {
                 let [most, least] = varying.factors.unwrap_or([1.0, 0.0]);
                 ((most - self.film_factor) / (most - least)).clamp(0.0, 1.0) * last
             }
+            VaryingFactor::Family => varying.nominal(),
             VaryingFactor::Patina | VaryingFactor::WeightFactor => match self.part {
                 Part::All => 0.0,
                 Part::Grown => last - 1.0,
@@ -236,7 +258,7 @@ impl<'a> TableTerms<'a> {
                 tables[kind as usize] = Some((table, AngleAxis::of(&table)?));
             }
         }
-        let terms = Self {
+        let mut terms = Self {
             tables,
             veil: recorded_veil(entry),
             lobes: entry
@@ -249,6 +271,7 @@ impl<'a> TableTerms<'a> {
             here: Here::NOMINAL,
             bare: None,
         };
+        terms.lobes.iter_mut().for_each(|lobes| lobes.place(entry, &Place::NONE));
         for (layer, kind) in read_by(entry) {
             let is_computed = match kind {
                 // A layer without a tile has D computed.
@@ -280,6 +303,7 @@ impl<'a> TableTerms<'a> {
             let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
             Some((layer, [0, 1, 2].map(|c: usize| (1.0 - own[c]) / (1.0 - nominal[c]).max(1e-6))))
         });
+        terms.lobes.iter_mut().for_each(|lobes| lobes.place(entry, place));
         let sample = &place.sample;
         terms.here = Here {
             part,
@@ -410,10 +434,19 @@ impl ShaderTerms for TableTerms<'_> {
     }
 
     fn below(&self, wo: DVec3) -> Option<Below> {
-        let Lobes { tile, axis, frame, varying } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
+        let Lobes { tile, axis, frame, varying, family } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
         let (table, cos_theta) = (self.table(TableKind::Lobes)?, axis.cosine(wo.z));
         let row = match (frame.axes, varying) {
             (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
+            (None, Some(_)) if let Some((family, alphas, paint)) = family => {
+                let [coat, base] = family.places(*alphas).map(|place| (place as usize, place.fract()));
+                let of = |coat: usize| {
+                    let first = tile + (coat * family.base.nodes + base.0) as u32;
+                    table.row_between(first, base.1, cos_theta, self.weights)
+                };
+                let row = if coat.1 > 0.0 { of(coat.0).between(&of(coat.0 + 1), coat.1) } else { of(coat.0) };
+                family.row_in(&row, *alphas, frame.base.map_or([0.0; 3], |base| base.albedo), paint)
+            }
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(varying);
                 let first = (place as u32).min(varying.tiles.saturating_sub(2));

@@ -100,6 +100,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
         base_color: values.base_color.map(|color| color.map(f64::from)),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
         layers: layers.collect(),
+        metal: values.metallic.map(|(color, metallic)| (color.map(f64::from), metallic.into())),
     };
     if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
         let (f0, albedo) = metallic_roughness(color.map(f64::from), metallic.into());

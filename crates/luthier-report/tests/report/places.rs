@@ -163,6 +163,7 @@ fn lacquered() -> (Bake, Vec<SurfaceMap>) {
             tiles: varied.nodes.len() as u32,
             least_spread: varied.least_spread(),
             factors: None,
+            family: None,
         }),
         axes: None,
         painted: None,

@@ -181,6 +181,14 @@ luthier_lut::named! {
         LobesBareBase = "lobes_bare_base",
         /// Lobes have the light of a base as a part.
         LobesBase = "lobes_base",
+        /// Rows of lobes are those of a family: over slope parameters of single layers, with colours in closed form.
+        LobesFamily = "lobes_family",
+        /// Rows of a family are over the slope parameters of both coat and base.
+        LobesCoats = "lobes_coats",
+        /// The base of a family is metallic in places.
+        LobesMetallic = "lobes_metallic",
+        /// Light of such a family is absorbed below the coat.
+        LobesTinted = "lobes_tinted",
         /// Flakes tilt lobes.
         LobesTilted = "lobes_tilted",
         /// Lobes have a critical angle of the view.

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    DiffusePart, DiffuseTerm, Distribution, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobeHeight,
-    LobesRecord, LowerAlpha, LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord, Reflectance,
-    ShadingModel, SwitchBy, VaryingFactor,
+    DiffusePart, DiffuseTerm, Distribution, FamilyRecord, FunctionGroup, InternalReflection, LayerKind, LayerRecord,
+    LobeHeight, LobesRecord, LowerAlpha, LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord,
+    Reflectance, ShadingModel, SwitchBy, VaryingFactor,
 };
 use luthier_model::{Family, Reach};
 
@@ -52,6 +52,7 @@ impl Features {
             if painted(material).is_some_and(|base| base.moments.is_some()) {
                 own.insert(Feature::LobesBase);
             }
+            own.extend(of_family(material));
             if material.constants.glitter.is_some() {
                 own.insert(Feature::Glitter);
             }
@@ -88,7 +89,10 @@ impl Features {
             if set.materials.iter().any(has_base_light) {
                 names.insert(Feature::LobesBase);
             }
-            if [Feature::Diffuse, Feature::GranierBase, Feature::LobesBase].iter().any(|name| names.contains(name)) {
+            if [Feature::Diffuse, Feature::GranierBase, Feature::LobesBase, Feature::LobesFamily]
+                .iter()
+                .any(|name| names.contains(name))
+            {
                 names.insert(Feature::BaseColor);
             }
         }
@@ -452,9 +456,28 @@ fn has_base_light(material: &MaterialEntry) -> bool {
     painted(material).is_some()
 }
 
-/// The base below lobes that places may recolour.
+/// The base below lobes that places may recolour, beside those of families, which have a way of their own.
 fn painted(material: &MaterialEntry) -> Option<PaintedRecord> {
-    material.constants.lobes.filter(|_| material.constants.bare().is_none())?.painted
+    let is_plain = material.constants.bare().is_none() && family(material).is_none();
+    material.constants.lobes.filter(|_| is_plain)?.painted
+}
+
+/// The axes of the family that a material's rows of lobes are.
+fn family(material: &MaterialEntry) -> Option<FamilyRecord> {
+    material.constants.lobes.filter(|_| material.model.is_fitted())?.family()
+}
+
+/// The features of a family.
+fn of_family(material: &MaterialEntry) -> Vec<Feature> {
+    let Some(family) = family(material) else { return Vec::new() };
+    let is_tinted = family.is_metallic && material.layers.first().is_some_and(|first| first.optical_depth != [0.0; 3]);
+    let words = [
+        (Feature::LobesFamily, true),
+        (Feature::LobesCoats, family.has_two_axes()),
+        (Feature::LobesMetallic, family.is_metallic),
+        (Feature::LobesTinted, is_tinted),
+    ];
+    words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }
 
 /// Whether patina or a coat covers a diffuse base alone.

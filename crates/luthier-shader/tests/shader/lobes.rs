@@ -157,7 +157,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let record = material.constants.lobes.as_mut().unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
-        record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors });
+        record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors, family: None });
         let frame = Frame { index: record.index, wide, axes: None, base: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();

@@ -16,6 +16,7 @@ use luthier_texture::Texture;
 
 use self::emit::emit;
 use self::entries::{material_entries, table_entry};
+use crate::pictures::measure_texels;
 use crate::refusals::{of_domain, of_parts};
 use crate::{Error, Shading, Sources, read_image};
 
@@ -165,7 +166,8 @@ impl<'a> Bake<'a> {
 
     /// The materials as they are baked, and the forms of their shaders.
     fn settled(&self, materials: &[Material]) -> Result<(Vec<Material>, Vec<Form>), Error> {
-        let materials = self.shading.shaded(materials.to_vec());
+        let mut materials = self.shading.shaded(materials.to_vec());
+        materials.iter_mut().for_each(measure_texels);
         if self.refuses {
             refuse_foreign(&materials)?;
         }
@@ -210,8 +212,10 @@ pub fn row_layout(functions: &Functions, targets: &[Target]) -> Option<RowLayout
 /// # Errors
 /// [`Error`].
 pub fn outline(materials: &[Material], options: &Options<'_>, store: &dyn Store) -> Result<Manifest, Error> {
-    let outline = luthier_bake::outline_with(materials, options, &read_image, store)?;
-    let (entries, _) = material_entries(materials, &outline.materials)?;
+    let mut materials = materials.to_vec();
+    materials.iter_mut().for_each(measure_texels);
+    let outline = luthier_bake::outline_with(&materials, options, &read_image, store)?;
+    let (entries, _) = material_entries(&materials, &outline.materials)?;
     let tables = outline.tables.iter().map(|(kind, layout, format)| table_entry(*kind, layout, *format)).collect();
     Ok(Manifest { searches: outline.searches, ..Manifest::new(GENERATOR, entries, tables) })
 }

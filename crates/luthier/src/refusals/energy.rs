@@ -186,7 +186,7 @@ fn places(material: &Material) -> Vec<Place> {
         let (f0, albedo) = metallic_roughness(base_color, metallic);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
-        Place { patina, base_color: Some(albedo), layers, ..Place::NONE }
+        Place { patina, base_color: Some(albedo), layers, metal: Some((base_color, metallic)), ..Place::NONE }
     });
     places.collect()
 }

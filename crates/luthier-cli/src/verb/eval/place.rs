@@ -127,6 +127,7 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
     if let Some((layer, color, metal)) = metallic {
         let (f0, albedo) = luthier_optics::schlick::metallic_roughness(color, metal);
         layers[layer].f0 = Some(f0);
+        place.metal = Some((color, metal));
         place.base_color = place.base_color.or(Some(albedo));
     }
     place.layers = layers;

@@ -60,6 +60,12 @@ struct LuthierPreparedLobes {
     bare_masking: f32,
     /// Energy of the remainder that a bare diffuse base has, RGB.
     base: vec3<f32>,
+    //? lobes_family
+    /// Directional albedo, RGB.
+    albedo: vec3<f32>,
+    //? lobes_family
+    /// Shares of the lobes above the horizon.
+    shares: vec2<f32>,
     /// Energy of the first lobe over its share above the horizon, RGB.
     first_strength: vec3<f32>,
     first_shape: LuthierLobeShape,
@@ -281,8 +287,13 @@ fn luthier_over_base(given: LuthierPreparedLobes, $place_parameter material: u32
     return prepared;
 }
 
+//? !lobes_family|~lobes_family
 /// A material as seen from wo, above the horizon.
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
+    //? ~lobes_family
+    if luthier_is_family(material) {
+        return luthier_prepare_family($place_argument material, wo);
+    }
     let header = luthier_header(material);
     //? place
     {
@@ -406,6 +417,15 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         }
         //? else
         prepared = luthier_over_base(prepared, $place_argument material, painted_word);
+    }
+    //? lobes_family
+    {
+        prepared.albedo = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).rgb + prepared.painted;
+        //? two_lobes
+        prepared.shares = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).yw;
+        //? else
+        //? one_lobe
+        prepared.shares = vec2<f32>(luthier_lookup_lobes(tile, cos_theta, 2.0).a, 0.0);
     }
     //? lobes_bare_base
     if cover < 1.0 && prepared.bare.kind == LUTHIER_DIFFUSE {
@@ -619,6 +639,12 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     return value;
 }
 
+//? lobes_family
+/// Directional albedo of a prepared material, RGB.
+fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
+    return prepared.albedo;
+}
+//? else
 /// Directional albedo of a prepared material, RGB.
 fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
     let albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
@@ -642,6 +668,9 @@ struct LuthierBelow {
 fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow {
     //? two_lobes
     {
+        //? lobes_family
+        let shares = prepared.shares;
+        //? else
         let shares = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_SHARES).yw;
         if lobe == 1u {
             return LuthierBelow(prepared.second_strength * shares.y, prepared.second_shape);
@@ -650,6 +679,9 @@ fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow
     }
     //? else
     {
+        //? lobes_family
+        let share = prepared.shares.x;
+        //? else
         let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
         return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
     }

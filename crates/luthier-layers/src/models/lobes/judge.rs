@@ -10,7 +10,7 @@ use luthier_optics::stack::Stack;
 use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
-use super::{Axes, FirstInterface, FitSettings, Lobes, Varied, Varying, ViewAxis, patina, shown};
+use super::{Axes, Family, FirstInterface, FitSettings, Lobes, Paint, Varied, Varying, ViewAxis, patina, shown};
 use crate::references::layered_mc::ColorPaths;
 
 /// Views, and paths of each.
@@ -55,7 +55,6 @@ impl FitError {
 /// Light of a stack at a few views, as many paths show it.
 #[derive(Debug)]
 pub struct Judge {
-    cells: Cells,
     axes: Option<Axes>,
     views: Vec<View>,
 }
@@ -65,6 +64,9 @@ pub struct Judge {
 struct View {
     /// The factor on what varies.
     factor: f64,
+    /// Slope parameters and colours in place of a factor.
+    place: Option<([f64; 2], Paint)>,
+    cells: Cells,
     wo: DVec3,
     /// Energy by cell and channel, without the light of one facet of the first interface.
     energies: Vec<Rgb>,
@@ -79,7 +81,6 @@ impl Judge {
         let (stack, axes) = (shown(stack), Axes::of(stack));
         let varying = varying.filter(|_| axes.is_none());
         let index = indices(&stack).last().copied().unwrap_or(1.0);
-        let cells = cells(index, &covariances(&stack, axes), axes);
         let axis = ViewAxis::of(&stack, FitSettings::default().rows);
         let views = (0..VIEWS).map(|number| {
             let share = number as f64 / (VIEWS - 1) as f64;
@@ -91,6 +92,12 @@ impl Judge {
             let inside = DVec3::new(sin * azimuth[0], sin * azimuth[1], cos);
             let wo = axes.map_or(inside, |axes| axes.outside(inside));
             // Factors go in another order than views, so that neither follows the other.
+            let seed = SEEDS + number as u64;
+            if let Some(Varying::Family(family)) = varying {
+                let (alphas, paint, here) = in_colors(family, &stack, number);
+                let cells = cells(index, &covariances(&here, None), None);
+                return View { place: Some((alphas, paint)), ..View::new(&here, color, seed, (1.0, wo), cells, None) };
+            }
             let factor = varying.map_or(1.0, |varying| {
                 // Light is linear between the ends of a patina, so ends alone are judged: all layers without the patina's scattering, which no path
                 // shows, and the bare layers, unless they are a diffuse base, which has a closed form.
@@ -103,17 +110,22 @@ impl Judge {
                 varying.factor(((2 * number) % VIEWS * (steps - 1) / (VIEWS - 1)) as f64 + 0.5)
             });
             let here = varying.map_or_else(|| stack.clone(), |varying| varying.apply(&stack, factor));
-            View::new(&here, color, SEEDS + number as u64, (factor, wo), &cells, axes)
+            View::new(&here, color, seed, (factor, wo), cells(index, &covariances(&stack, axes), axes), axes)
         });
-        Self { cells, axes, views: views.collect() }
+        Self { axes, views: views.collect() }
     }
 
     /// The errors of lobes of the stack, over the same factor.
     pub fn error(&self, varied: &Varied) -> FitError {
-        self.error_of(|factor| varied.at(factor))
+        let errors = self.views.iter().map(|view| {
+            let painted = view.place.as_ref().and_then(|(alphas, paint)| varied.painted(*alphas, paint));
+            self.error_at(view, &painted.unwrap_or_else(|| varied.at(view.factor)))
+        });
+        errors.fold(FitError::default(), FitError::max)
     }
 
     /// The errors of the lobes that a factor has.
+    #[cfg(test)]
     pub(super) fn error_of(&self, at: impl Fn(f64) -> Lobes) -> FitError {
         self.views.iter().map(|view| self.error_at(view, &at(view.factor))).fold(FitError::default(), FitError::max)
     }
@@ -121,12 +133,12 @@ impl Judge {
     fn error_at(&self, view: &View, lobes: &Lobes) -> FitError {
         let Some(below) = lobes.below(view.wo) else { return FitError::default() };
         let at = self.axes.map_or(view.wo, |axes| axes.inside(view.wo));
-        let eye = refracted(at, self.cells.index);
+        let eye = refracted(at, view.cells.index);
         let mut found = vec![[0.0; 3]; view.energies.len()];
-        for point in self.cells.points(at) {
-            let Some(wi) = outside(point.slope, eye, self.cells.index) else { continue };
+        for point in view.cells.points(at) {
+            let Some(wi) = outside(point.slope, eye, view.cells.index) else { continue };
             let value = below.eval(self.axes.map_or(wi, |axes| axes.outside(wi)));
-            let cell = &mut found[self.cells.wider(point.cell)];
+            let cell = &mut found[view.cells.wider(point.cell)];
             (0..3).for_each(|c| cell[c] += value[c] * point.solid_angle);
         }
         let stated = below.row().albedo_dir;
@@ -149,13 +161,39 @@ impl Judge {
     }
 }
 
+/// Colours of the base in which families are judged, one for each view, and whether it is metal. None is one that fits see.
+const COLORS: [(Rgb, bool); VIEWS] = [
+    ([0.95, 0.64, 0.25], true),
+    ([0.75, 0.3, 0.06], false),
+    ([0.3, 0.2, 0.12], true),
+    ([0.55, 0.7, 0.95], true),
+    ([0.2, 0.6, 0.9], false),
+];
+
+/// Slope parameters half way between nodes, and the stack with these in other colours, for a view of a judge by number.
+fn in_colors(family: Family, stack: &Stack, number: usize) -> ([f64; 2], Paint, Stack) {
+    // Both axes go in orders that follow neither each other nor the views.
+    let alphas = [(family.coat, 3), (family.base, 2)].map(|(axis, stride)| {
+        let place = (stride * number) % VIEWS * axis.nodes.saturating_sub(2) / (VIEWS - 1);
+        axis.alpha(if axis.nodes > 1 { place as f64 + 0.5 } else { 0.0 })
+    });
+    let here = family.apply(stack, alphas);
+    if !family.is_metallic {
+        return (alphas, Paint::of(&here), here);
+    }
+    let (color, is_metal) = COLORS[number % VIEWS];
+    let paint = Paint::of(&here).metallic(color, if is_metal { 1.0 } else { 0.0 });
+    let here = if is_metal { paint.metal_of(&here) } else { paint.plastic_of(&here) };
+    (alphas, paint, here)
+}
+
 impl View {
     fn new(
         stack: &Stack,
         color: &Color,
         seed: u64,
         (factor, wo): (f64, DVec3),
-        cells: &Cells,
+        cells: Cells,
         axes: Option<Axes>,
     ) -> Self {
         let count = cells.wider(cells.count() - 1) + 1;
@@ -172,7 +210,7 @@ impl View {
             }
         });
         let first_facet = FirstInterface::of(stack, color).map_or([0.0; 3], |first| first.energy(wo));
-        Self { factor, wo, energies, squares, first_facet }
+        Self { factor, place: None, cells, wo, energies, squares, first_facet }
     }
 }
 

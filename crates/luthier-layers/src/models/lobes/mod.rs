@@ -60,6 +60,7 @@ pub use patina::{Cover, bare};
 pub use prepared::{Prepared, Sample};
 pub use rows::{BaseLight, Critical, Lobe, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
+pub(crate) use varied::scaled_surface;
 pub use varied::{Fit, Traced, Varied, Varying};
 
 use glam::DVec3;
@@ -79,7 +80,7 @@ use crate::monochrome::{Monochrome, MonochromeBelow};
 /// The room of the model.
 pub(crate) const ROOM: Room = Room {
     kernels: Kernels {
-        eval: include_str!("eval.wgsl"),
+        eval: concat!(include_str!("family.wgsl"), include_str!("eval.wgsl")),
         parts: include_str!("parts.wgsl"),
         sample: include_str!("sample.wgsl"),
         environment: include_str!("environment.wgsl"),

@@ -94,6 +94,11 @@ impl ViewAxis {
         Self::new((self.size - 1) / step + 1, self.critical)
     }
 
+    /// The axis with `parts` steps in place of one.
+    pub(super) fn refined(self, parts: usize) -> Self {
+        Self::new((self.size - 1) * parts + 1, self.critical)
+    }
+
     /// The critical angle.
     pub fn critical(self) -> Critical {
         self.critical

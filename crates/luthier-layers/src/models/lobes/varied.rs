@@ -1,12 +1,15 @@
 //! Lobes of a stack that varies with a texture: nodes over the factor of the texture, or over the amount of a patina.
 
+use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
 use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::tally::mean;
-use super::{Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Lobes, Paint, Row, ViewAxis, most_lobes, patina, shown};
+use super::{
+    Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Lobes, Paint, Row, ViewAxis, most_lobes, patina, shown,
+};
 use crate::layers::ALPHA_MIN;
 
 /// The part of a stack that a texture decides.
@@ -59,8 +62,10 @@ impl Varying {
     /// The node of the stack itself: at factor 1, or with all layers.
     pub fn nominal(self) -> usize {
         match self {
-            Self::Alpha | Self::Slab | Self::Patina(_) | Self::Family(_) => 0,
+            Self::Alpha | Self::Slab | Self::Patina(_) => 0,
             Self::Film(_) => self.nodes() / 2,
+            // Textures scale the largest slope parameters down.
+            Self::Family(family) => family.nodes() - 1,
         }
     }
 
@@ -186,6 +191,23 @@ impl Varied {
         self
     }
 
+    /// Rows between each two beside them: `parts` steps in place of one. Light read from either is the same.
+    #[must_use]
+    pub fn refined(mut self, parts: usize) -> Self {
+        for lobes in &mut self.nodes {
+            let size = lobes.axis.size();
+            let refined = lobes.rows.chunks(size).flat_map(|tile| {
+                (0..(size - 1) * parts + 1).map(|place| {
+                    let first = (place / parts).min(size - 2);
+                    tile[first].between(&tile[first + 1], place as f64 / parts as f64 - first as f64)
+                })
+            });
+            lobes.rows = refined.collect();
+            lobes.axis = lobes.axis.refined(parts);
+        }
+        self
+    }
+
     /// Number of tiles of a stack: over the azimuth if it is anisotropic, and else over the nodes.
     pub fn tiles_of(stack: &Stack, varying: Option<Varying>) -> usize {
         if Axes::of(stack).is_some() { Axes::TILES } else { varying.map_or(1, Varying::nodes) }
@@ -222,6 +244,12 @@ impl Varied {
 
     /// The lobes of the stack itself, without a texture.
     pub fn nominal(mut self) -> Lobes {
+        if let Some(Over { varying: Varying::Family(family), stack, .. }) = &self.varying {
+            let alphas = [0, family.interface].map(|layer| stack.layers[layer].surface.alpha_x);
+            if let Some(lobes) = self.painted(alphas, &Paint::of(stack)) {
+                return lobes;
+            }
+        }
         let node = self.varying().map_or(0, Varying::nominal);
         self.nodes.swap_remove(node)
     }
@@ -237,8 +265,8 @@ impl Varied {
     pub fn painted(&self, alphas: [f64; 2], paint: &Paint) -> Option<Lobes> {
         let over = self.varying.as_ref()?;
         let Varying::Family(family) = over.varying else { return None };
-        let [coat, base] = [family.coat.place(alphas[0]), family.base.place(alphas[1])];
-        let held = [family.coat.alpha(coat), family.base.alpha(base)];
+        let [coat, base] = family.places(alphas);
+        let held = family.held(alphas);
         let [next_coat, next_base] = [(coat, family.coat), (base, family.base)].map(|(place, axis)| {
             let first = (place as usize).min(axis.nodes.saturating_sub(2));
             (first, (first + 1).min(axis.nodes - 1), place - first as f64)
@@ -247,7 +275,8 @@ impl Varied {
         let (spreads, simulated) = (Family::spreads(held), lobes.frame.base.map_or([0.0; 3], |base| base.albedo));
         let rows = (0..lobes.rows.len()).map(|row| {
             let [low, high] = [next_coat.0, next_coat.1].map(|coat| {
-                let [low, high] = [next_base.0, next_base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
+                let [low, high] =
+                    [next_base.0, next_base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
                 low.between(&high, next_base.2)
             });
             family.painted(&low.between(&high, next_coat.2), spreads, simulated, paint)
@@ -270,6 +299,25 @@ impl Varied {
         lobes.rows = rows.collect();
         lobes.first = FirstInterface::of(&over.varying.apply(&over.stack, factor), &over.color);
         lobes
+    }
+}
+
+impl Family {
+    /// A row of numbers, read between nodes, at slope parameters of coat and base that are held to the ranges, and in colours.
+    /// `simulated` is the albedo of the diffuse base in the simulation.
+    pub fn row_in(self, row: &Row, alphas: [f64; 2], simulated: Rgb, paint: &Paint) -> Row {
+        self.painted(row, Self::spreads(self.held(alphas)), simulated, paint)
+    }
+
+    /// Fractional numbers of the nodes of slope parameters of coat and base.
+    pub fn places(self, [coat, base]: [f64; 2]) -> [f64; 2] {
+        [self.coat.place(coat), self.base.place(base)]
+    }
+
+    /// Slope parameters of coat and base held to the ranges.
+    fn held(self, alphas: [f64; 2]) -> [f64; 2] {
+        let [coat, base] = self.places(alphas);
+        [self.coat.alpha(coat), self.base.alpha(base)]
     }
 }
 
@@ -353,7 +401,7 @@ fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
 }
 
 /// A surface with a factor on its slope parameters, within the range of layer records before and after.
-fn scaled_surface(surface: Surface, factor: f64) -> Surface {
+pub(crate) fn scaled_surface(surface: Surface, factor: f64) -> Surface {
     if factor == 1.0 {
         return surface;
     }

@@ -62,6 +62,9 @@ struct LuthierPlace {
     //? base_color
     /// Albedo of diffuse bases, RGB; below 0 that of each material.
     base_color: vec3<f32>,
+    //? lobes_metallic, own_f0
+    /// Base colour and metal of a `metallic-roughness` base, see `luthier_metallic_place`; w below 0 leaves those of the material.
+    metal: vec4<f32>,
     //? granier
     /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
     inner_normal: vec3<f32>,
@@ -91,8 +94,20 @@ fn luthier_place() -> LuthierPlace {
     place.patina = -1.0;
     place.weight_factor = 1.0;
     place.base_color = vec3<f32>(-1.0);
+    place.metal = vec4<f32>(-1.0);
     $each_layer
     return place;
+}
+
+//? layered, lobes_family
+/// Values of textures of a layer, counted from the top.
+fn luthier_own_place(place: LuthierPlace, index: u32) -> LuthierLayerPlace {
+    var layers = place.layers;
+    var own = luthier_layer_place();
+    if index < $layers {
+        own = layers[index];
+    }
+    return own;
 }
 
 /// A layer of a material, counted from the top, as it is at a place.
@@ -188,6 +203,8 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
     let passed = (1.0 - f0) * (20.0 / 21.0);
     var next = place;
     next.base_color = shown / max(passed + shown * (1.0 - passed), vec3<f32>(1e-20));
+    //? lobes_metallic
+    next.metal = vec4<f32>(base_color, metallic);
     var layers = place.layers;
     if index < $layers {
         layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));

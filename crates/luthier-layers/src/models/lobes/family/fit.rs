@@ -67,14 +67,7 @@ impl Family {
         nodes
     }
 
-    fn rows(
-        self,
-        node: &Node,
-        found: &[Found; 2],
-        spreads: [f64; 2],
-        falloff: [f64; 2],
-        albedo: Rgb,
-    ) -> Vec<Row> {
+    fn rows(self, node: &Node, found: &[Found; 2], spreads: [f64; 2], falloff: [f64; 2], albedo: Rgb) -> Vec<Row> {
         let sent_back = internal_of(&node.rest, albedo, |energies| energies.clear);
         let dimmed = internal_of(&node.rest, albedo, |energies| energies.dimmed);
         let around = -libm::log(ratio(dimmed[0], sent_back[0])) / DEPTH;
@@ -97,7 +90,8 @@ impl Family {
                 lobe.shear = if number == 0 { wide_shares[view] / lobe.tail.sqrt() } else { 0.0 };
                 lobe
             });
-            let length = |energies: &Energies, c: usize| -libm::log(ratio(energies.dimmed[c], energies.clear[c])) / DEPTH;
+            let length =
+                |energies: &Energies, c: usize| -libm::log(ratio(energies.dimmed[c], energies.clear[c])) / DEPTH;
             let (albedo_dir, wide, energy, internal) = if self.is_metallic {
                 let facets = rest.first_facet;
                 let [once, more, alone] = rest.plastic;
@@ -114,7 +108,8 @@ impl Family {
                 (albedo, [white, alone, 0.0], energy, [sent_back[0], more, around])
             } else {
                 let below = |c: usize| rest.reflected.iter().map(|part| part.clear[c]).sum::<f64>();
-                let all = [0, 1, 2].map(|c: usize| rest.first_facet[c] + below(c) + rest.base.clear[c] + rest.facets.clear[c]);
+                let all = [0, 1, 2]
+                    .map(|c: usize| rest.first_facet[c] + below(c) + rest.base.clear[c] + rest.facets.clear[c]);
                 let wide = [0, 1, 2].map(|c: usize| rest.base.clear[c] + rest.facets.clear[c]);
                 (all, wide, rest.base.clear, sent_back)
             };

@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Stack};
 
-use super::Family;
+use super::{Family, base_interface};
 use crate::models::lobes::{BaseLight, Lobe, Row};
 
 /// The colours of a family at a place.
@@ -42,6 +42,28 @@ impl Paint {
         Self { metal: base_color, metallic, albedo, ..self }
     }
 
+    /// A stack with the metal of these colours as its base.
+    #[must_use]
+    pub fn metal_of(&self, stack: &Stack) -> Stack {
+        let mut metal = stack.clone();
+        let Some(number) = base_interface(stack) else { return metal };
+        metal.layers.truncate(number + 1);
+        if let Base::Conductor { ior } | Base::Dielectric { ior, .. } = &metal.layers[number].base {
+            metal.layers[number].base = Base::Conductor { ior: ior.clone().with_f0(self.metal) };
+        }
+        metal
+    }
+
+    /// A stack without metal, with the diffuse base of these colours.
+    #[must_use]
+    pub fn plastic_of(&self, stack: &Stack) -> Stack {
+        let mut plastic = stack.clone();
+        if let Some(Base::Diffuse(base)) = plastic.layers.last_mut().map(|layer| &mut layer.base) {
+            base.albedo = self.albedo;
+        }
+        plastic
+    }
+
     /// The first interface of a family in these colours, if that is the base: F0 of the mix.
     pub(in crate::models::lobes) fn on(&self, stack: &Stack, family: Family) -> Stack {
         let mut painted = stack.clone();
@@ -78,7 +100,8 @@ impl Family {
             let [facet, wide, once, trapped] = if self.is_metallic {
                 self.mixed(row, &base, paint, c)
             } else {
-                let [once, trapped] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
+                let [once, trapped] =
+                    [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
                 let facet = row.albedo_dir[c] - row.wide[c] - once - trapped;
                 [facet, row.wide[c] + more[c].max(-row.wide[c]), once, trapped]
             };
@@ -118,8 +141,8 @@ const SHARE_MIN: f64 = 1e-3;
 
 /// Energy of light of one visit to the base at an F0: `(p + q f) / (1 - R f)` through its energies at 0, .8 and 1.
 pub(super) fn chain([none, bright, white]: Rgb, f: f64) -> f64 {
-    let beyond = 0.8 * (white - bright);
-    let pole = if beyond > 0.0 { ((0.2 * none + 0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX) } else { 0.0 };
+    let beyond = (0.8 * (white - bright)).max(BEYOND_MIN);
+    let pole = ((0.2 * none + 0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX);
     (none + f * (white * (1.0 - pole) - none)) / (1.0 - pole * f)
 }
 
@@ -128,10 +151,13 @@ pub(super) fn trapped([half, bright, white]: Rgb, f: f64) -> f64 {
     let [half, bright] = [4.0 * half, bright / 0.81];
     let beyond = 0.4 * (white - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half);
     let curve = 0.4 * (white - bright) - 0.1 * (bright - half);
-    let pole = if beyond > 0.0 { (curve / beyond).clamp(0.0, POLE_MAX) } else { 0.0 };
+    let pole = (curve / beyond.max(BEYOND_MIN)).clamp(0.0, POLE_MAX);
     let [half, white] = [half * (1.0 - 0.5 * pole), white * (1.0 - pole)];
     f * f * (half + (2.0 * f - 1.0) * (white - half)).max(0.0) / (1.0 - pole * f)
 }
+
+/// Least divisor of a pole.
+const BEYOND_MIN: f64 = 1e-9;
 
 /// Largest pole.
 const POLE_MAX: f64 = 0.99;

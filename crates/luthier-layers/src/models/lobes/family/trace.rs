@@ -172,7 +172,13 @@ impl Node {
                         return;
                     }
                     // Without a coat the second lobe has what several facets of the metal reflect, and the first that of any other base.
-                    reflections => if family.is_coated() { reflections > 1 } else { family.is_metallic },
+                    reflections => {
+                        if family.is_coated() {
+                            reflections > 1
+                        } else {
+                            family.is_metallic
+                        }
+                    }
                 };
                 energies.reflected[usize::from(more)].add(weight, dimmed, between(weight, path.facets));
                 let tally = if more { &mut of_more } else { &mut of_once };

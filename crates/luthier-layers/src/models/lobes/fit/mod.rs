@@ -236,7 +236,20 @@ impl Simulation {
         });
         let tallies: Vec<Tally> = tallies.collect();
         let base_falloff = Wide::falloff_of(axis, &tallies);
-        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base, base_falloff, has_remainder: true, has_tail: true }
+        Self {
+            first,
+            axis,
+            seen,
+            axes,
+            cells,
+            starts,
+            widths: widths(&rough),
+            views: tallies,
+            base,
+            base_falloff,
+            has_remainder: true,
+            has_tail: true,
+        }
     }
 
     /// The light in one set of its cells.

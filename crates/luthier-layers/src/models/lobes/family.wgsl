@@ -1,0 +1,243 @@
+//? lobes_family
+{
+    //? lobes_metallic
+    {
+        /// Light of one visit to the metal of a family, over its F0: (p + q f) / (1 - R f) through the energies at 0, .8 and 1.
+        fn luthier_family_once(energies: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
+            let beyond = max(0.8 * (energies.z - energies.y), 1e-9);
+            let pole = clamp((0.2 * energies.x + 0.8 * energies.z - energies.y) / beyond, 0.0, 0.99);
+            return (energies.x + f0 * (energies.z * (1.0 - pole) - energies.x)) / (1.0 - pole * f0);
+        }
+
+        /// Light of more visits, f^2 (p + q f) / (1 - R f) through the energies at .5, .9 and 1.
+        fn luthier_family_more(energies: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
+            let half_light = 4.0 * energies.x;
+            let bright = energies.y / 0.81;
+            let beyond = max(0.4 * (energies.z - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half_light), 1e-9);
+            let pole = clamp((0.4 * (energies.z - bright) - 0.1 * (bright - half_light)) / beyond, 0.0, 0.99);
+            let low = half_light * (1.0 - 0.5 * pole);
+            let high = energies.z * (1.0 - pole);
+            return f0 * f0 * max(low + (2.0 * f0 - 1.0) * (high - low), vec3<f32>(0.0)) / (1.0 - pole * f0);
+        }
+    }
+
+    //? lobes_metallic
+    /// Share of diffuse light that an interface of an F0 of 0.04 lets through by Schlick's formula.
+    const LUTHIER_PLASTIC_PASSED: f32 = 0.9142857;
+
+    /// A part of the row of a family: at a tile and a cosine, between this many tiles and the share of a place among those of the next node of the coat.
+    fn luthier_family_part(row: vec2<f32>, beside: vec2<f32>, part: f32) -> vec4<f32> {
+        let here = luthier_lookup_lobes(row.x, row.y, part);
+        //? lobes_coats
+        if beside.y > 0.0 {
+            return mix(here, luthier_lookup_lobes(row.x + beside.x, row.y, part), beside.y);
+        }
+        return here;
+    }
+
+    /// A lobe of a family by its shift, its sharpness and decay, and the factor on its slopes, seen at an angle of this sine.
+    fn luthier_family_shape(shift: f32, sharpness: vec2<f32>, decay: f32, spread: f32, sin_theta: f32) -> LuthierLobeShape {
+        let numbers = vec3<f32>(sharpness * (inverseSqrt(max(decay, 1.0)) / spread), max(decay, 1.0));
+        //? lobes_axes
+        return luthier_lobe_in_axes(shift * spread, numbers, 0.0, vec2<f32>(sin_theta, 0.0), false);
+        //? else
+        return luthier_lobe_shape(shift * spread, numbers, sin_theta);
+    }
+
+    /// A material of a family as seen from wo, above the horizon: rows are read at the slope parameters of the place, and their energies are those of its
+    /// colours.
+    fn luthier_prepare_family($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
+        let header = luthier_header(material);
+        let base_axis = luthier_materials[header + $word_phong_diffuse];
+        let coat_axis = luthier_materials[header + $word_patina_tarnish];
+        let painted = luthier_materials[header + $word_patina];
+        // Integrals of the shape of the remainder, and the number of lobes.
+        let counts = luthier_materials[header + $word_patina_diffuse_albedo];
+        let base_layer = u32(luthier_materials[header + $word_glitter_tilt].z);
+        let first_word = luthier_whole(luthier_materials[header].x);
+        let base_word = first_word + base_layer * LUTHIER_LAYER_WORDS;
+        // Slope parameters of coat and base, without the variance of normals, which lobes get by themselves.
+        var alphas = vec2<f32>(luthier_materials[first_word + $word_numbers].y, luthier_materials[base_word + $word_numbers].y);
+        //? layered
+        {
+            let own_coat = luthier_own_place(place, 0u);
+            let own_base = luthier_own_place(place, base_layer);
+            //? own_alphas
+            {
+                alphas.x *= sqrt(max(own_coat.alpha_factors.x * own_coat.alpha_factors.y, 0.0));
+                alphas.y *= sqrt(max(own_base.alpha_factors.x * own_base.alpha_factors.y, 0.0));
+            }
+        }
+        //? place
+        alphas *= place.alpha_factor;
+        let least = vec2<f32>(coat_axis.x, base_axis.x);
+        let roots = clamp(sqrt(max(alphas, vec2<f32>(0.0))), least, vec2<f32>(coat_axis.y, base_axis.y));
+        let nodes = (roots - least) * vec2<f32>(coat_axis.z, base_axis.z);
+        let held = roots * roots;
+        // Tiles over the base follow each other, and make a sheet for each node of the coat. One tile makes no sheet: then tiles follow the coat.
+        let sheet = abs(coat_axis.w);
+        //? lobes_coats
+        {
+            let share = select(0.0, fract(nodes.x), sheet > 1.5);
+            let beside = vec2<f32>(sheet, share);
+            let tile = luthier_materials[header].w + (nodes.x - share) * sheet + nodes.y;
+        }
+        //? else
+        {
+            let beside = vec2<f32>(0.0);
+            let tile = luthier_materials[header].w + nodes.x + nodes.y;
+        }
+        // Along the normal the azimuth is 0.
+        let across = vec2<f32>(wo.x + 1e-15, wo.y);
+        let sin_theta_sq = dot(across, across);
+        let inverse_sin = inverseSqrt(sin_theta_sq);
+        let sin_theta = sin_theta_sq * inverse_sin;
+        var prepared: LuthierPreparedLobes;
+        prepared.coat = $layer(material, 0u);
+        prepared.wo = wo;
+        //? anisotropic
+        prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wo), wo.z);
+        //? else
+        {
+            let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
+            prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, sin_theta_sq * (alpha * alpha) + 1e-18, wo.z);
+        }
+        //? lobes_patina
+        {
+            prepared.cover = 1.0;
+            prepared.bare = prepared.coat;
+            prepared.bare_masking = prepared.masking;
+        }
+        prepared.azimuth = across * inverse_sin;
+        prepared.medium = luthier_materials[header + $word_veil];
+        prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
+        //? critical_view
+        {
+            prepared.inside = luthier_materials[header + $word_phong_specular];
+            let plain = wo.z * (1.25 / (wo.z + 0.25));
+            let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, base_axis.w);
+        }
+        //? else
+        let cos_theta = wo.z;
+        prepared.row = vec2<f32>(tile, cos_theta);
+        let of_wide = luthier_family_part(prepared.row, beside, 0.0);
+        let of_internal = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_INTERNAL);
+        let of_base = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_BASE);
+        let of_albedo = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_ALBEDO).rgb;
+        let falloff = vec2<f32>(of_base.a, of_internal.a);
+        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
+        var diffuse = painted.rgb;
+        //? base_color
+        if place.base_color.x >= 0.0 {
+            diffuse = place.base_color;
+        }
+        //? lobes_tinted
+        {
+            var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
+            //? place
+            depth *= place.slab_factor;
+        }
+        let of_once = luthier_family_part(prepared.row, beside, 1.0);
+        let of_more = luthier_family_part(prepared.row, beside, 2.0);
+        let sharpness = luthier_family_part(prepared.row, beside, 3.0);
+        let decays = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_SHARES);
+        // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
+        var once = of_once.rgb;
+        var more = of_more.rgb;
+        var wide = of_wide.rgb;
+        var facet = vec3<f32>(0.0);
+        //? lobes_metallic
+        //? ~lobes_metallic
+        let is_metallic = coat_axis.w > 0.0;
+        //? else
+        let is_metallic = true;
+        //? else
+        let is_metallic = false;
+        //? lobes_metallic
+        if is_metallic {
+            var metal = vec3<f32>(0.0);
+            var metallic = 0.0;
+            //? own_f0
+            if place.metal.w >= 0.0 {
+                // The dielectric has an F0 of 0.04: its diffuse base shows the colour of the place (Saunderson 1942).
+                metal = place.metal.rgb;
+                metallic = place.metal.w;
+                diffuse = metal / (LUTHIER_PLASTIC_PASSED + metal * (1.0 - LUTHIER_PLASTIC_PASSED));
+            }
+            var passed = vec3<f32>(of_base.x);
+            var sent_back = vec3<f32>(of_internal.x);
+            //? lobes_tinted
+            {
+                passed *= exp(-of_base.z * depth);
+                sent_back *= exp(-of_internal.z * depth);
+            }
+            wide = mix(of_wide.y + passed * diffuse / (1.0 - sent_back * diffuse), vec3<f32>(of_wide.x), metallic);
+            once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, metal), metallic);
+            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
+            //? lobes_tinted
+            {
+                once *= exp(-of_albedo.y * depth);
+                more *= exp(-of_albedo.z * depth);
+            }
+            facet = vec3<f32>(of_albedo.x);
+            if base_layer == 0u {
+                facet += of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
+            }
+        }
+        //? !lobes_metallic|~lobes_metallic
+        if !is_metallic {
+            facet = of_albedo - wide - once - more;
+            //? base_color
+            {
+                let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
+                let other = diffuse * (1.0 - of_internal.rgb * painted.rgb);
+                wide += max(of_base.rgb * (other / own - 1.0), -wide);
+            }
+        }
+        let below = wide + once + more;
+        // No more light than falls in.
+        let left = min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
+        prepared.albedo = facet + left * below;
+        // Some of the trapped light is wide.
+        prepared.wide = left * (wide + of_wide.w * more);
+        prepared.shares = decays.yw;
+        prepared.first_strength = left * once / max(decays.y, 1e-3);
+        prepared.second_strength = left * (1.0 - of_wide.w) * more / max(decays.w, 1e-3);
+        let squares = held * held;
+        let once_spread = sqrt(squares.y + 0.09 * squares.x);
+        let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
+        var first_shape = luthier_family_shape(of_once.a, sharpness.xy, decays.x, once_spread, sin_theta);
+        var second_shape = luthier_family_shape(of_more.a, sharpness.zw, decays.z, more_spread, sin_theta);
+        //? surface
+        {
+            // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
+            let leaning = wo.z / prepared.inside_cos;
+            let unresolved = 2.0 * max(place.slope_variance, 0.0) * leaning * leaning;
+            first_shape = luthier_spread(first_shape, 1.0, unresolved);
+            second_shape = luthier_spread(second_shape, 1.0, unresolved);
+        }
+        //? lobes_tilted
+        {
+            // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
+            let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
+            let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
+            let tilt = luthier_in_frame(prepared.azimuth, turned);
+            first_shape = luthier_lobe_about(first_shape, tilt);
+            second_shape = luthier_lobe_about(second_shape, tilt);
+        }
+        prepared.first_shape = luthier_with_peak(first_shape);
+        prepared.second_shape = luthier_with_peak(second_shape);
+        return prepared;
+    }
+
+    //? ~lobes_family
+    /// Whether rows of a material are those of a family.
+    fn luthier_is_family(material: u32) -> bool {
+        return luthier_materials[luthier_header(material) + $word_patina].w < -2.5;
+    }
+    //? else
+    /// A material as seen from wo, above the horizon.
+    fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
+        return luthier_prepare_family($place_argument material, wo);
+    }
+}
