@@ -42,8 +42,8 @@ pub use choice::{
 };
 pub use color::ColorMode;
 pub use constants::{
-    AxesRecord, BeamsRecord, CoatRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants,
-    PaintedRecord, PatinaRecord, VaryingFactor, VaryingRecord,
+    AxesRecord, BeamsRecord, BrighteningRecord, CoatRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord,
+    MaterialConstants, PaintedRecord, PatinaRecord, VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
 pub use file::FileEntry;

@@ -3,6 +3,7 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
+use super::darkening::Brightened;
 use super::ior::Read;
 use super::{effects, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
@@ -43,6 +44,10 @@ pub(super) fn decode(
             Some(Layer { base: Base::Dielectric { ior, .. }, .. }) => ior,
             _ => exterior,
         };
+        let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
+        // Of a coat and its base no layer lies between.
+        let coat = sections.iter().find(|at| at.text("type") != Some("thin-film")).filter(|_| layers.len() == 1);
+        let brightened = coat.filter(|_| opaque).and_then(|coat| Brightened::of(coat, at, [exterior, above], &surface));
         let mut below = None;
         let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
@@ -55,17 +60,18 @@ pub(super) fn decode(
                 ior::check_clear(&ior, at, "ior", sink);
                 Base::Dielectric { ior, slab: slab(at) }
             }
-            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, sink) },
+            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, brightened, sink) },
             "conductor" => Base::Conductor { ior: index(at, read, sink, sources) },
             "metallic-roughness" => {
-                let (interface, diffuse) = schlick::metallic_roughness(at, above, sink);
+                let (interface, diffuse) = schlick::metallic_roughness(at, above, brightened, sink);
                 below = diffuse;
                 interface
             }
-            "diffuse" => Base::Diffuse(Diffuse {
-                albedo: matrix.map(reradiation::albedo).or_else(|| at.reflectance("albedo")).unwrap_or([0.0; 3]),
-                sigma: at.number("sigma").unwrap_or(0.0),
-            }),
+            "diffuse" => {
+                let color = matrix.map(reradiation::albedo).or_else(|| at.reflectance("albedo")).unwrap_or([0.0; 3]);
+                let albedo = brightened.map_or(color, |below| below.matt(color));
+                Base::Diffuse(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) })
+            }
             // The checker has reported it.
             _ => continue,
         };
@@ -77,7 +83,6 @@ pub(super) fn decode(
             }
             _ => {}
         }
-        let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
         maps::check(at, layers.len(), sink);
         let number = layers.len();
         let key = format!("layer.{number}");
@@ -91,6 +96,7 @@ pub(super) fn decode(
             exponents: surface::exponents(at),
             maps: maps::decode(at),
             metallic,
+            brightening: brightened.map(|below| below.shares),
         };
         check_weight(at, number, sections.len() - 1 - i, sink);
         if number > 0 {

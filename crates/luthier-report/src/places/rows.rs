@@ -6,8 +6,9 @@ use luthier_layers::effects::textured::TextureSample;
 use luthier_layers::models::shade::Under;
 use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_layers::twins::terms::Exact;
-use luthier_manifest::{MaterialEntry, PlaceValues};
+use luthier_manifest::{BrighteningRecord, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
+use luthier_optics::brightening::Brightening;
 use luthier_optics::schlick::metallic_roughness;
 
 use crate::error::ReportError;
@@ -102,7 +103,15 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
         layers: layers.collect(),
     };
     if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
-        let (f0, albedo) = metallic_roughness(color.map(f64::from), metallic.into());
+        let (color, metallic) = (color.map(f64::from), metallic.into());
+        let (f0, albedo) = match entry.constants.brightening {
+            Some(BrighteningRecord { diffuse, metal, .. }) => {
+                let coat = entry.constants.coat.as_ref();
+                let weight = coat.map_or(1.0, |coat| (coat.weight * f64::from(values.weight_factor)).clamp(0.0, 1.0));
+                Brightening { diffuse, metal }.metallic_roughness(color, metallic, weight)
+            }
+            None => metallic_roughness(color, metallic),
+        };
         place.base_color = Some(albedo);
         place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);
         place.layers[interface].f0 = Some(f0);

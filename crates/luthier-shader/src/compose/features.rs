@@ -52,6 +52,9 @@ impl Features {
             if painted(material).is_some_and(|base| base.moments.is_some()) {
                 own.insert(Feature::LobesBase);
             }
+            if material.constants.brightening.is_some() {
+                own.insert(Feature::Brightened);
+            }
             if material.constants.glitter.is_some() {
                 own.insert(Feature::Glitter);
             }

@@ -183,7 +183,10 @@ fn places(material: &Material) -> Vec<Place> {
     };
     let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
     let places = shares.into_iter().map(|metallic| {
-        let (f0, albedo) = metallic_roughness(base_color, metallic);
+        let (f0, albedo) = match material.brightening() {
+            Some(below) => below.metallic_roughness(base_color, metallic, material.weight().unwrap_or(1.0)),
+            None => metallic_roughness(base_color, metallic),
+        };
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
         Place { patina, base_color: Some(albedo), layers, ..Place::NONE }

@@ -125,7 +125,10 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
         }
     }
     if let Some((layer, color, metal)) = metallic {
-        let (f0, albedo) = luthier_optics::schlick::metallic_roughness(color, metal);
+        let (f0, albedo) = match material.brightening() {
+            Some(below) => below.metallic_roughness(color, metal, weight(material, inputs)?.unwrap_or(1.0)),
+            None => luthier_optics::schlick::metallic_roughness(color, metal),
+        };
         layers[layer].f0 = Some(f0);
         place.base_color = place.base_color.or(Some(albedo));
     }

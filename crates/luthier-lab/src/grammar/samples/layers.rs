@@ -152,6 +152,12 @@ pub(super) static SAMPLES: [Sample; 37] = [
         &["0", "0.5", "1"],
     ),
     sample(
+        "dielectric.darkening",
+        "layer.0.darkening",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.03, darkening = @ }, { type = 'metallic-roughness', base_color = [0.4, 0.25, 0.12], roughness = 0.5 }]",
+        &["true", "false"],
+    ),
+    sample(
         "thin-film.ior",
         "layer.0.film.0.type",
         "layer = [{ type = 'thin-film', ior = @, thickness_nm = 180 }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]",
