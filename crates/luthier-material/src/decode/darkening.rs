@@ -7,7 +7,6 @@ use luthier_optics::brightening::Brightening;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::Surface;
 
-use super::schlick;
 use crate::bake_settings::SODIUM_D_NM;
 use crate::diagnostic::Sink;
 use crate::section::Section;
@@ -21,17 +20,13 @@ pub(super) struct Brightened {
 }
 
 impl Brightened {
-    /// The base below a coat where the coat says so, with the media above and in the coat.
-    pub(super) fn of(coat: &Section<'_>, base: &Section<'_>, media: [&Ior; 2], surface: &Surface) -> Option<Self> {
+    /// The base below a coat where the coat says so, with the media above and in the coat, and the surface of a metal.
+    pub(super) fn of(coat: &Section<'_>, media: [&Ior; 2], metal: Option<&Surface>) -> Option<Self> {
         span(coat)?;
         // The index at this wavelength bends directions.
         let [exterior, within] = media.map(|medium| medium.at(SODIUM_D_NM).re);
         let eta = within / exterior;
-        // The slopes of what can be no metal decide nothing.
-        let is_metal = base.text("type") == Some("conductor")
-            || base.number("metallic").is_some_and(|metallic| metallic > 0.0)
-            || schlick::textured(base).is_some();
-        let alpha = if is_metal { libm::sqrt(surface.alpha_x * surface.alpha_y) } else { 0.0 };
+        let alpha = metal.map_or(0.0, |surface| libm::sqrt(surface.alpha_x * surface.alpha_y));
         let is_index = eta.is_finite() && eta > 0.0;
         is_index.then(|| Self {
             shares: Brightening::below(eta, alpha),

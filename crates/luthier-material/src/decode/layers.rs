@@ -47,7 +47,10 @@ pub(super) fn decode(
         let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
         // Of a coat and its base no layer lies between.
         let coat = sections.iter().find(|at| at.text("type") != Some("thin-film")).filter(|_| layers.len() == 1);
-        let brightened = coat.filter(|_| opaque).and_then(|coat| Brightened::of(coat, at, [exterior, above], &surface));
+        // The slopes of what can be no metal decide nothing.
+        let is_metal = kind == "conductor" || is_metallic(at);
+        let metal = is_metal.then_some(&surface);
+        let brightened = coat.filter(|_| opaque).and_then(|coat| Brightened::of(coat, [exterior, above], metal));
         let mut below = None;
         let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
@@ -117,6 +120,11 @@ pub(super) fn decode(
         sink.error(last.span.clone(), "a thin film coats the next layer, but none follows", Some(hint));
     }
     (layers, extras)
+}
+
+/// Whether a `metallic-roughness` layer is a metal to some share, or at some places.
+fn is_metallic(at: &Section<'_>) -> bool {
+    at.number("metallic").is_some_and(|metallic| metallic > 0.0) || schlick::textured(at).is_some()
 }
 
 /// The index of a layer. Vacuum stands in for a wrong one, which has been reported.

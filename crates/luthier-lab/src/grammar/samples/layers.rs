@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 37] = [
+pub(super) static SAMPLES: [Sample; 38] = [
     sample(
         "material.exterior",
         "exterior",
