@@ -37,8 +37,8 @@ fn oak(place: [f64; 2]) -> Oak {
 
 pub(super) fn oak_color(place: [f64; 2]) -> Texel {
     let Oak { summer, pore, shade } = oak(place);
-    let wood = blend([0.47, 0.29, 0.145], [0.27, 0.135, 0.055], 0.85 * summer);
-    scaled(blend(wood, [0.13, 0.06, 0.025], 0.75 * pore), 1.0 + 0.18 * shade)
+    let wood = blend([0.38, 0.205, 0.085], [0.20, 0.085, 0.028], 0.85 * summer);
+    scaled(blend(wood, [0.08, 0.032, 0.012], 0.75 * pore), 1.0 + 0.18 * shade)
 }
 
 /// Open pores are rougher than planed wood.
