@@ -16,7 +16,7 @@ use patterns::Scratches;
 /// A function over the unit square.
 type Pattern = Box<dyn Fn([f64; 2]) -> Rgb>;
 
-/// What the texels of a map are.
+/// Meaning of the texels of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// Colours, stored by the sRGB curve.
@@ -98,6 +98,20 @@ mod tests {
         made.sort();
         there.sort();
         assert_eq!(there, made);
+    }
+
+    /// The materials are no package of a bake of `materials`, which is timed, and all of them are materials.
+    #[test]
+    fn the_sample_board_is_a_package_of_its_own() {
+        let folder = |name: &str| [format!("{}/../../materials{name}", env!("CARGO_MANIFEST_DIR")).into()];
+        let packages = luthier::Files::packages(&folder("")).unwrap();
+        let names: Vec<&str> = packages.iter().map(|(name, ..)| name.as_str()).collect();
+        assert_eq!(names, ["", "papers"]);
+        let mut sources = luthier::Sources::of(luthier::Files::read(&folder("/textured")).unwrap());
+        sources.refuse(&luthier::Shading::default());
+        assert!(sources.is_usable(), "{:?}", sources.diagnostics().collect::<Vec<_>>());
+        let materials = sources.materials(&luthier::Shading::default());
+        assert!(materials.len() == 5 && materials.iter().all(|material| !material.images().is_empty()));
     }
 
     /// Small enough to lie in the repository.
