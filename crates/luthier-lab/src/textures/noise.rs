@@ -124,6 +124,6 @@ mod tests {
         let all = Noise { octaves: 4, ..noise };
         let values = (0..4096).map(|i| all.at([f64::from(i % 64) / 64.0, f64::from(i / 64) / 64.0]));
         let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), x| (low.min(x), high.max(x)));
-        assert!(low < -0.3 && low >= -1.0 && high > 0.3 && high <= 1.0, "{low} {high}");
+        assert!((-1.0..-0.3).contains(&low) && (0.3..=1.0).contains(&high), "{low} {high}");
     }
 }
