@@ -4,9 +4,11 @@ use luthier_layers::models::phong::Coefficients;
 use luthier_layers::monochrome::Monochrome;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
-    CoatRecord, FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord,
+    BrighteningRecord, CoatRecord, FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants,
+    PatinaRecord,
 };
-use luthier_material::{Effects, FlakeSource, Glitter, Material};
+use luthier_material::{Effects, FlakeSource, Glitter, LayerExtras, Material};
+use luthier_optics::brightening::Brightening;
 use luthier_optics::stack::Stack;
 
 use crate::veil::veil;
@@ -37,8 +39,15 @@ pub(crate) fn constants(
         flakes: flakes(&material.effects),
         patina: bare.clone().and_then(|bare| patina(&material.effects, bare)),
         coat: bare.and_then(|bare| Some(CoatRecord { weight: material.weight()?, bare })),
+        brightening: material.layers.iter().find_map(brightening),
         glitter: glitter(&material.effects),
     }
+}
+
+/// The shares of a `metallic-roughness` surface below a coat, and its base colour in the file.
+fn brightening(layer: &LayerExtras) -> Option<BrighteningRecord> {
+    let (Brightening { diffuse, metal }, surface) = (layer.brightening?, layer.metallic?);
+    Some(BrighteningRecord { diffuse, metal, base_color: surface.base_color })
 }
 
 /// Exponent of the one lobe of all channels, at the green wavelength.

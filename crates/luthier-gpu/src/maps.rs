@@ -46,6 +46,15 @@ impl Scene {
             let [r, g, b] = factor.map(|factor| factor as f32);
             texels.extend(image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
+        // A map of metal alone leaves the base colour to the file, where the albedo of the base is that of a brighter one.
+        let metals = self.maps.iter().find(|map| map.material as usize == material && map.slot == MapSlot::Metallic);
+        if let (Some(base), Some(layer)) = (entry.constants.brightening, metals.and_then(|map| map.layer)) {
+            let number = MAP_WORDS + OWN_WORDS * layer as usize + own_word(MapSlot::BaseColor);
+            if let Some(header) = headers.get_mut(number).filter(|header| header[1] == 0) {
+                *header = [(behind + texels.len()) as u32, 1, 1, 0];
+                texels.push(word(base.base_color.map(|color| color as f32), 1.0).map(f32::to_bits));
+            }
+        }
         if let Some(patina) = &entry.constants.patina {
             let [albedo, tarnish] = [patina.diffuse_albedo, patina.tarnish].map(|rgb| rgb.map(|v| v as f32));
             headers[5] = word(albedo, patina.base_alpha.unwrap_or(-1.0) as f32).map(f32::to_bits);
@@ -162,6 +171,14 @@ impl Scene {
         ];
         let (layers, calls) = self.layer_functions();
         let mut fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
+        // Before those of metal: a weight decides how bright a base is below the coat.
+        let has_weight = self.interface.fills("LuthierPlace", "weight_factor");
+        if has_weight {
+            fill.push(
+                "let weight = shading_map_header(material, 9u);\n    if weight.y > 0u {\n        \
+                 surface.weight_factor = shading_bilinear(weight, maps.uv).x;\n    }",
+            );
+        }
         fill.extend(calls.iter().map(String::as_str));
         if self.interface.fills("LuthierPlace", "base_color") {
             fill.push(
@@ -176,13 +193,6 @@ impl Scene {
                  let n = 2.0 * shading_bilinear(lean, maps.uv).xyz - 1.0;\n        \
                  let own = vec3<f32>(n.xy, max(n.z, 1e-3));\n        let film = surface.inner_normal;\n        \
                  surface.inner_normal = normalize(vec3<f32>(film.xy * own.z + own.xy * film.z, film.z * own.z));\n    }",
-            );
-        }
-        let has_weight = self.interface.fills("LuthierPlace", "weight_factor");
-        if has_weight {
-            fill.push(
-                "let weight = shading_map_header(material, 9u);\n    if weight.y > 0u {\n        \
-                 surface.weight_factor = shading_bilinear(weight, maps.uv).x;\n    }",
             );
         }
         let below = if self.interface.fills("LuthierPlace", "flake_normal") {

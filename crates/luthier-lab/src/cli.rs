@@ -67,6 +67,8 @@ pub(crate) enum Verb {
     Foreign(ForeignOptions),
     /// Hash what the textures, maps and material buffers below a folder hold, whatever their containers: lines as `sha256sum` has them
     Texels(TexelsOptions),
+    /// Make the maps of the materials in `materials/textured`
+    Textures(TexturesOptions),
 }
 
 /// Destination of a page.
@@ -477,6 +479,17 @@ pub(crate) struct TexelsOptions {
     /// Folder of one bake or of many
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The maps are functions of the texture coordinates, and repeat. The same program gives the same bytes on every platform.\n\n\
+                  Examples:\n  luthier-lab textures -o materials/textured/maps"
+)]
+pub(crate) struct TexturesOptions {
+    /// Folder to write them into
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
 }
 
 /// A kind of file that others wrote.

@@ -24,6 +24,7 @@ mod simulation;
 mod stability;
 mod texels;
 mod textured;
+mod textures;
 mod throughput;
 mod varying;
 
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),
         Verb::Texels(options) => texels::run(options),
+        Verb::Textures(options) => textures::run(options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use luthier_model::ModelPart;
 use luthier_optics::Rgb;
+use luthier_optics::brightening::Brightening;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Film, Layer, Stack};
 
@@ -137,6 +138,11 @@ impl Material {
         (*weight < 1.0 || maps.weight.is_some()).then_some(*weight)
     }
 
+    /// Shares of its light that its base gets back from a coat that does not darken it.
+    pub fn brightening(&self) -> Option<Brightening> {
+        self.layers.iter().find_map(|layer| layer.brightening)
+    }
+
     /// Whether its first layer leaves the others bare in places: a patina, or a coat with a weight.
     pub fn is_bare_in_places(&self) -> bool {
         self.stack.layers.len() > 1 && (self.effects.patina.is_some() || self.weight().is_some())
@@ -220,14 +226,16 @@ pub struct LayerExtras {
     pub metallic: Option<Metallic>,
     /// Smallest and largest texel of the maps of slope parameters.
     pub texels: TexelRanges,
+    /// Shares of its light that the base gets back from a coat that does not darken it: the stack has the base brighter than its colour.
+    pub brightening: Option<Brightening>,
 }
 
 impl Default for LayerExtras {
     /// A layer that is nothing but physics, and covers all of the surface.
     fn default() -> Self {
-        let (reradiation, film_variation, exponents, metallic) = (None, None, None, None);
+        let (reradiation, film_variation, exponents, metallic, brightening) = (None, None, None, None, None);
         let (maps, texels) = (Maps::default(), TexelRanges::default());
-        Self { weight: 1.0, reradiation, film_variation, exponents, maps, metallic, texels }
+        Self { weight: 1.0, reradiation, film_variation, exponents, maps, metallic, texels, brightening }
     }
 }
 

@@ -101,3 +101,74 @@ fn an_f0_of_no_clear_medium_is_doubted() {
     let warnings = parsed("[[layer]]\ntype = \"dielectric\"\nf0 = [0.9, 0.6, 0.3]\nsmooth = true\n").warnings;
     assert!(warnings.len() == 1 && warnings[0].message.contains("0.9"), "{warnings:?}");
 }
+
+/// Wood below varnish that does not darken it. K of index 1.5 is 0.596346 by quadrature in another language, so that the base shows
+/// 0.4 / (1 - K + 0.4 K) = 0.622866, and in the same way 0.452292 and 0.252517; the rest is as in `a_mixture_is_a_dielectric_over_a_base`.
+#[test]
+fn a_coat_need_not_darken_its_base() {
+    const SHOWN: [f64; 3] = [0.622_866, 0.452_292, 0.252_517];
+    let file = |coat: &str, base: &str| {
+        format!("[[layer]]\ntype = \"dielectric\"\nior = 1.5\nsmooth = true\n{coat}\n[[layer]]\n{base}\n")
+    };
+    const WOOD: &str = "base_color = [0.4, 0.25, 0.12]\nroughness = 0.5";
+    let engine = format!("type = \"metallic-roughness\"\n{WOOD}");
+    let base = |text: &str| match stack(text).layers.pop().unwrap().base {
+        Base::Diffuse(diffuse) => diffuse.albedo,
+        Base::Conductor { ior } => ior.f0().unwrap(),
+        other => panic!("{other:?}"),
+    };
+    let t = 0.96 * 20.0 / 21.0;
+    let albedo = base(&file("darkening = false", &engine));
+    for (r, shown) in albedo.into_iter().zip(SHOWN) {
+        assert!((r * t / (1.0 - r * (1.0 - t)) - shown).abs() < 2e-6, "{r} {shown}");
+    }
+    let matt = base(&file("darkening = false", "type = \"diffuse\"\nalbedo = [0.4, 0.25, 0.12]"));
+    assert!(matt.into_iter().zip(SHOWN).all(|(found, shown)| (found - shown).abs() < 1e-6), "{matt:?}");
+    // The index over that of the exterior decides: 1.5 x 1.33 in water of 1.33.
+    let water = file("darkening = false", &engine).replace("ior = 1.5", "ior = 1.995");
+    assert!(base(&format!("exterior = 1.33\n{water}")).into_iter().zip(albedo).all(|(a, b)| (a - b).abs() < 1e-9));
+    // A coat that is absent darkens nothing, and one that is said to darken is as one that is not.
+    let none = base(&file("weight = 0\ndarkening = false", "type = \"diffuse\"\nalbedo = 0.4"));
+    assert!(none.into_iter().all(|found| (found - 0.4).abs() < 1e-12), "{none:?}");
+    assert_eq!(stack(&file("darkening = true", &engine)), stack(&file("", &engine)));
+    // A mirror returns light along the normal, where the coat sends 0.04 of it back: 0.5 / (0.96 + 0.04 x 0.5).
+    for metal in ["conductor\"\nf0 = 0.5", "metallic-roughness\"\nbase_color = 0.5\nmetallic = 1"] {
+        let f0 = base(&file("darkening = false", &format!("type = \"{metal}\nsmooth = true")));
+        assert!(f0.into_iter().all(|found| (found - 0.510_204).abs() < 1e-6), "{metal}: {f0:?}");
+    }
+}
+
+/// Where no base has a colour, or no place could have one of its own.
+#[test]
+fn darkening_is_of_a_coat_above_a_colour() {
+    let coat = |lines: &str| format!("[[layer]]\ntype = \"dielectric\"\nior = 1.5\nsmooth = true\n{lines}\n");
+    let undarkened = coat("darkening = false");
+    let base = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.5\nroughness = 0.5\n";
+    let weighted = coat("darkening = false\nmaps = { weight = \"w.png\" }");
+    let cases = [
+        (undarkened.clone(), "no base"),
+        (undarkened.clone() + &coat("") + base, "another dielectric"),
+        (coat("") + &undarkened + base, "only the first layer"),
+        (
+            undarkened.clone() + "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nsmooth = true\n",
+            "`f0` in place of its `ior`",
+        ),
+        (
+            undarkened.clone() + "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\nmaps = { albedo = \"a.png\" }\n",
+            "with a map of `base_color`",
+        ),
+        (weighted.clone() + base, "white.png"),
+        (weighted + "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n", "with a map of `base_color`"),
+        (coat("") + &base.replace("base_color", "darkening = false\nbase_color"), "of the coat above"),
+        (
+            undarkened + base + "[effects.patina]\nextent = 0.5\ntransition = 0.2\nmap = { noise = { seed = 1 } }\n",
+            "beside `patina`",
+        ),
+    ];
+    for (body, part) in cases {
+        let text = format!("schema = 1\nname = \"x\"\n{body}");
+        let errors = parse("x.toml", &text, &|_| Err(std::io::Error::other("none"))).unwrap_err();
+        let told = errors.iter().map(|error| error.render(&text)).collect::<String>();
+        assert!(errors.len() == 1 && errors[0].hint.is_some() && told.contains(part), "{body}: {told}");
+    }
+}

@@ -19,12 +19,13 @@
 //! | one boundary | `fresnel`, `schlick`, `film_color` |
 //! | descriptions | `ndf`, `stack`, then `interface` and `f0_table` |
 //! | micro-surfaces | `masking`, `microfacet`, `visible_normals`, `sampling`, `microsurface` |
-//! | integrals over facets | `albedo`, `dielectric_albedo`, `split_sum`, `cloth`, `diffuse_albedo` |
+//! | integrals over facets | `albedo`, `dielectric_albedo`, `split_sum`, `cloth`, `diffuse_albedo`, `brightening` |
 //!
 //! Everything is deterministic: transcendental functions come from `libm`, so that the same input gives
 //! the same bits on every platform.
 
 pub mod albedo;
+pub mod brightening;
 pub mod cloth;
 pub mod color;
 pub mod color_difference;

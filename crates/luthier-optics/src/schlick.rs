@@ -38,9 +38,14 @@ pub fn index_of_f0(f0: f64) -> f64 {
 /// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
 ///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes (Saunderson 1942).
 pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
-    let f0 = base_color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
+    metallic_and_matt(base_color, base_color, metallic)
+}
+
+/// [`metallic_roughness`] with a base colour of its own for the metal, and another for the dielectric.
+pub fn metallic_and_matt(metal: Rgb, matt: Rgb, metallic: f64) -> (Rgb, Rgb) {
+    let f0 = metal.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
     let albedo = [0, 1, 2].map(|i: usize| {
-        let seen = base_color[i] * (1.0 - metallic);
+        let seen = matt[i] * (1.0 - metallic);
         let passed = 1.0 - schlick_average(f0[i]);
         let sum = passed + seen * (1.0 - passed);
         if sum > 0.0 { seen / sum } else { 0.0 }

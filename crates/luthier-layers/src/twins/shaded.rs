@@ -15,7 +15,7 @@ use crate::effects::layer_sample::LayerSample;
 use crate::effects::textured::TextureSample;
 use crate::frame;
 use crate::layers::ALPHA_MIN;
-use crate::models::lobes::{self, Below, Cover, Fit, Lobes, Paint, Varied, Varying, base_below};
+use crate::models::lobes::{self, Below, Cover, Fit, Lobes, Mix, Paint, Varied, Varying, base_below};
 use crate::models::parts::{Chosen, Parts, Reflectances};
 use crate::models::shade::ShaderTerms;
 use crate::models::shade::Under;
@@ -41,8 +41,8 @@ pub struct Place {
     /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` shows slope
     /// parameters and F0, `phong` shows none, and no model shows them beside patina.
     pub layers: Vec<LayerSample>,
-    /// Base colour of a `metallic-roughness` base, and how metallic it is. `lobes` reads it: there such a base is a mix of a metal and of a dielectric.
-    pub metal: Option<(Rgb, f64)>,
+    /// Base of a `metallic-roughness` surface for `lobes`, which shows it as a mix of a metal and of a dielectric.
+    pub metal: Option<Mix>,
 }
 
 impl Place {
@@ -167,19 +167,19 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
-        if let (true, Some((base_color, metallic)), Some(_)) = (model.is_fitted(), place.metal, base_below(stack)) {
-            let paint = Paint::of(stack).metallic(base_color, metallic);
+        if let (true, Some(mix), Some(_)) = (model.is_fitted(), place.metal, base_below(stack)) {
+            let paint = Paint::of(stack).mixed(mix);
             let layers = place.layers.iter().map(|own| LayerSample { f0: None, ..*own }).collect();
             let of_plastic = Place { metal: None, base_color: Some(paint.albedo), layers, ..place.clone() };
             let of_metal = Place { base_color: None, ..of_plastic.clone() };
             let exact =
                 |stack: &Stack, place: &Place| Self::exact(fit, model, stack, wavelengths_nm, color, place, parts);
-            if metallic >= 1.0 {
+            if mix.metallic >= 1.0 {
                 return exact(&paint.metal_of(stack), &of_metal);
             }
             let plastic = exact(&paint.plastic_of(stack), &of_plastic)?;
-            let metal = if metallic > 0.0 {
-                Some((metallic, Box::new(exact(&paint.metal_of(stack), &of_metal)?)))
+            let metal = if mix.metallic > 0.0 {
+                Some((mix.metallic, Box::new(exact(&paint.metal_of(stack), &of_metal)?)))
             } else {
                 None
             };

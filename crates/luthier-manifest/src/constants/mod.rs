@@ -50,6 +50,9 @@ pub struct MaterialConstants {
     /// A coat whose weight is below 1 or in a map.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coat: Option<CoatRecord>,
+    /// A base whose colour looks through the coat as the file says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub brightening: Option<BrighteningRecord>,
     /// Cells of the surface that glitter.
     pub glitter: Option<GlitterRecord>,
 }
@@ -338,6 +341,17 @@ pub struct CoatRecord {
     pub bare: LayerRecord,
 }
 
+/// A `metallic-roughness` surface below a coat that does not darken it: records have a brighter colour than the file, and places have one, too.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BrighteningRecord {
+    /// Share of the light of a diffuse base that the coat sends back to it.
+    pub diffuse: f64,
+    /// Share of the light of a metal.
+    pub metal: f64,
+    /// Base colour of the file, RGB: that of a place without a map of it.
+    pub base_color: [f64; 3],
+}
+
 /// Glitter (Weidlich and Wilkie 2009, section 5.2.1): a share of the Voronoi cells of the surface is tilted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GlitterRecord {
@@ -375,9 +389,9 @@ impl MaterialConstants {
     /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of beams the normal of the inner boundary, 1; of `microfacet` with an added diffuse term 1 in w |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
-    /// | 5 | flakes: spread, scale, fade start, 0 |
+    /// | 5 | flakes: spread, scale, fade start; in w of a brightened base the share of the light of a diffuse base that comes back, else 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
-    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; in w the number of lobes |
+    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 0, number of the base among the layers, 0; of lobes with one tile 1 over the tail of each, 0; all 0 without |
@@ -415,6 +429,10 @@ impl MaterialConstants {
             words[5][3] = -3.0;
             let nodes = if family.is_metallic { nodes } else { -nodes };
             words[7] = vec4(family.coat.map_or([0.0; 3], |coat| coat.words()), nodes);
+        }
+        if let Some(base) = self.brightening {
+            words[4][3] = base.diffuse as f32;
+            words[6][2] = base.metal as f32;
         }
         if let Some(p) = &self.patina {
             words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
@@ -468,6 +486,7 @@ mod tests {
             flakes: Some(flakes),
             patina: Some(patina),
             coat: None,
+            brightening: None,
             glitter: Some(glitter),
         };
         assert_eq!(
@@ -561,6 +580,9 @@ mod tests {
         };
         assert_eq!(of_coat.words()[5..8], [[0.75, 0.0, -1.0, 2.0], [0.0, 0.0, 0.0, 2.0], [1.0, 1.0, 1.0, 1.0]]);
         assert_eq!(of_coat.words()[0], of_patina.words()[0]);
+        let brightening = Some(BrighteningRecord { diffuse: 0.5, metal: 0.25, base_color: [1.0; 3] });
+        let brightened = MaterialConstants { brightening, ..of_coat }.words();
+        assert_eq!([brightened[4], brightened[6]], [[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 0.25, 2.0]]);
         let around = |is_mirrored| {
             let axes = Some(AxesRecord { turn: [0.6, 0.8], is_mirrored, tiles: 8 });
             words(LobesRecord { axes, ..lobes })[9]

@@ -259,6 +259,9 @@ fn beyond(extras: &LayerExtras) -> Vec<PartNumber> {
     if extras.reradiation.is_some() {
         numbers.push(PartNumber { name: "light", value: "fluorescent".to_owned() });
     }
+    if extras.brightening.is_some() {
+        numbers.push(PartNumber { name: "darkening", value: "undone".to_owned() });
+    }
     if let Some(metallic) = extras.metallic {
         numbers.push(PartNumber { name: "base colour", value: rgb(metallic.base_color) });
         numbers.push(PartNumber { name: "metallic", value: short(metallic.metallic) });

@@ -3,6 +3,7 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
+use super::darkening::Brightened;
 use super::ior::Read;
 use super::{effects, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
@@ -43,6 +44,13 @@ pub(super) fn decode(
             Some(Layer { base: Base::Dielectric { ior, .. }, .. }) => ior,
             _ => exterior,
         };
+        let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
+        // Of a coat and its base no layer lies between.
+        let coat = sections.iter().find(|at| at.text("type") != Some("thin-film")).filter(|_| layers.len() == 1);
+        // The slopes of what can be no metal decide nothing.
+        let is_metal = kind == "conductor" || is_metallic(at);
+        let metal = is_metal.then_some(&surface);
+        let brightened = coat.filter(|_| opaque).and_then(|coat| Brightened::of(coat, [exterior, above], metal));
         let mut below = None;
         let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
@@ -55,17 +63,18 @@ pub(super) fn decode(
                 ior::check_clear(&ior, at, "ior", sink);
                 Base::Dielectric { ior, slab: slab(at) }
             }
-            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, sink) },
+            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, brightened, sink) },
             "conductor" => Base::Conductor { ior: index(at, read, sink, sources) },
             "metallic-roughness" => {
-                let (interface, diffuse) = schlick::metallic_roughness(at, above, sink);
+                let (interface, diffuse) = schlick::metallic_roughness(at, above, brightened, sink);
                 below = diffuse;
                 interface
             }
-            "diffuse" => Base::Diffuse(Diffuse {
-                albedo: matrix.map(reradiation::albedo).or_else(|| at.reflectance("albedo")).unwrap_or([0.0; 3]),
-                sigma: at.number("sigma").unwrap_or(0.0),
-            }),
+            "diffuse" => {
+                let color = matrix.map(reradiation::albedo).or_else(|| at.reflectance("albedo")).unwrap_or([0.0; 3]);
+                let albedo = brightened.map_or(color, |below| below.matt(color));
+                Base::Diffuse(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) })
+            }
             // The checker has reported it.
             _ => continue,
         };
@@ -77,7 +86,6 @@ pub(super) fn decode(
             }
             _ => {}
         }
-        let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
         maps::check(at, layers.len(), sink);
         let number = layers.len();
         let key = format!("layer.{number}");
@@ -92,6 +100,7 @@ pub(super) fn decode(
             maps: maps::decode(at),
             metallic,
             texels: TexelRanges::default(),
+            brightening: brightened.map(|below| below.shares),
         };
         check_weight(at, number, sections.len() - 1 - i, sink);
         if number > 0 {
@@ -112,6 +121,11 @@ pub(super) fn decode(
         sink.error(last.span.clone(), "a thin film coats the next layer, but none follows", Some(hint));
     }
     (layers, extras)
+}
+
+/// Whether a `metallic-roughness` layer is a metal to some share, or at some places.
+fn is_metallic(at: &Section<'_>) -> bool {
+    at.number("metallic").is_some_and(|metallic| metallic > 0.0) || schlick::textured(at).is_some()
 }
 
 /// The index of a layer. Vacuum stands in for a wrong one, which has been reported.

@@ -3,6 +3,7 @@
 //! was reported.
 
 mod bake;
+mod darkening;
 mod effects;
 mod films;
 mod ior;
@@ -51,6 +52,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         schlick::check_bare(document, &stack, sink);
     }
     schlick::check_below_weight(document, sink);
+    darkening::check(document, sink);
     let Sources { spectra, places } = sources;
     let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),

@@ -6,6 +6,7 @@ use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::schlick::index_of_f0;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
+use super::darkening::Brightened;
 use super::{effects, films};
 use crate::bake_settings::SODIUM_D_NM;
 use crate::diagnostic::Sink;
@@ -14,9 +15,10 @@ use crate::material::Metallic;
 use crate::section::Section;
 use crate::suggest::short;
 
-/// The opaque medium of a conductor with an `f0`.
-pub(super) fn conductor(at: &Section<'_>, sink: &mut Sink<'_>) -> Ior {
-    Ior::vacuum().with_f0(f0(at, sink))
+/// The opaque medium of a conductor with an `f0`, which is brighter below a coat that does not darken it.
+pub(super) fn conductor(at: &Section<'_>, brightened: Option<Brightened>, sink: &mut Sink<'_>) -> Ior {
+    let f0 = f0(at, sink);
+    Ior::vacuum().with_f0(brightened.map_or(f0, |below| below.metal(f0)))
 }
 
 /// The medium of a dielectric with an `f0`: of the index that the file gives beside it, or else of the one whose reflectance against the
@@ -58,7 +60,14 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 ///
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
-pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<'_>) -> (Base, Option<Diffuse>) {
+///
+/// Below a coat that does not darken it the base colour is brighter, one for the metal and another for the rest.
+pub(super) fn metallic_roughness(
+    at: &Section<'_>,
+    above: &Ior,
+    brightened: Option<Brightened>,
+    sink: &mut Sink<'_>,
+) -> (Base, Option<Diffuse>) {
     let color = at.reflectance("base_color").unwrap_or([0.0; 3]);
     // Textures decide at each place how metallic the surface is; the bake has the surface without metal.
     let metallic = if textured(at).is_some() { 0.0 } else { at.number("metallic").unwrap_or(0.0) };
@@ -71,9 +80,13 @@ pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<
                 Some(hint),
             );
         }
-        return (Base::Conductor { ior: Ior::vacuum().with_f0(color) }, None);
+        let f0 = brightened.map_or(color, |below| below.metal(color));
+        return (Base::Conductor { ior: Ior::vacuum().with_f0(f0) }, None);
     }
-    let (f0, albedo) = luthier_optics::schlick::metallic_roughness(color, metallic);
+    let (f0, albedo) = match brightened {
+        Some(below) => below.metallic_roughness(color, metallic),
+        None => luthier_optics::schlick::metallic_roughness(color, metallic),
+    };
     let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f0(f0);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))

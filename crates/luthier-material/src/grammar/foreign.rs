@@ -97,6 +97,9 @@ pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
         ("metallic-maps", "bumps") => {
             Some("only the first layer's normal map turns a metallic-roughness layer: write `normal` there")
         }
+        ("metallic-roughness" | "conductor" | "diffuse", "darkening") => {
+            Some("a coat darkens what lies below it: write `darkening = false` in the `[[layer]]` of the coat above")
+        }
         ("thin-film", "weight") => {
             Some("a film covers the interface that it lies on; a first layer of `type = \"dielectric\"` has a weight")
         }

@@ -193,6 +193,13 @@ const WEIGHT: Key = Key::with_default(
     "Share of the surface that the first layer covers, 0 to 1; the layers below are bare elsewhere.",
 );
 
+const DARKENING: Key = Key::with_default(
+    "darkening",
+    Kind::Flag,
+    "true",
+    "Whether this coat, the first layer, darkens the base below it; with false the base is brighter, and looks through the coat as its colour says.",
+);
+
 const MAPS_DOC: &str = "Textures that modulate the layer.";
 const NORMAL_MAP: Key = Key::optional("normal", PICTURE, "A tangent-space normal map.");
 const ROUGHNESS_MAP: Key = Key::optional("roughness", PICTURE, "A map that multiplies the roughness.");
@@ -289,6 +296,7 @@ pub(super) static DIELECTRIC: Table = Table {
             "Absorption coefficient of the slab in 1/um: a number, or one for each of R, G, B. It takes the colour away.",
         ),
         WEIGHT,
+        DARKENING,
         Key::optional("maps", Kind::Table(&DIELECTRIC_MAPS), MAPS_DOC),
     ],
     exactly_one: Some(Alternatives { and: Some(&TRANSPARENT), ..SURFACE }),

@@ -62,6 +62,12 @@ impl File<'_> {
         if before == after && !is_moved {
             return Ok(());
         }
+        if self.original.brightening().is_some() && is_brighter_or_coat(self.original, self.edited, number) {
+            return Err((
+                "darkening",
+                "the base below this coat is brighter than its colour in the file, and follows from the coat",
+            ));
+        }
         let (place, is_second) = place_of(self.document, number).ok_or(("type", "this layer is not in the file"))?;
         // Films stand above the layer that they coat.
         for (i, (before, after)) in before.films.iter().zip(&after.films).enumerate() {
@@ -163,6 +169,24 @@ impl File<'_> {
             _ => return Err(("type", "this layer is not in the file")),
         }
         Ok(())
+    }
+}
+
+/// Whether an edit of a layer changes a base that is brighter than its colour, or what decides how much brighter it is: the index of the coat, the
+/// slope parameter of a metal.
+fn is_brighter_or_coat(original: &Material, edited: &Material, number: usize) -> bool {
+    let [before, after] = [original, edited].map(|material| &material.stack.layers[number]);
+    let indices = [original, edited].map(|material| dielectric(material, number).map(|(ior, _)| ior));
+    match (&before.base, &after.base) {
+        _ if number == 0 => indices[0] != indices[1],
+        (Base::Diffuse(before), Base::Diffuse(after)) => before.albedo != after.albedo,
+        // The F0 of no metal is the same in all such surfaces.
+        (Base::Dielectric { ior, .. }, _)
+            if ior.f0() == Some([0.04; 3]) && original.layers[number].metallic.is_none() =>
+        {
+            before.base != after.base
+        }
+        _ => before != after,
     }
 }
 

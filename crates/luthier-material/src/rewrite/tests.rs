@@ -119,6 +119,31 @@ fn an_engine_surface_that_no_longer_fits() {
     assert!(text.contains("base_color = [0.9, 0.5, 0.1]"), "{text}");
 }
 
+/// Numbers of a base below a coat that does not darken it are not those of the file.
+#[test]
+fn a_brighter_base_is_left_to_the_file() {
+    let plain = "schema = 1\nname = \"m\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nsmooth = true\ndarkening = false\n\
+                     [[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.8, 0.4, 0.2]\nroughness = 0.5\n";
+    let rough = |m: &mut Material| m.stack.layers[1].surface = Surface::isotropic(Default::default(), 0.1);
+    assert_eq!(written(plain, rough), plain.replace("roughness = 0.5", "alpha = 0.1"));
+    let refused = |text: &str, edit: &dyn Fn(&mut Material)| {
+        let original = material(text);
+        let mut edited = original.clone();
+        edit(&mut edited);
+        let error = rewritten(&original, &edited).unwrap_err();
+        assert!(error.message.contains("brighter than its colour"), "{error}");
+    };
+    refused(plain, &|m| {
+        let Base::Diffuse(diffuse) = &mut m.stack.layers[2].base else { panic!("a diffuse base") };
+        diffuse.albedo = [0.1, 0.2, 0.3];
+    });
+    refused(plain, &|m| {
+        let Base::Dielectric { ior, .. } = &mut m.stack.layers[0].base else { panic!("a coat") };
+        *ior = Ior::constant(1.6, 0.0).unwrap();
+    });
+    refused(&plain.replace("roughness = 0.5", "roughness = 0.5\nmetallic = 1"), &rough);
+}
+
 #[test]
 fn an_index_that_was_implied_is_stated() {
     let schlick = "schema = 1\nname = \"m\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.3\nsmooth = true\n\

@@ -188,7 +188,7 @@ impl Lobes {
             albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
             depth: entry.layers[0].optical_depth.map(|depth| depth * place.sample.slab_factor),
         };
-        let paint = place.metal.map_or(plain, |(color, metallic)| plain.metallic(color, metallic));
+        let paint = place.metal.map_or(plain, |mix| plain.mixed(mix));
         self.family = Some((family, alphas, paint));
     }
 }

@@ -162,8 +162,12 @@ impl Places {
         place
     }
 
-    /// Base colour of a metallic-roughness surface without a map of it. Such a surface is no metal; the colour follows from its albedo.
+    /// Base colour of a metallic-roughness surface without a map of it. Such a surface is no metal; the colour follows from its albedo, unless a
+    /// coat leaves it undarkened.
     fn base_color(&self) -> [f32; 3] {
+        if let Some(base) = self.entry.constants.brightening {
+            return base.base_color.map(|color| color as f32);
+        }
         let passed = 0.96 * 20.0 / 21.0;
         let albedo = self.entry.layers.last().map_or([0.0; 3], |layer| layer.albedo);
         albedo.map(|albedo| (albedo * passed / (1.0 - albedo * (1.0 - passed))) as f32)

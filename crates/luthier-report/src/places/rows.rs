@@ -3,12 +3,14 @@
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::textured::TextureSample;
+use luthier_layers::models::lobes::Mix;
 use luthier_layers::models::shade::Under;
 use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_layers::twins::terms::Exact;
-use luthier_manifest::{MaterialEntry, PlaceValues};
+use luthier_manifest::{BrighteningRecord, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
-use luthier_optics::schlick::metallic_roughness;
+use luthier_optics::brightening::Brightening;
+use luthier_optics::schlick::metallic_and_matt;
 
 use crate::error::ReportError;
 use crate::measure::directions::wide;
@@ -100,10 +102,21 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
         base_color: values.base_color.map(|color| color.map(f64::from)),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
         layers: layers.collect(),
-        metal: values.metallic.map(|(color, metallic)| (color.map(f64::from), metallic.into())),
+        metal: None,
     };
     if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
-        let (f0, albedo) = metallic_roughness(color.map(f64::from), metallic.into());
+        let (color, metallic) = (color.map(f64::from), metallic.into());
+        let mix = match entry.constants.brightening {
+            Some(BrighteningRecord { diffuse, metal, .. }) => {
+                let coat = entry.constants.coat.as_ref();
+                let weight = coat.map_or(1.0, |coat| (coat.weight * f64::from(values.weight_factor)).clamp(0.0, 1.0));
+                let shares = Brightening { diffuse, metal };
+                Mix { metal: shares.metal(color, weight), matt: shares.matt(color, weight), metallic }
+            }
+            None => Mix { metal: color, matt: color, metallic },
+        };
+        let (f0, albedo) = metallic_and_matt(mix.metal, mix.matt, metallic);
+        place.metal = Some(mix);
         place.base_color = Some(albedo);
         place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);
         place.layers[interface].f0 = Some(f0);

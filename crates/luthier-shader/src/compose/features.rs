@@ -53,6 +53,9 @@ impl Features {
                 own.insert(Feature::LobesBase);
             }
             own.extend(of_family(material));
+            if material.constants.brightening.is_some() {
+                own.insert(Feature::Brightened);
+            }
             if material.constants.glitter.is_some() {
                 own.insert(Feature::Glitter);
             }

@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use luthier_layers::directional_albedo::integral;
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::glam::DVec3;
+use luthier_layers::models::lobes::Mix;
 use luthier_layers::references::layered_mc::ColorPaths;
 use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_manifest::ShadingModel;
@@ -17,7 +18,7 @@ use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
-use luthier_optics::schlick::metallic_roughness;
+use luthier_optics::schlick::metallic_and_matt;
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::parts::parts_of;
@@ -183,10 +184,17 @@ fn places(material: &Material) -> Vec<Place> {
     };
     let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
     let places = shares.into_iter().map(|metallic| {
-        let (f0, albedo) = metallic_roughness(base_color, metallic);
+        let mix = match material.brightening() {
+            Some(below) => {
+                let weight = material.weight().unwrap_or(1.0);
+                Mix { metal: below.metal(base_color, weight), matt: below.matt(base_color, weight), metallic }
+            }
+            None => Mix { metal: base_color, matt: base_color, metallic },
+        };
+        let (f0, albedo) = metallic_and_matt(mix.metal, mix.matt, metallic);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
-        Place { patina, base_color: Some(albedo), layers, metal: Some((base_color, metallic)), ..Place::NONE }
+        Place { patina, base_color: Some(albedo), layers, metal: Some(mix), ..Place::NONE }
     });
     places.collect()
 }

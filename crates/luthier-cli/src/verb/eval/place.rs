@@ -6,6 +6,7 @@ use luthier_layers::effects::flakes::Flakes;
 use luthier_layers::effects::heterogeneous::Map;
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::patina::Patina;
+use luthier_layers::models::lobes::Mix;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::twins::shaded::{Growth, Place};
 use luthier_lut::{Image, Picture};
@@ -125,9 +126,16 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
         }
     }
     if let Some((layer, color, metal)) = metallic {
-        let (f0, albedo) = luthier_optics::schlick::metallic_roughness(color, metal);
+        let mix = match material.brightening() {
+            Some(below) => {
+                let weight = weight(material, inputs)?.unwrap_or(1.0);
+                Mix { metal: below.metal(color, weight), matt: below.matt(color, weight), metallic: metal }
+            }
+            None => Mix { metal: color, matt: color, metallic: metal },
+        };
+        let (f0, albedo) = luthier_optics::schlick::metallic_and_matt(mix.metal, mix.matt, metal);
         layers[layer].f0 = Some(f0);
-        place.metal = Some((color, metal));
+        place.metal = Some(mix);
         place.base_color = place.base_color.or(Some(albedo));
     }
     place.layers = layers;

@@ -170,6 +170,8 @@ fn pictures_with_maps_of_one_colour_are_those_of_other_numbers() {
             "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = {color:?}\nmetallic = {metallic:?}\nalpha = 0.3\n{maps}"
         )
     };
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\ndarkening = false\n".to_owned();
+    let half = format!("{coat}weight = 0.5\n");
     let texel = [200.0, 150.0, 100.0].map(|value| value / 255.0);
     let color = [0.9, 0.8, 0.7];
     let seen = [0, 1, 2].map(|c: usize| color[c] * texel[c]);
@@ -184,6 +186,17 @@ fn pictures_with_maps_of_one_colour_are_those_of_other_numbers() {
             engine(color, 0.9, "maps = { base_color = \"a.png\", metallic = \"a.png\" }\n"),
             engine(seen, 0.9 * factor, ""),
             engine(color, 0.9, ""),
+        ),
+        // Below coats that do not darken them, one of half a weight, and with a map of metal alone.
+        (
+            half.clone() + &engine(color, 0.9, "maps = { base_color = \"a.png\", metallic = \"a.png\" }\n"),
+            half.clone() + &engine(seen, 0.9 * factor, ""),
+            half + &engine(color, 0.9, ""),
+        ),
+        (
+            coat.clone() + &engine(color, 0.9, "maps = { metallic = \"a.png\" }\n"),
+            coat.clone() + &engine(color, 0.9 * factor, ""),
+            coat + &engine([0.1, 0.9, 0.2], 0.9, ""),
         ),
     ] {
         let picture = |layers: &str| {

@@ -239,6 +239,7 @@ fn coats_with_weights_are_those_of_the_twin() {
     let paint = "[[layer]]\ntype = \"dielectric\"\nior = 1.3\nalpha = 0.1\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.3, 0.1]\n";
     let engine =
         "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.6, 0.3, 0.1]\nmetallic = 0.5\nroughness = 0.5\n";
+    let textured = format!("{engine}maps = {{ base_color = \"mask.png\", metallic = \"mask.png\" }}\n");
     let chosen = "lower_facets = \"phong\"\ndiffuse_part = \"beside\"\nmasking = \"kelemen\"\n";
     let mapped = "maps = { weight = \"mask.png\", bumps = \"mask.png\" }\n";
     let workshop = Workshop::new();
@@ -250,6 +251,7 @@ fn coats_with_weights_are_those_of_the_twin() {
         ("course", "weidlich-wilkie", "weight = 0.7\n", paint, "lower_alpha = \"at-least-above\"\n"),
         ("bumpy", "weidlich-wilkie", mapped, metal, ""),
         ("engine", "elek", "weight = 0.4\n", engine, ""),
+        ("undarkened", "elek", "darkening = false\nmaps = { weight = \"mask.png\" }\n", &textured, ""),
         ("metal", "lobes", "weight = 0.6\n", metal, ""),
         ("paint", "lobes", "weight = 0.6\nmaps = { weight = \"mask.png\" }\n", paint, ""),
     ] {

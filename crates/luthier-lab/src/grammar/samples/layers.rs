@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 37] = [
+pub(super) static SAMPLES: [Sample; 38] = [
     sample(
         "material.exterior",
         "exterior",
@@ -150,6 +150,12 @@ pub(super) static SAMPLES: [Sample; 37] = [
         "layer.0.weight",
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.002, 0.012, 0.03], weight = @ }, { type = 'conductor', ior = 'al', alpha = 0.3 }]\nbake = { model = 'elek' }",
         &["0", "0.5", "1"],
+    ),
+    sample(
+        "dielectric.darkening",
+        "layer.0.darkening",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.03, darkening = @ }, { type = 'metallic-roughness', base_color = [0.4, 0.25, 0.12], roughness = 0.5 }]",
+        &["true", "false"],
     ),
     sample(
         "thin-film.ior",

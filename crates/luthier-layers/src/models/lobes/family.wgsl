@@ -162,7 +162,7 @@
                 // The dielectric has an F0 of 0.04: its diffuse base shows the colour of the place (Saunderson 1942).
                 metal = place.metal.rgb;
                 metallic = place.metal.w;
-                diffuse = metal / (LUTHIER_PLASTIC_PASSED + metal * (1.0 - LUTHIER_PLASTIC_PASSED));
+                diffuse = place.matt / (LUTHIER_PLASTIC_PASSED + place.matt * (1.0 - LUTHIER_PLASTIC_PASSED));
             }
             var passed = vec3<f32>(of_base.x);
             var sent_back = vec3<f32>(of_internal.x);

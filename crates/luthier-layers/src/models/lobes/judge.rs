@@ -10,7 +10,7 @@ use luthier_optics::stack::Stack;
 use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
-use super::{Axes, Family, FirstInterface, FitSettings, Lobes, Paint, Varied, Varying, ViewAxis, patina, shown};
+use super::{Axes, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Varied, Varying, ViewAxis, patina, shown};
 use crate::references::layered_mc::ColorPaths;
 
 /// Views, and paths of each.
@@ -182,7 +182,7 @@ fn in_colors(family: Family, stack: &Stack, number: usize) -> ([f64; 2], Paint, 
         return (alphas, Paint::of(&here), here);
     }
     let (color, is_metal) = COLORS[number % VIEWS];
-    let paint = Paint::of(&here).metallic(color, if is_metal { 1.0 } else { 0.0 });
+    let paint = Paint::of(&here).mixed(Mix { metal: color, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
     let here = if is_metal { paint.metal_of(&here) } else { paint.plastic_of(&here) };
     (alphas, paint, here)
 }

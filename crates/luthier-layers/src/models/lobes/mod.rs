@@ -52,7 +52,7 @@ mod varied;
 
 pub use axes::Axes;
 pub use below::Below;
-pub use family::{Family, Paint, SlopeAxis, base_interface};
+pub use family::{Family, Mix, Paint, SlopeAxis, base_interface};
 pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};

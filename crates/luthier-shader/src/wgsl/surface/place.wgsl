@@ -63,8 +63,11 @@ struct LuthierPlace {
     /// Albedo of diffuse bases, RGB; below 0 that of each material.
     base_color: vec3<f32>,
     //? lobes_metallic, own_f0
-    /// Base colour and metal of a `metallic-roughness` base, see `luthier_metallic_place`; w below 0 leaves those of the material.
+    /// F0 of the metal of a `metallic-roughness` base, and its share, see `luthier_metallic_place`; a share below 0 leaves the base of the material.
     metal: vec4<f32>,
+    //? lobes_metallic, own_f0
+    /// Colour that the base shows where it is no metal, RGB.
+    matt: vec3<f32>,
     //? granier
     /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
     inner_normal: vec3<f32>,
@@ -190,6 +193,14 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     return layer;
 }
 
+//? own_f0, brightened
+/// The colour that looks like `color` where a coat covers `weight` of the surface and sends back `share` of the light from below.
+fn luthier_brightened(color: vec3<f32>, share: f32, weight: f32) -> vec3<f32> {
+    let sum = 1.0 - weight * share + share * color;
+    let square = max(sum * sum - 4.0 * (1.0 - weight) * share * color, vec3<f32>(0.0));
+    return 2.0 * color / (sum + sqrt(square));
+}
+
 //? own_f0
 /// A place with another base colour of a `metallic-roughness` material, and another `metallic`, 0 to 1: F0 of its interface and albedo of its base
 /// (glTF 2.0, appendix B).
@@ -198,13 +209,35 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
     let index = luthier_layer_count(material) - 2u;
     let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     let nominal = luthier_materials[first + $word_ior_n].xyz;
-    let f0 = 0.04 + metallic * (base_color - 0.04);
-    let shown = base_color * (1.0 - metallic);
+    //? brightened
+    {
+        let header = luthier_header(material);
+        // Shares of its light that a diffuse base and a metal get back from the coat, which covers a share of the surface.
+        var shares = vec2<f32>(luthier_materials[header + $word_flakes_shape].w, luthier_materials[header + $word_patina_diffuse_albedo].z);
+        shares = select(vec2<f32>(0.0), shares, shares.x > 0.0);
+        let shape = luthier_materials[header + $word_patina];
+        var covered = shape.x;
+        //? weight
+        covered = saturate(covered * place.weight_factor);
+        let weight = select(1.0, covered, shape.w > 1.5);
+        let metal = luthier_brightened(base_color, shares.y, weight);
+        let matt = luthier_brightened(base_color, shares.x, weight);
+    }
+    //? else
+    {
+        let metal = base_color;
+        let matt = base_color;
+    }
+    let f0 = 0.04 + metallic * (metal - 0.04);
+    let shown = matt * (1.0 - metallic);
     let passed = (1.0 - f0) * (20.0 / 21.0);
     var next = place;
     next.base_color = shown / max(passed + shown * (1.0 - passed), vec3<f32>(1e-20));
     //? lobes_metallic
-    next.metal = vec4<f32>(base_color, metallic);
+    {
+        next.metal = vec4<f32>(metal, metallic);
+        next.matt = matt;
+    }
     var layers = place.layers;
     if index < $layers {
         layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));

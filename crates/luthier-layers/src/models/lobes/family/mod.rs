@@ -31,7 +31,7 @@ mod fit;
 mod paint;
 mod trace;
 
-pub use paint::Paint;
+pub use paint::{Mix, Paint};
 
 use luthier_optics::stack::{Base, Stack, Surface};
 

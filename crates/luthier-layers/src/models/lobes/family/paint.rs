@@ -1,6 +1,7 @@
 //! Colours of a place, and rows of a family in them.
 
 use luthier_optics::Rgb;
+use luthier_optics::schlick::metallic_and_matt;
 use luthier_optics::stack::{Base, Stack};
 
 use super::{Family, base_interface};
@@ -19,6 +20,17 @@ pub struct Paint {
     pub depth: Rgb,
 }
 
+/// The base of a `metallic-roughness` surface at a place: a mix of two surfaces by area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mix {
+    /// F0 of the metal, RGB.
+    pub metal: Rgb,
+    /// Colour that the dielectric shows, RGB.
+    pub matt: Rgb,
+    /// Share of the metal.
+    pub metallic: f64,
+}
+
 impl Paint {
     /// The colours of a stack without metal.
     pub fn of(stack: &Stack) -> Self {
@@ -33,13 +45,12 @@ impl Paint {
         Self { metal: [0.0; 3], metallic: 0.0, albedo, depth }
     }
 
-    /// These colours with a base of a `metallic-roughness` surface: the F0 of its metal and the colour that its diffuse base shows below an interface of an
-    /// F0 of 0.04 (Saunderson 1942, as in material files).
+    /// These colours with a base of a `metallic-roughness` surface: a metal of an F0, and a dielectric whose diffuse base shows a colour, which is its
+    /// share.
     #[must_use]
-    pub fn metallic(self, base_color: Rgb, metallic: f64) -> Self {
-        let passed = (1.0 - PLASTIC_F0) * (20.0 / 21.0);
-        let albedo = base_color.map(|c| c / (passed + c * (1.0 - passed)));
-        Self { metal: base_color, metallic, albedo, ..self }
+    pub fn mixed(self, Mix { metal, matt, metallic }: Mix) -> Self {
+        let (_, albedo) = metallic_and_matt(metal, matt, 0.0);
+        Self { metal, metallic, albedo, ..self }
     }
 
     /// A stack with the metal of these colours as its base.
