@@ -42,8 +42,8 @@ pub use choice::{
 };
 pub use color::ColorMode;
 pub use constants::{
-    AxesRecord, BeamsRecord, CoatRecord, FamilyRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants,
-    PaintedRecord, PatinaRecord, SlopesRecord, VaryingFactor, VaryingRecord,
+    AxesRecord, BeamsRecord, CoatRecord, FamilyRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord,
+    MaterialConstants, PaintedRecord, PatinaRecord, SlopesRecord, VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
 pub use file::FileEntry;

@@ -155,7 +155,12 @@ mod tests {
             (COAT.to_owned() + smooth + METALLIC + rough + painted, "lobes", "elek", None),
             (METALLIC.to_owned() + rough + painted, "lobes", "elek", None),
             (COAT.to_owned() + rough + OWN + GOLD + rough + OWN, "lobes", "elek", None),
-            (COAT.to_owned() + rough + COAT + rough + OWN + GOLD + rough, "belcour", "elek", Some("layer.1.maps.alpha")),
+            (
+                COAT.to_owned() + rough + COAT + rough + OWN + GOLD + rough,
+                "belcour",
+                "elek",
+                Some("layer.1.maps.alpha"),
+            ),
             (COAT.to_owned() + rough + WEIGHT + OWN + GOLD + rough, "elek", "elek", Some("layer.0.maps.alpha")),
             (
                 COAT.to_owned() + smooth + METALLIC + brushed + painted,

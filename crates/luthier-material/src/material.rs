@@ -165,7 +165,8 @@ impl Material {
         }
         let of_surface = if first.maps.roughness.is_some() { first.texels.roughness.map(|r| r * r) } else { [1.0; 2] };
         let range = |number: usize| {
-            let own = if self.layers[number].maps.alpha.is_some() { self.layers[number].texels.alpha } else { [1.0; 2] };
+            let own =
+                if self.layers[number].maps.alpha.is_some() { self.layers[number].texels.alpha } else { [1.0; 2] };
             let alpha = layers[number].surface.alpha_x;
             [0, 1].map(|end: usize| alpha * own[end] * of_surface[end])
         };

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use luthier_layers::models::lobes::{
-    Axes, Cover, Critical, EXCESS, Family, FitError, FitSettings, Judge, LOBES, Painted, Row, SlopeAxis, Traced, Varied,
-    Varying, base_below, most_lobes, shown,
+    Axes, Cover, Critical, EXCESS, Family, FitError, FitSettings, Judge, LOBES, Painted, Row, SlopeAxis, Traced,
+    Varied, Varying, base_below, most_lobes, shown,
 };
 use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, RowLayout, Scan, TableKind, TexelFormat, WeightBits,
@@ -39,11 +39,8 @@ const ROWS: usize = FitSettings::DEFAULT_ROWS;
 /// Steps between the rows that are kept, among which a search chooses.
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
-/// Steps of [`ROWS`] from row to row of a family. With half as many steps, lines between rows err no more than shapes do.
-const FAMILY_STEP: usize = 2;
-
-/// Rows of the fit of a family.
-const FAMILY_ROWS: usize = (ROWS - 1) / FAMILY_STEP + 1;
+/// Steps of [`ROWS`] from row to row of a family.
+const FAMILY_STEP: usize = FitSettings::FAMILY_STEP;
 
 /// Jobs that fit lobes.
 pub(crate) const FIT: JobKind = JobKind::part("fit");
@@ -412,13 +409,6 @@ struct FitJob {
     is_searched: bool,
 }
 
-impl FitJob {
-    fn settings(&self) -> FitSettings {
-        let rows = if is_family(self.varying) { FAMILY_ROWS } else { ROWS };
-        FitSettings { rows, ..FitSettings::default() }
-    }
-}
-
 impl Job for FitJob {
     fn kind(&self) -> JobKind {
         FIT
@@ -429,7 +419,7 @@ impl Job for FitJob {
     }
 
     fn inputs(&self) -> Value {
-        let FitSettings { rows, paths, seed } = self.settings();
+        let FitSettings { rows, paths, seed } = FitSettings::of(self.varying);
         json!({
             "stack": json::stack(&self.stack),
             "color": json::color(&self.color),
@@ -445,7 +435,7 @@ impl Job for FitJob {
 
     fn run(&self, _: &Inputs<'_>) -> Artefact {
         let Self { stack, color, varying, is_searched } = self;
-        let traced = Traced::new(stack, color, *varying, self.settings());
+        let traced = Traced::new(stack, color, *varying, FitSettings::of(*varying));
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
         // A family has two lobes below a coat, and none without: there is nothing to choose.

@@ -528,15 +528,21 @@ mod tests {
             let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None, family: None });
             words(LobesRecord { varying, ..lobes })[0]
         };
-        let film =
-            VaryingRecord { factor: VaryingFactor::FilmFactor, tiles: 9, least_spread: 1.0, factors: Some([1.5, 0.5]), family: None };
+        let film = VaryingRecord {
+            factor: VaryingFactor::FilmFactor,
+            tiles: 9,
+            least_spread: 1.0,
+            factors: Some([1.5, 0.5]),
+            family: None,
+        };
         let of_film = words(LobesRecord { varying: Some(film), ..lobes });
         assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -1.0]]);
         assert_eq!(film.nominal(), 4.0);
         assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
         assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
-        let over_patina = VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None, family: None };
+        let over_patina =
+            VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None, family: None };
         let of_patina = MaterialConstants {
             lobes: Some(LobesRecord { varying: Some(over_patina), ..lobes }),
             patina: constants.patina.clone(),

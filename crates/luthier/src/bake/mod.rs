@@ -16,8 +16,8 @@ use luthier_texture::Texture;
 
 use self::emit::emit;
 use self::entries::{material_entries, table_entry};
-use crate::refusals::{of_domain, of_parts};
 use crate::pictures::measure_texels;
+use crate::refusals::{of_domain, of_parts};
 use crate::{Error, Shading, Sources, read_image};
 
 pub use emit::of_materials;

@@ -120,9 +120,7 @@ impl Judge {
     pub fn error(&self, varied: &Varied) -> FitError {
         let errors = self.views.iter().map(|view| {
             let painted = view.place.as_ref().and_then(|(alphas, paint)| varied.painted(*alphas, paint));
-            let e = self.error_at(view, &painted.unwrap_or_else(|| varied.at(view.factor)));
-            if std::env::var("LJ").is_ok() { eprintln!("{:?} {:?} {:?}", view.place, view.wo, e); }
-            e
+            self.error_at(view, &painted.unwrap_or_else(|| varied.at(view.factor)))
         });
         errors.fold(FitError::default(), FitError::max)
     }
