@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    DiffusePart, DiffuseTerm, Distribution, FamilyRecord, FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobeHeight,
-    LobesRecord, LowerAlpha, LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord, Reflectance,
-    ShadingModel, SwitchBy, VaryingFactor,
+    DiffusePart, DiffuseTerm, Distribution, FamilyRecord, FunctionGroup, InternalReflection, LayerKind, LayerRecord,
+    LobeHeight, LobesRecord, LowerAlpha, LowerCosine, LowerFacets, MapSlot, Masking, MaterialEntry, PaintedRecord,
+    Reflectance, ShadingModel, SwitchBy, VaryingFactor,
 };
 use luthier_model::{Family, Reach};
 
@@ -89,7 +89,10 @@ impl Features {
             if set.materials.iter().any(has_base_light) {
                 names.insert(Feature::LobesBase);
             }
-            if [Feature::Diffuse, Feature::GranierBase, Feature::LobesBase, Feature::LobesFamily].iter().any(|name| names.contains(name)) {
+            if [Feature::Diffuse, Feature::GranierBase, Feature::LobesBase, Feature::LobesFamily]
+                .iter()
+                .any(|name| names.contains(name))
+            {
                 names.insert(Feature::BaseColor);
             }
         }

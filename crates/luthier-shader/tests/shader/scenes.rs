@@ -212,7 +212,8 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
 pub(crate) fn covered(material: MaterialEntry) -> MaterialEntry {
     let mut material = with_lobes(material);
     material.layers[0].alpha_xy = [material.layers[0].alpha; 2];
-    let over = VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None, family: None };
+    let over =
+        VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None, family: None };
     material.constants.lobes = material.constants.lobes.map(|lobes| LobesRecord { varying: Some(over), ..lobes });
     material
 }
@@ -220,7 +221,8 @@ pub(crate) fn covered(material: MaterialEntry) -> MaterialEntry {
 /// The material with rows over the weight of its coat, which are all that its two tiles have.
 pub(crate) fn weighed(material: MaterialEntry) -> MaterialEntry {
     let mut material = covered(material);
-    let over = VaryingRecord { factor: VaryingFactor::WeightFactor, tiles: 2, least_spread: 1.0, factors: None, family: None };
+    let over =
+        VaryingRecord { factor: VaryingFactor::WeightFactor, tiles: 2, least_spread: 1.0, factors: None, family: None };
     material.constants.lobes = material.constants.lobes.map(|lobes| LobesRecord { varying: Some(over), ..lobes });
     material
 }

@@ -56,8 +56,8 @@
             let own_base = luthier_own_place(place, base_layer);
             //? own_alphas
             {
-                alphas.x *= sqrt(max(own_coat.alpha_factors.x * own_coat.alpha_factors.y, 0.0));
-                alphas.y *= sqrt(max(own_base.alpha_factors.x * own_base.alpha_factors.y, 0.0));
+                let along = vec2<f32>(own_coat.alpha_factors.x, own_base.alpha_factors.x);
+                alphas *= sqrt(max(along * vec2<f32>(own_coat.alpha_factors.y, own_base.alpha_factors.y), vec2<f32>(0.0)));
             }
             //? own_f0
             f0 = 1.0 - own_base.passing * (1.0 - f0);
@@ -177,9 +177,13 @@
         var below = wide + once + more;
         //? else
         var below = wide;
+        // No more light than falls in.
+        var left = min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
         //? !lobes_colored|~lobes_colored
         if !is_colored {
+            // Rows have their albedo.
             facet = of_albedo - below;
+            left = vec3<f32>(1.0);
             //? base_color
             {
                 let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
@@ -189,8 +193,6 @@
                 below += brighter;
             }
         }
-        // No more light than falls in.
-        let left = min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
         prepared.albedo = facet + left * below;
         prepared.wide = left * wide;
         //? lobes_mixed, one_lobe|two_lobes
