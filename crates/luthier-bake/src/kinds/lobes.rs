@@ -39,11 +39,8 @@ const ROWS: usize = FitSettings::DEFAULT_ROWS;
 /// Steps between the rows that are kept, among which a search chooses.
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
-/// Steps of [`ROWS`] from row to row of a family. With half as many steps, lines between rows err no more than shapes do.
-const FAMILY_STEP: usize = 2;
-
-/// Rows of the fit of a family.
-const FAMILY_ROWS: usize = (ROWS - 1) / FAMILY_STEP + 1;
+/// Steps of [`ROWS`] from row to row of a family.
+const FAMILY_STEP: usize = FitSettings::FAMILY_STEP;
 
 /// Jobs that fit lobes.
 pub(crate) const FIT: JobKind = JobKind::part("fit");
@@ -411,13 +408,6 @@ struct FitJob {
     is_searched: bool,
 }
 
-impl FitJob {
-    fn settings(&self) -> FitSettings {
-        let rows = if is_family(self.varying) { FAMILY_ROWS } else { ROWS };
-        FitSettings { rows, ..FitSettings::default() }
-    }
-}
-
 impl Job for FitJob {
     fn kind(&self) -> JobKind {
         FIT
@@ -428,7 +418,7 @@ impl Job for FitJob {
     }
 
     fn inputs(&self) -> Value {
-        let FitSettings { rows, paths, seed } = self.settings();
+        let FitSettings { rows, paths, seed } = FitSettings::of(self.varying);
         json!({
             "stack": json::stack(&self.stack),
             "color": json::color(&self.color),
@@ -444,7 +434,7 @@ impl Job for FitJob {
 
     fn run(&self, _: &Inputs<'_>) -> Artefact {
         let Self { stack, color, varying, is_searched } = self;
-        let traced = Traced::new(stack, color, *varying, self.settings());
+        let traced = Traced::new(stack, color, *varying, FitSettings::of(*varying));
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
         // A family has two lobes: there is nothing to choose.

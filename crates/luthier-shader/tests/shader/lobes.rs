@@ -62,7 +62,7 @@ fn rows_over_base() -> (AtlasLayout, Image) {
     (layout, image)
 }
 
-fn set(name: &str) -> Vec<MaterialEntry> {
+pub(crate) fn set(name: &str) -> Vec<MaterialEntry> {
     sets().into_iter().find(|(known, _)| *known == name).unwrap().1
 }
 
@@ -229,7 +229,7 @@ fn turned_rows() -> (AtlasLayout, Image) {
 }
 
 /// Tables whose lobes have a layout.
-fn tables_with(layout: &AtlasLayout) -> Vec<TableFace> {
+pub(crate) fn tables_with(layout: &AtlasLayout) -> Vec<TableFace> {
     let face = |table: TableFace| match table.kind {
         TableKind::Lobes => TableFace { layout: layout.clone(), ..table },
         _ => table,

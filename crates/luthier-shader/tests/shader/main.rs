@@ -7,6 +7,7 @@ mod effects;
 mod emission;
 mod examples;
 mod face;
+mod families;
 mod features;
 mod fluorescent;
 mod golden;

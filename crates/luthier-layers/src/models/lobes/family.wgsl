@@ -64,8 +64,8 @@
             let own_base = luthier_own_place(place, base_layer);
             //? own_alphas
             {
-                alphas.x *= sqrt(max(own_coat.alpha_factors.x * own_coat.alpha_factors.y, 0.0));
-                alphas.y *= sqrt(max(own_base.alpha_factors.x * own_base.alpha_factors.y, 0.0));
+                let along = vec2<f32>(own_coat.alpha_factors.x, own_base.alpha_factors.x);
+                alphas *= sqrt(max(along * vec2<f32>(own_coat.alpha_factors.y, own_base.alpha_factors.y), vec2<f32>(0.0)));
             }
         }
         //? place

@@ -1,0 +1,274 @@
+//! Rows of families in the shader of `lobes` against the f64 formulas, on rows that no fit has made.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use luthier_layers::models::lobes::{
+    Below, Critical, Family, Frame, Mix, Paint, Painted, Row, SlopeAxis, ViewAxis, Wide,
+};
+use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
+use luthier_manifest::{
+    FamilyRecord, FileEntry, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MapEntry, MapSlot, MaterialConstants,
+    MaterialEntry, PaintedRecord, SlopesRecord, Tiles, VaryingFactor, VaryingRecord, material_buffer,
+};
+use luthier_optics::Rgb;
+use luthier_shader::{Form, MaterialSet, Target, emit};
+
+use crate::arithmetic::directions;
+use crate::lobes::{set, tables_with};
+use crate::machine::{Machine, Value, vector};
+
+/// Nodes over the coat and over the base.
+const NODES: [u32; 2] = [2, 3];
+
+/// The tile before those of the family.
+const FIRST: u32 = 1;
+
+/// Ranges of slope parameters of coat and base.
+const RANGES: [[f64; 2]; 2] = [[0.01, 0.25], [0.04, 0.64]];
+
+/// Slope parameters of the material, and its colours: F0 of the base, albedo below it, optical depth of the coat's slab.
+const ALPHAS: [f64; 2] = [0.3, 0.7];
+const F0: Rgb = [0.05, 0.3, 0.6];
+const ALBEDO: Rgb = [0.7, 0.4, 0.2];
+const DEPTH: Rgb = [0.1, 0.3, 0.6];
+
+/// Rows whose every part changes with the view and with the tile.
+fn rows() -> (AtlasLayout, Image) {
+    let of_set = tables_with(&AtlasLayout { tiles: FIRST + NODES[0] * NODES[1], ..plain_layout() });
+    let layout = of_set.into_iter().find(|table| table.kind == TableKind::Lobes).unwrap().layout;
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    for (tile, x) in (0..layout.tiles).flat_map(|tile| (0..width).map(move |x| (tile, x))) {
+        let c = layout.x.node(((x % layout.row_size()).max(1) - 1).min(layout.x.size - 1));
+        let (k, y) = (f64::from(tile) / 7.0, layout.origin(tile)[1]);
+        let part: [f64; 4] = match x / layout.row_size() {
+            0 => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
+            1 => [0.5 + 0.2 * c, 0.1 * k, 1.4, 0.3 + 0.2 * c],
+            2 => [0.02 * c, 0.05, 0.3 * k, 0.2 + 0.1 * c],
+            3 => [0.01, 0.2 + 0.1 * c, 0.3 + 0.1 * k, 0.3 - 0.2 * c],
+            4 => [0.02 + 0.02 * k, 0.15, 0.25, -0.1 * k],
+            5 => [0.9 + 0.2 * k, 1.2 - 0.2 * c, 0.8, 0.7 + 0.1 * k],
+            6 => [1.0 + 3.0 * k, 0.9 - 0.3 * c, 12.0 - 4.0 * k, 0.8],
+            _ => [0.06 + 0.02 * k, 2.5, 3.0 + k, 0.0],
+        };
+        image.texel_mut(x, y).copy_from_slice(&part.map(|value| value as f32));
+    }
+    (layout, image)
+}
+
+/// The layout of rows of two lobes with the light of a base.
+fn plain_layout() -> AtlasLayout {
+    let layout = crate::scenes::tables().into_iter().find(|table| table.kind == TableKind::Lobes).unwrap().layout;
+    let y = layout.y.clone().map(|y| Axis { min: -2.0, size: 8, ..y });
+    AtlasLayout { y, ..layout }
+}
+
+/// The axes of a family.
+fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Family {
+    let [coat, base] = [0, 1].map(|i: usize| {
+        let [least, most] = RANGES[i];
+        SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
+    });
+    let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
+    Family { coat, base, interface, is_metallic }
+}
+
+/// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
+fn material(family: Family) -> MaterialEntry {
+    let given = set("lobes").swap_remove(0);
+    let Family { coat, base, interface, is_metallic } = family;
+    let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
+    let record = FamilyRecord {
+        coat: (interface > 0).then(|| axis(coat)),
+        base: axis(base),
+        interface: interface as u32,
+        is_metallic,
+    };
+    let first = LayerRecord {
+        alpha: ALPHAS[0],
+        alpha_xy: [ALPHAS[0]; 2],
+        optical_depth: DEPTH,
+        tiles: given.layers[0].tiles.with([(TableKind::Lobes, Some(FIRST)), (TableKind::Distribution, None)]),
+        ..given.layers[0].clone()
+    };
+    let second = LayerRecord {
+        kind: LayerKind::Dielectric,
+        alpha: ALPHAS[1],
+        alpha_xy: [ALPHAS[1]; 2],
+        f0: Some(F0),
+        ior_n: F0,
+        ior_k: [-1.0; 3],
+        tiles: if interface == 0 { first.tiles } else { Tiles::default() },
+        ..LayerRecord::default()
+    };
+    let last = LayerRecord { kind: LayerKind::Diffuse, albedo: ALBEDO, ..LayerRecord::default() };
+    let layers = if interface > 0 { vec![first, second, last] } else { vec![second, last] };
+    let falloff = [0.6, 0.3];
+    let lobes = LobesRecord {
+        index: 1.4,
+        falloff,
+        integral: 0.8,
+        critical_cot_sq: 0.0,
+        critical_width: 0.0,
+        critical_plain_share: 0.0,
+        lobes: 2,
+        inverse_tails: [1.0; 2],
+        varying: Some(VaryingRecord {
+            factor: VaryingFactor::Family,
+            tiles: family.nodes() as u32,
+            least_spread: 1.0,
+            factors: None,
+            family: Some(record),
+        }),
+        axes: None,
+        // By hand: 2 / 42 and 2 / 12.
+        painted: Some(PaintedRecord { albedo: ALBEDO, moments: Some([1.0 / 21.0, 1.0 / 6.0]) }),
+        error: None,
+    };
+    let map = |slot, layer| MapEntry {
+        slot,
+        layer: Some(layer),
+        source: String::new(),
+        file: FileEntry::default(),
+        width: 1,
+        height: 1,
+        factor: None,
+        srgb: false,
+        transform: None,
+    };
+    let mut maps = vec![map(MapSlot::Alpha, interface as u32)];
+    if interface > 0 {
+        maps.push(map(MapSlot::Alpha, 0));
+    }
+    if is_metallic {
+        maps.push(map(MapSlot::Metallic, interface as u32));
+    } else {
+        maps.push(map(MapSlot::Albedo, interface as u32 + 1));
+    }
+    let constants = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() };
+    MaterialEntry { layers, constants, maps, ..given }
+}
+
+/// The row of a family at places among its nodes, read as the formulas say.
+fn row(layout: &AtlasLayout, image: &Image, family: Family, alphas: [f64; 2], cos_theta: f64) -> Row {
+    let [coat, base] = family.places(alphas);
+    let part = |part: i32| {
+        let read = |i: usize, j: usize| {
+            let tile = FIRST as usize + i.min(family.coat.nodes - 1) * family.base.nodes + j.min(family.base.nodes - 1);
+            bilinear(image, layout.position(tile as u32, [cos_theta, f64::from(part)]), WeightBits::Exact)
+        };
+        let mix = |a: [f64; 4], b: [f64; 4], t: f64| [0, 1, 2, 3].map(|c: usize| a[c] + t * (b[c] - a[c]));
+        let (i, j) = (coat as usize, base as usize);
+        let [low, high] = [i, i + 1].map(|i| mix(read(i, j), read(i, j + 1), base.fract()));
+        mix(low, high, coat.fract())
+    };
+    Row::of_parts(&(-2..6).map(part).collect::<Vec<_>>(), true)
+}
+
+/// Light and albedo of places, whatever varies: slope parameters of both axes, colours, metal, thickness, and the variance of normals.
+#[test]
+fn rows_of_a_family_are_those_of_the_formulas() {
+    let (layout, image) = rows();
+    let surface = [FunctionGroup::Surface, FunctionGroup::Albedo, FunctionGroup::Sample];
+    let plain = set("lobes-place").swap_remove(0);
+    for (family, groups, others) in [
+        (family(1, true, NODES), &surface[1..], vec![]),
+        (family(1, true, NODES), &surface[..], vec![plain.clone()]),
+        (family(1, false, NODES), &surface[..], vec![]),
+        (family(1, true, [1, 3]), &surface[1..], vec![]),
+        (family(1, true, [2, 1]), &surface[1..], vec![material(family(1, false, NODES))]),
+        (family(0, true, [1, 3]), &surface[1..], vec![]),
+        (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(1, true, NODES))]),
+    ] {
+        let mut materials: Vec<MaterialEntry> = [material(family)].into_iter().chain(others).collect();
+        for (number, material) in materials.iter_mut().enumerate() {
+            material.name = format!("m{number}");
+        }
+        let tables = tables_with(&layout);
+        let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables) };
+        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let black = Image::zeros(3, 3, 3);
+        let textures =
+            [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image.clone())];
+        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let neutral = machine.call("luthier_place", Vec::new());
+        let member = |name: &str| {
+            let place = text.split("struct LuthierPlace {").nth(1).unwrap();
+            let names = place.lines().filter_map(|line| line.trim().strip_suffix(',')?.split_once(": "));
+            names.map(|(name, _)| name).position(|known| known == name)
+        };
+        let own_member = |name: &str| {
+            let place = text.split("struct LuthierLayerPlace {").nth(1).unwrap();
+            let names = place.lines().filter_map(|line| line.trim().strip_suffix(',')?.split_once(": "));
+            names.map(|(name, _)| name).position(|known| known == name)
+        };
+        let axis = ViewAxis::new(2, Critical::default());
+        let frame = Frame {
+            index: 1.4,
+            wide: Wide::new([0.6, 0.3], axis),
+            axes: None,
+            base: Some(Painted { albedo: ALBEDO, is_lambertian: true }),
+        };
+        let mut brightest = 0.0_f64;
+        for (k, (wi, wo)) in directions(160).enumerate() {
+            let [light, eye] = [wi, wo].map(DVec3::from);
+            if light.z <= 0.0 || eye.z <= 0.0 {
+                continue;
+            }
+            // Below the ranges, in them, at a node and above them.
+            let share = |step: f64| (0.003 + k as f64 * step).fract() as f32;
+            let (own, factor, slab) =
+                ([share(0.37).max(1e-3), share(0.61).max(1e-3)], 1.0 - 0.5 * share(0.29), share(0.43));
+            let (color, metal) = ([share(0.17), share(0.23), share(0.31)], share(0.71));
+            let mut place = neutral.clone();
+            let mut depth = DEPTH.map(|depth| depth * f64::from(slab));
+            let mut variance = 0.0;
+            let members = place.members_mut();
+            members[member("alpha_factor").unwrap()] = Value::F(factor);
+            members[member("slab_factor").unwrap()] = Value::F(slab);
+            if let Some(number) = member("slope_variance") {
+                variance = f64::from(0.02 * share(0.13));
+                members[number] = Value::F(variance as f32);
+            }
+            let layers = members[member("layers").unwrap()].members_mut();
+            let interfaces = if family.is_coated() { vec![(0, own[0]), (1, own[1])] } else { vec![(0, own[1])] };
+            for (number, factor) in interfaces {
+                layers[number].members_mut()[own_member("alpha_factors").unwrap()] = vector(&[factor * factor, 1.0]);
+            }
+            let wide = color.map(f64::from);
+            let mix = Mix { metal: wide, matt: wide, metallic: metal.into() };
+            if family.is_metallic {
+                let arguments = vec![place, Value::U(0), vector(&color), Value::F(metal)];
+                place = machine.call("luthier_metallic_place", arguments);
+            } else {
+                place.members_mut()[member("base_color").unwrap()] = vector(&color);
+            }
+            let mut alphas = [0, 1].map(|i: usize| ALPHAS[i] * f64::from(own[i]) * f64::from(factor));
+            if !family.is_coated() {
+                (alphas[0], depth) = (0.0, [0.0; 3]);
+            }
+            let row = row(&layout, &image, family, alphas, eye.z);
+            let plain = Paint { metal: [0.0; 3], metallic: 0.0, albedo: wide, depth };
+            let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
+            let here = family.row_in(&row, alphas, ALBEDO, &paint);
+            let below = Below::new(frame, here, eye).widened(eye, variance);
+            let expected = below.eval(light);
+            let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
+            let prepared = machine.call("luthier_prepare_lobes", arguments);
+            let found =
+                machine.call("luthier_light_lobes", vec![prepared.clone(), vector(&wi.map(|w| w as f32))]).floats();
+            let stated = machine.call("luthier_albedo_lobes", vec![prepared]).floats();
+            for c in 0..3 {
+                let error = (f64::from(found[c]) - expected[c]).abs() / expected[c].abs().max(0.03);
+                assert!(error < 3e-4, "{family:?} {k} {wi:?} {wo:?}: {found:?} {expected:?}");
+                let error = (f64::from(stated[c]) - below.row().albedo_dir[c]).abs();
+                assert!(error < 2e-5, "{family:?} {k} {wo:?}: {stated:?} {:?}", below.row().albedo_dir);
+                assert!(stated[c] <= 1.000_01, "{stated:?}");
+                brightest = brightest.max(expected[c]);
+            }
+        }
+        assert!(brightest > 0.1, "{brightest}");
+    }
+}
