@@ -8,7 +8,7 @@ use super::{effects, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
-use crate::material::{FilmVariation, LayerExtras};
+use crate::material::{FilmVariation, LayerExtras, Maps};
 use crate::section::Section;
 
 /// The layers of the stack, and the properties of each beyond its physics.
@@ -101,7 +101,9 @@ pub(super) fn decode(
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
         if let Some(diffuse) = below {
             sources.places.add(&format!("layer.{}", layers.len()), at);
-            extras.push(LayerExtras::default());
+            // Interface and base of the surface have one normal.
+            let maps = Maps { bumps: maps::decode(at).bumps, ..Maps::default() };
+            extras.push(LayerExtras { maps, ..LayerExtras::default() });
             let base = Base::Diffuse(diffuse);
             layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
         }
