@@ -359,7 +359,7 @@ fn luthier_slope_below(place: LuthierPlace, material: u32) -> vec2<f32> {
     {
         let last = luthier_layer_count(material) - 1u;
         let base = luthier_layer(material, last);
-        let lowest = select(last, max(last, 1u) - 1u, base.kind == LUTHIER_DIFFUSE);
+        let lowest = last - select(0u, 1u, base.kind == LUTHIER_DIFFUSE);
         let normal = luthier_own_normal(place, lowest);
         slope += normal.xy / max(normal.z, 1e-3);
     }
