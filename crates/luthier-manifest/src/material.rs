@@ -127,6 +127,15 @@ impl MaterialEntry {
         self.layers.iter().chain(self.constants.bare())
     }
 
+    /// Whether the model `lobes` shows the own normal of a layer: that of the first one, of the lowest interface and of a diffuse base. Rows of a coat with
+    /// a weight know no frame of the layers that it leaves bare.
+    fn tilts_lobes(&self, layer: u32) -> bool {
+        let layers = &self.layers;
+        let lowest = layers.iter().rposition(|layer| layer.kind != LayerKind::Diffuse);
+        let ends = [Some(0), lowest, layers.len().checked_sub(1)];
+        self.constants.bare().is_none() && ends.contains(&Some(layer as usize))
+    }
+
     /// Maps of single layers that the model shows, in order: number of the layer, and quantity. `LuthierPlace` has their values; the value of
     /// an albedo map is its `base_color`.
     pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
@@ -137,11 +146,14 @@ impl MaterialEntry {
             // Models of the first interface may have the base, which is the last layer.
             let has_base = self.model.honours(Feature::Base, form) || self.constants.diffuse_term == DiffuseTerm::Added;
             let is_base = map.slot == MapSlot::Albedo && has_base;
-            let is_shown = match feature {
-                Feature::LayerAlpha | Feature::MetallicMap if self.model.is_fitted() => self.has_axis_of(layer),
+            let is_read = match map.slot {
+                MapSlot::Bumps if self.model.is_fitted() => self.tilts_lobes(layer),
+                _ if self.model.is_fitted() && matches!(feature, Feature::LayerAlpha | Feature::MetallicMap) => {
+                    self.has_axis_of(layer)
+                }
                 _ => layer == 0 || reads_all || is_base,
             };
-            (is_shown && self.model.honours(feature, form)).then_some((layer, map.slot))
+            (is_read && self.model.honours(feature, form)).then_some((layer, map.slot))
         })
     }
 

@@ -140,7 +140,7 @@ mod tests {
         let scratched = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\n";
         let stained = "alpha = 0.1\n[layer.maps]\nthickness = \"t.png\"\n";
         let worn = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\nthickness = \"t.png\"\n";
-        let painted = "[layer.maps]\nmetallic = \"m.png\"\n";
+        let (painted, bumps) = ("[layer.maps]\nmetallic = \"m.png\"\n", "[layer.maps]\nbumps = \"n.png\"\n");
         let bumpy = "alpha = 0.1\n[layer.maps]\nnormal = \"n.png\"\n";
         for (body, model, without, cause) in [
             (GOLD.to_owned() + "alpha = 0.008\n", "elek", "elek", None),
@@ -148,7 +148,15 @@ mod tests {
             (COAT.to_owned() + rough, "lobes", "elek", None),
             (GOLD.to_owned() + brushed, "lobes", "weidlich-wilkie", None),
             (GOLD.to_owned() + scratched, "lobes", "elek", None),
-            (GOLD.to_owned() + rough + "[layer.maps]\nbumps = \"n.png\"\n", "elek", "elek", Some("layer.0.maps.bumps")),
+            (GOLD.to_owned() + rough + "[layer.maps]\nbumps = \"n.png\"\n", "lobes", "elek", None),
+            (COAT.to_owned() + smooth + WEIGHT + WHITE + bumps, "elek", "elek", Some("layer.1.maps.bumps")),
+            (COAT.to_owned() + smooth + COAT + rough + bumps + WHITE + bumps, "lobes", "elek", None),
+            (
+                COAT.to_owned() + smooth + COAT + rough + bumps + COAT + rough + WHITE + bumps,
+                "elek",
+                "elek",
+                Some("layer.1.maps.bumps"),
+            ),
             (GOLD.to_owned() + "distribution = \"blinn\"\n" + rough, "elek", "elek", Some("layer.0.distribution")),
             (WHITE.to_owned(), "elek", "elek", None),
             (VARYING.to_owned() + GOLD + rough, "lobes", "elek", None),

@@ -132,6 +132,8 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
         let albedo = material.layers.iter().position(|layer| layer.maps.albedo.is_some());
         let albedo_key = format!("layer.{}.maps.albedo", albedo.unwrap_or(0));
+        let bumps = material.layers.iter().position(|layer| layer.maps.bumps.is_some());
+        let bumps_key = format!("layer.{}.maps.bumps", bumps.unwrap_or(0));
         for (lacks, feature, key) in [
             (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
             (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
@@ -141,11 +143,21 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 cover.0,
                 cover.1,
             ),
+            // Rows of a coat with a weight know no frame of the layers that it leaves bare.
+            (material.weight().is_some() && bumps.is_some(), Feature::Bumps, bumps_key.as_str()),
             // Rows have the light of a base and that of the bare base together.
-            (material.weight().is_some() && albedo.is_some(), Feature::AlbedoMap, &albedo_key),
+            (material.weight().is_some() && albedo.is_some(), Feature::AlbedoMap, albedo_key.as_str()),
         ] {
             if lacks {
                 found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });
+            }
+        }
+        // Lobes of several interfaces are not told apart: the lowest one tilts them.
+        let lowest = layers.iter().rposition(|layer| !matches!(layer.base, Base::Diffuse(_))).unwrap_or(0);
+        for number in (1..lowest).filter(|number| material.layers[*number].maps.bumps.is_some()) {
+            let key = format!("layer.{number}.maps.bumps");
+            if !found.iter().any(|part| part.key == key) {
+                found.push(LeftOut { feature: Feature::Bumps, key, forms: Form::ALL.to_vec() });
             }
         }
     }

@@ -262,6 +262,7 @@ const LOBES: Facts = Facts {
                 NormalMap,
                 RoughnessMap,
                 ThicknessMap,
+                Bumps,
                 AlbedoMap,
                 LayerAlpha,
                 MetallicMap,

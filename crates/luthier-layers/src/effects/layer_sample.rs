@@ -12,7 +12,7 @@ const NO_DIRECTION: f64 = 0.02;
 /// Values of the textures of one layer at one place: `LuthierLayerPlace` of the shaders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LayerSample {
-    /// Normal of this layer's interface alone, unit, in the frame of the place; for `elek` and `weidlich-wilkie`.
+    /// Normal of this layer's interface alone, unit, in the frame of the place; for `elek`, `weidlich-wilkie` and `lobes`.
     pub normal: DVec3,
     /// Factors on its slope parameters along the tangent and along the bitangent.
     pub alpha_factors: [f64; 2],

@@ -38,8 +38,9 @@ pub struct Place {
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
-    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read. `lobes` shows slope
-    /// parameters and F0, `phong` shows none, and no model shows them beside patina.
+    /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read, and none beside patina.
+    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base, and none
+    /// beside a coat with a weight.
     pub layers: Vec<LayerSample>,
     /// Base of a `metallic-roughness` surface for `lobes`, which shows it as a mix of a metal and of a dielectric.
     pub metal: Option<Mix>,
@@ -221,6 +222,13 @@ impl<T: ShaderTerms> Shaded<T> {
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
         let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
         let whole = at(stack, model, place, patina);
+        let own: Vec<DVec3> = place.layers.iter().map(|layer| layer.normal).collect();
+        // Lobes have the frame of the first interface.
+        let (normal, own) = match (model.is_fitted(), patina) {
+            (false, _) => (place.sample.normal, own),
+            (true, None) => frame::on_first(place.sample.normal, &own),
+            (true, Some(_)) => (place.sample.normal, Vec::new()),
+        };
         let layers = |part: Part, here: &Stack| {
             // The variance of normals widens fitted lobes one by one; the first interface, which is beside them, is widened here.
             let mut first = here.clone();
@@ -230,7 +238,7 @@ impl<T: ShaderTerms> Shaded<T> {
             // The twin takes chosen reflectances from its terms, because tarnish dims these, too.
             let facets = Parts { reflectance: Reflectance::Table, ..parts };
             let above = usize::from(part == Part::Bare);
-            let normals = place.layers.iter().skip(above).map(|layer| layer.normal).collect();
+            let normals = own.iter().skip(above).copied().collect();
             let twin =
                 Twin::with(model, &first, wavelengths_nm, color, facets).reradiating(reradiation).tilting(normals);
             let reflectance = if model.takes(ModelPart::Reflectance) { parts.reflectance } else { Reflectance::Table };
@@ -242,7 +250,8 @@ impl<T: ShaderTerms> Shaded<T> {
             Some(_) => (layers(Part::Grown, &whole)?, Some(layers(Part::Bare, &lobes::bare(&whole))?)),
         };
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
-        let place = Place { patina, under, ..place.clone() };
+        let sample = TextureSample { normal, ..place.sample };
+        let place = Place { sample, patina, under, ..place.clone() };
         Some(Self { place, layers: all, bare, has_lobes: model.is_fitted(), metal: None })
     }
 

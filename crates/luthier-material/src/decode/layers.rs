@@ -9,7 +9,7 @@ use super::{effects, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
-use crate::material::{FilmVariation, LayerExtras, TexelRanges};
+use crate::material::{FilmVariation, LayerExtras, Maps, TexelRanges};
 use crate::section::Section;
 
 /// The layers of the stack, and the properties of each beyond its physics.
@@ -111,7 +111,9 @@ pub(super) fn decode(
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
         if let Some(diffuse) = below {
             sources.places.add(&format!("layer.{}", layers.len()), at);
-            extras.push(LayerExtras::default());
+            // Interface and base of the surface have one normal.
+            let maps = Maps { bumps: maps::decode(at).bumps, ..Maps::default() };
+            extras.push(LayerExtras { maps, ..LayerExtras::default() });
             let base = Base::Diffuse(diffuse);
             layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
         }

@@ -35,11 +35,7 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
     ] {
         if number > 0 && maps.has(name) {
             let message = format!("a {name} map belongs to the first layer: it is that of the whole surface");
-            let is_taken = own != "bumps" || at.text("type") != Some("metallic-roughness");
-            let hint = match is_taken {
-                true => format!("write `{own}`, which {does}, or move it to the first layer"),
-                false => "move it to the first layer".to_owned(),
-            };
+            let hint = format!("write `{own}`, which {does}, or move it to the first layer");
             sink.error(maps.value_span(name), message, Some(hint));
         }
     }

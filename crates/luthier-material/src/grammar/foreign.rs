@@ -94,9 +94,6 @@ pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
             "a metal with a picture of its F0 is `type = \"metallic-roughness\"` with `metallic = 1`, and white as a map of `metallic`",
         ),
         ("diffuse-maps", "base_color") => Some("write `albedo`"),
-        ("metallic-maps", "bumps") => {
-            Some("only the first layer's normal map turns a metallic-roughness layer: write `normal` there")
-        }
         ("metallic-roughness" | "conductor" | "diffuse", "darkening") => {
             Some("a coat darkens what lies below it: write `darkening = false` in the `[[layer]]` of the coat above")
         }

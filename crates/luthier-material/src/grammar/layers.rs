@@ -259,6 +259,7 @@ static METALLIC_MAPS: Table = Table {
     keys: &[
         NORMAL_MAP,
         ROUGHNESS_MAP,
+        BUMPS,
         ALPHA_MAP,
         ALPHA_X_MAP,
         ALPHA_Y_MAP,

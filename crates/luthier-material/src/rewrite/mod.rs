@@ -151,6 +151,8 @@ impl File<'_> {
         if maps.is_some_and(|maps| maps.contains_key("base_color") || maps.contains_key("metallic")) {
             return Err(("maps", "a layer with maps of its base colour or metal has no other numbers"));
         }
+        // Both have the normal of the layer.
+        let bumps = maps.and_then(|maps| maps.get("bumps")).and_then(Item::as_value).cloned();
         table.remove("metallic");
         table.remove("sigma");
         put(table, "type", Item::Value("dielectric".into()));
@@ -162,6 +164,9 @@ impl File<'_> {
         below.insert("albedo", rgb_value(diffuse.albedo));
         if diffuse.sigma != 0.0 {
             below.insert("sigma", value(diffuse.sigma));
+        }
+        if let Some(bumps) = bumps {
+            below.insert("maps", InlineTable::from_iter([("bumps", bumps)]).into());
         }
         match self.document.get_mut("layer") {
             Some(Item::ArrayOfTables(tables)) => insert(tables, place + 1, below.into_table()),

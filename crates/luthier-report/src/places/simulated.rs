@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier_layers::models::lobes::{self, Lobes};
 use luthier_layers::twins::shaded::Place;
-use luthier_manifest::{MaterialEntry, PlaceValues};
+use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack};
@@ -125,8 +125,8 @@ impl SimulatedErrors {
 /// Compares shipped rows of lobes with the simulation at random places. `None` for materials of other models, for materials that are the same everywhere,
 /// and for a diffuse base alone.
 ///
-/// Places have the quantities that maps vary, with three exceptions. Normals are left out, because they only turn the frame of the eye. Flakes are left
-/// out, because their shift of the lobes is an approximation that is measured elsewhere (`luthier_layers::models::lobes::Below::tilted`). Patina and coats with a
+/// Places have the quantities that maps vary, with three exceptions. Normals of the surface are left out, because they only turn the frame of the eye. Flakes and normals of
+/// single layers are left out, because their shift of the lobes is an approximation that is measured elsewhere (`luthier_layers::models::lobes::Below::tilted`). Patina and coats with a
 /// weight are whole or absent, because light is linear between.
 ///
 /// # Errors
@@ -203,7 +203,8 @@ fn upright(number: u64, values: PlaceValues, entry: &MaterialEntry) -> PlaceValu
     let weight = entry.constants.coat.as_ref().map_or(1.0, |coat| coat.weight);
     let is_covered = weight > 0.0 && number.is_multiple_of(2);
     let weight_factor = if is_covered { (1.0 / weight) as f32 } else { 0.0 };
-    PlaceValues { normal, flake_normal, patina, weight_factor, ..values }
+    let layers = values.layers.iter().map(|own| LayerValues { normal: LayerValues::NONE.normal, ..*own }).collect();
+    PlaceValues { normal, flake_normal, patina, weight_factor, layers, ..values }
 }
 
 /// Whether fully grown patina is nothing but its layers.

@@ -11,7 +11,7 @@ use crate::MaterialSet;
 use crate::compose::feature::Feature;
 use crate::compose::features::Features;
 use crate::compose::stacks::{are_bases, is_diffuse, stacks};
-use crate::compose::{by_model, case, chain, function, statistics, text};
+use crate::compose::{by_model, case, chain, function, on_first, statistics, text};
 
 /// Number in place of a model's for a bare base of the model `lobes`, which has no rows.
 const BASE: &str = "255u";
@@ -104,16 +104,19 @@ fn number(model: ShadingModel) -> String {
 fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
     const SUMMARY: &str = "A material for light seen from wo: unit, in the local frame, away from the surface.";
     let has_place = features.has(Feature::Place);
+    let (here, on_first) = on_first(set, features);
     let (name, parameters, eye) = match has_place {
-        true => ("luthier_prepare_at", "place: LuthierPlace, material: u32", "luthier_local(place.normal, wo)"),
-        false => ("luthier_prepare", "material: u32", "wo"),
+        true => {
+            ("luthier_prepare_at", "place: LuthierPlace, material: u32", format!("luthier_local({here}.normal, wo)"))
+        }
+        false => ("luthier_prepare", "material: u32", "wo".to_owned()),
     };
     let mut out = format!(
-        "/// {SUMMARY}\nfn {name}({parameters}, wo: vec3<f32>) -> LuthierPrepared {{\n    let eye = {eye};\n    \
+        "/// {SUMMARY}\nfn {name}({parameters}, wo: vec3<f32>) -> LuthierPrepared {{\n{on_first}    let eye = {eye};\n    \
          var prepared: LuthierPrepared;\n    prepared.material = material;\n"
     );
     if has_place {
-        out.push_str("    prepared.place = place;\n    prepared.open = min(wo.z, eye.z) > 0.0;\n");
+        let _ = writeln!(out, "    prepared.place = {here};\n    prepared.open = min(wo.z, eye.z) > 0.0;");
     } else {
         out.push_str("    prepared.open = eye.z > 0.0;\n");
     }
@@ -126,7 +129,8 @@ fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
         out.push_str("    prepared.model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
     }
     let (first, others) = by_model(set, "prepared.model", |model| {
-        format!("{}(prepared, $place_argument material, prepared.wo)", parts_function(model))
+        let place = if has_place { format!("{here}, ") } else { String::new() };
+        format!("{}(prepared, {place}material, prepared.wo)", parts_function(model))
     });
     let _ = writeln!(out, "{others}    return {first};\n}}");
     if has_place {

@@ -189,8 +189,12 @@ luthier_lut::named! {
         LobesMetallic = "lobes_metallic",
         /// Light of such a family is absorbed below the coat.
         LobesTinted = "lobes_tinted",
-        /// Flakes tilt lobes.
+        /// Flakes, or own normals of interfaces, tilt lobes.
         LobesTilted = "lobes_tilted",
+        /// A material of `lobes` has normals of single layers.
+        LobesBumps = "lobes_bumps",
+        /// Such a material has a diffuse base below interfaces, whose light is a part of the rows.
+        LobesLean = "lobes_lean",
         /// Lobes have a critical angle of the view.
         CriticalView = "critical_view",
         /// A material varies over its surface, or the set has surfaces.

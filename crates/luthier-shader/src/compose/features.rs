@@ -42,11 +42,22 @@ impl Features {
                     MapSlot::Albedo => &[Feature::BaseColor],
                     MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
                     MapSlot::Lean => &[],
-                    MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals],
+                    MapSlot::Bumps if !material.model.is_fitted() => &[Feature::Layered, Feature::OwnNormals],
+                    MapSlot::Bumps if has_base_light(material) => &[
+                        Feature::Layered,
+                        Feature::OwnNormals,
+                        Feature::LobesBumps,
+                        Feature::LobesBase,
+                        Feature::LobesLean,
+                    ],
+                    MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps],
                     MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
                     MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],
                     _ => &[Feature::Layered, Feature::OwnAlphas],
                 });
+            }
+            if own.contains(&Feature::LobesBumps) && has_inner_interface(material) {
+                own.insert(Feature::LobesTilted);
             }
             // Rows over a factor store the shape of the remainder with the light of the base.
             if painted(material).is_some_and(|base| base.moments.is_some()) {
@@ -107,7 +118,8 @@ impl Features {
             names.insert(Feature::GranierTilted);
         }
         let is_bent_below = names.contains(&Feature::Below) && names.contains(&Feature::Statistics);
-        if is_bent_below || [Feature::LobesTilted, Feature::GranierSchlick].iter().any(|name| names.contains(name)) {
+        let bending = [Feature::LobesTilted, Feature::LobesLean, Feature::GranierSchlick];
+        if is_bent_below || bending.iter().any(|name| names.contains(name)) {
             names.insert(Feature::Bent);
         }
         for table in set.tables_read(form) {
@@ -491,6 +503,11 @@ fn is_bare_base(material: &MaterialEntry) -> bool {
 /// Whether lobes come from below a slab, in which flakes may tilt them.
 fn has_coat(material: &MaterialEntry) -> bool {
     material.model.is_fitted() && material.layers.first().is_some_and(|first| first.kind == LayerKind::Dielectric)
+}
+
+/// Whether there is an interface below the first one.
+fn has_inner_interface(material: &MaterialEntry) -> bool {
+    material.layers.iter().skip(1).any(|layer| !is_diffuse(layer))
 }
 
 /// Whether an interface is smoother than one above it.

@@ -124,7 +124,13 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
     let shown = shown.filter(|(layer, slot)| slot.is_of_layer_place(*layer));
     let count = shown.map(|(layer, _)| layer + 1).max().unwrap_or(0);
     let each: String = (0..count).map(|i| format!("    place.layers[{i}] = luthier_layer_place();\n")).collect();
+    let each_on_first: String = (1..count)
+        .map(|i| {
+            format!("    layers[{i}].normal = luthier_local(next.normal, luthier_local(back, layers[{i}].normal));\n")
+        })
+        .collect();
     let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);
+    let module = module.replace("    $each_on_first\n", &each_on_first);
     module.replace("$layers", &format!("{count}u"))
 }
 
@@ -321,13 +327,15 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     let guard = "    if min(wi.z, wo.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n";
     let mut body = String::from(guard);
     let turned = features.has(Feature::Place);
+    let (here, on_first) = on_first(set, features);
+    body.push_str(&on_first);
     if turned {
-        body.push_str(
-            "    let wi_here = luthier_local(place.normal, wi);\n    let wo_here = luthier_local(place.normal, wo);\n",
-        );
+        let _ = writeln!(body, "    let wi_here = luthier_local({here}.normal, wi);");
+        let _ = writeln!(body, "    let wo_here = luthier_local({here}.normal, wo);");
         body.push_str(&guard.replace("wi.z", "wi_here.z").replace("wo.z", "wo_here.z"));
     }
-    let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
+    let at_place = format!("{here}, material, wi_here, wo_here");
+    let arguments = if turned { at_place.as_str() } else { "material, wi, wo" };
     let (first, others) = by_model(set, "model", |model| {
         let name = function(model);
         match (features.has(Feature::Fluorescent), model.is_path()) {
@@ -353,6 +361,24 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     } else {
         format!("{SUMMARY}fn luthier_eval({parameters}) -> vec3<f32> {{\n{body}}}\n")
     }
+}
+
+/// The name of the place in functions of the face, and statements that make it: materials of `lobes` have the frame of their first interface's own normal.
+fn on_first(set: &MaterialSet<'_>, features: &Features) -> (&'static str, String) {
+    if !features.has(Feature::LobesBumps) {
+        return ("place", String::new());
+    }
+    let next = "luthier_place_on_first(place)";
+    let model = set.models().find(|model| model.is_fitted());
+    let statements = match model.filter(|_| set.models().count() > 1) {
+        None => format!("    let here = {next};\n"),
+        Some(model) => format!(
+            "    var here = place;\n    if luthier_whole(luthier_materials[luthier_header(material)].z) == {}u {{\n        \
+             here = {next};\n    }}\n",
+            model.number()
+        ),
+    };
+    ("here", statements)
 }
 
 /// [`eval`] for a set with a fluorescent base. Functions take the light, because reflected light is not the product of a factor and the light.

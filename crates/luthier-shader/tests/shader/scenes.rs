@@ -5,10 +5,12 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
-    AxesRecord, CoatRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord,
+    AxesRecord, CoatRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MapSlot,
     MaterialConstants, MaterialEntry, PatinaRecord, ShadingModel, Tiles, VaryingFactor, VaryingRecord,
 };
 use luthier_shader::{Form, MaterialSet, TableFace, Target, complete, emit, emit_constant};
+
+use crate::features::with_map;
 
 /// An interface without film: red-lacquer's coat.
 pub(crate) fn dielectric() -> LayerRecord {
@@ -186,6 +188,13 @@ fn inward() -> LayerRecord {
     LayerRecord { eta: 1.0 / 1.5, critical_cot_sq: 1.25, ..clear() }
 }
 
+/// A material with normals of all of its layers.
+fn bumpy(material: MaterialEntry) -> MaterialEntry {
+    let layers = 0..material.layers.len() as u32;
+    let maps = layers.flat_map(|layer| with_map(material.clone(), MapSlot::Bumps, layer).maps).collect();
+    MaterialEntry { maps, ..material }
+}
+
 /// The material with the model `lobes`, which has its first tile of rows.
 fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
     material.model = ShadingModel::Lobes;
@@ -342,6 +351,11 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lobes-film", vec![with_lobes(oil())]),
         ("lobes-place", vec![with_lobes(glitter())]),
         ("lobes-flakes", vec![with_lobes(flaked())]),
+        ("lobes-bumps", vec![bumpy(with_lobes(house()))]),
+        (
+            "lobes-bumps-mixed",
+            vec![bumpy(with_lobes(house())), of(ShadingModel::Microfacet, gold()), with_lobes(chalk())],
+        ),
         ("lobes-axes", vec![with_axes(coated_brushed())]),
         ("lobes-axes-mixed", vec![with_lobes(house()), with_axes(coated_brushed()), with_lobes(chalk())]),
         (

@@ -289,6 +289,14 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     }
     //? else
     var total = prepared.wide * luthier_shown_wide(prepared, frame, turned);
+    //? lobes_lean
+    {
+        // As if the base were outside, and leaned by less: exact where radiance is linear in the direction.
+        let eta = prepared.coat.eta;
+        let outside = eta * eta * eta - sqrt(max(eta * eta - 1.0, 0.0)) * (eta * eta + 0.5);
+        let leaned = frame * normalize(vec3<f32>(prepared.lean * outside, 1.0));
+        total += prepared.leaning * (luthier_environment_diffuse(leaned) - luthier_environment_diffuse(frame[2]));
+    }
     //? one_lobe|two_lobes
     {
         let first = luthier_lobe_below(prepared, 0u);

@@ -29,6 +29,12 @@ struct LuthierLobeShape {
     decay: f32,
     /// Half its greatest density.
     peak: f32,
+    //? lobes_tilted
+    {
+        /// Factor on its strength, and on its energy, where layers are tilted.
+        gain: f32,
+        left: f32,
+    }
 }
 
 /// A material of the model as seen from a direction: what can be kept for all lights.
@@ -53,6 +59,12 @@ struct LuthierPreparedLobes {
     wide: vec3<f32>,
     /// The part of it by which a base of another colour is brighter, RGB.
     painted: vec3<f32>,
+    //? lobes_lean
+    {
+        /// Energy of the light that meets the base from one direction, RGB, and coordinates of the normal of the base along the first interface.
+        leaning: vec3<f32>,
+        lean: vec2<f32>,
+    }
     /// Share of the surface that the first interface covers.
     cover: f32,
     /// The layer that is bare elsewhere, and 1 + Lambda of the eye there.
@@ -216,13 +228,54 @@ fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, sin_theta: f32) -> Luthier
 }
 
 //? lobes_tilted
-/// The lobe where the layers below lean by a slope.
-fn luthier_lobe_about(given: LuthierLobeShape, slope: vec2<f32>) -> LuthierLobeShape {
+/// Slopes of half vectors to light above the horizon: middle of their disc, in the frame of the lobes, and its radius.
+fn luthier_leaving_disc(prepared: LuthierPreparedLobes) -> vec3<f32> {
+    let radius = 1.0 / max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
+    return vec3<f32>(luthier_in_frame(prepared.azimuth, prepared.wo.xy) * radius, radius);
+}
+
+//? lobes_tilted
+/// Share of a shape above the horizon, as an estimate, where its middle is so far from that of the disc: see `Below::leaving` of the f64 twin.
+fn luthier_lobe_leaving(shape: LuthierLobeShape, apart: vec2<f32>, radius: f32) -> f32 {
+    //? lobes_axes
+    {
+        let determinant = luthier_lobe_determinant(shape);
+        let along = length(shape.sharpness.yx * apart - shape.shear * apart.yx) / determinant;
+    }
+    //? else
+    {
+        let determinant = shape.sharpness.x * shape.sharpness.y;
+        let along = length(apart / shape.sharpness);
+    }
+    // Widths are those of the shader: the roots of the decay times those of the shape.
+    let root = sqrt(determinant);
+    let away = length(apart);
+    let near = (radius - away) * (away + 1e-4) / (along + 1e-4 / root);
+    let edges = vec2<f32>(near, max(2.0 * radius * root - near, near));
+    let cosines = exp2(-0.5 * shape.decay * log2(1.0 + edges * edges));
+    let sines = sqrt(max(1.0 - cosines * cosines, vec2<f32>(0.0)));
+    let of_near = select(-sines.x, sines.x, near >= 0.0);
+    let of_far = select(-sines.y, sines.y, edges.y >= 0.0);
+    return max(0.5 - 0.5 * (cosines.x * cosines.y - of_near * of_far), 1e-3);
+}
+
+//? lobes_tilted
+/// The lobe where the layers below lean by a slope, with the share of it that is above the horizon where they are level. A lobe gets no brighter by that:
+/// see `Below::tilted` of the f64 twin.
+fn luthier_lobe_about(given: LuthierLobeShape, slope: vec2<f32>, share: f32, disc: vec3<f32>) -> LuthierLobeShape {
     var shape = given;
     //? lobes_axes
-    shape.middle += given.sharpness * slope + given.shear * slope.yx;
+    let moved = given.sharpness * slope + given.shear * slope.yx;
     //? else
-    shape.middle += given.sharpness * slope;
+    let moved = given.sharpness * slope;
+    let apart = disc.xy - luthier_lobe_slope(given, vec2<f32>(0.0));
+    let level = luthier_lobe_leaving(given, apart, disc.z);
+    let leaned = luthier_lobe_leaving(given, apart - slope, disc.z);
+    let soon = max(1.0 - 4.0 * length(moved) * sqrt(given.decay), 0.0);
+    let stated = clamp(share, 1e-3, 1.0);
+    shape.gain = clamp((stated + soon * (level - stated)) / leaned, stated, 1.0);
+    shape.left = min(leaned / level, 1.0);
+    shape.middle += moved;
     return shape;
 }
 
@@ -284,7 +337,39 @@ fn luthier_over_base(given: LuthierPreparedLobes, $place_parameter material: u32
         prepared.painted = max(of_base.rgb * (other / own - 1.0), -given.wide);
         prepared.wide += prepared.painted;
     }
+    //? lobes_lean
+    {
+        // Light that the layers send back to the base has no direction. The rest meets the base by its cosine to the normal of the base.
+        //? base_color
+        let color = select(painted_word.rgb, place.base_color, place.base_color.x >= 0.0);
+        //? else
+        let color = painted_word.rgb;
+        let met = of_base.rgb * max(1.0 - of_internal.rgb * painted_word.rgb, vec3<f32>(0.0));
+        prepared.leaning = met * color / max(painted_word.rgb, vec3<f32>(1e-6));
+        let normal = luthier_own_normal(place, luthier_layer_count(material) - 1u);
+        let lost = (1.0 - normal.z) * prepared.leaning;
+        prepared.lean = normal.xy;
+        prepared.wide -= lost;
+        prepared.painted -= lost;
+    }
     return prepared;
+}
+
+//? lobes_tilted
+/// Slope of what lies below the first interface of a material: that of flakes, and that of the lowest interface against the first one.
+fn luthier_slope_below(place: LuthierPlace, material: u32) -> vec2<f32> {
+    var slope = vec2<f32>(0.0);
+    //? flakes
+    slope += place.flake_normal.xy / max(place.flake_normal.z, 1e-3);
+    //? lobes_bumps
+    {
+        let last = luthier_layer_count(material) - 1u;
+        let base = luthier_layer(material, last);
+        let lowest = last - select(0u, 1u, base.kind == LUTHIER_DIFFUSE);
+        let normal = luthier_own_normal(place, lowest);
+        slope += normal.xy / max(normal.z, 1e-3);
+    }
+    return slope;
 }
 
 //? !lobes_family|~lobes_family
@@ -392,8 +477,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     {
         // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
         let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
-        let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
+        let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
         let tilt = luthier_in_frame(prepared.azimuth, turned);
+        let disc = luthier_leaving_disc(prepared);
     }
     //? critical_view
     {
@@ -474,6 +560,15 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             //? else
             let decays = sheet.yz;
             let first_numbers = vec3<f32>(sharpness.xy, decays.x);
+            //? lobes_tilted
+            let shares = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).yw;
+        }
+        //? else
+        //? lobes_tilted
+        {
+            let numbers = luthier_lookup_lobes(tile, cos_theta, 2.0);
+            let first_numbers = numbers.rgb;
+            let shares = numbers.aa;
         }
         //? else
         let first_numbers = luthier_lookup_lobes(tile, cos_theta, 2.0).rgb;
@@ -485,7 +580,10 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         {
             let first_spread = luthier_spread(first_shape, spread, unresolved);
             //? lobes_tilted
-            prepared.first_shape = luthier_with_peak(luthier_lobe_about(first_spread, tilt));
+            {
+                prepared.first_shape = luthier_with_peak(luthier_lobe_about(first_spread, tilt, shares.x, disc));
+                prepared.first_strength *= prepared.first_shape.gain;
+            }
             //? else
             prepared.first_shape = luthier_with_peak(first_spread);
         }
@@ -526,7 +624,8 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
                 let second_tilt = select(tilt, vec2<f32>(0.0), cover < 1.0 && prepared.bare.kind != LUTHIER_DIFFUSE);
                 //? else
                 let second_tilt = tilt;
-                prepared.second_shape = luthier_with_peak(luthier_lobe_about(second_spread, second_tilt));
+                prepared.second_shape = luthier_with_peak(luthier_lobe_about(second_spread, second_tilt, shares.y, disc));
+                prepared.second_strength *= prepared.second_shape.gain;
             }
             //? else
             prepared.second_shape = luthier_with_peak(second_spread);
@@ -621,6 +720,12 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     value += (prepared.wide - prepared.base) * wide;
     //? else
     value += prepared.wide * wide;
+    //? lobes_lean
+    {
+        let eta = prepared.coat.eta;
+        let along = dot(prepared.lean, wi.xy) * inverseSqrt(max(eta * eta - dot(wi.xy, wi.xy), 1e-6));
+        value += max(prepared.leaning * along, -prepared.wide) * wide;
+    }
     //? one_lobe|two_lobes
     {
         //? lobes_mixed
@@ -639,22 +744,32 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     return value;
 }
 
-//? lobes_family
 /// Directional albedo of a prepared material, RGB.
 fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
-    return prepared.albedo;
-}
-//? else
-/// Directional albedo of a prepared material, RGB.
-fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
-    let albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
-    //? lobes_base
-    //? base_color
+    //? lobes_family
+    var albedo = prepared.albedo;
+    //? else
+    var albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
+    //? lobes_tilted
+    {
+        //? one_lobe|two_lobes
+        albedo -= luthier_lost_below(prepared.first_shape, luthier_lobe_below(prepared, 0u).energy);
+        //? two_lobes
+        albedo -= luthier_lost_below(prepared.second_shape, luthier_lobe_below(prepared, 1u).energy);
+    }
+    //? lobes_base, !lobes_family
+    //? base_color|lobes_lean
     return albedo + prepared.painted;
     //? else
     return albedo;
     //? else
     return albedo;
+}
+
+//? lobes_tilted
+/// Energy that a lobe loses beyond the horizon where layers are tilted, by the energy that is left.
+fn luthier_lost_below(shape: LuthierLobeShape, energy: vec3<f32>) -> vec3<f32> {
+    return energy * (1.0 / max(shape.left, 1e-3) - 1.0);
 }
 
 /// A lobe of a prepared material by number, below `LUTHIER_LOBES`.
@@ -665,6 +780,14 @@ struct LuthierBelow {
     shape: LuthierLobeShape,
 }
 
+/// Share of a lobe above the horizon, from that of its row.
+fn luthier_share_left(shape: LuthierLobeShape, share: f32) -> f32 {
+    //? lobes_tilted
+    return share * shape.left / max(shape.gain, 1e-3);
+    //? else
+    return share;
+}
+
 fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow {
     //? two_lobes
     {
@@ -673,9 +796,9 @@ fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow
         //? else
         let shares = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_SHARES).yw;
         if lobe == 1u {
-            return LuthierBelow(prepared.second_strength * shares.y, prepared.second_shape);
+            return LuthierBelow(prepared.second_strength * luthier_share_left(prepared.second_shape, shares.y), prepared.second_shape);
         }
-        return LuthierBelow(prepared.first_strength * shares.x, prepared.first_shape);
+        return LuthierBelow(prepared.first_strength * luthier_share_left(prepared.first_shape, shares.x), prepared.first_shape);
     }
     //? else
     {
@@ -683,7 +806,7 @@ fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow
         let share = prepared.shares.x;
         //? else
         let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
-        return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
+        return LuthierBelow(prepared.first_strength * luthier_share_left(prepared.first_shape, share), prepared.first_shape);
     }
 }
 

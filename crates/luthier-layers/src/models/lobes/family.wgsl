@@ -220,10 +220,13 @@
         {
             // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
             let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
-            let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
+            let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
             let tilt = luthier_in_frame(prepared.azimuth, turned);
-            first_shape = luthier_lobe_about(first_shape, tilt);
-            second_shape = luthier_lobe_about(second_shape, tilt);
+            let disc = luthier_leaving_disc(prepared);
+            first_shape = luthier_lobe_about(first_shape, tilt, prepared.shares.x, disc);
+            second_shape = luthier_lobe_about(second_shape, tilt, prepared.shares.y, disc);
+            prepared.first_strength *= first_shape.gain;
+            prepared.second_strength *= second_shape.gain;
         }
         prepared.first_shape = luthier_with_peak(first_shape);
         prepared.second_shape = luthier_with_peak(second_shape);

@@ -67,9 +67,13 @@ impl Shape {
         [cos_sq * first + sin_sq * second, sin_sq * first + cos_sq * second, shear]
     }
 
-    /// A slope for two numbers that are uniform in 0..1.
-    ///
-    /// The share of a shape beyond q is `(1 + t q)^-(1/t)`.
+    /// Share of the shape beyond a squared distance q from its middle, in widths: `(1 + t q)^-(1/t)`.
+    pub(super) fn beyond(&self, q: f64) -> f64 {
+        let tail = self.tail.max(TAIL_MIN);
+        libm::exp(-libm::log1p(tail * q) / tail)
+    }
+
+    /// A slope for two numbers that are uniform in 0..1: the inverse of [`Self::beyond`].
     pub fn sample(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let tail = self.tail.max(TAIL_MIN);
         let q = libm::expm1(-tail * libm::log(1.0 - u)) / tail;

@@ -201,6 +201,30 @@ fn luthier_brightened(color: vec3<f32>, share: f32, weight: f32) -> vec3<f32> {
     return 2.0 * color / (sum + sqrt(square));
 }
 
+//? lobes_bumps
+/// Normal of an interface of a material at a place, against that of the first one where the place is one of `luthier_place_on_first`.
+fn luthier_own_normal(place: LuthierPlace, index: u32) -> vec3<f32> {
+    var layers = place.layers;
+    var own = luthier_layer_place();
+    if index < $layers {
+        own = layers[index];
+    }
+    return own.normal;
+}
+
+//? lobes_bumps
+/// A place in the frame of its first interface: the normal of that interface is that of the place, and normals of layers are against it.
+fn luthier_place_on_first(place: LuthierPlace) -> LuthierPlace {
+    let back = vec3<f32>(-place.normal.xy, place.normal.z);
+    var next = place;
+    var layers = place.layers;
+    next.normal = luthier_local(back, layers[0].normal);
+    $each_on_first
+    layers[0].normal = vec3<f32>(0.0, 0.0, 1.0);
+    next.layers = layers;
+    return next;
+}
+
 //? own_f0
 /// A place with another base colour of a `metallic-roughness` material, and another `metallic`, 0 to 1: F0 of its interface and albedo of its base
 /// (glTF 2.0, appendix B).
