@@ -43,6 +43,8 @@ pub(crate) enum Verb {
     Lobes(LobesOptions),
     /// Fit lobes to stacks whose roughness or thickness varies, and compare them between their nodes with the simulation: a page in Markdown
     Varying(VaryingOptions),
+    /// Fit families of lobes over slope parameters and colours of a base, and compare them with the simulation at random places: a page in Markdown
+    Families(FamiliesOptions),
     /// Fit lobes to anisotropic stacks, and compare them between the azimuths of their rows with the simulation: a page in Markdown
     Anisotropic(AnisotropicOptions),
     /// Compare the environment that pictures show with sums over all directions: a page in Markdown
@@ -273,6 +275,23 @@ pub(crate) struct VaryingOptions {
     /// Random stacks: those of `lobes` with two layers or more
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub(crate) random: u32,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier-lab families -o docs/pages/families.md\n  luthier-lab families --places 20 --noise 0.01"
+)]
+pub(crate) struct FamiliesOptions {
+    /// Random places of each group
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub(crate) places: u32,
+    /// Rows over the view
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(4..=64))]
+    pub(crate) rows: u32,
     #[command(flatten)]
     pub(crate) precision: Precision,
     #[command(flatten)]

@@ -8,6 +8,7 @@ mod budgets;
 mod cli;
 mod devices;
 mod environment;
+mod families;
 mod figures;
 mod foreign;
 mod grammar;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),
+        Verb::Families(options) => families::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
         Verb::Simulation(options) => simulation::run(options),

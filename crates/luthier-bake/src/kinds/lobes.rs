@@ -39,9 +39,6 @@ const ROWS: usize = FitSettings::DEFAULT_ROWS;
 /// Steps between the rows that are kept, among which a search chooses.
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
-/// Steps of [`ROWS`] from row to row of a family.
-const FAMILY_STEP: usize = FitSettings::FAMILY_STEP;
-
 /// Jobs that fit lobes.
 pub(crate) const FIT: JobKind = JobKind::part("fit");
 
@@ -50,9 +47,8 @@ pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
-        let mut fitted = materials.iter().filter(|material| material.model().is_fitted()).peekable();
-        let are_families = fitted.peek().is_some() && fitted.all(|material| is_family(varying(material)));
-        let step = if are_families { FAMILY_STEP } else { 1 };
+        let fitted = materials.iter().filter(|material| material.model().is_fitted());
+        let step = fitted.map(|material| FitSettings::step(varying(material))).min().unwrap_or(1);
         Ok(shape(LOBES, materials.iter().any(has_base), step, RowLayout::Filtered.format()))
     }
 
@@ -178,8 +174,7 @@ pub(crate) fn decide(
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     let format = settings.fixed(TableKind::Lobes).format;
     if settings.lobes.is_none() {
-        let are_families = !fits.is_empty() && fits.iter().all(|fits| is_family(fits.of(None).varied.varying()));
-        let step = if are_families { FAMILY_STEP } else { 1 };
+        let step = fits.iter().map(|fits| FitSettings::step(fits.of(None).varied.varying())).min().unwrap_or(1);
         settings.take_lobes(shape(lobes_of(&fits, None), has_base, step, format));
         return Ok(None);
     }
@@ -382,9 +377,10 @@ impl Fit {
     }
 }
 
-/// Lobes with every `step`-th of [`ROWS`]. A family has fewer, and gets those between.
+/// Lobes with every `step`-th of [`ROWS`]. Fits with fewer get those between.
 fn thinned(varied: Varied, step: usize) -> Varied {
-    let varied = if is_family(varied.varying()) { varied.refined(FAMILY_STEP) } else { varied };
+    let own = FitSettings::step(varied.varying());
+    let varied = if own > 1 { varied.refined(own) } else { varied };
     varied.thinned(step)
 }
 

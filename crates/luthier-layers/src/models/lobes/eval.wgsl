@@ -749,7 +749,10 @@ fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
     //? lobes_family
     var albedo = prepared.albedo;
     //? else
+    //? lobes_tilted
     var albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
+    //? else
+    let albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
     //? lobes_tilted
     {
         //? one_lobe|two_lobes

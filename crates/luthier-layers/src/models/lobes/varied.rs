@@ -166,13 +166,17 @@ impl Over {
 }
 
 impl FitSettings {
-    /// Steps of the rows by default from row to row of a family.
-    pub const FAMILY_STEP: usize = 2;
+    /// Steps of the rows by default from row to row: 2 of a family over two slope parameters, whose table would be large.
+    pub fn step(varying: Option<Varying>) -> usize {
+        match varying {
+            Some(Varying::Family(family)) if family.coat.nodes.min(family.base.nodes) > 1 => 2,
+            _ => 1,
+        }
+    }
 
-    /// The settings of bakes. Families have half as many steps over the view: between their rows, lines err less than shapes do.
+    /// The settings of bakes.
     pub fn of(varying: Option<Varying>) -> Self {
-        let step = if matches!(varying, Some(Varying::Family(_))) { Self::FAMILY_STEP } else { 1 };
-        Self { rows: (Self::DEFAULT_ROWS - 1) / step + 1, ..Self::default() }
+        Self { rows: (Self::DEFAULT_ROWS - 1) / Self::step(varying) + 1, ..Self::default() }
     }
 }
 
