@@ -105,13 +105,14 @@ fn words(varying: Varying) -> &'static str {
         Varying::Slab => "thickness",
         Varying::Film(_) => "film",
         Varying::Patina(_) => "patina",
+        Varying::Family(_) => "single layers",
     }
 }
 
 /// The fractional number of a node of `varying`, for a number among eight nodes.
 fn place(varying: Varying, of_eight: f64) -> f64 {
     match varying {
-        Varying::Alpha | Varying::Patina(_) => of_eight,
+        Varying::Alpha | Varying::Patina(_) | Varying::Family(_) => of_eight,
         Varying::Slab | Varying::Film(_) => 2.0 * of_eight + if of_eight.fract() == 0.0 { 0.0 } else { 0.5 },
     }
 }
