@@ -105,7 +105,7 @@ fn words(varying: Varying) -> &'static str {
         Varying::Slab => "thickness",
         Varying::Film(_) => "film",
         Varying::Patina(_) => "patina",
-        Varying::Family(_) => "a family",
+        Varying::Family(_) => "single layers",
     }
 }
 
