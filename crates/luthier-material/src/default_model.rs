@@ -169,7 +169,7 @@ mod tests {
                 "elek",
                 Some("layer.1.maps.alpha"),
             ),
-            (COAT.to_owned() + rough + WEIGHT + OWN + GOLD + rough, "elek", "elek", Some("layer.0.maps.alpha")),
+            (COAT.to_owned() + rough + WEIGHT + OWN + WHITE, "elek", "elek", Some("layer.0.maps.alpha")),
             (
                 COAT.to_owned() + smooth + METALLIC + brushed + painted,
                 "yamaguchi",

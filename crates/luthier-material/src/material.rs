@@ -159,7 +159,12 @@ impl Material {
             || self.layers[interface].metallic.is_some();
         let is_turned = layers.iter().any(Layer::is_anisotropic)
             || self.layers.iter().any(|layer| layer.maps.alpha_x.is_some() || layer.maps.alpha_y.is_some());
-        let has_film = layers[0].films.first().is_some_and(Film::varies);
+        // Rows of a base that is metallic in places have one number for the light of a facet of the coat.
+        let has_film = if self.layers[interface].metallic.is_some() {
+            !layers[0].films.is_empty()
+        } else {
+            layers[0].films.first().is_some_and(Film::varies)
+        };
         let is_metallic = self.layers[interface].metallic.is_some();
         let first = &self.layers[0];
         let has_slab = first.maps.thickness.is_some() && !is_metallic;

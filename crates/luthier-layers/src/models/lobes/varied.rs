@@ -209,17 +209,7 @@ impl Varied {
     /// Rows between each two beside them: `parts` steps in place of one. Light read from either is the same.
     #[must_use]
     pub fn refined(mut self, parts: usize) -> Self {
-        for lobes in &mut self.nodes {
-            let size = lobes.axis.size();
-            let refined = lobes.rows.chunks(size).flat_map(|tile| {
-                (0..(size - 1) * parts + 1).map(|place| {
-                    let first = (place / parts).min(size - 2);
-                    tile[first].between(&tile[first + 1], place as f64 / parts as f64 - first as f64)
-                })
-            });
-            lobes.rows = refined.collect();
-            lobes.axis = lobes.axis.refined(parts);
-        }
+        self.nodes = self.nodes.into_iter().map(|lobes| lobes.refined(parts)).collect();
         self
     }
 
@@ -294,9 +284,12 @@ impl Varied {
                     [next_base.0, next_base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
                 low.between(&high, next_base.2)
             });
-            family.painted(&low.between(&high, next_coat.2), spreads, simulated, paint)
+            low.between(&high, next_coat.2)
         });
         lobes.rows = rows.collect();
+        // Between rows, numbers are in line, and what follows from them is not.
+        lobes = lobes.refined(PAINTED_STEPS);
+        lobes.rows.iter_mut().for_each(|row| *row = family.painted(row, spreads, simulated, paint));
         lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, alphas), family), &over.color);
         Some(lobes)
     }
@@ -333,6 +326,24 @@ impl Family {
     fn held(self, alphas: [f64; 2]) -> [f64; 2] {
         let [coat, base] = self.places(alphas);
         [self.coat.alpha(coat), self.base.alpha(base)]
+    }
+}
+
+/// Steps from row to row of painted lobes.
+const PAINTED_STEPS: usize = 8;
+
+impl Lobes {
+    fn refined(mut self, parts: usize) -> Self {
+        let size = self.axis.size();
+        let refined = self.rows.chunks(size).flat_map(|tile| {
+            (0..(size - 1) * parts + 1).map(|place| {
+                let first = (place / parts).min(size - 2);
+                tile[first].between(&tile[first + 1], place as f64 / parts as f64 - first as f64)
+            })
+        });
+        self.rows = refined.collect();
+        self.axis = self.axis.refined(parts);
+        self
     }
 }
 

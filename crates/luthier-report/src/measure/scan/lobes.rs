@@ -1,12 +1,14 @@
 //! Scan of rows of lobes against rows that are fitted anew.
 
+use glam::DVec3;
+use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::terms::Exact;
 
 use super::{Measured, Scan, User, coordinates};
 use crate::measure::readers::run;
 use crate::measure::scan::report::Curves;
 use crate::measure::subject::{Subject, Table};
-use crate::measure::table_terms::Weights;
+use crate::measure::table_terms::{TableTerms, Weights};
 
 /// Points in every interval between nodes.
 const POINTS_PER_CELL: u32 = 4;
@@ -28,10 +30,20 @@ pub(super) fn scan(
     let entry = &subject.manifest.materials[material];
     let first = entry.layers[layer].tiles[table.entry.kind]? + run(entry, table.entry.kind).start;
     let number = (tile - first) as usize;
+    // Rows of a family have numbers in place of energies: those of the nominal place are compared, in its colours.
+    let of_family = entry.constants.lobes.and_then(|lobes| lobes.family());
+    let painted = of_family.map(|_| TableTerms::new(subject, material, Weights::EightBit)).transpose().ok()?;
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
-        let (expected, sampled) =
-            (lobes.row_of(number, c).energies(), table.row(tile, c, Weights::EightBit).energies());
+        let (number, sampled) = match &painted {
+            None => (number, table.row(tile, c, Weights::EightBit).energies()),
+            Some(terms) => {
+                let cos_theta = lobes.axis.cos_theta(lobes.axis.place_at(c));
+                let wo = DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta);
+                (0, terms.below(wo)?.row().energies())
+            }
+        };
+        let expected = lobes.row_of(number, c).energies();
         // An atlas has as many lobes as its richest row. Lobes beyond a stack's own have no light.
         for part in 0..expected.len().max(sampled.len()) {
             let [expected, sampled] = [&expected, &sampled].map(|row| row.get(part).copied().unwrap_or_default());
