@@ -307,7 +307,15 @@ impl<T: ShaderTerms> Shaded<T> {
 impl Place {
     /// The stack of a material file at the place, without patina: with factors on slope parameters, slab and film, and with the albedo of a diffuse base.
     /// Rows of lobes stand for the simulation of this stack.
+    ///
+    /// Where the base is a mix of a metal and a dielectric, it is the one with the larger share.
     pub fn stack(&self, stack: &Stack) -> Stack {
+        if let (Some(mix), Some(_)) = (self.metal, base_below(stack)) {
+            let paint = Paint::of(stack).mixed(mix);
+            let layers = self.layers.iter().map(|own| LayerSample { f0: None, ..*own }).collect();
+            let plain = Self { metal: None, base_color: None, layers, ..self.clone() }.stack(stack);
+            return if mix.metallic >= 0.5 { paint.metal_of(&plain) } else { paint.plastic_of(&plain) };
+        }
         let mut here = at(stack, ShadingModel::Lobes, self, None);
         let base = here.layers.last_mut().map(|layer| &mut layer.base);
         if let (Some(color), Some(Base::Diffuse(base))) = (self.base_color, base) {

@@ -127,7 +127,7 @@ impl SimulatedErrors {
 ///
 /// Places have the quantities that maps vary, with three exceptions. Normals of the surface are left out, because they only turn the frame of the eye. Flakes and normals of
 /// single layers are left out, because their shift of the lobes is an approximation that is measured elsewhere (`luthier_layers::models::lobes::Below::tilted`). Patina and coats with a
-/// weight are whole or absent, because light is linear between.
+/// weight are whole or absent, and a base is metal or not, because light is linear between.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -196,7 +196,7 @@ fn seen(
     (SimulatedAt { number, place: words(place), theta_deg, lobe, albedo, albedos, grazing }, paths)
 }
 
-/// The place without normals, and with patina or a coat whole or absent: a coat by turns.
+/// The place without normals, with a base that is metal or not, and with patina or a coat whole or absent: a coat by turns.
 fn upright(number: u64, values: PlaceValues, entry: &MaterialEntry) -> PlaceValues {
     let PlaceValues { normal, flake_normal, .. } = PlaceValues::NONE;
     let patina = values.patina.map(|amount| if amount >= 0.5 && scatters_nothing(entry) { 1.0 } else { 0.0 });
@@ -204,7 +204,8 @@ fn upright(number: u64, values: PlaceValues, entry: &MaterialEntry) -> PlaceValu
     let is_covered = weight > 0.0 && number.is_multiple_of(2);
     let weight_factor = if is_covered { (1.0 / weight) as f32 } else { 0.0 };
     let layers = values.layers.iter().map(|own| LayerValues { normal: LayerValues::NONE.normal, ..*own }).collect();
-    PlaceValues { normal, flake_normal, patina, weight_factor, layers, ..values }
+    let metallic = values.metallic.map(|(color, metallic)| (color, if metallic >= 0.5 { 1.0 } else { 0.0 }));
+    PlaceValues { normal, flake_normal, patina, weight_factor, layers, metallic, ..values }
 }
 
 /// Whether fully grown patina is nothing but its layers.

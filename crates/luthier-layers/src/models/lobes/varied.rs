@@ -166,10 +166,10 @@ impl Over {
 }
 
 impl FitSettings {
-    /// Steps of the rows by default from row to row: 2 of a family over two slope parameters, whose table would be large.
+    /// Steps of the rows by default from row to row: 2 of a family with many nodes, whose table would be large.
     pub fn step(varying: Option<Varying>) -> usize {
         match varying {
-            Some(Varying::Family(family)) if family.coat.nodes.min(family.base.nodes) > 1 => 2,
+            Some(Varying::Family(family)) if family.nodes() > MANY_NODES => 2,
             _ => 1,
         }
     }
@@ -328,6 +328,9 @@ impl Family {
         [self.coat.alpha(coat), self.base.alpha(base)]
     }
 }
+
+/// Nodes of a family with rows at every step: its table has less than 10 KiB.
+const MANY_NODES: usize = 7;
 
 /// Steps from row to row of painted lobes.
 const PAINTED_STEPS: usize = 8;

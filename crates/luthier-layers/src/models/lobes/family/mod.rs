@@ -29,6 +29,8 @@
 
 mod fit;
 mod paint;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 pub use paint::{Mix, Paint};
@@ -49,18 +51,21 @@ pub struct SlopeAxis {
     pub nodes: usize,
 }
 
-/// Steps between nodes from a slope parameter of 0 to one of 1.
+/// Steps between nodes from a slope parameter of 0 to one of 1, where one slope parameter varies.
 const STEPS: f64 = 8.0;
 
+/// Those of the coat and of the base, where both vary: their table then has at most 40 tiles.
+const STEPS_OF_BOTH: [f64; 2] = [4.0, 7.0];
+
 impl SlopeAxis {
-    /// The axis of a range, held to the slope parameters of models. One node suffices for a range without extent.
-    pub fn new(least: f64, most: f64) -> Self {
+    /// The axis of a range, held to the slope parameters of models, with so many steps from 0 to 1. One node suffices for a range without extent.
+    pub fn new([least, most]: [f64; 2], steps: f64) -> Self {
         let [least, most] = [least, most].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0));
         let extent = most.sqrt() - least.sqrt();
         if extent < EXTENT_MIN {
             return Self { least: most, most, nodes: 1 };
         }
-        Self { least, most, nodes: 1 + libm::ceil(STEPS * extent - EXTENT_MIN).max(1.0) as usize }
+        Self { least, most, nodes: 1 + libm::ceil(steps * extent - EXTENT_MIN).max(1.0) as usize }
     }
 
     /// Fractional number of the node of a slope parameter, held to the range.
@@ -105,8 +110,12 @@ impl Family {
     /// that is metallic in places is the lowest interface over a diffuse base, as it is without metal.
     pub fn new(stack: &Stack, coat: [f64; 2], base: [f64; 2], is_metallic: bool) -> Option<Self> {
         let interface = base_interface(stack)?;
-        let [base, own] = [base, coat].map(|[least, most]| SlopeAxis::new(least, most));
-        let coat = if interface > 0 { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
+        let alone = [coat, base].map(|range| SlopeAxis::new(range, STEPS));
+        let is_coated = interface > 0;
+        let both = is_coated && alone.iter().all(|axis| axis.nodes > 1);
+        let [own, base] =
+            if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
+        let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
         Some(Self { coat, base, interface, is_metallic })
     }
 

@@ -1,0 +1,127 @@
+//! Families against the simulation of single places.
+
+use glam::DVec3;
+use luthier_optics::color::Color;
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
+
+use super::{Family, Mix, Paint, STEPS, SlopeAxis};
+use crate::models::lobes::{FitSettings, Judge, Lobes, Varied, Varying};
+use crate::references::layered_mc::ColorPaths;
+
+const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);
+const SETTINGS: FitSettings = FitSettings { rows: 10, paths: 16_000, seed: 5 };
+
+/// A base without metal of index 1.5 or 1 over a diffuse one, below a coat that absorbs, or bare.
+fn plastic(is_coated: bool, tint: [f64; 3]) -> Stack {
+    let slab = |absorption_per_um| Slab { thickness_um: 1.0, absorption_per_um };
+    let layer = |base| Layer { films: vec![], surface: Surface::isotropic(Distribution::Ggx, 0.5), base };
+    let index = Ior::constant(if is_coated { 1.5 } else { 1.0 }, 0.0).unwrap();
+    let coat = layer(Base::Dielectric { ior: index.clone(), slab: slab(tint) });
+    let interface = layer(Base::Dielectric { ior: index.with_f0([0.04; 3]), slab: slab([0.0; 3]) });
+    let diffuse = layer(Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 }));
+    let layers = if is_coated { vec![coat, interface, diffuse] } else { vec![interface, diffuse] };
+    Stack { exterior: Ior::vacuum(), layers }
+}
+
+fn albedo(stack: &Stack, wo: DVec3) -> [f64; 3] {
+    let (mut sum, count) = ([0.0; 3], 60_000);
+    ColorPaths::new(stack, &COLOR).trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c]));
+    sum.map(|sum| sum / count as f64)
+}
+
+#[test]
+fn nodes_and_slope_parameters_are_inverse() {
+    let axis = SlopeAxis::new([0.04, 0.49], STEPS);
+    // Roots .2 to .7: half of the whole range.
+    assert_eq!(axis.nodes, 5);
+    for place in [0.0, 0.4, 3.0, 4.0] {
+        assert!((axis.place(axis.alpha(place)) - place).abs() < 1e-12);
+    }
+    assert_eq!([axis.place(0.0), axis.place(1.0), axis.alpha(0.0), axis.alpha(4.0)], [0.0, 4.0, 0.04, 0.49]);
+    assert_eq!(SlopeAxis::new([0.3, 0.3], STEPS), SlopeAxis { least: 0.3, most: 0.3, nodes: 1 });
+    let family = Family::new(&plastic(true, [0.0; 3]), [0.0, 1.0], [0.0, 1.0], true).unwrap();
+    assert!(family.coat.nodes > 1 && family.base.nodes > 1 && family.nodes() <= 40, "{family:?}");
+    // Without a coat there is one axis.
+    let bare = Family::new(&plastic(false, [0.0; 3]), [0.0, 1.0], [0.0, 1.0], true).unwrap();
+    assert_eq!((bare.coat.nodes, bare.base.nodes, bare.interface), (1, 9, 0));
+}
+
+/// Oracle: paths of the stack in one colour. Closed forms in the colour, between those that a fit saw, with and without metal, tint and coat.
+#[test]
+fn colours_in_closed_form_are_those_of_the_simulation() {
+    for (is_coated, tint) in [(true, [0.0; 3]), (true, [0.1, 0.3, 0.7]), (false, [0.0; 3])] {
+        let stack = plastic(is_coated, tint);
+        for alphas in [[0.02, 0.3], [0.5, 0.1]] {
+            let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], true).unwrap();
+            let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), SETTINGS);
+            for (color, metallic) in [([0.3, 0.7, 0.95], 1.0), ([0.9, 0.4, 0.1], 0.0)] {
+                let level = family.apply(&stack, alphas);
+                let paint = Paint::of(&level).mixed(Mix { metal: color, matt: color, metallic });
+                let here = if metallic > 0.0 { paint.metal_of(&level) } else { paint.plastic_of(&level) };
+                let lobes = varied.painted(alphas, &paint).unwrap();
+                for theta in [0.0, 1.0] {
+                    let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                    let (found, expected) = (lobes.row(wo).albedo_dir, albedo(&here, wo));
+                    for c in 0..3 {
+                        // Noise of both, and up to .02 of absorption as one length.
+                        let limit = if tint == [0.0; 3] { 0.012 } else { 0.025 };
+                        let apart = (found[c] - expected[c]).abs();
+                        assert!(apart < limit, "{is_coated} {alphas:?} {metallic} {theta}: {found:?} {expected:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Light of a mix is the mean of both, and no place returns more than falls in.
+#[test]
+fn a_mix_is_linear_and_bounded() {
+    let stack = plastic(true, [0.0; 3]);
+    let family = Family::new(&stack, [0.1, 0.1], [0.04, 0.36], true).unwrap();
+    let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 4000, ..SETTINGS });
+    let at = |color: [f64; 3], metallic: f64, alpha: f64| {
+        let mix = Mix { metal: color, matt: color, metallic };
+        varied.painted([0.1, alpha], &Paint::of(&stack).mixed(mix)).unwrap()
+    };
+    let (wi, wo) = (DVec3::new(0.3, 0.2, 0.93).normalize(), DVec3::new(-0.5, 0.1, 0.8).normalize());
+    let values = [0.0, 0.3, 1.0].map(|metallic| at([0.8, 0.5, 0.2], metallic, 0.2).eval(wi, wo));
+    for c in 0..3 {
+        let expected = 0.7 * values[0][c] + 0.3 * values[2][c];
+        assert!((values[1][c] / expected - 1.0).abs() < 1e-9, "{values:?}");
+    }
+    for (metallic, alpha) in [(0.0, 0.04), (0.5, 0.1), (1.0, 0.3), (1.0, 0.36)] {
+        let white = at([1.0; 3], metallic, alpha);
+        assert!(white.rows.iter().all(|row| row.albedo_dir.iter().all(|albedo| *albedo <= 1.0 + 1e-12)));
+    }
+}
+
+/// Oracle: the judge's own paths half way between nodes, at colours that no fit saw; and rows of a family of one node against the fit of that stack alone.
+#[test]
+fn errors_between_nodes_are_stated() {
+    for (stack, is_metallic) in [(plastic(true, [0.0; 3]), true), (plastic(false, [0.0; 3]), true)] {
+        let family = Family::new(&stack, [0.1, 0.1], [0.1, 0.5], is_metallic).unwrap();
+        let over = Some(Varying::Family(family));
+        let error = Judge::new(&stack, &COLOR, over).error(&Varied::with(&stack, &COLOR, over, SETTINGS));
+        assert!(error.lobe < 0.08 && error.albedo < 0.03 && error.lobe_noise > 1e-3, "{error:?}");
+    }
+    let metal = Stack {
+        layers: vec![
+            plastic(true, [0.0; 3]).layers[0].clone(),
+            Layer {
+                base: Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() },
+                ..plastic(true, [0.0; 3]).layers[1].clone()
+            },
+        ],
+        exterior: Ior::vacuum(),
+    };
+    let family = Family::new(&metal, [0.2; 2], [0.3; 2], false).unwrap();
+    let varied = Varied::with(&metal, &COLOR, Some(Varying::Family(family)), SETTINGS);
+    let here = family.apply(&metal, [0.2, 0.3]);
+    let (own, alone) = (varied.painted([0.2, 0.3], &Paint::of(&here)).unwrap(), Lobes::with(&here, &COLOR, SETTINGS));
+    for wo in [DVec3::Z, DVec3::new(0.8, 0.0, 0.6)] {
+        let [own, alone] = [own.row(wo).albedo_dir, alone.row(wo).albedo_dir];
+        assert!((0..3).all(|c| (own[c] - alone[c]).abs() < 0.01), "{own:?} {alone:?}");
+    }
+}
