@@ -166,7 +166,7 @@ pub struct FamilyRecord {
 pub struct SlopesRecord {
     /// Slope parameter of the first node: places with less are held to it.
     pub least: f64,
-    /// That of the last.
+    /// Slope parameter of the last node.
     pub most: f64,
     /// Number of nodes; 1 where the slope parameter does not vary.
     pub nodes: u32,

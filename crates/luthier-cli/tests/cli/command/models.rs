@@ -7,7 +7,7 @@ use luthier_workshop::root;
 use super::sources::sources;
 
 /// Files that name single models, tests and the project's own pages apart.
-const NAMING: [(&str, &str); 19] = [
+const NAMING: [(&str, &str); 20] = [
     ("cli/src/model_inputs.rs", "names the model that could show what another drops"),
     ("cli/src/simulated.rs", "takes the cheapest model where only stacks count"),
     ("cli/src/verb/bench/", "times everything over Phong's model"),
@@ -17,6 +17,7 @@ const NAMING: [(&str, &str); 19] = [
     ("layers/src/models/elek/mod.rs", "is the model"),
     ("layers/src/models/granier_heidrich/mod.rs", "is the model"),
     ("layers/src/models/lobes/mod.rs", "is the model"),
+    ("layers/src/models/lobes/tests/", "are tests of the model"),
     ("layers/src/models/microfacet/mod.rs", "is the model"),
     ("layers/src/models/mod.rs", "has the doors of rooms"),
     ("layers/src/models/phong/mod.rs", "is the model"),

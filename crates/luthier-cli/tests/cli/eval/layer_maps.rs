@@ -135,7 +135,6 @@ fn maps_that_a_model_lacks_are_named() {
     let run = workshop.run(&["check", "m.toml"]);
     let said = run.exits(0).stderr;
     for part in [
-        "the bumps of one layer",
         "the alpha map of one layer",
         "the tangent map",
         "the thickness map of an inner slab",

@@ -45,7 +45,7 @@ use crate::layers::ALPHA_MIN;
 pub struct SlopeAxis {
     /// Slope parameter of the first node.
     pub least: f64,
-    /// That of the last.
+    /// Slope parameter of the last node.
     pub most: f64,
     /// Number of nodes: 1 where the slope parameter does not vary.
     pub nodes: usize,

@@ -200,7 +200,7 @@ fn tilted_lobes_are_those_of_a_tilted_metal() {
     }
 }
 
-/// What a place returns of light from everywhere, over one for each sort of lobes: round and long, with the tails of both distributions.
+/// Light from everywhere that a place returns, over one for each sort of lobes: round and long, with the tails of both distributions.
 #[test]
 fn tilted_lobes_return_no_more_than_falls_in() {
     for (distribution, alpha, coat_alpha) in [
