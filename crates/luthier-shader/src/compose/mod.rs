@@ -126,7 +126,7 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
     let each: String = (0..count).map(|i| format!("    place.layers[{i}] = luthier_layer_place();\n")).collect();
     let each_on_first: String = (1..count)
         .map(|i| {
-            format!("    layers[{i}].normal = luthier_local(next.normal, luthier_local(back, layers[{i}].normal));\n")
+            format!("    next.layers[{i}].normal = luthier_local(next.normal, luthier_local(back, place.layers[{i}].normal));\n")
         })
         .collect();
     let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);

@@ -134,11 +134,7 @@ fn maps_that_a_model_lacks_are_named() {
     let workshop = workshop("lobes");
     let run = workshop.run(&["check", "m.toml"]);
     let said = run.exits(0).stderr;
-    for part in [
-        "the alpha map of one layer",
-        "the tangent map",
-        "the thickness map of an inner slab",
-    ] {
+    for part in ["the alpha map of one layer", "the tangent map", "the thickness map of an inner slab"] {
         assert!(said.contains(&format!("the model `lobes` leaves out {part}")), "{said}");
     }
 }

@@ -105,10 +105,10 @@ fn luthier_place() -> LuthierPlace {
 //? layered, lobes_family
 /// Values of textures of a layer, counted from the top.
 fn luthier_own_place(place: LuthierPlace, index: u32) -> LuthierLayerPlace {
-    var layers = place.layers;
+    var here = place;
     var own = luthier_layer_place();
     if index < $layers {
-        own = layers[index];
+        own = here.layers[index];
     }
     return own;
 }
@@ -118,19 +118,19 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     var layer = luthier_layer(material, index);
     //? layered
     {
-        var layers = place.layers;
+        var here = place;
         var own = luthier_layer_place();
         //? weight
         {
             // The record behind the others is the second layer where the first is not.
             let number = select(index, 1u, index == luthier_layer_count(material));
             if number < $layers {
-                own = layers[number];
+                own = here.layers[number];
             }
         }
         //? else
         if index < $layers {
-            own = layers[index];
+            own = here.layers[index];
         }
     }
     //? own_normals
@@ -204,10 +204,10 @@ fn luthier_brightened(color: vec3<f32>, share: f32, weight: f32) -> vec3<f32> {
 //? lobes_bumps
 /// Normal of an interface of a material at a place, against that of the first one where the place is one of `luthier_place_on_first`.
 fn luthier_own_normal(place: LuthierPlace, index: u32) -> vec3<f32> {
-    var layers = place.layers;
+    var here = place;
     var own = luthier_layer_place();
     if index < $layers {
-        own = layers[index];
+        own = here.layers[index];
     }
     return own.normal;
 }
@@ -217,11 +217,9 @@ fn luthier_own_normal(place: LuthierPlace, index: u32) -> vec3<f32> {
 fn luthier_place_on_first(place: LuthierPlace) -> LuthierPlace {
     let back = vec3<f32>(-place.normal.xy, place.normal.z);
     var next = place;
-    var layers = place.layers;
-    next.normal = luthier_local(back, layers[0].normal);
+    next.normal = luthier_local(back, place.layers[0].normal);
     $each_on_first
-    layers[0].normal = vec3<f32>(0.0, 0.0, 1.0);
-    next.layers = layers;
+    next.layers[0].normal = vec3<f32>(0.0, 0.0, 1.0);
     return next;
 }
 
@@ -262,11 +260,9 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
         next.metal = vec4<f32>(metal, metallic);
         next.matt = matt;
     }
-    var layers = place.layers;
     if index < $layers {
-        layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));
+        next.layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));
     }
-    next.layers = layers;
     return next;
 }
 
