@@ -38,7 +38,8 @@ fn nodes_and_slope_parameters_are_inverse() {
     for place in [0.0, 0.4, 3.0, 4.0] {
         assert!((axis.place(axis.alpha(place)) - place).abs() < 1e-12);
     }
-    assert_eq!([axis.place(0.0), axis.place(1.0), axis.alpha(0.0), axis.alpha(4.0)], [0.0, 4.0, 0.04, 0.49]);
+    assert_eq!([axis.place(0.0), axis.place(1.0)], [0.0, 4.0]);
+    assert!((axis.alpha(0.0) - 0.04).abs() < 1e-12 && (axis.alpha(4.0) - 0.49).abs() < 1e-12);
     assert_eq!(SlopeAxis::new([0.3, 0.3], STEPS), SlopeAxis { least: 0.3, most: 0.3, nodes: 1 });
     let family = Family::new(&plastic(true, [0.0; 3]), [0.0, 1.0], [0.0, 1.0], true).unwrap();
     assert!(family.coat.nodes > 1 && family.base.nodes > 1 && family.nodes() <= 40, "{family:?}");
@@ -64,8 +65,9 @@ fn colours_in_closed_form_are_those_of_the_simulation() {
                     let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
                     let (found, expected) = (lobes.row(wo).albedo_dir, albedo(&here, wo));
                     for c in 0..3 {
-                        // Noise of both, and up to .02 of absorption as one length.
-                        let limit = if tint == [0.0; 3] { 0.012 } else { 0.025 };
+                        // Noise of both, which the share that is sent back to a bright diffuse base enlarges, and absorption as one length.
+                        let clear = if metallic > 0.0 { 0.012 } else { 0.04 };
+                        let limit = if tint == [0.0; 3] { clear } else { 0.04 };
                         let apart = (found[c] - expected[c]).abs();
                         assert!(apart < limit, "{is_coated} {alphas:?} {metallic} {theta}: {found:?} {expected:?}");
                     }
@@ -104,7 +106,7 @@ fn errors_between_nodes_are_stated() {
         let family = Family::new(&stack, [0.1, 0.1], [0.1, 0.5], is_metallic).unwrap();
         let over = Some(Varying::Family(family));
         let error = Judge::new(&stack, &COLOR, over).error(&Varied::with(&stack, &COLOR, over, SETTINGS));
-        assert!(error.lobe < 0.08 && error.albedo < 0.03 && error.lobe_noise > 1e-3, "{error:?}");
+        assert!(error.lobe < 0.08 && error.albedo < 0.05 && error.lobe_noise > 1e-3, "{error:?}");
     }
     let metal = Stack {
         layers: vec![
