@@ -14,7 +14,9 @@
             let half_light = 4.0 * energies.x;
             let bright = energies.y / 0.81;
             let beyond = max(0.4 * (energies.z - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half_light), 1e-9);
-            let pole = clamp((0.4 * (energies.z - bright) - 0.1 * (bright - half_light)) / beyond, 0.0, 0.99);
+            let found = clamp((0.4 * (energies.z - bright) - 0.1 * (bright - half_light)) / beyond, 0.0, 0.99);
+            // Light that grows less than with the square has no pole.
+            let pole = select(0.0, found, energies.z > half_light);
             let low = half_light * (1.0 - 0.5 * pole);
             let high = energies.z * (1.0 - pole);
             return f0 * f0 * max(low + (2.0 * f0 - 1.0) * (high - low), vec3<f32>(0.0)) / (1.0 - pole * f0);

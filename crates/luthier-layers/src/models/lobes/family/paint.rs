@@ -162,7 +162,8 @@ pub(super) fn trapped([half, bright, white]: Rgb, f: f64) -> f64 {
     let [half, bright] = [4.0 * half, bright / 0.81];
     let beyond = 0.4 * (white - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half);
     let curve = 0.4 * (white - bright) - 0.1 * (bright - half);
-    let pole = (curve / beyond.max(BEYOND_MIN)).clamp(0.0, POLE_MAX);
+    // Light that grows less than with the square has no pole.
+    let pole = if white > half { (curve / beyond.max(BEYOND_MIN)).clamp(0.0, POLE_MAX) } else { 0.0 };
     let [half, white] = [half * (1.0 - 0.5 * pole), white * (1.0 - pole)];
     f * f * (half + (2.0 * f - 1.0) * (white - half)).max(0.0) / (1.0 - pole * f)
 }

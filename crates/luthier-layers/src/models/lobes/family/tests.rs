@@ -65,9 +65,8 @@ fn colours_in_closed_form_are_those_of_the_simulation() {
                     let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
                     let (found, expected) = (lobes.row(wo).albedo_dir, albedo(&here, wo));
                     for c in 0..3 {
-                        // Noise of both, which the share that is sent back to a bright diffuse base enlarges, and absorption as one length.
-                        let clear = if metallic > 0.0 { 0.012 } else { 0.04 };
-                        let limit = if tint == [0.0; 3] { clear } else { 0.04 };
+                        // Noise of both; and paths of many lengths as one length, worst over a bright diffuse base.
+                        let limit = if tint == [0.0; 3] { 0.012 } else { 0.05 };
                         let apart = (found[c] - expected[c]).abs();
                         assert!(apart < limit, "{is_coated} {alphas:?} {metallic} {theta}: {found:?} {expected:?}");
                     }
