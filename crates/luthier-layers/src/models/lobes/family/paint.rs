@@ -107,14 +107,14 @@ impl Family {
         let wide_share = row.lobes.first().map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt());
         let base = row.base.unwrap_or_default();
         let more = base.more(simulated, paint.albedo);
-        for c in 0..3 {
+        for (c, more) in more.into_iter().enumerate() {
             let [facet, wide, once, trapped] = if self.is_metallic {
                 self.mixed(row, &base, paint, c)
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
                 let facet = row.albedo_dir[c] - row.wide[c] - once - trapped;
-                [facet, row.wide[c] + more[c].max(-row.wide[c]), once, trapped]
+                [facet, row.wide[c] + more.max(-row.wide[c]), once, trapped]
             };
             let below = wide + once + trapped;
             let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };

@@ -62,9 +62,9 @@ pub(super) struct Energies {
 impl Energies {
     fn add(&mut self, weight: Rgb, dimmed: f64, between: [f64; 2]) {
         (0..2).for_each(|i| self.between[i] += between[i]);
-        for c in 0..3 {
-            self.clear[c] += weight[c];
-            self.dimmed[c] += weight[c] * dimmed;
+        for (c, weight) in weight.into_iter().enumerate() {
+            self.clear[c] += weight;
+            self.dimmed[c] += weight * dimmed;
         }
     }
 }
