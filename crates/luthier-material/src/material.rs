@@ -159,9 +159,16 @@ impl Material {
             || self.layers[interface].metallic.is_some();
         let is_turned = layers.iter().any(Layer::is_anisotropic)
             || self.layers.iter().any(|layer| layer.maps.alpha_x.is_some() || layer.maps.alpha_y.is_some());
-        // Rows of a base that is metallic in places have one number for the light of a facet of the coat.
+        // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
+        let has_color = |(number, layer): (usize, &Layer)| {
+            let is_tinted = match &layer.base {
+                Base::Dielectric { slab, .. } => number > 0 && slab.optical_depth() != [0.0; 3],
+                Base::Conductor { .. } | Base::Diffuse(_) => false,
+            };
+            is_tinted || !layer.films.is_empty()
+        };
         let has_film = if self.layers[interface].metallic.is_some() {
-            !layers[0].films.is_empty()
+            layers.iter().enumerate().any(has_color)
         } else {
             layers[0].films.first().is_some_and(Film::varies)
         };
@@ -247,9 +254,9 @@ impl Default for LayerExtras {
 /// Smallest and largest texel of maps of a layer: 0 and 1 unless the pictures were measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelRanges {
-    /// Of the map of its own slope parameters.
+    /// Texels of the map of its own slope parameters.
     pub alpha: [f64; 2],
-    /// Of the map of the roughness of the surface.
+    /// Texels of the map of the roughness of the surface.
     pub roughness: [f64; 2],
 }
 

@@ -7,7 +7,6 @@ mod effects;
 mod emission;
 mod examples;
 mod face;
-mod families;
 mod features;
 mod fluorescent;
 mod golden;

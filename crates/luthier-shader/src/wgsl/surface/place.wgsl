@@ -102,7 +102,7 @@ fn luthier_place() -> LuthierPlace {
     return place;
 }
 
-//? layered, lobes_family
+//? layered, lobes_family|lobes_bumps
 /// Values of textures of a layer, counted from the top.
 fn luthier_own_place(place: LuthierPlace, index: u32) -> LuthierLayerPlace {
     var here = place;
@@ -204,12 +204,7 @@ fn luthier_brightened(color: vec3<f32>, share: f32, weight: f32) -> vec3<f32> {
 //? lobes_bumps
 /// Normal of an interface of a material at a place, against that of the first one where the place is one of `luthier_place_on_first`.
 fn luthier_own_normal(place: LuthierPlace, index: u32) -> vec3<f32> {
-    var here = place;
-    var own = luthier_layer_place();
-    if index < $layers {
-        own = here.layers[index];
-    }
-    return own.normal;
+    return luthier_own_place(place, index).normal;
 }
 
 //? lobes_bumps

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_optics::color::Color;
-use luthier_optics::ior::Ior;
+use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
 use super::{Family, Mix, Paint, STEPS, SlopeAxis};
@@ -74,6 +74,26 @@ fn colours_in_closed_form_are_those_of_the_simulation() {
             }
         }
     }
+}
+
+/// Channels of such a simulation are shades of the metal: a coat whose index hangs on the wavelength has, in a spectrum, the energies of its index at the
+/// sodium line.
+#[test]
+fn shades_are_no_wavelengths() {
+    let sample = |wavelength_nm, n| IorSample { wavelength_nm, n, k: 0.0 };
+    let flint = Ior::sampled(vec![sample(430.0, 1.54), sample(589.3, 1.5), sample(680.0, 1.48)]).unwrap();
+    let mut dispersive = plastic(true, [0.0; 3]);
+    if let Base::Dielectric { ior, .. } = &mut dispersive.layers[0].base {
+        *ior = flint;
+    }
+    let energies = |stack: &Stack| {
+        let family = Family::new(stack, [0.1; 2], [0.3; 2], true).unwrap();
+        let settings = FitSettings { paths: 4000, ..SETTINGS };
+        let varied = Varied::with(stack, &Color::Spectral, Some(Varying::Family(family)), settings);
+        varied.nodes[0].rows[5].to_parts()[2..5].concat()
+    };
+    let [found, expected] = [&dispersive, &plastic(true, [0.0; 3])].map(energies);
+    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
 }
 
 /// Light of a mix is the mean of both, and no place returns more than falls in.

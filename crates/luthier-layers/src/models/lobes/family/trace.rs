@@ -10,12 +10,14 @@ use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{FirstInterface, FitSettings, ViewAxis, Wide};
 use crate::references::layered_mc::{ColorPaths, JointPath};
 
-/// F0 of the base in the channels of a simulation whose energies are in closed form. A quadratic goes through all three; the middle one is also where the
-/// absorption of slabs is measured.
+/// F0 of the base in the channels of a simulation whose energies are in closed form; the middle one is where the absorption of slabs is measured.
 pub(super) const SHADES: Rgb = [0.04, 0.5, 1.0];
 
 /// Albedo of a diffuse base in that simulation.
 pub(super) const WHITE: f64 = 0.8;
+
+/// Wavelength at which indices bend directions where channels are shades.
+const SODIUM_D_NM: f64 = 589.3;
 
 /// Optical depth of the slab at which lengths of paths are measured.
 pub(super) const DEPTH: f64 = 0.5;
@@ -122,6 +124,9 @@ impl Node {
     ) -> Self {
         let alphas = family.alphas(node);
         let plain = family.apply(stack, alphas);
+        // Channels stand for shades of the metal, not for wavelengths.
+        let shades = Color::ThreeWavelengths([SODIUM_D_NM; 3]);
+        let color = if family.is_metallic { &shades } else { color };
         // A base that is metallic in places has two simulations.
         let (here, below) =
             if family.is_metallic { (of_metal(family, &plain), of_plastic(&plain)) } else { (plain, None) };
@@ -171,14 +176,9 @@ impl Node {
                         of_facets.push((path.wi, weight));
                         return;
                     }
+                    reflections if family.is_coated() => reflections > 1,
                     // Without a coat the second lobe has what several facets of the metal reflect, and the first that of any other base.
-                    reflections => {
-                        if family.is_coated() {
-                            reflections > 1
-                        } else {
-                            family.is_metallic
-                        }
-                    }
+                    _ => family.is_metallic,
                 };
                 energies.reflected[usize::from(more)].add(weight, dimmed, between(weight, path.facets));
                 let tally = if more { &mut of_more } else { &mut of_once };

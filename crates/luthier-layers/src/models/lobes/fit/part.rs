@@ -1,4 +1,4 @@
-//! One lobe for a part of the light of a stack, which has no remainder.
+//! One lobe for a part of the light of a stack.
 
 use luthier_optics::Rgb;
 

@@ -15,8 +15,8 @@ use luthier_optics::Rgb;
 use luthier_optics::microfacet;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 
+use super::{set, tables_with};
 use crate::arithmetic::directions;
-use crate::lobes::{set, tables_with};
 use crate::machine::{Machine, Value, vector};
 
 /// Nodes over the coat and over the base.
