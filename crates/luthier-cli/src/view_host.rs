@@ -26,6 +26,15 @@ use crate::watched::{State, seen, state};
 /// Each watched file with its state; `None` if it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<State>>;
 
+/// Files at the last look.
+#[derive(Default)]
+struct Seen {
+    /// Files as they were when they were read. `None` before that.
+    files: Option<(Stamps, Vec<MaterialFile>)>,
+    /// States that differ from those: files that are perhaps being written.
+    changing: Option<Stamps>,
+}
+
 /// The command, as the window sees it.
 pub(crate) struct ViewHost {
     paths: Vec<PathBuf>,
@@ -34,7 +43,7 @@ pub(crate) struct ViewHost {
     fits: bool,
     /// Reflectances in place of those of files.
     fresnel: Option<Reflectance>,
-    seen: Mutex<Option<(Stamps, Vec<MaterialFile>)>>,
+    seen: Mutex<Seen>,
     /// Results of the jobs of the last bake: most serve the next.
     store: MemoryStore,
 }
@@ -42,7 +51,7 @@ pub(crate) struct ViewHost {
 impl ViewHost {
     pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>, shading: &Shading) -> Self {
         let (fits, fresnel) = (!shading.no_fit, shading.fresnel);
-        Self { paths, screenshot, fits, fresnel, seen: Mutex::new(None), store: MemoryStore::default() }
+        Self { paths, screenshot, fits, fresnel, seen: Mutex::default(), store: MemoryStore::default() }
     }
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
@@ -60,19 +69,25 @@ impl ViewHost {
 impl Host for ViewHost {
     fn changed(&self) -> Option<Vec<MaterialFile>> {
         let mut seen = lock(&self.seen);
-        let last_files = seen.as_ref().map_or(&[][..], |(_, files)| files);
-        let stamps = stamps(&self.paths, last_files);
-        if seen.as_ref().is_some_and(|(last, _)| *last == stamps) {
-            return None;
+        let last_files = seen.files.as_ref().map_or(&[][..], |(_, files)| files);
+        let now = stamps(&self.paths, last_files);
+        if let Some((last, _)) = &seen.files {
+            // What a program writes is read when it rests: half a file is no mistake of its author.
+            if *last == now || seen.changing.as_ref() != Some(&now) {
+                seen.changing = (*last != now).then_some(now);
+                return None;
+            }
         }
         let files: Vec<MaterialFile> = match find(&self.paths) {
             Ok(paths) => paths.iter().map(|path| file(path)).collect(),
             // The folder is being replaced: its files are missing for a moment.
             Err(_) => last_files.iter().map(|file| self::file(Path::new(&file.label))).collect(),
         };
-        let is_new = seen.as_ref().is_none_or(|(_, last)| *last != files);
-        // Materials may name other files now, so the list of watched files is made anew.
-        *seen = Some((self::stamps(&self.paths, &files), files.clone()));
+        let is_new = seen.files.as_ref().is_none_or(|(_, last)| *last != files);
+        // Materials may name other files now, so the list of watched files is made anew. A file that changed while it was read is read again.
+        let mut watched = stamps(&self.paths, &files);
+        watched.iter_mut().for_each(|(path, state)| *state = now.get(path).copied().unwrap_or(*state));
+        *seen = Seen { files: Some((watched, files.clone())), changing: None };
         is_new.then_some(files)
     }
 
@@ -206,21 +221,32 @@ mod tests {
         };
         write("0.5");
         let host = ViewHost::new(vec![folder.path().to_owned()], None, &Shading::default());
+        // A change is told when the file rests: at the second look.
+        let changed = || {
+            assert!(host.changed().is_none());
+            host.changed().unwrap()
+        };
         assert!(host.changed().unwrap()[0].material.is_ok());
         assert!(host.changed().is_none());
         write("0.25");
-        assert!(host.changed().unwrap()[0].material.is_ok());
+        assert!(changed()[0].material.is_ok());
         assert!(host.changed().is_none());
         write("25.0");
-        let problem = host.changed().unwrap()[0].material.clone().unwrap_err();
+        let problem = changed()[0].material.clone().unwrap_err();
         assert!(problem.contains("m.toml:5:10") && problem.contains("help"), "{problem}");
         std::fs::remove_file(&path).unwrap();
-        assert!(host.changed().unwrap()[0].material.as_ref().unwrap_err().contains("m.toml"));
+        assert!(changed()[0].material.as_ref().unwrap_err().contains("m.toml"));
         assert!(host.changed().is_none());
         write("0.25");
-        assert!(host.changed().unwrap()[0].material.is_ok());
+        assert!(changed()[0].material.is_ok());
+        // Half of a file is not read.
+        write("25.0");
+        assert!(host.changed().is_none());
+        write("0.125");
+        assert!(changed()[0].material.is_ok());
         // What does not matter.
         std::fs::write(folder.path().join("note.txt"), "x").unwrap();
+        assert!(host.changed().is_none());
         assert!(host.changed().is_none());
     }
 

@@ -92,7 +92,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#....#..#"),
             (ShadingModel::Phong, "###.##....##..........#..."),
             (ShadingModel::Microfacet, "....#b######..##.##...#.#."),
-            (ShadingModel::Lobes, "##############...#.####..."),
+            (ShadingModel::Lobes, "###############..######..."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

@@ -177,6 +177,7 @@ fn places(listed: &str) -> (Vec<PathBuf>, &str) {
     let path = modules.join("/");
     let own = [
         format!("tests/{path}.rs"),
+        format!("tests/{path}/mod.rs"),
         format!("src/{path}.rs"),
         format!("src/{path}/tests.rs"),
         format!("src/{path}/mod.rs"),

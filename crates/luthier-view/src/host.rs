@@ -7,7 +7,7 @@ use luthier_material::Material;
 
 /// Services that the program around the window provides. Several threads call them.
 pub trait Host: Send + Sync {
-    /// Returns all material files if one of them, or a file that they name, changed since the last call. The first call always does.
+    /// Returns all material files if one of them, or a file that they name, changed since the last call, and rested for a call. The first call always does.
     fn changed(&self) -> Option<Vec<MaterialFile>>;
 
     /// The package that the renderer needs for one material in one form.

@@ -84,7 +84,7 @@ impl Below {
     /// as much.
     ///
     /// Light that turns towards the normal leaves where it was totally reflected. A lobe does not get brighter by that: its energy is at most that of the
-    /// row, so that a place returns no more light than falls in. A lobe that turns beyond the horizon loses what is there ([`Self::leaving`]).
+    /// row, so that a place returns no more light than falls in. A lobe that turns beyond the horizon loses what is there.
     ///
     /// Against walks over a tilted metal under a smooth coat of index 1.5 (`tests/tilt.rs`), tilts of 5 degrees add up to .013 to the lobe error, tilts of 10
     /// degrees up to .07, and tilts of 20 degrees up to .1 towards the eye and .6 away from it: terms of second order count there. In a white furnace a place

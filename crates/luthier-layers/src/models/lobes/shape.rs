@@ -73,7 +73,7 @@ impl Shape {
         libm::exp(-libm::log1p(tail * q) / tail)
     }
 
-    /// A slope for two numbers that are uniform in 0..1: the inverse of [`Self::beyond`].
+    /// A slope for two numbers that are uniform in 0..1: the inverse of the share of slopes beyond one.
     pub fn sample(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let tail = self.tail.max(TAIL_MIN);
         let q = libm::expm1(-tail * libm::log(1.0 - u)) / tail;
