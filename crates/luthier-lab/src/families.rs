@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use luthier_layers::models::lobes::{Family, FitSettings, Mix, Paint, Varied, Varying};
+use luthier_layers::models::lobes::{Family, FitSettings, Mix, Paint, Slopes, Varied, Varying};
 use luthier_layers::registry::model;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -32,6 +32,9 @@ const COAT_INDEX: f64 = 1.5;
 /// Slope parameters of coat and base in all groups.
 const RANGES: [[f64; 2]; 2] = [[0.001, 0.8], [0.001, 1.0]];
 
+/// Largest distance of the two slope parameters of an anisotropic base from their mean, over that mean: one is nine times the other.
+const APART: f64 = 0.8;
+
 /// Stacks of one family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Group {
@@ -43,10 +46,11 @@ enum Group {
     TwoCoats,
     Copper,
     Bare,
+    Brushed,
 }
 
 impl Group {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Metal,
         Self::MetalBeckmann,
         Self::Plastic,
@@ -55,6 +59,7 @@ impl Group {
         Self::TwoCoats,
         Self::Copper,
         Self::Bare,
+        Self::Brushed,
     ];
 
     fn title(self) -> &'static str {
@@ -67,6 +72,7 @@ impl Group {
             Self::TwoCoats => "two coats over metal of a complex index",
             Self::Copper => "coat over metal of a complex index",
             Self::Bare => "metal or plastic of any colour without a coat",
+            Self::Brushed => "coat over anisotropic metal of any colour",
         }
     }
 
@@ -107,7 +113,7 @@ fn constant(n: f64, k: f64) -> Ior {
 
 /// A place: slope parameters of coat and base, colours, and the stack there.
 struct Place {
-    alphas: [f64; 2],
+    slopes: [Slopes; 2],
     paint: Paint,
     stack: Stack,
     words: String,
@@ -125,7 +131,7 @@ fn place(group: Group, family: Family, number: u64) -> Place {
     let color = [0; 3].map(|_: i32| uniform());
     let tint = [0; 3].map(|_: i32| if group == Group::Tinted { 0.7 * uniform() } else { 0.0 });
     let metallic = match group {
-        Group::Metal | Group::MetalBeckmann => 1.0,
+        Group::Metal | Group::MetalBeckmann | Group::Brushed => 1.0,
         Group::Plastic => 0.0,
         Group::Mixture => 0.5,
         _ => {
@@ -138,7 +144,13 @@ fn place(group: Group, family: Family, number: u64) -> Place {
     };
     // Metals reflect more.
     let color = if metallic == 1.0 { color.map(|c| 0.3 + 0.7 * c) } else { color };
-    let level = family.apply(&group.stack(tint), alphas);
+    let mut slopes = alphas.map(Slopes::from);
+    if group == Group::Brushed {
+        let (apart, angle) = (APART * uniform(), std::f64::consts::PI * uniform());
+        let along = [1.0 + apart, 1.0 - apart].map(|share| (alphas[1] * share).min(1.0));
+        slopes[1] = Slopes { along, turn: [libm::cos(angle), libm::sin(angle)] };
+    }
+    let level = family.apply(&group.stack(tint), slopes);
     let plain = Paint::of(&level);
     let mix = Mix { metal: color, matt: color, metallic };
     let paint = if group.is_metallic() { plain.mixed(mix) } else { plain };
@@ -157,13 +169,18 @@ fn place(group: Group, family: Family, number: u64) -> Place {
     };
     let [coat, base] = alphas;
     let words = format!(
-        "coat {coat:.3}, base {base:.3}, {} ({:.2}, {:.2}, {:.2})",
+        "coat {coat:.3}, base {}, {} ({:.2}, {:.2}, {:.2})",
+        if group == Group::Brushed {
+            format!("{:.3} and {:.3}", slopes[1].along[0], slopes[1].along[1])
+        } else {
+            format!("{base:.3}")
+        },
         if metallic == 1.0 { "metal" } else { "plastic" },
         color[0],
         color[1],
         color[2]
     );
-    Place { alphas, paint, stack, words }
+    Place { slopes, paint, stack, words }
 }
 
 /// Largest errors of a place, of the family and of the model beside.
@@ -212,7 +229,7 @@ pub(crate) fn run(options: &FamiliesOptions) -> Outcome {
 fn judge(place: &Place, varied: &Varied, options: &FamiliesOptions) -> Option<Judged> {
     let subject = ModelSubject { name: String::new(), stack: place.stack.clone(), wavelengths_nm: WAVELENGTHS_NM };
     let reference = Reference::new(&subject, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
-    let lobes = varied.painted(place.alphas, &place.paint)?;
+    let lobes = varied.painted(place.slopes, &place.paint)?;
     let own = reference.errors(Shown::Lobes(&lobes));
     let beside = reference.errors(Shown::Model(model(BESIDE)?.as_ref()));
     let largest = |views: &[ViewError]| {
@@ -316,5 +333,8 @@ single views* have every angle and wavelength by itself. Beside are the errors o
 A texel of `metallic` between 0 and 1 is a mix of two surfaces by area, whose light is the mean of both: its errors are at most those of its ends. The group *half way* compares it with the one interface that a
 number `metallic = 0.5` in a file means. Both are meanings of the same parameter, and they differ most where the colour is bright.
 
-Not in families: anisotropic interfaces, weights of coats, films that vary. Files with such maps take another model.
+Anisotropic interfaces read the rows of the mean of their two slope parameters, and their lobes are stretched in closed form: neither anisotropy nor its direction is an axis. The group has bases with slope parameters up to
+a ratio of nine. Its tables are those of the first group.
+
+Not in families: weights of coats, films that vary. Files with such maps take another model.
 ";

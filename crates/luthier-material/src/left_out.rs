@@ -120,8 +120,12 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             for map in layer.maps.named() {
                 let has_axis = family.is_some_and(|family| number == 0 || number == family.interface);
                 let lacks = match map.slot {
-                    MapSlot::Alpha | MapSlot::BaseColor | MapSlot::Metallic => !has_axis,
-                    MapSlot::AlphaX | MapSlot::AlphaY => true,
+                    MapSlot::Alpha
+                    | MapSlot::AlphaX
+                    | MapSlot::AlphaY
+                    | MapSlot::Tangent
+                    | MapSlot::BaseColor
+                    | MapSlot::Metallic => !has_axis,
                     _ => false,
                 };
                 if let Some(feature) = map.slot.layer_feature(number as u32).filter(|_| lacks) {

@@ -151,14 +151,17 @@ impl Material {
     /// The ranges of slope parameters that textures give to the first interface and to the lowest one, if textures vary these, or base colour and metal, and
     /// nothing else that decides shapes of light varies. Model `lobes` then has rows over both slope parameters, with colours in closed form.
     ///
-    /// Texels multiply slope parameters; those of a roughness map do so squared.
+    /// Texels multiply slope parameters; those of a roughness map do so squared. The slope parameter of an anisotropic interface is the mean of its two.
     pub fn family(&self) -> Option<SlopeRanges> {
         let layers = &self.stack.layers;
         let interface = layers.iter().rposition(|layer| !matches!(layer.base, Base::Diffuse(_)))?;
-        let is_asked = [0, interface].into_iter().any(|i| self.layers[i].maps.alpha.is_some())
-            || self.layers[interface].metallic.is_some();
-        let is_turned = layers.iter().any(Layer::is_anisotropic)
-            || self.layers.iter().any(|layer| layer.maps.alpha_x.is_some() || layer.maps.alpha_y.is_some());
+        let has_slopes =
+            |maps: &Maps| [&maps.alpha, &maps.alpha_x, &maps.alpha_y, &maps.tangent].into_iter().any(Option::is_some);
+        let is_turned = layers.iter().any(Layer::is_anisotropic);
+        let is_asked = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i].maps))
+            || self.layers[interface].metallic.is_some()
+            || is_turned && self.layers[0].maps.roughness.is_some();
+        let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i].maps));
         // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
         let has_color = |(number, layer): (usize, &Layer)| {
             let is_tinted = match &layer.base {
@@ -175,15 +178,20 @@ impl Material {
         let is_metallic = self.layers[interface].metallic.is_some();
         let first = &self.layers[0];
         let has_slab = first.maps.thickness.is_some() && !is_metallic;
-        if !is_asked || is_turned || has_film || has_slab || self.is_bare_in_places() {
+        if !is_asked || is_turned_between || has_film || has_slab || self.is_bare_in_places() {
             return None;
         }
         let of_surface = if first.maps.roughness.is_some() { first.texels.roughness.map(|r| r * r) } else { [1.0; 2] };
         let range = |number: usize| {
-            let own =
-                if self.layers[number].maps.alpha.is_some() { self.layers[number].texels.alpha } else { [1.0; 2] };
-            let alpha = layers[number].surface.alpha_x;
-            [0, 1].map(|end: usize| alpha * own[end] * of_surface[end])
+            let LayerExtras { maps, texels, .. } = &self.layers[number];
+            let surface = layers[number].surface;
+            let of = |map: &Option<PictureRef>, texels: [f64; 2]| if map.is_some() { texels } else { [1.0; 2] };
+            let (both, along, across) =
+                (of(&maps.alpha, texels.alpha), of(&maps.alpha_x, texels.alpha_x), of(&maps.alpha_y, texels.alpha_y));
+            [0, 1].map(|end: usize| {
+                let mean = 0.5 * (surface.alpha_x * along[end] + surface.alpha_y * across[end]);
+                mean * both[end] * of_surface[end]
+            })
         };
         Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic })
     }
@@ -256,13 +264,17 @@ impl Default for LayerExtras {
 pub struct TexelRanges {
     /// Texels of the map of its own slope parameters.
     pub alpha: [f64; 2],
+    /// Texels of the map of its slope parameter along the tangent.
+    pub alpha_x: [f64; 2],
+    /// Texels of the map of its slope parameter along the bitangent.
+    pub alpha_y: [f64; 2],
     /// Texels of the map of the roughness of the surface.
     pub roughness: [f64; 2],
 }
 
 impl Default for TexelRanges {
     fn default() -> Self {
-        Self { alpha: [0.0, 1.0], roughness: [0.0, 1.0] }
+        Self { alpha: [0.0, 1.0], alpha_x: [0.0, 1.0], alpha_y: [0.0, 1.0], roughness: [0.0, 1.0] }
     }
 }
 

@@ -9,7 +9,7 @@ luthier_lut::named! {
     /// // Models that show tilted tangents also show anisotropy.
     /// let turned = ShadingModel::ALL.into_iter().filter(|model| model.honours(Feature::Tangents, Form::Baked));
     /// assert!(turned.clone().all(|model| model.honours(Feature::Anisotropy, Form::Baked)));
-    /// assert_eq!(turned.map(ShadingModel::name).collect::<Vec<_>>(), ["weidlich-wilkie", "yamaguchi", "microfacet"]);
+    /// assert_eq!(turned.map(ShadingModel::name).collect::<Vec<_>>(), ["weidlich-wilkie", "yamaguchi", "microfacet", "lobes"]);
     /// ```
     pub enum Feature("feature") {
         /// Dielectrics and conductors below the first layer.
@@ -92,7 +92,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#....#..#"),
             (ShadingModel::Phong, "###.##....##..........#..."),
             (ShadingModel::Microfacet, "....#b######..##.##...#.#."),
-            (ShadingModel::Lobes, "###############..######..."),
+            (ShadingModel::Lobes, "################.######..."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

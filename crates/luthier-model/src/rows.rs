@@ -263,6 +263,7 @@ const LOBES: Facts = Facts {
                 RoughnessMap,
                 ThicknessMap,
                 Bumps,
+                Tangents,
                 AlbedoMap,
                 LayerAlpha,
                 MetallicMap,

@@ -59,7 +59,12 @@ pub(crate) fn measure_texels(material: &mut Material) {
     }
     let (source, [low, high]) = (material.source.clone(), TexelRanges::default().alpha);
     for LayerExtras { maps, texels, .. } in &mut material.layers {
-        for (picture, range) in [(&maps.alpha, &mut texels.alpha), (&maps.roughness, &mut texels.roughness)] {
+        for (picture, range) in [
+            (&maps.alpha, &mut texels.alpha),
+            (&maps.alpha_x, &mut texels.alpha_x),
+            (&maps.alpha_y, &mut texels.alpha_y),
+            (&maps.roughness, &mut texels.roughness),
+        ] {
             let Some(Ok(image)) = picture.as_ref().map(|picture| read_image(&source, picture)) else { continue };
             let values = image.data.iter().map(|value| f64::from(*value).clamp(low, high));
             *range = values.fold([high, low], |[least, most], value| [least.min(value), most.max(value)]);

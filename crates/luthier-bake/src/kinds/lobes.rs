@@ -271,7 +271,7 @@ const UNFITTED: LobesRecord = LobesRecord {
 
 /// The view-independent numbers of a material's lobes; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, settings: &Settings, results: &Results) -> LobesRecord {
-    let axes = Axes::of(&material.stack).map(|Axes { turn, is_mirrored }| AxesRecord {
+    let axes = Varying::axes(varying(material), &material.stack).map(|Axes { turn, is_mirrored }| AxesRecord {
         turn,
         is_mirrored,
         tiles: Axes::TILES as u32,

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Axes, Below, Critical, Family, Frame, Paint, Painted, Row, ViewAxis, Wide};
+use luthier_layers::models::lobes::{
+    Axes, Below, Critical, Family, Frame, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+};
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
 use luthier_layers::models::statistics::energy::Energy;
@@ -155,7 +157,7 @@ struct Lobes {
     frame: Frame,
     varying: Option<VaryingRecord>,
     /// A family, with slope parameters of coat and base and the colours of the place.
-    family: Option<(Family, [f64; 2], Paint)>,
+    family: Option<(Family, [Slopes; 2], Paint)>,
 }
 
 impl Lobes {
@@ -170,7 +172,7 @@ impl Lobes {
         let base = record
             .painted
             .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
-        let frame = Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base };
+        let frame = Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None };
         Self { tile, axis, frame, varying: record.varying, family: None }
     }
 
@@ -178,10 +180,17 @@ impl Lobes {
     fn place(&mut self, entry: &MaterialEntry, place: &Place) {
         let Some(record) = self.varying.and_then(|varying| varying.family) else { return };
         let family = family_of(record);
-        let alphas = [0, family.interface].map(|number| {
-            let [x, y] = place.layers.get(number).map_or([1.0; 2], |own| own.alpha_factors);
-            entry.layers[number].alpha * (x * y).sqrt() * place.sample.alpha_factor
+        let slopes = [0, family.interface].map(|number| {
+            let (own, layer) = (place.layers.get(number), &entry.layers[number]);
+            let along = own.map_or([1.0; 2], |own| own.alpha_factors);
+            let [cos, sin] = own.map_or([1.0, 0.0], |own| own.tangent.to_array());
+            let (s, c) = libm::sincos(layer.rotation);
+            Slopes {
+                along: [0, 1].map(|i: usize| layer.alpha_xy[i] * along[i] * place.sample.alpha_factor),
+                turn: [c * cos - s * sin, s * cos + c * sin],
+            }
         });
+        self.frame.stretch = family.stretch(slopes);
         let plain = Paint {
             metal: [0.0; 3],
             metallic: 0.0,
@@ -189,7 +198,7 @@ impl Lobes {
             depth: entry.layers[0].optical_depth.map(|depth| depth * place.sample.slab_factor),
         };
         let paint = place.metal.map_or(plain, |mix| plain.mixed(mix));
-        self.family = Some((family, alphas, paint));
+        self.family = Some((family, slopes, paint));
     }
 }
 
@@ -438,14 +447,15 @@ impl ShaderTerms for TableTerms<'_> {
         let (table, cos_theta) = (self.table(TableKind::Lobes)?, axis.cosine(wo.z));
         let row = match (frame.axes, varying) {
             (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
-            (None, Some(_)) if let Some((family, alphas, paint)) = family => {
-                let [coat, base] = family.places(*alphas).map(|place| (place as usize, place.fract()));
+            (None, Some(_)) if let Some((family, slopes, paint)) = family => {
+                let alphas = slopes.map(Slopes::mean);
+                let [coat, base] = family.places(alphas).map(|place| (place as usize, place.fract()));
                 let of = |coat: usize| {
                     let first = tile + (coat * family.base.nodes + base.0) as u32;
                     table.row_between(first, base.1, cos_theta, self.weights)
                 };
                 let row = if coat.1 > 0.0 { of(coat.0).between(&of(coat.0 + 1), coat.1) } else { of(coat.0) };
-                family.row_in(&row, *alphas, frame.base.map_or([0.0; 3], |base| base.albedo), paint)
+                family.row_in(&row, alphas, frame.base.map_or([0.0; 3], |base| base.albedo), paint)
             }
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(varying);

@@ -327,9 +327,6 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         if rows.is_some_and(|rows| rows.axes.is_some() || rows.varying.is_some()) {
             names.insert(Feature::LobesRows);
         }
-        if rows.is_some_and(|rows| rows.axes.is_some()) {
-            names.insert(Feature::LobesAxes);
-        }
         if rows.is_some_and(|rows| is_over_film(&rows)) {
             names.insert(Feature::LobesFilm);
         }
@@ -341,8 +338,13 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         }
         let turns = [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent];
         let is_turned = material.maps.iter().any(|map| turns.contains(&map.slot));
-        if !facts.is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned) {
+        let is_anisotropic = !facts.is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned);
+        if is_anisotropic {
             names.insert(Feature::Anisotropic);
+        }
+        // Rows have axes, or shapes of a family are stretched along some.
+        if rows.is_some_and(|rows| rows.axes.is_some() || is_anisotropic && rows.family().is_some()) {
+            names.insert(Feature::LobesAxes);
         }
     }
     for pair in layers.windows(2) {

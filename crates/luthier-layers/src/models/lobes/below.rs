@@ -60,7 +60,14 @@ impl Below {
         let (turn, at, shapes) = match frame.axes {
             None => {
                 let turn = if sin > 0.0 { [wo.x / sin, wo.y / sin] } else { [1.0, 0.0] };
-                (turn, DVec3::new(sin, 0.0, wo.z), row.lobes.iter().map(|lobe| lobe.in_plane(sin)).collect())
+                let plain = row.lobes.iter().map(|lobe| lobe.in_plane(sin));
+                let shapes = match frame.stretch {
+                    None => plain.collect(),
+                    Some(stretch) => {
+                        plain.zip(stretch).map(|(shape, squares)| shape.stretched(squares, turn)).collect()
+                    }
+                };
+                (turn, DVec3::new(sin, 0.0, wo.z), shapes)
             }
             Some(axes) => {
                 let at = axes.inside(wo);

@@ -10,7 +10,9 @@ use luthier_optics::stack::Stack;
 use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
-use super::{Axes, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Varied, Varying, ViewAxis, patina, shown};
+use super::{
+    Axes, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis, patina, shown,
+};
 use crate::references::layered_mc::ColorPaths;
 
 /// Views, and paths of each.
@@ -65,7 +67,7 @@ struct View {
     /// The factor on what varies.
     factor: f64,
     /// Slope parameters and colours in place of a factor.
-    place: Option<([f64; 2], Paint)>,
+    place: Option<([Slopes; 2], Paint)>,
     cells: Cells,
     wo: DVec3,
     /// Energy by cell and channel, without the light of one facet of the first interface.
@@ -78,7 +80,7 @@ struct View {
 impl Judge {
     /// Traces the paths.
     pub fn new(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {
-        let (stack, axes) = (shown(stack), Axes::of(stack));
+        let (stack, axes) = (shown(stack), Varying::axes(varying, stack));
         let varying = varying.filter(|_| axes.is_none());
         let index = indices(&stack).last().copied().unwrap_or(1.0);
         let axis = ViewAxis::of(&stack, FitSettings::default().rows);
@@ -94,9 +96,9 @@ impl Judge {
             // Factors go in another order than views, so that neither follows the other.
             let seed = SEEDS + number as u64;
             if let Some(Varying::Family(family)) = varying {
-                let (alphas, paint, here) = in_colors(family, &stack, number);
+                let (slopes, paint, here) = in_colors(family, &stack, number);
                 let cells = cells(index, &covariances(&here, None), None);
-                return View { place: Some((alphas, paint)), ..View::new(&here, color, seed, (1.0, wo), cells, None) };
+                return View { place: Some((slopes, paint)), ..View::new(&here, color, seed, (1.0, wo), cells, None) };
             }
             let factor = varying.map_or(1.0, |varying| {
                 // Light is linear between the ends of a patina, so ends alone are judged: all layers without the patina's scattering, which no path
@@ -118,7 +120,7 @@ impl Judge {
     /// The errors of lobes of the stack, over the same factor.
     pub fn error(&self, varied: &Varied) -> FitError {
         let errors = self.views.iter().map(|view| {
-            let painted = view.place.as_ref().and_then(|(alphas, paint)| varied.painted(*alphas, paint));
+            let painted = view.place.as_ref().and_then(|(slopes, paint)| varied.painted(*slopes, paint));
             self.error_at(view, &painted.unwrap_or_else(|| varied.at(view.factor)))
         });
         errors.fold(FitError::default(), FitError::max)
@@ -170,22 +172,35 @@ const COLORS: [(Rgb, bool); VIEWS] = [
     ([0.2, 0.6, 0.9], false),
 ];
 
-/// Slope parameters half way between nodes, and the stack with these in other colours, for a view of a judge by number.
-fn in_colors(family: Family, stack: &Stack, number: usize) -> ([f64; 2], Paint, Stack) {
+/// Slope parameters half way between nodes, and the stack with these in other colours, for a view of a judge by number. Anisotropic interfaces keep the ratio of
+/// theirs; views have different azimuths to them.
+fn in_colors(family: Family, stack: &Stack, number: usize) -> ([Slopes; 2], Paint, Stack) {
+    let own = family.slopes(stack);
+    let (sin, cos) = libm::sincos(number as f64 * AZIMUTH_STEP);
     // Both axes go in orders that follow neither each other nor the views.
-    let alphas = [(family.coat, 3), (family.base, 2)].map(|(axis, stride)| {
+    let slopes = [(family.coat, 3), (family.base, 2)].map(|(axis, stride)| {
         let place = (stride * number) % VIEWS * axis.nodes.saturating_sub(2) / (VIEWS - 1);
         axis.alpha(if axis.nodes > 1 { place as f64 + 0.5 } else { 0.0 })
     });
-    let here = family.apply(stack, alphas);
+    let slopes = [0, 1].map(|i: usize| {
+        let Slopes { turn: [c, s], along } = own[i];
+        if along[0] == along[1] {
+            return slopes[i].into();
+        }
+        own[i].scaled(slopes[i] / own[i].mean()).turned([cos * c - sin * s, sin * c + cos * s])
+    });
+    let here = family.apply(stack, slopes);
     if !family.is_metallic {
-        return (alphas, Paint::of(&here), here);
+        return (slopes, Paint::of(&here), here);
     }
     let (color, is_metal) = COLORS[number % VIEWS];
     let paint = Paint::of(&here).mixed(Mix { metal: color, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
     let here = if is_metal { paint.metal_of(&here) } else { paint.plastic_of(&here) };
-    (alphas, paint, here)
+    (slopes, paint, here)
 }
+
+/// Angle by which anisotropic interfaces of a family are turned from view to view, radians.
+const AZIMUTH_STEP: f64 = 0.7;
 
 impl View {
     fn new(

@@ -25,7 +25,7 @@
 //!
 //! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. A direction drawn beyond the horizon has no weight.
 //!
-//! Simplifications: the lobes are not reciprocal. Out of scope: anisotropic surfaces that vary. They keep the rows of the unvaried surface.
+//! Simplifications: the lobes are not reciprocal.
 //!
 //! Half vectors outside the stack are the case n = 1. The fit tries an index next to 1 instead, whose lobes fall towards the horizon as facets mask
 //! them, and takes it if its lobes are the nearest.
@@ -52,7 +52,7 @@ mod varied;
 
 pub use axes::Axes;
 pub use below::Below;
-pub use family::{Family, Mix, Paint, SlopeAxis, base_interface};
+pub use family::{Family, Mix, Paint, SlopeAxis, Slopes, Stretch, base_interface};
 pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};
@@ -116,6 +116,8 @@ pub struct Frame {
     pub axes: Option<Axes>,
     /// The diffuse base below interfaces, whose light is in the rows.
     pub base: Option<Painted>,
+    /// Of an anisotropic place of a family: by what its lobes are stretched.
+    pub stretch: Option<Stretch>,
 }
 
 /// A diffuse base below interfaces, which places may recolour.

@@ -58,6 +58,30 @@ impl Shape {
         [self.middle[0] + (cos * x - sin * y), self.middle[1] + (sin * x + cos * y)]
     }
 
+    /// The shape in the plane of an eye after slopes are multiplied by the root of a symmetric matrix in tangents: along x, along y, and between them. `turn` is
+    /// cosine and sine of the azimuth of the eye.
+    pub(super) fn stretched(&self, [xx, yy, xy]: [f64; 3], [cos, sin]: [f64; 2]) -> Self {
+        let (cos_sq, sin_sq, both) = (cos * cos, sin * sin, cos * sin);
+        let along = cos_sq * xx + sin_sq * yy + 2.0 * both * xy;
+        let across = sin_sq * xx + cos_sq * yy - 2.0 * both * xy;
+        let between = (cos_sq - sin_sq) * xy + both * (yy - xx);
+        // Cayley and Hamilton: the root of a 2 x 2 matrix M is (M + d) / sqrt(tr M + 2 d), d being the root of its determinant.
+        let root_det = (along * across - between * between).max(0.0).sqrt();
+        let scale = (along + across + 2.0 * root_det).sqrt();
+        let [a, c, b] = [(along + root_det) / scale, (across + root_det) / scale, between / scale];
+        let [first, second] = self.width.map(|width| width * width);
+        let squares = [a * a * first + b * b * second, b * b * first + c * c * second, b * (a * first + c * second)];
+        let (mean, half) = (0.5 * (squares[0] + squares[1]), 0.5 * (squares[0] - squares[1]));
+        let radius = libm::hypot(half, squares[2]);
+        let (sin, cos) = libm::sincos(0.5 * libm::atan2(squares[2], half));
+        let greater = mean + radius;
+        // The product of the widths does not cancel, as the lesser one may.
+        let area = self.width[0] * self.width[1] * root_det;
+        let width = [greater.sqrt(), area / greater.sqrt()];
+        let [x, y] = self.middle;
+        Self { middle: [a * x + b * y, b * x + c * y], width, turn: [cos, sin], ..*self }
+    }
+
     /// Reciprocal widths as a symmetric matrix: both entries of its diagonal, and the one off it.
     pub(super) fn sharpness(&self) -> [f64; 3] {
         let ([cos, sin], [first, second]) = (self.turn, self.width.map(|width| 1.0 / width));
@@ -211,6 +235,30 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Oracle: the density of slopes that are multiplied by the root of the matrix is the density of what they were, over the determinant.
+    #[test]
+    fn stretched_shapes_are_those_of_stretched_slopes() {
+        let plain = Shape { middle: [0.3, 0.0], width: [0.2, 0.4], turn: [1.0, 0.0], tail: 0.7 };
+        // Twice and half as wide along axes at .6 from the tangent; the eye is at an azimuth of 1.1.
+        let ([c, s], [cos, sin]) = ([0.6_f64, 1.1].map(libm::cos), [0.6_f64, 1.1].map(libm::sin));
+        let [[c, cos], [s, sin]] = [[c, s], [cos, sin]];
+        let matrix = |first: f64, second: f64| {
+            [c * c * first + s * s * second, s * s * first + c * c * second, c * s * (first - second)]
+        };
+        let (squares, root) = (matrix(4.0, 0.25), matrix(2.0, 0.5));
+        let stretched = plain.stretched(squares, [cos, sin]);
+        for slope in [[0.0, 0.0], [0.4, 0.1], [0.2, -0.5]] {
+            // To tangents, multiplied, and back to the plane of the eye.
+            let [x, y] = [cos * slope[0] - sin * slope[1], sin * slope[0] + cos * slope[1]];
+            let [x, y] = [root[0] * x + root[2] * y, root[2] * x + root[1] * y];
+            let there = [cos * x + sin * y, cos * y - sin * x];
+            let (found, expected) = (stretched.density(there), plain.density(slope));
+            assert!((found / expected - 1.0).abs() < 1e-9, "{slope:?}: {found} {expected}");
+        }
+        let same = plain.stretched([1.0, 1.0, 0.0], [cos, sin]);
+        assert!((same.density([0.1, 0.2]) / plain.density([0.1, 0.2]) - 1.0).abs() < 1e-12);
     }
 
     /// Samples fall into each ring as often as the density says; the ring's share is counted by the midpoint rule.

@@ -8,7 +8,8 @@ use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::tally::mean;
 use super::{
-    Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Lobes, Paint, Row, ViewAxis, most_lobes, patina, shown,
+    Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Lobes, Paint, Row, Slopes, ViewAxis, most_lobes, patina,
+    shown,
 };
 use crate::layers::ALPHA_MIN;
 
@@ -35,6 +36,11 @@ impl Varying {
         let film = stack.layers.first()?.films.first().filter(|film| film.varies())?;
         let FilmThickness { min_nm, max_nm } = film.thickness;
         Some(Self::Film([max_nm, min_nm].map(|nm| nm / film.thickness.nominal_nm())))
+    }
+
+    /// The axes of the rows of a stack: those of an anisotropic one. Rows of a family are in the plane of the eye.
+    pub fn axes(varying: Option<Self>, stack: &Stack) -> Option<Axes> {
+        if matches!(varying, Some(Self::Family(_))) { None } else { Axes::of(stack) }
     }
 
     /// Number of nodes.
@@ -213,9 +219,9 @@ impl Varied {
         self
     }
 
-    /// Number of tiles of a stack: over the azimuth if it is anisotropic, and else over the nodes.
+    /// Number of tiles of a stack: over the azimuth if it is anisotropic and no family, and else over the nodes.
     pub fn tiles_of(stack: &Stack, varying: Option<Varying>) -> usize {
-        if Axes::of(stack).is_some() { Axes::TILES } else { varying.map_or(1, Varying::nodes) }
+        if Varying::axes(varying, stack).is_some() { Axes::TILES } else { varying.map_or(1, Varying::nodes) }
     }
 
     /// The lobes of a tile, and the number of the tile in them.
@@ -250,8 +256,7 @@ impl Varied {
     /// The lobes of the stack itself, without a texture.
     pub fn nominal(mut self) -> Lobes {
         if let Some(Over { varying: Varying::Family(family), stack, .. }) = &self.varying {
-            let alphas = [0, family.interface].map(|layer| stack.layers[layer].surface.alpha_x);
-            if let Some(lobes) = self.painted(alphas, &Paint::of(stack)) {
+            if let Some(lobes) = self.painted(family.slopes(stack), &Paint::of(stack)) {
                 return lobes;
             }
         }
@@ -267,9 +272,11 @@ impl Varied {
     }
 
     /// The lobes of a family at slope parameters of coat and base, held to the ranges, and in colours; the first interface is that of the stack.
-    pub fn painted(&self, alphas: [f64; 2], paint: &Paint) -> Option<Lobes> {
+    pub fn painted<S: Into<Slopes>>(&self, slopes: [S; 2], paint: &Paint) -> Option<Lobes> {
         let over = self.varying.as_ref()?;
         let Varying::Family(family) = over.varying else { return None };
+        let slopes = slopes.map(Into::into);
+        let alphas = slopes.map(Slopes::mean);
         let [coat, base] = family.places(alphas);
         let held = family.held(alphas);
         let [next_coat, next_base] = [(coat, family.coat), (base, family.base)].map(|(place, axis)| {
@@ -290,7 +297,8 @@ impl Varied {
         // Between rows, numbers are in line, and what follows from them is not.
         lobes = lobes.refined(PAINTED_STEPS);
         lobes.rows.iter_mut().for_each(|row| *row = family.painted(row, spreads, simulated, paint));
-        lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, alphas), family), &over.color);
+        lobes.frame.stretch = family.stretch(slopes);
+        lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, slopes), family), &over.color);
         Some(lobes)
     }
 
@@ -323,7 +331,7 @@ impl Family {
     }
 
     /// Slope parameters of coat and base held to the ranges.
-    fn held(self, alphas: [f64; 2]) -> [f64; 2] {
+    pub(super) fn held(self, alphas: [f64; 2]) -> [f64; 2] {
         let [coat, base] = self.places(alphas);
         [self.coat.alpha(coat), self.base.alpha(base)]
     }
@@ -424,9 +432,9 @@ impl Traced {
     }
 }
 
-/// The varying part of an isotropic stack. Rows of an anisotropic one are over the azimuth instead.
+/// The varying part of a stack. Rows of an anisotropic one are over the azimuth instead, unless they are those of a family.
 fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
-    varying.filter(|_| Axes::of(stack).is_none())
+    varying.filter(|_| Varying::axes(varying, stack).is_none())
 }
 
 /// A surface with a factor on its slope parameters, within the range of layer records before and after.

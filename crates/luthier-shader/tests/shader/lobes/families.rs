@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Below, Critical, Family, Frame, Mix, Paint, Painted, Row, SlopeAxis, ViewAxis, Wide,
+    Below, Critical, Family, Frame, Mix, Paint, Painted, Row, SlopeAxis, Slopes, ViewAxis, Wide,
 };
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
@@ -153,6 +153,22 @@ fn material(family: Family) -> MaterialEntry {
     MaterialEntry { layers, constants, maps, ..given }
 }
 
+/// A material with other slope parameters along tangents, turned, and with maps of these and of directions.
+fn brushed(mut given: MaterialEntry) -> MaterialEntry {
+    let count = given.layers.len() - 1;
+    for (number, layer) in given.layers[..count].iter_mut().enumerate() {
+        layer.alpha_xy = BRUSHED.map(|factor| layer.alpha * factor);
+        layer.rotation = TURNS[number];
+        let map = MapEntry { layer: Some(number as u32), ..given.maps[0].clone() };
+        given.maps.extend([MapSlot::AlphaX, MapSlot::Tangent].map(|slot| MapEntry { slot, ..map.clone() }));
+    }
+    given
+}
+
+/// Slope parameters along tangent and bitangent, over their mean, and the angles of the tangents of coat and base.
+const BRUSHED: [f64; 2] = [1.6, 0.4];
+const TURNS: [f64; 2] = [0.4, 2.0];
+
 /// The row of a family at places among its nodes, read as the formulas say.
 fn row(layout: &AtlasLayout, image: &Image, family: Family, alphas: [f64; 2], cos_theta: f64) -> Row {
     let [coat, base] = family.places(alphas);
@@ -182,7 +198,7 @@ fn facets(light: DVec3, eye: DVec3, alpha: f64) -> f64 {
 fn rows_of_a_family_are_those_of_the_formulas() {
     let surface = [FunctionGroup::Surface, FunctionGroup::Albedo, FunctionGroup::Sample];
     let plain = set("lobes-place").swap_remove(0);
-    for (family, groups, others) in [
+    for (number, (family, groups, others)) in [
         (family(1, true, NODES), &surface[1..], vec![]),
         (family(1, true, NODES), &surface[..], vec![plain.clone()]),
         (family(1, false, NODES), &surface[..], vec![]),
@@ -190,8 +206,16 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(1, true, [2, 1]), &surface[1..], vec![material(family(1, false, NODES))]),
         (family(0, true, [1, 3]), &surface[1..], vec![]),
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(1, true, NODES))]),
-    ] {
-        let mut materials: Vec<MaterialEntry> = [material(family)].into_iter().chain(others).collect();
+        // From here on slope parameters differ along tangents.
+        (family(1, true, NODES), &surface[1..], vec![]),
+        (family(1, false, NODES), &surface[..], vec![plain.clone(), material(family(1, false, NODES))]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let is_brushed = number >= 7;
+        let first = if is_brushed { brushed(material(family)) } else { material(family) };
+        let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
         for (number, material) in materials.iter_mut().enumerate() {
             material.name = format!("m{number}");
         }
@@ -223,11 +247,12 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             names.map(|(name, _)| name).position(|known| known == name)
         };
         let axis = ViewAxis::new(2, Critical::default());
-        let frame = Frame {
+        let mut frame = Frame {
             index: 1.4,
             wide: Wide::new([0.6, 0.3], axis),
             axes: None,
             base: Some(Painted { albedo: ALBEDO, is_lambertian: true }),
+            stretch: None,
         };
         let mut brightest = 0.0_f64;
         for (k, (wi, wo)) in directions(160).enumerate() {
@@ -252,8 +277,13 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             }
             let layers = members[member("layers").unwrap()].members_mut();
             let interfaces = if family.is_coated() { vec![(0, own[0]), (1, own[1])] } else { vec![(0, own[1])] };
-            for (number, factor) in interfaces {
+            for &(number, factor) in &interfaces {
                 layers[number].members_mut()[own_member("alpha_factors").unwrap()] = vector(&[factor * factor, 1.0]);
+            }
+            let turn = 6.0 * share(0.53);
+            if let Some(member) = own_member("tangent") {
+                let vector = vector(&[turn.cos(), turn.sin()]);
+                layers.iter_mut().for_each(|own| own.members_mut()[member] = vector.clone());
             }
             let wide = color.map(f64::from);
             let mix = Mix { metal: wide, matt: wide, metallic: metal.into() };
@@ -266,6 +296,18 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let mut alphas = [0, 1].map(|i: usize| ALPHAS[i] * f64::from(own[i]) * f64::from(factor));
             if !family.is_coated() {
                 (alphas[0], depth) = (0.0, [0.0; 3]);
+            }
+            if is_brushed {
+                let slopes = [0, 1].map(|i: usize| {
+                    let (along, angle) = (ALPHAS[i] * f64::from(factor), TURNS[i] + f64::from(turn));
+                    let own = f64::from(own[i]);
+                    Slopes {
+                        along: [along * BRUSHED[0] * own * own, along * BRUSHED[1]],
+                        turn: [libm::cos(angle), libm::sin(angle)],
+                    }
+                });
+                alphas = slopes.map(Slopes::mean);
+                frame.stretch = family.stretch(slopes);
             }
             let row = row(&layout, &image, family, alphas, eye.z);
             let plain = Paint { metal: [0.0; 3], metallic: 0.0, albedo: wide, depth };

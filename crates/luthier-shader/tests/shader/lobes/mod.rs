@@ -115,7 +115,8 @@ fn light_from_below_is_that_of_the_twin() {
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false);
             let expected =
-                Below::new(Frame { index: 1.4f32.into(), wide, axes: None, base: None }, row, eye).eval(light);
+                Below::new(Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None }, row, eye)
+                    .eval(light);
             let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
             let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
             for (found, expected) in found.iter().zip(expected) {
@@ -161,7 +162,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors, family: None });
-        let frame = Frame { index: record.index, wide, axes: None, base: None };
+        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
@@ -267,7 +268,7 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes, base: None };
+        let frame = Frame { index: record.index, wide, axes, base: None, stretch: None };
         let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
         let set = MaterialSet {
             functions: groups.iter().copied().collect(),
@@ -335,7 +336,7 @@ fn patina_mixes_the_light_of_two_ends() {
         let given = materials[number].clone();
         let record = given.constants.lobes.unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes: None, base: None };
+        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None };
         let bare = given.constants.patina.map(|patina| patina.bare);
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let gray = Image { data: vec![GRAY; 36], ..Image::zeros(3, 3, 4) };
@@ -410,7 +411,7 @@ fn flakes_turn_the_lobes_that_patina_covers() {
             Some(FlakesRecord { seed: 1, count: 9, tiling: 1.0, spread: 0.1, scale: 1.0, fade_start: 1.0 });
         let record = constants.lobes.unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes: None, base: None };
+        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None };
         let index = layers[0].eta;
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let number = |structure: &str, name: &str| {
@@ -568,6 +569,7 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
             wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())),
             axes: None,
             base: has_base.then_some(Painted { albedo: [0.3, 0.5, 0.7], is_lambertian }),
+            stretch: None,
         };
         let painted = frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
             albedo,

@@ -46,6 +46,46 @@
         return luthier_lobe_shape(shift * spread, numbers, sin_theta);
     }
 
+    //? anisotropic
+    {
+        /// An angle more, by cosine and sine.
+        fn luthier_turned(turn: vec2<f32>, more: vec2<f32>) -> vec2<f32> {
+            return vec2<f32>(turn.x * more.x - turn.y * more.y, turn.y * more.x + turn.x * more.y);
+        }
+
+        /// Squared slope parameters of an interface over the square of their mean, as a matrix in the plane of the eye and across it: both entries of its
+        /// diagonal, and the one off it.
+        fn luthier_family_squares(alphas: vec2<f32>, turn: vec2<f32>, azimuth: vec2<f32>) -> vec3<f32> {
+            let axis = luthier_in_frame(azimuth, turn);
+            let over_mean = alphas * (2.0 / (alphas.x + alphas.y));
+            let squares = over_mean * over_mean;
+            let along = axis * axis;
+            return vec3<f32>(dot(squares, along), dot(squares, along.yx), (squares.x - squares.y) * axis.x * axis.y);
+        }
+
+        /// A lobe in the plane of the eye whose slopes are multiplied by the root of a matrix.
+        fn luthier_family_stretched(given: LuthierLobeShape, squares: vec3<f32>) -> LuthierLobeShape {
+            var shape = given;
+            // Cayley and Hamilton: the root of M is (M + d) / sqrt(tr M + 2 d), d being the root of its determinant.
+            let root_det = sqrt(max(squares.x * squares.y - squares.z * squares.z, 1e-12));
+            let width = vec3<f32>(squares.xy + root_det, squares.z) * inverseSqrt(squares.x + squares.y + 2.0 * root_det);
+            // The squared sharpness, and its root, which is symmetric.
+            let inverse = vec3<f32>(width.yx, -width.z) / root_det;
+            let sharp = given.sharpness * given.sharpness;
+            let inverse_sq = inverse * inverse;
+            let sharp_sq = vec3<f32>(
+                dot(sharp, inverse_sq.xz), dot(sharp, inverse_sq.zy), inverse.z * (sharp.x * inverse.x + sharp.y * inverse.y),
+            );
+            let area = given.sharpness.x * given.sharpness.y / root_det;
+            let sharpness = vec3<f32>(sharp_sq.xy + area, sharp_sq.z) * inverseSqrt(sharp_sq.x + sharp_sq.y + 2.0 * area);
+            let middle = width.xz * (given.middle.x / given.sharpness.x);
+            shape.sharpness = sharpness.xy;
+            shape.shear = sharpness.z;
+            shape.middle = sharpness.xy * middle + sharpness.z * middle.yx;
+            return shape;
+        }
+    }
+
     /// A material of a family as seen from wo, above the horizon: rows are read at the slope parameters of the place, and their energies are those of its
     /// colours.
     fn luthier_prepare_family($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
@@ -59,19 +99,43 @@
         let first_word = luthier_whole(luthier_materials[header].x);
         let base_word = first_word + base_layer * LUTHIER_LAYER_WORDS;
         // Slope parameters of coat and base, without the variance of normals, which lobes get by themselves.
-        var alphas = vec2<f32>(luthier_materials[first_word + $word_numbers].y, luthier_materials[base_word + $word_numbers].y);
         //? layered
         {
             let own_coat = luthier_own_place(place, 0u);
             let own_base = luthier_own_place(place, base_layer);
+        }
+        //? anisotropic
+        {
+            // Along the tangents and the bitangents: an anisotropic interface reads the rows of their mean.
+            let coat_tangent = luthier_materials[first_word + $word_tangent];
+            let base_tangent = luthier_materials[base_word + $word_tangent];
+            var coat_alphas = coat_tangent.xy;
+            var base_alphas = base_tangent.xy;
+            //? own_alphas
+            {
+                coat_alphas *= own_coat.alpha_factors;
+                base_alphas *= own_base.alpha_factors;
+            }
+            //? place
+            {
+                coat_alphas *= place.alpha_factor;
+                base_alphas *= place.alpha_factor;
+            }
+            coat_alphas = clamp(coat_alphas, vec2<f32>(0.001), vec2<f32>(1.0));
+            base_alphas = clamp(base_alphas, vec2<f32>(0.001), vec2<f32>(1.0));
+            let alphas = 0.5 * vec2<f32>(coat_alphas.x + coat_alphas.y, base_alphas.x + base_alphas.y);
+        }
+        //? else
+        {
+            var alphas = vec2<f32>(luthier_materials[first_word + $word_numbers].y, luthier_materials[base_word + $word_numbers].y);
             //? own_alphas
             {
                 let along = vec2<f32>(own_coat.alpha_factors.x, own_base.alpha_factors.x);
                 alphas *= sqrt(max(along * vec2<f32>(own_coat.alpha_factors.y, own_base.alpha_factors.y), vec2<f32>(0.0)));
             }
+            //? place
+            alphas *= place.alpha_factor;
         }
-        //? place
-        alphas *= place.alpha_factor;
         let least = vec2<f32>(coat_axis.x, base_axis.x);
         let roots = clamp(sqrt(max(alphas, vec2<f32>(0.0))), least, vec2<f32>(coat_axis.y, base_axis.y));
         let nodes = (roots - least) * vec2<f32>(coat_axis.z, base_axis.z);
@@ -210,6 +274,21 @@
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
         var first_shape = luthier_family_shape(of_once.a, sharpness.xy, decays.x, once_spread, sin_theta);
         var second_shape = luthier_family_shape(of_more.a, sharpness.zw, decays.z, more_spread, sin_theta);
+        //? anisotropic
+        if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
+            // Squared slope parameters in the plane of the eye, over those that rows were read at.
+            var coat_turn = coat_tangent.zw;
+            var base_turn = base_tangent.zw;
+            //? tangents
+            {
+                coat_turn = luthier_turned(coat_turn, own_coat.tangent);
+                base_turn = luthier_turned(base_turn, own_base.tangent);
+            }
+            let of_coat = luthier_family_squares(coat_alphas, coat_turn, prepared.azimuth) * squares.x;
+            let of_base = luthier_family_squares(base_alphas, base_turn, prepared.azimuth) * squares.y;
+            first_shape = luthier_family_stretched(first_shape, (of_base + 0.09 * of_coat) / (squares.y + 0.09 * squares.x));
+            second_shape = luthier_family_stretched(second_shape, (4.84 * of_base + of_coat) / (4.84 * squares.y + squares.x));
+        }
         //? surface
         {
             // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.

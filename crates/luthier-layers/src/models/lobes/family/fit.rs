@@ -59,6 +59,7 @@ impl Family {
                     axes: None,
                     // Rows have a shape of the remainder each, as above a diffuse base.
                     base: Some(Painted { albedo: own, is_lambertian: true }),
+                    stretch: None,
                 },
                 axis,
                 rows,

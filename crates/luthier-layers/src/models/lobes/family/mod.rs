@@ -24,18 +24,21 @@
 //!
 //! Any other base keeps its colours, and rows have energies by channel. Strengths of all families are energies, not yet over the share above the horizon.
 //!
-//! Slopes of lobes are stored over closed forms ([`Family::spreads`]): ratios are of order 1 at all nodes, and lines between nodes hold. Tails are one number
+//! Slopes of lobes are stored over closed forms ([`Family::spreads`]): ratios are of order 1 at all nodes, and lines between nodes hold. So anisotropy needs no
+//! axis: lobes of anisotropic interfaces are stretched by the matrix of their slope parameters ([`Slopes`]). Tails are one number
 //! of the family. Some of the trapped light is wide, by the same share in all channels.
 
 mod fit;
 mod paint;
+mod slopes;
 #[cfg(test)]
 mod tests;
 mod trace;
 
 pub use paint::{Mix, Paint};
+pub use slopes::{Slopes, Stretch};
 
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::{Base, Layer, Stack};
 
 use crate::layers::ALPHA_MIN;
 
@@ -106,10 +109,13 @@ pub struct Family {
 }
 
 impl Family {
-    /// The family of an isotropic stack with its slope parameters in ranges, those of the coat and those of the base; `None` without an interface. A base
-    /// that is metallic in places is the lowest interface over a diffuse base, as it is without metal.
+    /// The family of a stack with its slope parameters in ranges, those of the coat and those of the base; `None` without an interface, and where interfaces
+    /// between these two are anisotropic. A base that is metallic in places is the lowest interface over a diffuse base, as it is without metal.
     pub fn new(stack: &Stack, coat: [f64; 2], base: [f64; 2], is_metallic: bool) -> Option<Self> {
         let interface = base_interface(stack)?;
+        if stack.layers[..interface].iter().skip(1).any(Layer::is_anisotropic) {
+            return None;
+        }
         let alone = [coat, base].map(|range| SlopeAxis::new(range, STEPS));
         let is_coated = interface > 0;
         let both = is_coated && alone.iter().all(|axis| axis.nodes > 1);
@@ -136,21 +142,20 @@ impl Family {
     }
 
     /// The stack with slope parameters of coat and base.
-    pub fn apply(self, stack: &Stack, [coat, base]: [f64; 2]) -> Stack {
+    pub fn apply<S: Into<Slopes>>(self, stack: &Stack, slopes: [S; 2]) -> Stack {
         let mut here = stack.clone();
-        let alphas = if self.is_coated() { vec![(0, coat), (self.interface, base)] } else { vec![(0, base)] };
-        for (number, alpha) in alphas {
+        let [coat, base] = slopes.map(Into::into);
+        let slopes = if self.is_coated() { vec![(0, coat), (self.interface, base)] } else { vec![(0, base)] };
+        for (number, slopes) in slopes {
             let surface = &mut here.layers[number].surface;
-            *surface = Surface::isotropic(surface.distribution, alpha);
+            *surface = slopes.on(*surface);
         }
         here
     }
 
-    /// Slope parameters about as wide as the lobes: of light that the base reflects once, and more often. Rows have the slopes of lobes over these.
-    pub fn spreads([coat, base]: [f64; 2]) -> [f64; 2] {
-        let once = base * base + 0.09 * coat * coat;
-        let more = 4.84 * base * base + coat * coat;
-        [once.sqrt(), more.sqrt().min(1.0)]
+    /// The slope parameters of the coat and the base of a stack.
+    pub fn slopes(self, stack: &Stack) -> [Slopes; 2] {
+        [0, self.interface].map(|number| stack.layers[number].surface.into())
     }
 }
 

@@ -248,7 +248,7 @@ impl<'a> Problem<'a> {
         };
         Lobes {
             first: first.clone(),
-            frame: Frame { index, wide, axes: *axes, base: self.simulation.base },
+            frame: Frame { index, wide, axes: *axes, base: self.simulation.base, stretch: None },
             axis: *axis,
             rows,
         }
