@@ -34,13 +34,15 @@ pub struct Place {
     pub under: Under,
     /// Patina, or a coat with a weight; `None` for all layers, without the patina's diffuse term and tarnish.
     pub patina: Option<Growth>,
+    /// Whether `lobes` has rows of its own for the layers below such a coat: textures vary more than its weight.
+    pub has_side: bool,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
     /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read, and none beside patina.
-    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base, and none
-    /// beside a coat with a weight.
+    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base, and no
+    /// normals beside a coat with a weight.
     pub layers: Vec<LayerSample>,
     /// Base of a `metallic-roughness` surface for `lobes`, which shows it as a mix of a metal and of a dielectric.
     pub metal: Option<Mix>,
@@ -52,11 +54,27 @@ impl Place {
         sample: TextureSample::NONE,
         under: Under::NONE,
         patina: None,
+        has_side: false,
         base_color: None,
         reradiation: None,
         layers: Vec::new(),
         metal: None,
     };
+
+    /// The weight of a coat over layers that have lobes of their own, the place for all layers, and the place for the layers below the coat; `None` of
+    /// another place.
+    pub fn sides(&self) -> Option<(f64, Self, Self)> {
+        let weight = self.patina.filter(|_| self.has_side)?.amount;
+        let coated = Self { patina: None, has_side: false, ..self.clone() };
+        let sample = TextureSample { slab_factor: 1.0, film_factor: 1.0, ..self.sample };
+        let under = Under { flake_normal: DVec3::Z, ..self.under };
+        let layers = self.layers.iter().skip(1).copied();
+        // Rows of these layers know no frame of the layers that the coat leaves bare.
+        let layers = layers.map(|own| LayerSample { normal: DVec3::Z, ..own });
+        let bare = Self { sample, under, layers: layers.collect(), ..coated.clone() };
+        let layers = coated.layers.iter().map(|own| LayerSample { normal: DVec3::Z, ..*own }).collect();
+        Some((weight, Self { layers, ..coated }, bare))
+    }
 }
 
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
@@ -91,6 +109,8 @@ pub struct Shaded<T = Exact> {
     has_lobes: bool,
     /// Share of a place that is metal in a mix, and the metal: of the model `lobes`.
     metal: Option<(f64, Box<Shaded<T>>)>,
+    /// Weight of a coat, and the layers below it, where these have lobes of their own.
+    side: Option<(f64, Box<Shaded<T>>)>,
 }
 
 /// Part of a stack that covers a place, wholly or in part.
@@ -168,6 +188,11 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
+        if let Some((weight, coated, bare)) = place.sides().filter(|_| model.is_fitted() && stack.layers.len() > 1) {
+            let exact =
+                |stack: &Stack, place: &Place| Self::exact(fit, model, stack, wavelengths_nm, color, place, parts);
+            return Some(exact(stack, &coated)?.beside(weight, exact(&lobes::bare(stack), &bare)?));
+        }
         if let (true, Some(mix), Some(_)) = (model.is_fitted(), place.metal, base_below(stack)) {
             let paint = Paint::of(stack).mixed(mix);
             let layers = place.layers.iter().map(|own| LayerSample { f0: None, ..*own }).collect();
@@ -252,7 +277,13 @@ impl<T: ShaderTerms> Shaded<T> {
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let sample = TextureSample { normal, ..place.sample };
         let place = Place { sample, patina, under, ..place.clone() };
-        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted(), metal: None })
+        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted(), metal: None, side: None })
+    }
+
+    /// The surface where it covers a share of the place as a coat, beside that of the layers below it.
+    #[must_use]
+    pub fn beside(self, weight: f64, bare: Self) -> Self {
+        Self { side: Some((weight, Box::new(bare))), ..self }
     }
 
     /// Radiance under light of a colour, see [`Twin::eval_lit`]. Places with patina have no fluorescent base.
@@ -268,10 +299,14 @@ impl<T: ShaderTerms> Shaded<T> {
     /// `f cos_theta_i`, RGB, with the cosine against the place's normal. It is zero if either direction is at or below the horizon of the surface or of
     /// the place.
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
-        let value = self.eval_unmixed(wi, wo);
-        let Some((share, metal)) = &self.metal else { return value };
-        let metal = metal.eval_unmixed(wi, wo);
-        [0, 1, 2].map(|c: usize| value[c] + share * (metal[c] - value[c]))
+        let mut value = self.eval_unmixed(wi, wo);
+        if let Some((share, metal)) = &self.metal {
+            let metal = metal.eval_unmixed(wi, wo);
+            value = [0, 1, 2].map(|c: usize| value[c] + share * (metal[c] - value[c]));
+        }
+        let Some((weight, bare)) = &self.side else { return value };
+        let bare = bare.eval(wi, wo);
+        [0, 1, 2].map(|c: usize| weight * value[c] + (1.0 - weight) * bare[c])
     }
 
     fn eval_unmixed(&self, wi: DVec3, wo: DVec3) -> Rgb {

@@ -152,7 +152,7 @@ pub(crate) fn patina() -> MaterialEntry {
 /// A coat that covers 0.6 of gold.
 pub(crate) fn weighted() -> MaterialEntry {
     let MaterialEntry { layers, constants, .. } = patina();
-    let coat = constants.patina.map(|patina| CoatRecord { weight: 0.6, bare: patina.bare });
+    let coat = constants.patina.map(|patina| CoatRecord { weight: 0.6, bare: patina.bare, side: None });
     MaterialEntry {
         constants: MaterialConstants { coat, ..MaterialConstants::default() },
         ..material("weighted", &layers)

@@ -18,6 +18,6 @@ fn luthier_parts_lobes(given: LuthierPrepared, $place_parameter material: u32, w
         }
     }
     //? lobes
-    prepared.lobes = luthier_prepare_lobes($place_argument material, wo);
+    prepared.lobes = luthier_prepare_$sides($place_argument material, wo);
     return prepared;
 }
