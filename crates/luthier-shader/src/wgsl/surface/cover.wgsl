@@ -18,8 +18,10 @@ fn luthier_cover(place: LuthierPlace, material: u32) -> f32 {
 
     /// These layers as a material: their header lies behind the layers of the material, which are as long as a header.
     fn luthier_side(material: u32) -> u32 {
-        let first = luthier_whole(luthier_materials[luthier_header(material)].x);
-        return first / LUTHIER_MATERIAL_WORDS + 2u * luthier_layer_count(material) - 1u;
+        // Whole numbers below 2^23 have no remainder.
+        let first = f32(luthier_whole(luthier_materials[luthier_header(material)].x));
+        let block = u32(first / f32(LUTHIER_MATERIAL_WORDS) + 0.5);
+        return block + 2u * luthier_layer_count(material) - 1u;
     }
 
     /// Weight of the coat of a material with such layers.
