@@ -316,5 +316,5 @@ single views* have every angle and wavelength by itself. Beside are the errors o
 A texel of `metallic` between 0 and 1 is a mix of two surfaces by area, whose light is the mean of both: its errors are at most those of its ends. The group *half way* compares it with the one interface that a
 number `metallic = 0.5` in a file means. Both are meanings of the same parameter, and they differ most where the colour is bright.
 
-Not in families: anisotropic interfaces, weights of coats, films that vary. Files with such maps take another model.
+Not in families: anisotropic interfaces and films that vary. Files with such maps take another model. A coat with a weight lies over a family of its own.
 ";

@@ -513,6 +513,7 @@ mod tests {
     use crate::effects::flakes::Flakes;
     use crate::effects::patina::Patina;
     use crate::model::Model;
+    use crate::models::lobes::FitSettings;
     use crate::monochrome::Monochrome;
     use crate::registry;
 
@@ -597,6 +598,51 @@ mod tests {
         let mut brushed = copper();
         brushed.layers[1].surface.alpha_y = 0.4;
         assert_eq!(at(&brushed, Some(growth)), at(&brushed, None));
+    }
+
+    /// Oracle: the stack and the one without its first layer, evaluated apart at the places that textures make of them.
+    #[test]
+    fn a_coat_over_a_side_is_the_mean_of_two_stacks() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let few = FitSettings { rows: 8, paths: 2000, seed: 3 };
+        let fit = |stack: &Stack, color: &Color, varying: Option<Varying>| Varied::with(stack, color, varying, few);
+        let at = |stack: &Stack, place: &Place| {
+            Shaded::fitted_by(&fit, ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
+        };
+        let plastic = |f0: f64| Base::Dielectric {
+            ior: Ior::constant(1.5, 0.0).unwrap().with_f0([f0; 3]),
+            slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
+        };
+        let mut engine = copper();
+        engine.layers[1].base = plastic(0.04);
+        let mut paint = copper();
+        paint.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.8, 0.5, 0.2], sigma: 0.3 });
+        engine.layers.push(paint.layers[1].clone());
+        let own = |factor: f64| LayerSample { alpha_factors: [factor; 2], ..LayerSample::NONE };
+        let sample = TextureSample { alpha_factor: 0.8, slab_factor: 0.3, ..TextureSample::NONE };
+        let mix = Mix { metal: [0.9, 0.6, 0.3], matt: [0.5, 0.4, 0.2], metallic: 0.3 };
+        let flakes = Under { flake_normal: DVec3::new(0.2, 0.1, 0.9).normalize(), ..Under::NONE };
+        let plain = Place { sample, layers: vec![own(0.5), own(0.7)], ..Place::NONE };
+        for (stack, place) in [
+            (copper(), Place { under: flakes, ..plain.clone() }),
+            (engine, Place { metal: Some(mix), ..plain.clone() }),
+            (paint, Place { base_color: Some([0.2, 0.6, 0.9]), layers: Vec::new(), ..plain }),
+        ] {
+            let whole = at(&stack, &place);
+            let sample = TextureSample { slab_factor: 1.0, ..place.sample };
+            let layers = place.layers.iter().skip(1).copied().collect();
+            let below = at(&lobes::bare(&stack), &Place { sample, layers, under: Under::NONE, ..place.clone() });
+            for weight in [0.0, 0.35, 1.0] {
+                let patina = Some(Growth::of_coat(weight));
+                let found = at(&stack, &Place { patina, has_side: true, ..place.clone() });
+                for c in 0..3 {
+                    let expected = weight * whole[c] + (1.0 - weight) * below[c];
+                    assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {below:?}");
+                    assert!((whole[c] - below[c]).abs() > 1e-3);
+                }
+            }
+        }
     }
 
     /// Oracle: the model of that wavelength with its textures.
