@@ -1,7 +1,7 @@
 //! Assembly of tiles into atlases.
 
 use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat, Tile, Values};
-use luthier_manifest::{Budget, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
+use luthier_manifest::{Budget, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, SideRecord, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 use rayon::prelude::*;
@@ -188,7 +188,10 @@ fn baked_materials(
 ) -> Vec<BakedMaterial> {
     let baked = materials.par_iter().zip(records).map(|(m, planned)| {
         let lobes = m.model().is_fitted().then(|| lobes::record(m, settings, results));
-        let (constants, color) = (constants(m, planned.bare, lobes), color_mode(m));
+        let side = m
+            .side()
+            .map(|side| SideRecord { lobes: lobes::has_rows(&side).then(|| lobes::record(&side, settings, results)) });
+        let (constants, color) = (constants(m, planned.bare, lobes, side), color_mode(m));
         BakedMaterial { model: m.model(), color, constants, records: planned.layers, maps: maps(m) }
     });
     baked.collect()

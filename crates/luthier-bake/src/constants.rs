@@ -5,7 +5,7 @@ use luthier_layers::monochrome::Monochrome;
 use luthier_manifest::ModelPart;
 use luthier_manifest::{
     BrighteningRecord, CoatRecord, FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants,
-    PatinaRecord,
+    PatinaRecord, SideRecord,
 };
 use luthier_material::{Effects, FlakeSource, Glitter, LayerExtras, Material};
 use luthier_optics::brightening::Brightening;
@@ -13,11 +13,13 @@ use luthier_optics::stack::Stack;
 
 use crate::veil::veil;
 
-/// The constants of a material. `bare` is the record of the layer below its patina or its coat, `lobes` the fitted numbers.
+/// The constants of a material. `bare` is the record of the layer below its patina or its coat, `lobes` the fitted numbers, and `side` those of the layers
+/// below its coat where these are apart.
 pub(crate) fn constants(
     material: &Material,
     bare: Option<LayerRecord>,
     lobes: Option<LobesRecord>,
+    side: Option<SideRecord>,
 ) -> MaterialConstants {
     let (stack, color) = (&material.stack, material.color());
     let (internal_reflectance, upward_loss) =
@@ -38,7 +40,7 @@ pub(crate) fn constants(
             .unwrap_or_default(),
         flakes: flakes(&material.effects),
         patina: bare.clone().and_then(|bare| patina(&material.effects, bare)),
-        coat: bare.and_then(|bare| Some(CoatRecord { weight: material.weight()?, bare })),
+        coat: bare.and_then(|bare| Some(CoatRecord { weight: material.weight()?, bare, side })),
         brightening: material.layers.iter().find_map(brightening),
         glitter: glitter(&material.effects),
     }

@@ -10,7 +10,7 @@ use crate::tile::apron;
 
 /// Refuses more layers than the material buffer holds.
 pub(crate) fn check_buffer(records: &[PlannedLayers]) -> Result<(), BakeError> {
-    let layers: usize = records.iter().map(|m| m.layers.len() + usize::from(m.bare.is_some())).sum();
+    let layers: usize = records.iter().map(PlannedLayers::blocks).sum();
     let (materials, words) = (records.len(), records.len() * MATERIAL_WORDS + layers * LAYER_WORDS);
     if words > BUFFER_WORDS_MAX { Err(BakeError::TooManyLayers { materials, layers, words }) } else { Ok(()) }
 }

@@ -44,6 +44,16 @@ pub(crate) struct PlannedLayers {
     pub(crate) layers: Vec<LayerRecord>,
     /// The layer below a patina or a coat, as it is without that.
     pub(crate) bare: Option<LayerRecord>,
+    /// Whether the layers below a coat are a side of their own, see [`MaterialEntry::side`](luthier_manifest::MaterialEntry::side).
+    pub(crate) has_side: bool,
+}
+
+impl PlannedLayers {
+    /// Blocks of the material buffer, see [`MaterialEntry::blocks`](luthier_manifest::MaterialEntry::blocks).
+    pub(crate) fn blocks(&self) -> usize {
+        let of_side = if self.has_side { self.layers.len() - 1 } else { 0 };
+        self.layers.len() + usize::from(self.bare.is_some()) + of_side
+    }
 }
 
 impl Plan {
@@ -60,7 +70,7 @@ impl Plan {
 
     /// The first reader of a tile: numbers of the material and of the layer.
     pub(crate) fn reader(&self, kind: TableKind, tile: u32) -> Option<(usize, Option<usize>)> {
-        self.records.iter().enumerate().find_map(|(number, PlannedLayers { layers, bare })| {
+        self.records.iter().enumerate().find_map(|(number, PlannedLayers { layers, bare, .. })| {
             let layer = layers.iter().position(|layer| layer.tiles[kind] == Some(tile));
             let of_bare = bare.as_ref().filter(|record| record.tiles[kind] == Some(tile)).map(|_| 1);
             layer.or(of_bare).map(|layer| (number, Some(layer)))

@@ -30,6 +30,7 @@ struct Part {
     graph: Graph,
     layers: Vec<LayerRecord>,
     bare: Option<LayerRecord>,
+    has_side: bool,
     /// Tiles in the order in which they stand in their tables.
     tiles: Vec<Wanted>,
 }
@@ -87,7 +88,7 @@ pub(crate) fn plan(materials: &[Material], settings: Settings, read_image: Image
 impl Part {
     /// Adds the plan of a material, and numbers its tiles.
     fn enter(self, plan: &mut Plan) {
-        let Self { graph, mut layers, mut bare, tiles } = self;
+        let Self { graph, mut layers, mut bare, has_side, tiles } = self;
         plan.graph.merge(graph);
         for Wanted { kind, key, name, reader } in tiles {
             let list = &mut plan.tiles[kind as usize];
@@ -99,7 +100,7 @@ impl Part {
                 Reader::Run => list.has_runs = true,
             }
         }
-        plan.records.push(PlannedLayers { layers, bare });
+        plan.records.push(PlannedLayers { layers, bare, has_side });
     }
 
     fn new(material: &Material, settings: &Settings, read_image: ImageReader<'_>) -> Result<Self, BakeError> {
@@ -107,11 +108,23 @@ impl Part {
         part.layers =
             part.records(material, settings, &material.reflecting_stack(), &material.layers, None, read_image)?;
         if material.is_bare_in_places() {
-            let Stack { exterior, mut layers } = material.stack.without_first();
-            layers.truncate(1);
-            let stack = Stack { exterior, layers };
-            let extras = &material.layers[1..2];
-            part.bare = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?.into_iter().next();
+            part.bare = match material.side() {
+                Some(side) => {
+                    part.has_side = true;
+                    // Its lobes are those of all its layers, of which shaders read the first one.
+                    let records =
+                        part.records(&side, settings, &side.stack, &side.layers, Some("bare-"), read_image)?;
+                    records.into_iter().next()
+                }
+                None => {
+                    let Stack { exterior, mut layers } = material.stack.without_first();
+                    layers.truncate(1);
+                    let stack = Stack { exterior, layers };
+                    let extras = &material.layers[1..2];
+                    let records = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?;
+                    records.into_iter().next()
+                }
+            };
             // The base beside it is no layer of this stack.
             let diffuse_part = part.layers[1].diffuse_part;
             part.bare.iter_mut().for_each(|bare| bare.diffuse_part = diffuse_part);
@@ -139,7 +152,8 @@ impl Part {
                 last.albedo = rows.map(|row| row.iter().sum::<f64>().max(0.0));
             }
         }
-        for (i, layer) in stack.layers.iter().enumerate() {
+        let count = if bare.is_some() { 1 } else { stack.layers.len() };
+        for (i, layer) in stack.layers.iter().enumerate().take(count) {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let wanted = TableKind::ALL.into_iter().filter(|&kind| {
                 // If a material requests D as a table, layers without a request compute it.

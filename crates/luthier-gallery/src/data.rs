@@ -174,11 +174,17 @@ fn tiles(entry: &MaterialEntry, kind: TableKind) -> Vec<usize> {
     let read = (0..records.len()).filter(|&i| reads(entry.model, kind, &records, i));
     let mut tiles: Vec<usize> = read.filter_map(|i| records[i].tiles[kind]).map(|tile| tile as usize).collect();
     if kind == TableKind::Lobes {
-        let lobes = entry.constants.lobes;
-        let varying = lobes.and_then(|lobes| lobes.varying).map_or(1, |varying| varying.tiles);
-        let axes = lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles);
-        let count = varying.max(axes) as usize;
-        tiles = tiles.iter().flat_map(|&first| first..first + count).collect();
+        let count = |entry: &MaterialEntry| {
+            let lobes = entry.constants.lobes;
+            let varying = lobes.and_then(|lobes| lobes.varying).map_or(1, |varying| varying.tiles);
+            varying.max(lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles)) as usize
+        };
+        tiles = tiles.iter().flat_map(|&first| first..first + count(entry)).collect();
+        let side = entry.side();
+        let first = side.as_ref().and_then(|side| side.layers.first()?.tiles[kind]);
+        if let (Some(side), Some(first)) = (&side, first) {
+            tiles.extend(first as usize..first as usize + count(side));
+        }
     }
     tiles.sort_unstable();
     tiles.dedup();

@@ -336,5 +336,5 @@ number `metallic = 0.5` in a file means. Both are meanings of the same parameter
 Anisotropic interfaces read the rows of the mean of their two slope parameters, and their lobes are stretched in closed form: neither anisotropy nor its direction is an axis. The group has bases with slope parameters up to
 a ratio of nine. Its tables are those of the first group.
 
-Not in families: weights of coats, films that vary. Files with such maps take another model.
+Not in families: films that vary. Files with such maps take another model. A coat with a weight lies over a family of its own.
 ";

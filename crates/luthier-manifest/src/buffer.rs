@@ -4,13 +4,17 @@ use luthier_lut::TableKind;
 
 use crate::constants::MaterialConstants;
 use crate::material::MaterialEntry;
-use crate::record::{LAYER_WORDS, whole};
+use crate::record::{LAYER_WORDS, LayerRecord, whole};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
 
 /// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
 /// layers of a material with patina, or with a coat that has a weight, the layer of [`MaterialConstants::bare`].
+///
+/// Where such a coat has a [`MaterialEntry::side`], the other layers of the side follow this layer, and then its header. Headers and layers have as many
+/// words, so that functions for a material by its number take the side by the number of the block that its header is. In place of the model's number this
+/// header has the weight of the coat.
 ///
 /// Whole numbers n that shaders count with, here and the kind of a layer, are 2^23 + n: the low 23 bits of such an f32 are n, and no
 /// conversion is needed.
@@ -27,20 +31,28 @@ pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
         let model = material.model.number() as usize;
         words.push([whole(first), whole(material.layers.len()), whole(model), lobes as f32]);
         words.extend(material.constants.words());
-        first += material.records().count() * LAYER_WORDS;
+        first += material.blocks() * LAYER_WORDS;
     }
-    for layer in materials.iter().flat_map(MaterialEntry::records) {
-        words.extend(layer.words());
+    for material in materials {
+        let first = words.len() + material.layers.len() * LAYER_WORDS;
+        words.extend(material.records().flat_map(LayerRecord::words));
+        if let (Some(side), Some(coat)) = (material.side(), &material.constants.coat) {
+            words.extend(side.layers[1..].iter().flat_map(LayerRecord::words));
+            let lobes = coat.bare.tiles[TableKind::Lobes].unwrap_or(0);
+            words.push([whole(first), whole(side.layers.len()), coat.weight as f32, lobes as f32]);
+            words.extend(side.constants.words());
+        }
     }
     words
 }
 
 const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word, and the constants");
+const _: () = assert!(MATERIAL_WORDS == LAYER_WORDS, "a block is a header or a layer");
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LayerKind, LayerRecord, PatinaRecord, ShadingModel};
+    use crate::{CoatRecord, LayerKind, LobesRecord, PatinaRecord, ShadingModel, SideRecord};
 
     fn layer(kind: LayerKind) -> LayerRecord {
         LayerRecord { kind, alpha: 2.0, eta: 4.0, ior_n: [10.0, 11.0, 12.0], ..LayerRecord::default() }
@@ -89,5 +101,42 @@ mod tests {
         assert_eq!(buffer[first + 2 * LAYER_WORDS..][..LAYER_WORDS], bare.words());
         assert_eq!(buffer[MATERIAL_WORDS][0], whole(first + 3 * LAYER_WORDS));
         assert_eq!(buffer[first + 3 * LAYER_WORDS..], top.words());
+    }
+    #[test]
+    fn the_side_of_a_coat_is_a_material_behind_its_layers() {
+        let [top, middle, base] = [LayerKind::Dielectric, LayerKind::Dielectric, LayerKind::Diffuse].map(layer);
+        let mut bare = layer(LayerKind::Conductor);
+        bare.tiles[TableKind::Lobes] = Some(7);
+        let lobes = LobesRecord {
+            index: 1.25,
+            falloff: [0.5, 0.75],
+            integral: 1.0,
+            critical_cot_sq: 0.0,
+            critical_width: 0.0,
+            critical_plain_share: 0.0,
+            lobes: 1,
+            inverse_tails: [2.0, 0.0],
+            varying: None,
+            axes: None,
+            painted: None,
+            error: None,
+        };
+        let side = Some(SideRecord { lobes: Some(lobes) });
+        let coat = Some(CoatRecord { weight: 0.25, bare: bare.clone(), side });
+        let constants = MaterialConstants { lobes: Some(lobes), coat, ..MaterialConstants::default() };
+        let model = ShadingModel::Lobes;
+        let layers = vec![top.clone(), middle, base.clone()];
+        let coated = MaterialEntry { model, layers, constants, ..MaterialEntry::default() };
+        let plain = MaterialEntry { layers: vec![top.clone()], ..MaterialEntry::default() };
+        let buffer = material_buffer(&[coated.clone(), plain]);
+        // Two headers, three layers, the bare one, the base once more, the header of the side, and the layer of the other material.
+        let blocks: Vec<&[[f32; 4]]> = buffer.chunks(LAYER_WORDS).collect();
+        assert_eq!((blocks.len(), coated.blocks()), (9, 6));
+        assert_eq!([blocks[5], blocks[6]], [&bare.words()[..], &base.words()]);
+        assert_eq!(blocks[7][0], [whole(5 * LAYER_WORDS), whole(2), 0.25, 7.0]);
+        let alone = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() };
+        assert_eq!(blocks[7][1..], alone.words());
+        assert_eq!(blocks[1][0][0], whole(8 * LAYER_WORDS));
+        assert_eq!(blocks[8], top.words());
     }
 }

@@ -43,7 +43,8 @@ pub use choice::{
 pub use color::ColorMode;
 pub use constants::{
     AxesRecord, BeamsRecord, BrighteningRecord, CoatRecord, FamilyRecord, FlakesRecord, GlitterRecord, LobesError,
-    LobesRecord, MaterialConstants, PaintedRecord, PatinaRecord, SlopesRecord, VaryingFactor, VaryingRecord,
+    LobesRecord, MaterialConstants, PaintedRecord, PatinaRecord, SideRecord, SlopesRecord, VaryingFactor,
+    VaryingRecord,
 };
 pub use error::ManifestError;
 pub use file::FileEntry;

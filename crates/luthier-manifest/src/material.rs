@@ -127,6 +127,30 @@ impl MaterialEntry {
         self.layers.iter().chain(self.constants.bare())
     }
 
+    /// The layers below a coat with a weight as a material of its own, where they have lobes apart from those of all layers. Its maps are those of these
+    /// layers, and those of the whole surface that turn or scale them.
+    pub fn side(&self) -> Option<Self> {
+        let coat = self.constants.coat.as_ref().filter(|_| self.model.is_fitted())?;
+        let lobes = coat.side?.lobes;
+        let layers = std::iter::once(&coat.bare).chain(self.layers.iter().skip(2)).cloned().collect();
+        let maps = self.maps.iter().filter_map(|map| {
+            let layer = match (map.slot, map.layer) {
+                (MapSlot::Normal | MapSlot::Roughness, layer) => layer,
+                (MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Weight, _) | (_, None) => return None,
+                (_, Some(layer)) => Some(layer.checked_sub(1)?),
+            };
+            Some(MapEntry { layer, ..map.clone() })
+        });
+        let constants = MaterialConstants { lobes, ..MaterialConstants::default() };
+        Some(Self { layers, maps: maps.collect(), constants, ..self.clone() })
+    }
+
+    /// Number of blocks of [`LAYER_WORDS`](crate::LAYER_WORDS) words that the material buffer has of the material, beside its header: one for each of
+    /// [`Self::records`]; and where it has a [`Self::side`], one for each of the side's layers after the first, and one for its header.
+    pub fn blocks(&self) -> usize {
+        self.records().count() + self.side().map_or(0, |side| side.layers.len())
+    }
+
     /// Whether the model `lobes` shows the own normal of a layer: that of the first one, of the lowest interface and of a diffuse base. Rows of a coat with
     /// a weight know no frame of the layers that it leaves bare.
     fn tilts_lobes(&self, layer: u32) -> bool {

@@ -102,17 +102,13 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
     let found = asked.into_iter().map(|(feature, key)| LeftOut { feature, key, forms: missing(model, feature) });
     let mut found: Vec<LeftOut> = found.filter(|part| !part.forms.is_empty()).collect();
     if let Some(maps) = maps.filter(|_| model.is_fitted()) {
-        // Rows are over one factor, over the amount of patina, or over the azimuth.
+        // Rows are over one factor, over the amount of patina, or over the azimuth. Beside a weight, the layers below the coat have rows of their own.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
         let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());
         let film = layers.first().and_then(|first| first.films.first()).is_some_and(Film::varies);
-        // Flakes lie below the patina or the coat alone, and rows do not tell its lobes from those of several layers that are bare.
+        // Flakes lie below the patina alone, and rows do not tell its lobes from those of several layers that are bare.
         let has_flakes_above_lobes = effects.flakes.is_some() && layers.len() > 2;
-        let cover = if effects.patina.is_some() {
-            (Feature::Patina, "effects.patina")
-        } else {
-            (Feature::Weight, weight_key(material))
-        };
+        let is_under_patina = effects.patina.is_some() && layers.len() > 1;
         let family = material.family();
         // A family has the factors of a roughness map in its axes, and what slabs absorb in closed form.
         let (roughness, thickness) = if family.is_some() { (false, false) } else { (roughness, thickness) };
@@ -134,8 +130,6 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 }
             }
         }
-        let albedo = material.layers.iter().position(|layer| layer.maps.albedo.is_some());
-        let albedo_key = format!("layer.{}.maps.albedo", albedo.unwrap_or(0));
         let bumps = material.layers.iter().position(|layer| layer.maps.bumps.is_some());
         let bumps_key = format!("layer.{}.maps.bumps", bumps.unwrap_or(0));
         for (lacks, feature, key) in [
@@ -143,14 +137,12 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
             (film && (is_turned || roughness || thickness), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
             (
-                material.is_bare_in_places() && (is_turned || roughness || thickness || film || has_flakes_above_lobes),
-                cover.0,
-                cover.1,
+                is_under_patina && (is_turned || roughness || thickness || film || has_flakes_above_lobes),
+                Feature::Patina,
+                "effects.patina",
             ),
             // Rows of a coat with a weight know no frame of the layers that it leaves bare.
             (material.weight().is_some() && bumps.is_some(), Feature::Bumps, bumps_key.as_str()),
-            // Rows have the light of a base and that of the bare base together.
-            (material.weight().is_some() && albedo.is_some(), Feature::AlbedoMap, albedo_key.as_str()),
         ] {
             if lacks {
                 found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });

@@ -148,6 +148,43 @@ impl Material {
         self.stack.layers.len() > 1 && (self.effects.patina.is_some() || self.weight().is_some())
     }
 
+    /// Whether the layers below its first one, a coat with a weight, make lobes of their own in the model `lobes`: textures vary the surface in more than the
+    /// weight, or a layer is anisotropic. Else rows of all layers have those of the bare ones at their end.
+    pub fn has_side(&self) -> bool {
+        let layers = &self.stack.layers;
+        if self.weight().is_none() || layers.len() < 2 || self.effects.patina.is_some() {
+            return false;
+        }
+        let first = &self.layers[0].maps;
+        self.family().is_some()
+            || first.roughness.is_some()
+            || first.thickness.is_some()
+            || layers[0].films.first().is_some_and(Film::varies)
+            || layers.iter().any(Layer::is_anisotropic)
+            || self.layers.iter().any(|layer| layer.maps.albedo.is_some())
+            // Flakes lie below the coat alone.
+            || self.effects.flakes.is_some() && layers.len() > 2
+    }
+
+    /// The layers below its first one as a material of the model `lobes`, if that is its model, and they make lobes of their own: see [`Self::has_side`].
+    pub fn side(&self) -> Option<Self> {
+        let model = self.model();
+        if !self.has_side() || !model.is_fitted() {
+            return None;
+        }
+        let mut side = self.clone();
+        side.bake.model = Some(model);
+        side.stack = self.stack.without_first();
+        let coat = side.layers.remove(0);
+        (side.effects.flakes, side.effects.patina) = (None, None);
+        let first = side.layers.first_mut()?;
+        first.weight = 1.0;
+        (first.maps.weight, first.maps.thickness) = (None, None);
+        (first.maps.normal, first.maps.roughness) = (coat.maps.normal, coat.maps.roughness);
+        first.texels.roughness = coat.texels.roughness;
+        Some(side)
+    }
+
     /// The ranges of slope parameters that textures give to the first interface and to the lowest one, if textures vary these, or base colour and metal, and
     /// nothing else that decides shapes of light varies. Model `lobes` then has rows over both slope parameters, with colours in closed form.
     ///
@@ -178,7 +215,7 @@ impl Material {
         let is_metallic = self.layers[interface].metallic.is_some();
         let first = &self.layers[0];
         let has_slab = first.maps.thickness.is_some() && !is_metallic;
-        if !is_asked || is_turned_between || has_film || has_slab || self.is_bare_in_places() {
+        if !is_asked || is_turned_between || has_film || has_slab || self.effects.patina.is_some() {
             return None;
         }
         let of_surface = if first.maps.roughness.is_some() { first.texels.roughness.map(|r| r * r) } else { [1.0; 2] };

@@ -156,7 +156,8 @@ impl<'a> MaterialSet<'a> {
 
     /// Words of the material buffer.
     pub(crate) fn words(&self) -> usize {
-        let own = || self.materials.len() * MATERIAL_WORDS + self.layers().count() * LAYER_WORDS;
+        let blocks = || self.materials.iter().map(MaterialEntry::blocks).sum::<usize>();
+        let own = || self.materials.len() * MATERIAL_WORDS + blocks() * LAYER_WORDS;
         self.within.as_ref().map_or_else(own, |within| within.words)
     }
 

@@ -17,6 +17,7 @@ use luthier_manifest::{
 use luthier_material::{Material, Patina};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -47,9 +48,8 @@ pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
-        let fitted = materials.iter().filter(|material| material.model().is_fitted());
-        let step = fitted.map(|material| FitSettings::step(varying(material))).min().unwrap_or(1);
-        Ok(shape(LOBES, materials.iter().any(has_base), step, RowLayout::Filtered.format()))
+        let has_base = |material: &Material| has_base(material) || side(material).is_some_and(|side| has_base(&side));
+        Ok(shape(LOBES, materials.iter().any(has_base), common_step(materials), RowLayout::Filtered.format()))
     }
 
     /// A tile for the first layer, whose lobes contain the light of all layers below.
@@ -85,11 +85,28 @@ fn varying(material: &Material) -> Option<Varying> {
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
     let scaled =
         maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack));
-    let covers = material.is_bare_in_places().then_some(match &material.effects.patina {
+    let is_covered = material.is_bare_in_places() && !material.has_side();
+    let covers = is_covered.then_some(match &material.effects.patina {
         &Some(Patina { diffuse_albedo, base_alpha, tarnish, .. }) => Cover { diffuse_albedo, base_alpha, tarnish },
         None => Cover::PLAIN,
     });
     scaled.or_else(|| covers.map(Varying::Patina))
+}
+
+/// The layers below a coat with a weight, if they have rows of their own.
+fn side(material: &Material) -> Option<Material> {
+    material.side().filter(has_rows)
+}
+
+/// Whether a material has rows: a diffuse base alone has a closed form.
+pub(crate) fn has_rows(material: &Material) -> bool {
+    Interface::of(&material.stack, 0).is_some()
+}
+
+/// Steps of the rows by default from row to row that suffice for all materials. Layers below a coat have the rows of the others.
+fn common_step(materials: &[Material]) -> usize {
+    let fitted = materials.iter().filter(|material| material.model().is_fitted());
+    fitted.map(|material| FitSettings::step(varying(material))).min().unwrap_or(1)
 }
 
 /// Whether rows are those of a family.
@@ -107,9 +124,10 @@ pub const VARIED_LAYERS_MAX: usize = 16;
 
 /// Whether a material of the model `lobes` has more layers than can be fitted.
 pub fn is_too_deep(material: &Material) -> bool {
+    let is_varied = |material: &Material| Varied::tiles_of(&shown(&material.stack), varying(material)) > 1;
     material.stack.layers.len() > VARIED_LAYERS_MAX
         && material.model().is_fitted()
-        && Varied::tiles_of(&shown(&material.stack), varying(material)) > 1
+        && (is_varied(material) || side(material).is_some())
 }
 
 /// Whether rows of a material contain the light of a diffuse base.
@@ -122,10 +140,12 @@ fn has_base(material: &Material) -> bool {
 
 /// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].
 pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budget) -> RowLayout {
-    let is_alone = |material: &Material| {
+    let has_one_tile = |material: &Material| {
         let varying = varying(material);
         !is_family(varying) && Varied::tiles_of(&shown(&material.stack), varying) == 1
     };
+    let is_alone =
+        |material: &Material| has_one_tile(material) && side(material).is_none_or(|side| has_one_tile(&side));
     let mut fitted = materials.iter().filter(|material| material.model().is_fitted());
     options.layout.unwrap_or_else(|| {
         let has_room = asked.max_bytes.is_none() && options.formats.has(RowLayout::Steps.format());
@@ -174,8 +194,7 @@ pub(crate) fn decide(
     let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     let format = settings.fixed(TableKind::Lobes).format;
     if settings.lobes.is_none() {
-        let step = fits.iter().map(|fits| FitSettings::step(fits.of(None).varied.varying())).min().unwrap_or(1);
-        settings.take_lobes(shape(lobes_of(&fits, None), has_base, step, format));
+        settings.take_lobes(shape(lobes_of(&fits, None), has_base, common_step(materials), format));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
@@ -199,8 +218,9 @@ pub(crate) fn decide(
             Refusal::Whole { .. } => choices[0],
         };
         let errors = materials.iter().enumerate().filter_map(|(number, material)| {
-            let fits: &Fits = results.get(fit(material, true).key())?;
-            Some((number, measured(fits.of(Some(most)).errors[i])))
+            let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
+            let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
+            Some((number, measured(fits.map(|fits| fits.of(Some(most)).errors[i]).reduce(FitError::max)?)))
         });
         (refusal, errors.collect())
     })?[0];

@@ -59,3 +59,49 @@ fn rows_have_the_decays_of_the_record_in_both_layouts() {
     }
     assert_eq!(last_parts, [5.0, 3.0], "two lobes and one");
 }
+
+/// Rows of a coat with a weight beside textures are those of two materials: the one without the weight, and the layers below the coat alone.
+#[test]
+fn sides_of_a_coat_have_the_rows_of_two_materials() {
+    let coat = dielectric("1.5", 0.2);
+    let metal = conductor("{ n = 0.2, k = 3.0 }", 0.3) + "maps = { alpha = \"a.png\" }\n";
+    let engine =
+        "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.8\nalpha = 0.4\nmaps = { base_color = \"c.png\" }\n";
+    let paint = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\nmaps = { albedo = \"c.png\" }\n";
+    for (below, tiles) in [(metal.as_str(), [4, 4]), (engine, [1, 1]), (paint, [1, 0])] {
+        let of = |name: &str, layers: &str| {
+            let mut material = material(name, layers, "");
+            material.bake.model = Some(ShadingModel::Lobes);
+            // Texels from a quarter to all.
+            material.layers.iter_mut().for_each(|layer| layer.texels.alpha = [0.25, 1.0]);
+            material
+        };
+        let weighed = of("weighed", &format!("{coat}weight = 0.3\n{below}"));
+        let both = bake(&[weighed.clone()], RowLayout::Filtered);
+        let [whole, alone] = [of("whole", &(coat.clone() + below)), of("alone", below)]
+            .map(|material| bake(&[material], RowLayout::Filtered));
+        let constants = &both.materials[0].constants;
+        let coat = constants.coat.as_ref().unwrap();
+        assert_eq!(constants.lobes, whole.materials[0].constants.lobes);
+        let side = coat.side.unwrap().lobes;
+        assert_eq!(side, alone.materials[0].constants.lobes.filter(|_| tiles[1] > 0));
+        let rows = atlas(&both, TableKind::Lobes);
+        assert_eq!(rows.layout.tiles, tiles.iter().sum::<u32>());
+        assert_eq!(coat.bare.tiles[TableKind::Lobes], (tiles[1] > 0).then_some(tiles[0]));
+        let parts = rows.layout.y.clone().unwrap();
+        for (baked, first, count) in
+            [(&whole, 0, tiles[0]), (&alone, tiles[0], tiles[1])].into_iter().filter(|of| of.2 > 0)
+        {
+            let expected = atlas(baked, TableKind::Lobes);
+            assert_eq!(expected.layout.tiles, count);
+            for (tile, part, c) in (0..count).flat_map(|t| (0..parts.size).map(move |p| (t, p, f64::from(p) / 8.0))) {
+                let at = [c, parts.min + f64::from(part)];
+                let [found, expected] = [(rows, first + tile), (expected, tile)]
+                    .map(|(rows, tile)| rows.sample(tile, at, WeightBits::Exact));
+                assert_eq!(found, expected, "{below} {tile} {part}");
+            }
+        }
+        // One axis has less than 10 KiB a side.
+        assert!(rows.bytes.len() < 10 * 1024 * tiles.iter().filter(|count| **count > 0).count());
+    }
+}

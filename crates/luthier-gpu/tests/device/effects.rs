@@ -213,7 +213,7 @@ fn weights_blend_two_stacks_on_the_device() {
     let Some(gpu) = gpu() else { return };
     let bare = effects().patina.unwrap().bare;
     let mut made = artefacts(Form::Full, vec![coated()], &[]);
-    let coat = CoatRecord { weight: 0.6, bare: bare.clone() };
+    let coat = CoatRecord { weight: 0.6, bare: bare.clone(), side: None };
     made.manifest.materials[0].constants = MaterialConstants { coat: Some(coat), ..MaterialConstants::default() };
     let set = MaterialSet::from_manifest(&made.manifest);
     let wgsl = luthier_shader::emit(&set, Form::Full, Target::Wgsl).unwrap();

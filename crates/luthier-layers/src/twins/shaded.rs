@@ -34,13 +34,15 @@ pub struct Place {
     pub under: Under,
     /// Patina, or a coat with a weight; `None` for all layers, without the patina's diffuse term and tarnish.
     pub patina: Option<Growth>,
+    /// Whether `lobes` has rows of its own for the layers below such a coat: textures vary more than its weight.
+    pub has_side: bool,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
     /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read, and none beside patina.
-    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base, and none
-    /// beside a coat with a weight.
+    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base, and no
+    /// normals beside a coat with a weight.
     pub layers: Vec<LayerSample>,
     /// Base of a `metallic-roughness` surface for `lobes`, which shows it as a mix of a metal and of a dielectric.
     pub metal: Option<Mix>,
@@ -52,11 +54,27 @@ impl Place {
         sample: TextureSample::NONE,
         under: Under::NONE,
         patina: None,
+        has_side: false,
         base_color: None,
         reradiation: None,
         layers: Vec::new(),
         metal: None,
     };
+
+    /// The weight of a coat over layers that have lobes of their own, the place for all layers, and the place for the layers below the coat; `None` of
+    /// another place.
+    pub fn sides(&self) -> Option<(f64, Self, Self)> {
+        let weight = self.patina.filter(|_| self.has_side)?.amount;
+        let coated = Self { patina: None, has_side: false, ..self.clone() };
+        let sample = TextureSample { slab_factor: 1.0, film_factor: 1.0, ..self.sample };
+        let under = Under { flake_normal: DVec3::Z, ..self.under };
+        let layers = self.layers.iter().skip(1).copied();
+        // Rows of these layers know no frame of the layers that the coat leaves bare.
+        let layers = layers.map(|own| LayerSample { normal: DVec3::Z, ..own });
+        let bare = Self { sample, under, layers: layers.collect(), ..coated.clone() };
+        let layers = coated.layers.iter().map(|own| LayerSample { normal: DVec3::Z, ..*own }).collect();
+        Some((weight, Self { layers, ..coated }, bare))
+    }
 }
 
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
@@ -91,6 +109,8 @@ pub struct Shaded<T = Exact> {
     has_lobes: bool,
     /// Share of a place that is metal in a mix, and the metal: of the model `lobes`.
     metal: Option<(f64, Box<Shaded<T>>)>,
+    /// Weight of a coat, and the layers below it, where these have lobes of their own.
+    side: Option<(f64, Box<Shaded<T>>)>,
 }
 
 /// Part of a stack that covers a place, wholly or in part.
@@ -168,6 +188,11 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
+        if let Some((weight, coated, bare)) = place.sides().filter(|_| model.is_fitted() && stack.layers.len() > 1) {
+            let exact =
+                |stack: &Stack, place: &Place| Self::exact(fit, model, stack, wavelengths_nm, color, place, parts);
+            return Some(exact(stack, &coated)?.beside(weight, exact(&lobes::bare(stack), &bare)?));
+        }
         if let (true, Some(mix), Some(_)) = (model.is_fitted(), place.metal, base_below(stack)) {
             let paint = Paint::of(stack).mixed(mix);
             let layers = place.layers.iter().map(|own| LayerSample { f0: None, ..*own }).collect();
@@ -252,7 +277,13 @@ impl<T: ShaderTerms> Shaded<T> {
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let sample = TextureSample { normal, ..place.sample };
         let place = Place { sample, patina, under, ..place.clone() };
-        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted(), metal: None })
+        Some(Self { place, layers: all, bare, has_lobes: model.is_fitted(), metal: None, side: None })
+    }
+
+    /// The surface where it covers a share of the place as a coat, beside that of the layers below it.
+    #[must_use]
+    pub fn beside(self, weight: f64, bare: Self) -> Self {
+        Self { side: Some((weight, Box::new(bare))), ..self }
     }
 
     /// Radiance under light of a colour, see [`Twin::eval_lit`]. Places with patina have no fluorescent base.
@@ -268,10 +299,14 @@ impl<T: ShaderTerms> Shaded<T> {
     /// `f cos_theta_i`, RGB, with the cosine against the place's normal. It is zero if either direction is at or below the horizon of the surface or of
     /// the place.
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
-        let value = self.eval_unmixed(wi, wo);
-        let Some((share, metal)) = &self.metal else { return value };
-        let metal = metal.eval_unmixed(wi, wo);
-        [0, 1, 2].map(|c: usize| value[c] + share * (metal[c] - value[c]))
+        let mut value = self.eval_unmixed(wi, wo);
+        if let Some((share, metal)) = &self.metal {
+            let metal = metal.eval_unmixed(wi, wo);
+            value = [0, 1, 2].map(|c: usize| value[c] + share * (metal[c] - value[c]));
+        }
+        let Some((weight, bare)) = &self.side else { return value };
+        let bare = bare.eval(wi, wo);
+        [0, 1, 2].map(|c: usize| weight * value[c] + (1.0 - weight) * bare[c])
     }
 
     fn eval_unmixed(&self, wi: DVec3, wo: DVec3) -> Rgb {
@@ -478,6 +513,7 @@ mod tests {
     use crate::effects::flakes::Flakes;
     use crate::effects::patina::Patina;
     use crate::model::Model;
+    use crate::models::lobes::FitSettings;
     use crate::monochrome::Monochrome;
     use crate::registry;
 
@@ -562,6 +598,51 @@ mod tests {
         let mut brushed = copper();
         brushed.layers[1].surface.alpha_y = 0.4;
         assert_eq!(at(&brushed, Some(growth)), at(&brushed, None));
+    }
+
+    /// Oracle: the stack and the one without its first layer, evaluated apart at the places that textures make of them.
+    #[test]
+    fn a_coat_over_a_side_is_the_mean_of_two_stacks() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let few = FitSettings { rows: 8, paths: 2000, seed: 3 };
+        let fit = |stack: &Stack, color: &Color, varying: Option<Varying>| Varied::with(stack, color, varying, few);
+        let at = |stack: &Stack, place: &Place| {
+            Shaded::fitted_by(&fit, ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
+        };
+        let plastic = |f0: f64| Base::Dielectric {
+            ior: Ior::constant(1.5, 0.0).unwrap().with_f0([f0; 3]),
+            slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
+        };
+        let mut engine = copper();
+        engine.layers[1].base = plastic(0.04);
+        let mut paint = copper();
+        paint.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.8, 0.5, 0.2], sigma: 0.3 });
+        engine.layers.push(paint.layers[1].clone());
+        let own = |factor: f64| LayerSample { alpha_factors: [factor; 2], ..LayerSample::NONE };
+        let sample = TextureSample { alpha_factor: 0.8, slab_factor: 0.3, ..TextureSample::NONE };
+        let mix = Mix { metal: [0.9, 0.6, 0.3], matt: [0.5, 0.4, 0.2], metallic: 0.3 };
+        let flakes = Under { flake_normal: DVec3::new(0.2, 0.1, 0.9).normalize(), ..Under::NONE };
+        let plain = Place { sample, layers: vec![own(0.5), own(0.7)], ..Place::NONE };
+        for (stack, place) in [
+            (copper(), Place { under: flakes, ..plain.clone() }),
+            (engine, Place { metal: Some(mix), ..plain.clone() }),
+            (paint, Place { base_color: Some([0.2, 0.6, 0.9]), layers: Vec::new(), ..plain }),
+        ] {
+            let whole = at(&stack, &place);
+            let sample = TextureSample { slab_factor: 1.0, ..place.sample };
+            let layers = place.layers.iter().skip(1).copied().collect();
+            let below = at(&lobes::bare(&stack), &Place { sample, layers, under: Under::NONE, ..place.clone() });
+            for weight in [0.0, 0.35, 1.0] {
+                let patina = Some(Growth::of_coat(weight));
+                let found = at(&stack, &Place { patina, has_side: true, ..place.clone() });
+                for c in 0..3 {
+                    let expected = weight * whole[c] + (1.0 - weight) * below[c];
+                    assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {below:?}");
+                    assert!((whole[c] - below[c]).abs() > 1e-3);
+                }
+            }
+        }
     }
 
     /// Oracle: the model of that wavelength with its textures.

@@ -55,10 +55,15 @@ impl Exact {
     }
 
     /// The terms with those of the layers below the first beside them ([`ShaderTerms::bare`]). Where the terms vary with the amount of the first layer,
-    /// lobes of both are fitted together.
+    /// lobes of both are fitted together. Else lobes of the layers below are fitted with those at other factors of what varies there.
     #[must_use]
-    pub fn over_bare(self) -> Self {
-        Self { bare: Some(Box::new(Self::new(&self.stack.without_first(), self.color))), ..self }
+    pub fn over_bare(self, varying: Option<Varying>) -> Self {
+        Self { bare: Some(Box::new(Self::varying(&self.stack.without_first(), self.color, varying))), ..self }
+    }
+
+    /// The terms of the layers below the first, if they are beside these and have lobes of their own.
+    pub fn side(&self) -> Option<&Self> {
+        self.bare.as_deref().filter(|_| !matches!(self.varying, Some(Varying::Patina(_))))
     }
 
     /// The terms with the tables and the record of a nominal stack, as in shaders. The record has the veil of a diffuse base for layers of nominal

@@ -295,6 +295,9 @@ impl VaryingFactor {
     }
 }
 
+/// What the number of lobes in the words is more by where a coat has a [`CoatRecord::side`].
+const OVER_SIDE: f32 = 4.0;
+
 /// Least factor on slopes if tiles are over no such factor.
 const SPREAD_MIN: f64 = 1e-3;
 
@@ -339,6 +342,16 @@ pub struct CoatRecord {
     pub weight: f64,
     /// The layer below the first where the first is not, as it meets the medium above the surface.
     pub bare: LayerRecord,
+    /// The layers below where the first is not, if these have lobes apart from those of all layers: textures vary the surface in more than the weight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<SideRecord>,
+}
+
+/// The layers below a coat as a surface of their own, see [`MaterialEntry::side`](crate::MaterialEntry::side).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SideRecord {
+    /// Lobes; none of a diffuse base alone. Their first tile is that of [`CoatRecord::bare`].
+    pub lobes: Option<LobesRecord>,
 }
 
 /// A `metallic-roughness` surface below a coat that does not darken it: records have a brighter colour than the file, and places have one, too.
@@ -391,7 +404,7 @@ impl MaterialConstants {
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start; in w of a brightened base the share of the light of a diffuse base that comes back, else 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
-    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes |
+    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes, and 4 more where a coat has a weight and [`CoatRecord::side`] |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 0, number of the base among the layers, 0; of lobes with one tile 1 over the tail of each, 0; all 0 without |
@@ -419,7 +432,9 @@ impl MaterialConstants {
             words[4] = vec4([f.spread, f.scale, f.fade_start], 0.0);
         }
         let lobes = f64::from(words[6][3]);
-        if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), self.bare()) {
+        let side = self.coat.as_ref().and_then(|coat| coat.side);
+        let cover = self.bare().filter(|_| side.is_none());
+        if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), cover) {
             let [fifth, square] = base.moments.unwrap_or_default();
             words[5] = vec4(base.albedo, if base.moments.is_some() { -2.0 } else { -1.0 });
             words[6] = vec4([fifth, square, 0.0], lobes);
@@ -438,6 +453,8 @@ impl MaterialConstants {
             words[5] = vec4([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
             words[6] = vec4(p.diffuse_albedo, lobes);
             words[7] = vec4(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
+        } else if side.is_some() {
+            words[6][3] += OVER_SIDE;
         } else if let Some(coat) = &self.coat {
             words[5] = vec4([coat.weight, 0.0, -1.0], 2.0);
             words[7] = vec4([1.0; 3], self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
@@ -571,7 +588,7 @@ mod tests {
         assert_eq!(of_patina.words()[9], [0.0; 4]);
         assert_eq!(of_patina.words()[6], [11.0, 12.0, 13.0, 2.0]);
         assert_eq!(of_patina.words()[7], [14.0, 15.0, 16.0, 2.0]);
-        let coat = CoatRecord { weight: 0.75, bare: LayerRecord::default() };
+        let coat = CoatRecord { weight: 0.75, bare: LayerRecord::default(), side: None };
         let over_weight = VaryingRecord { factor: VaryingFactor::WeightFactor, tiles: 2, ..over_patina };
         let of_coat = MaterialConstants {
             lobes: Some(LobesRecord { varying: Some(over_weight), ..lobes }),
@@ -580,6 +597,15 @@ mod tests {
         };
         assert_eq!(of_coat.words()[5..8], [[0.75, 0.0, -1.0, 2.0], [0.0, 0.0, 0.0, 2.0], [1.0, 1.0, 1.0, 1.0]]);
         assert_eq!(of_coat.words()[0], of_patina.words()[0]);
+        // Of a coat over a side of its own all words but one are those of its lobes.
+        let painted = Some(PaintedRecord { albedo, moments: None });
+        let apart = LobesRecord { painted, ..lobes };
+        let side = Some(SideRecord { lobes: Some(lobes) });
+        let coat = Some(CoatRecord { weight: 0.75, bare: LayerRecord::default(), side });
+        let of_sides = MaterialConstants { lobes: Some(apart), coat, ..MaterialConstants::default() }.words();
+        let mut expected = words(apart);
+        expected[6][3] = 6.0;
+        assert_eq!(of_sides, expected);
         let brightening = Some(BrighteningRecord { diffuse: 0.5, metal: 0.25, base_color: [1.0; 3] });
         let brightened = MaterialConstants { brightening, ..of_coat }.words();
         assert_eq!([brightened[4], brightened[6]], [[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 0.25, 2.0]]);

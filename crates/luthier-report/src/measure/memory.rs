@@ -3,8 +3,10 @@
 use std::fmt::{Debug, Write as _};
 
 use luthier_layers::models::lobes::{Lobes, Varied};
+use luthier_layers::twins::terms::Exact;
 use luthier_lut::TableKind;
 use luthier_manifest::{MaterialEntry, Tiles};
+use luthier_optics::interface::Interface;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -80,15 +82,22 @@ impl<'a> Remembered<'a> {
         if self.memory.is_none() || !entry.shows_lobes() {
             return;
         }
-        let (stack, color, varying) = references.fitted();
+        self.fit_terms(references.baked());
+    }
+
+    fn fit_terms(&self, terms: &Exact) {
+        let (stack, color, varying) = terms.fitted();
         let inputs = json!({ "stack": stack, "color": format!("{color:?}"), "varying": format!("{varying:?}") });
-        references.baked().take_lobes(&|| {
+        terms.take_lobes(&|| {
             self.recall("judge-fits", &inputs).unwrap_or_else(|| {
                 let ends: (Lobes, Option<Lobes>) = Varied::of(stack, color, *varying).ends();
                 self.keep("judge-fits", &inputs, &ends);
                 ends
             })
         });
+        if let Some(side) = terms.side().filter(|side| Interface::of(side.fitted().0, 0).is_some()) {
+            self.fit_terms(side);
+        }
     }
 
     /// Key of the comparisons of a material. The record contains its maps, by their hashes.
@@ -148,7 +157,9 @@ impl<'a> Remembered<'a> {
     /// A material by its content: its record, its stack, and the texels of the tiles that it reads.
     fn content(&self, subject: &Subject<'_>, number: usize) -> Value {
         let entry = &subject.manifest.materials[number];
-        let hashes = entry.layers.iter().map(|record| {
+        let side = entry.side();
+        let of_side = side.iter().flat_map(|side| side.layers.first().map(|record| (side, record)));
+        let hashes = entry.layers.iter().map(|record| (entry, record)).chain(of_side).map(|(entry, record)| {
             TableKind::ALL.map(|kind| {
                 let first = record.tiles[kind]?;
                 let count = tiles(entry, kind);

@@ -41,6 +41,11 @@ pub(crate) fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<Us
 /// The materials whose bare layers under a patina or a coat read a tile.
 pub(crate) fn bare_users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<usize> {
     let materials = subject.manifest.materials.iter().enumerate();
-    let reads = |m: &MaterialEntry| m.constants.bare().is_some_and(|bare| bare.tiles[kind] == Some(tile));
+    let reads = |m: &MaterialEntry| {
+        let first = m.constants.bare().and_then(|bare| bare.tiles[kind]);
+        // Lobes of layers below a coat have a tile for each node.
+        let count = m.side().map_or(1, |side| tiles(&side, kind));
+        first.is_some_and(|first| (first..first + count).contains(&tile))
+    };
     materials.filter(|(_, material)| reads(material)).map(|(number, _)| number).collect()
 }

@@ -32,7 +32,7 @@ impl References {
         let three_nm = Color::ThreeWavelengths(material.wavelengths_nm);
         let color = color(material);
         let model = material.model;
-        let varying = varying(material);
+        let varying = varying_of(material);
         let twin_of = |stack: &Stack| Twin::with(model, stack, material.wavelengths_nm, color, parts(material));
         let twin = twin_of(stack).reradiating(material.layers.last().and_then(|layer| layer.reradiation));
         let [spectral, three] = [Color::Spectral, three_nm].map(|color| Exact::varying(stack, color, varying));
@@ -41,16 +41,12 @@ impl References {
         let (twin, spectral, three) = match coat {
             Some(coat) => {
                 let twin = twin.covering(coat.weight, twin_of(&stack.without_first()));
-                (twin, spectral.over_bare(), three.over_bare())
+                let of_side = material.side().and_then(|side| varying_of(&side));
+                (twin, spectral.over_bare(of_side), three.over_bare(of_side))
             }
             None => (twin, spectral, three),
         };
         Self { layers: Layers::isotropic_rgb(stack).layers, twin, spectral, three, level, color: material.color }
-    }
-
-    /// The inputs of the fit of lobes.
-    pub(crate) fn fitted(&self) -> (&Stack, &Color, &Option<Varying>) {
-        self.baked().fitted()
     }
 
     /// The exact terms of the form without tables.
@@ -81,11 +77,13 @@ pub(crate) fn parts(material: &MaterialEntry) -> Parts {
 /// Whether the model of a material shows where its first layer, a coat, is not: rows of lobes may be over something else.
 pub(crate) fn shows_cover(material: &MaterialEntry) -> bool {
     let varying = material.constants.lobes.and_then(|lobes| lobes.varying);
-    material.model.is_path() || material.model.is_fitted() && varying.is_some_and(|varying| varying.factor.is_cover())
+    material.model.is_path()
+        || material.side().is_some()
+        || material.model.is_fitted() && varying.is_some_and(|varying| varying.factor.is_cover())
 }
 
 /// The varying factor of a material that its rows of lobes span.
-fn varying(material: &MaterialEntry) -> Option<Varying> {
+fn varying_of(material: &MaterialEntry) -> Option<Varying> {
     let record = material.constants.lobes?.varying?;
     match record.factor {
         VaryingFactor::AlphaFactor => Some(Varying::Alpha),

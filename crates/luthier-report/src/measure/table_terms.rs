@@ -247,7 +247,10 @@ impl<'a> TableTerms<'a> {
     /// A table that does not fit its layout, or a layer that needs a tile and has none.
     pub fn new(subject: &'a Subject<'_>, material: usize, weights: Weights) -> Result<Self, ReportError> {
         let mut terms = Self::whole(subject, material, weights)?;
-        if subject.manifest.materials[material].constants.coat.is_some() {
+        let entry = &subject.manifest.materials[material];
+        if let Some(side) = entry.side() {
+            terms.bare = Some(Box::new(Self::of_side(subject, &side, weights, &Place::NONE)?));
+        } else if entry.constants.coat.is_some() {
             terms.bare = Some(Box::new(Self::at(subject, material, weights, &Place::NONE, Part::Bare)?));
         }
         Ok(terms)
@@ -261,6 +264,16 @@ impl<'a> TableTerms<'a> {
                 stacks: subject.stacks.len(),
             });
         };
+        Self::of_entry(subject, entry, Cow::Borrowed(&entry.layers), weights)
+    }
+
+    /// The terms of layers by their records, those of a material.
+    fn of_entry(
+        subject: &'a Subject<'_>,
+        entry: &MaterialEntry,
+        records: Cow<'a, [LayerRecord]>,
+        weights: Weights,
+    ) -> Result<Self, ReportError> {
         let mut tables = [None; TableKind::ALL.len()];
         for kind in TableKind::ALL {
             if let Some(table) = subject.table(kind)? {
@@ -275,7 +288,7 @@ impl<'a> TableTerms<'a> {
                 .lobes
                 .as_ref()
                 .and_then(|record| Some(Lobes::new(record, entry.layers.first()?.tiles[TableKind::Lobes]?))),
-            records: Cow::Borrowed(&entry.layers),
+            records,
             weights,
             here: Here::NOMINAL,
             bare: None,
@@ -308,24 +321,45 @@ impl<'a> TableTerms<'a> {
     ) -> Result<Self, ReportError> {
         let mut terms = Self::whole(subject, material, weights)?;
         let entry = &subject.manifest.materials[material];
+        terms.place(entry, place, part);
+        if let (Part::Bare, Some(bare)) = (part, entry.constants.bare()) {
+            let passing = terms.here.passing;
+            terms.here.passing = passing.and_then(|(layer, passing)| Some((layer.checked_sub(1)?, passing)));
+            terms.records = std::iter::once(bare).chain(entry.layers.iter().skip(2)).cloned().collect();
+        }
+        Ok(terms)
+    }
+
+    /// The terms of the layers below a coat, [`MaterialEntry::side`] of a material, at a place of theirs.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn of_side(
+        subject: &'a Subject<'_>,
+        side: &MaterialEntry,
+        weights: Weights,
+        place: &Place,
+    ) -> Result<Self, ReportError> {
+        let mut terms = Self::of_entry(subject, side, Cow::Owned(side.layers.clone()), weights)?;
+        terms.place(side, place, Part::All);
+        Ok(terms)
+    }
+
+    /// Takes the values of a place.
+    fn place(&mut self, entry: &MaterialEntry, place: &Place, part: Part) {
         let passing = entry.layers.iter().enumerate().find_map(|(layer, record)| {
             let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
             Some((layer, [0, 1, 2].map(|c: usize| (1.0 - own[c]) / (1.0 - nominal[c]).max(1e-6))))
         });
-        terms.lobes.iter_mut().for_each(|lobes| lobes.place(entry, place));
+        self.lobes.iter_mut().for_each(|lobes| lobes.place(entry, place));
         let sample = &place.sample;
-        terms.here = Here {
+        self.here = Here {
             part,
             alpha_factor: sample.alpha_factor,
             slab_factor: sample.slab_factor,
             film_factor: sample.film_factor,
             passing,
         };
-        if let (Part::Bare, Some(bare)) = (part, entry.constants.bare()) {
-            terms.here.passing = passing.and_then(|(layer, passing)| Some((layer.checked_sub(1)?, passing)));
-            terms.records = std::iter::once(bare).chain(entry.layers.iter().skip(2)).cloned().collect();
-        }
-        Ok(terms)
     }
 
     fn table(&self, kind: TableKind) -> Option<Table<'a>> {

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::textured::TextureSample;
-use luthier_layers::models::lobes::Mix;
+use luthier_layers::models::lobes::{self, Mix};
 use luthier_layers::models::shade::Under;
 use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_layers::twins::terms::Exact;
@@ -42,6 +42,14 @@ impl<'a> Rows<'a> {
     /// As [`Self::new`].
     pub fn at(subject: &'a Subject<'_>, material: usize, place: &Place, weights: Weights) -> Result<Self, ReportError> {
         let entry = &subject.manifest.materials[material];
+        if let (Some((weight, coated, below)), Some(side)) = (place.sides(), entry.side()) {
+            let coated = Self::at(subject, material, &coated, weights)?.0;
+            let terms = |_, _: &_, _: &_| TableTerms::of_side(subject, &side, weights, &below).ok();
+            let (stack, nm) = (lobes::bare(&subject.stacks[material]), entry.wavelengths_nm);
+            let bare = Shaded::of_terms(terms, side.model, &stack, nm, color(entry), &below, parts(&side));
+            let bare = bare.ok_or_else(|| ReportError::Model { material: entry.name.clone(), model: entry.model })?;
+            return Ok(Self(coated.beside(weight, bare)));
+        }
         // Terms at a place are an `Option`: errors of the tables are reported here, without a place.
         TableTerms::new(subject, material, weights)?;
         let (stack, nm) = (&subject.stacks[material], entry.wavelengths_nm);
@@ -99,6 +107,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             ..Under::NONE
         },
         patina: cover(values, entry),
+        has_side: entry.side().is_some(),
         base_color: values.base_color.map(|color| color.map(f64::from)),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
         layers: layers.collect(),

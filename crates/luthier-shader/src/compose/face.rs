@@ -58,15 +58,24 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         modules.push(albedo(features, parts));
     }
     let least = if features.has(Feature::Folded) && features.has(Feature::Media) { ", least: f32" } else { "" };
+    let prepared = if features.has(Feature::LobesSides) { "LuthierPreparedSides" } else { "LuthierPreparedLobes" };
     let words = [
         ("$parts", format!("{parts}u")),
         ("$model_base", BASE.to_owned()),
+        ("$sides", sides(features).to_owned()),
+        ("$prepared_lobes", prepared.to_owned()),
         ("$least", least.to_owned()),
         ("$model_lobes", set.models().find(|model| model.is_fitted()).map(number).unwrap_or_default()),
     ];
     // A condition governs one statement: what stands for several comes after conditions.
     let unrolled = unrolled(parts, features);
     modules.into_iter().map(|module| replaced(text(&replaced(module, &words), features), &unrolled)).collect()
+}
+
+/// End of the names of functions of the model `lobes` that see a prepared material: they see both sides of a coat with a weight, where some material has
+/// these.
+fn sides(features: &Features) -> &'static str {
+    if features.has(Feature::LobesSides) { "sides" } else { "lobes" }
 }
 
 /// A text with values in place of words.
@@ -161,7 +170,9 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
     let place = if features.has(Feature::Place) { "prepared.place, " } else { "" };
     let lit = if features.has(Feature::Fluorescent) { light_of_a_colour(set, &out, place, wi) } else { String::new() };
     let (first, others) = by_model(set, "prepared.model", |model| match model.facts().family {
-        Family::Lobes if features.has(Feature::Lobes) => format!("luthier_light_lobes(prepared.lobes, {wi})"),
+        Family::Lobes if features.has(Feature::Lobes) => {
+            format!("luthier_light_{}(prepared.lobes, {wi})", sides(features))
+        }
         Family::Statistics if !are_bases(&stacks(set, model)) => {
             let light = function(model).replace("luthier_eval", "luthier_light");
             format!("{light}(prepared, {place}prepared.material, {wi}, prepared.wo)")
@@ -208,12 +219,12 @@ fn albedo(features: &Features, parts: usize) -> String {
         "/// Directional albedo of a prepared material, RGB: of `lobes` that of its rows, of other models an estimate from their parts.\n\
          fn luthier_albedo(prepared: LuthierPrepared) -> vec3<f32> {\n    if !prepared.open {\n        return vec3<f32>(0.0);\n    }\n",
     );
-    let lobes = "luthier_albedo_lobes(prepared.lobes)";
+    let lobes = format!("luthier_albedo_{}(prepared.lobes)", sides(features));
     match (features.has(Feature::Lobes), features.has(Feature::Several)) {
         (true, false) => out.push_str(&format!("    return {lobes};\n}}\n")),
         (has_lobes, _) => {
             if has_lobes {
-                out.push_str(&case("prepared.model", "$model_lobes", lobes));
+                out.push_str(&case("prepared.model", "$model_lobes", &lobes));
             }
             out.push_str(&format!("    return {sum};\n}}\n"));
         }

@@ -179,6 +179,12 @@ luthier_lut::named! {
         LobesPatina = "lobes_patina",
         /// Such rows are there, and bare places show a base.
         LobesBareBase = "lobes_bare_base",
+        /// A coat with a weight lies over layers with lobes of their own.
+        LobesSides = "lobes_sides",
+        /// Such layers have rows.
+        LobesSideRows = "lobes_side_rows",
+        /// Such layers are a diffuse base alone.
+        LobesSideBases = "lobes_side_bases",
         /// Lobes have the light of a base as a part.
         LobesBase = "lobes_base",
         /// Rows of lobes are those of a family: over slope parameters of single layers, with colours in closed form.

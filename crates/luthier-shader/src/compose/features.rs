@@ -32,46 +32,15 @@ impl Features {
         let mut names = BTreeSet::new();
         let mut all: Option<BTreeSet<Feature>> = None;
         for material in &*set.materials {
-            let mut own = of_model(material);
-            if material.varies() {
-                own.insert(Feature::Place);
+            let side = material.side();
+            let of_sides = of_sides(side.as_ref());
+            // The layers below a coat with a weight are a material like others, if they have rows.
+            let side = side.filter(|side| !side.layers.first().is_some_and(is_diffuse));
+            for material in std::iter::once(material).chain(&side) {
+                let own = &of_material(material, form) | &of_sides;
+                all = Some(all.map_or_else(|| own.clone(), |all| &all & &own));
+                names.extend(own);
             }
-            for (_, slot) in material.shown_layer_maps(form) {
-                own.extend(match slot {
-                    MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
-                    MapSlot::Albedo => &[Feature::BaseColor],
-                    MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
-                    MapSlot::Lean => &[],
-                    MapSlot::Bumps if !material.model.is_fitted() => &[Feature::Layered, Feature::OwnNormals],
-                    MapSlot::Bumps if has_base_light(material) => &[
-                        Feature::Layered,
-                        Feature::OwnNormals,
-                        Feature::LobesBumps,
-                        Feature::LobesBase,
-                        Feature::LobesLean,
-                    ],
-                    MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps],
-                    MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
-                    MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],
-                    _ => &[Feature::Layered, Feature::OwnAlphas],
-                });
-            }
-            if own.contains(&Feature::LobesBumps) && has_inner_interface(material) {
-                own.insert(Feature::LobesTilted);
-            }
-            // Rows over a factor store the shape of the remainder with the light of the base.
-            if painted(material).is_some_and(|base| base.moments.is_some()) {
-                own.insert(Feature::LobesBase);
-            }
-            own.extend(of_family(material));
-            if material.constants.brightening.is_some() {
-                own.insert(Feature::Brightened);
-            }
-            if material.constants.glitter.is_some() {
-                own.insert(Feature::Glitter);
-            }
-            all = Some(all.map_or_else(|| own.clone(), |all| &all & &own));
-            names.extend(own);
         }
         if !set.surfaces.is_empty() {
             names.extend([Feature::Picks, Feature::Place]);
@@ -132,7 +101,8 @@ impl Features {
                     _ => (None, 0),
                 };
                 names.extend(word);
-                if set.materials.iter().filter_map(lobes_of).any(|lobes| lobes < most) {
+                let sides: Vec<MaterialEntry> = set.materials.iter().filter_map(MaterialEntry::side).collect();
+                if set.materials.iter().chain(&sides).filter_map(lobes_of).any(|lobes| lobes < most) {
                     names.insert(Feature::LobesMixed);
                 }
             }
@@ -190,6 +160,61 @@ impl Features {
         }
         features
     }
+}
+
+/// The features of one material.
+fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
+    let mut own = of_model(material);
+    if material.varies() {
+        own.insert(Feature::Place);
+    }
+    for (_, slot) in material.shown_layer_maps(form) {
+        own.extend(match slot {
+            MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
+            MapSlot::Albedo => &[Feature::BaseColor],
+            MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
+            MapSlot::Lean => &[],
+            MapSlot::Bumps if !material.model.is_fitted() => &[Feature::Layered, Feature::OwnNormals],
+            MapSlot::Bumps if has_base_light(material) => {
+                &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps, Feature::LobesBase, Feature::LobesLean]
+            }
+            MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps],
+            MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
+            MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],
+            _ => &[Feature::Layered, Feature::OwnAlphas],
+        });
+    }
+    if own.contains(&Feature::LobesBumps) && has_inner_interface(material) {
+        own.insert(Feature::LobesTilted);
+    }
+    // Rows over a factor store the shape of the remainder with the light of the base.
+    if painted(material).is_some_and(|base| base.moments.is_some()) {
+        own.insert(Feature::LobesBase);
+    }
+    own.extend(of_family(material));
+    if material.constants.brightening.is_some() {
+        own.insert(Feature::Brightened);
+    }
+    if material.constants.glitter.is_some() {
+        own.insert(Feature::Glitter);
+    }
+    own
+}
+
+/// The features of a coat with a weight whose layers below have lobes of their own, and of these if they are a diffuse base alone.
+fn of_sides(side: Option<&MaterialEntry>) -> BTreeSet<Feature> {
+    let Some(side) = side else { return BTreeSet::new() };
+    let base = side.layers.first().filter(|first| is_diffuse(first));
+    let words = [
+        (Feature::LobesSides, true),
+        (Feature::Weight, true),
+        (Feature::Place, true),
+        (Feature::LobesSideRows, base.is_none()),
+        (Feature::LobesSideBases, base.is_some()),
+        (Feature::Diffuse, base.is_some()),
+        (Feature::OrenNayar, base.is_some_and(|base| base.sigma != 0.0)),
+    ];
+    words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }
 
 /// Words for the parts that materials choose: maskings, sources of reflectances, internal reflections.
@@ -475,7 +500,8 @@ fn has_base_light(material: &MaterialEntry) -> bool {
 
 /// The base below lobes that places may recolour, beside those of families, which have a way of their own.
 fn painted(material: &MaterialEntry) -> Option<PaintedRecord> {
-    let is_plain = material.constants.bare().is_none() && family(material).is_none();
+    let is_covered = material.constants.bare().is_some() && material.side().is_none();
+    let is_plain = !is_covered && family(material).is_none();
     material.constants.lobes.filter(|_| is_plain)?.painted
 }
 

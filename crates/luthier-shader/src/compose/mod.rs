@@ -131,6 +131,13 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
         .collect();
     let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);
     let module = module.replace("    $each_on_first\n", &each_on_first);
+    let each_below_coat: String = (0..count)
+        .map(|i| match i + 1 {
+            below if below < count => format!("    next.layers[{i}] = place.layers[{below}];\n"),
+            _ => format!("    next.layers[{i}] = luthier_layer_place();\n"),
+        })
+        .collect();
+    let module = module.replace("    $each_below_coat\n", &each_below_coat);
     module.replace("$layers", &format!("{count}u"))
 }
 

@@ -261,7 +261,7 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
                 Feature::Flakes => MaterialConstants { flakes: Some(FLAKES), ..plain().constants },
                 Feature::Glitter => MaterialConstants { glitter: Some(GLITTER), ..plain().constants },
                 Feature::Weight => {
-                    let coat = luthier_manifest::CoatRecord { weight: 0.5, bare: patina() };
+                    let coat = luthier_manifest::CoatRecord { weight: 0.5, bare: patina(), side: None };
                     MaterialConstants { coat: Some(coat), ..plain().constants }
                 }
                 _ => {

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
     AxesRecord, CoatRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MapSlot,
-    MaterialConstants, MaterialEntry, PatinaRecord, ShadingModel, Tiles, VaryingFactor, VaryingRecord,
+    MaterialConstants, MaterialEntry, PatinaRecord, ShadingModel, SideRecord, Tiles, VaryingFactor, VaryingRecord,
 };
 use luthier_shader::{Form, MaterialSet, TableFace, Target, complete, emit, emit_constant};
 
@@ -152,7 +152,7 @@ pub(crate) fn patina() -> MaterialEntry {
 /// A coat that covers 0.6 of gold.
 pub(crate) fn weighted() -> MaterialEntry {
     let MaterialEntry { layers, constants, .. } = patina();
-    let coat = constants.patina.map(|patina| CoatRecord { weight: 0.6, bare: patina.bare });
+    let coat = constants.patina.map(|patina| CoatRecord { weight: 0.6, bare: patina.bare, side: None });
     MaterialEntry {
         constants: MaterialConstants { coat, ..MaterialConstants::default() },
         ..material("weighted", &layers)
@@ -234,6 +234,30 @@ pub(crate) fn weighed(material: MaterialEntry) -> MaterialEntry {
         VaryingRecord { factor: VaryingFactor::WeightFactor, tiles: 2, least_spread: 1.0, factors: None, family: None };
     material.constants.lobes = material.constants.lobes.map(|lobes| LobesRecord { varying: Some(over), ..lobes });
     material
+}
+
+/// The material with lobes of its own for the layers below its coat, in another medium and with its tile; none for a diffuse base alone.
+pub(crate) fn sided(material: MaterialEntry) -> MaterialEntry {
+    let mut material = with_lobes(material);
+    material.layers[0].alpha_xy = [material.layers[0].alpha; 2];
+    let lobes = material.constants.lobes.map(|lobes| LobesRecord { index: 1.1, falloff: [0.4, 0.1], ..lobes });
+    if let Some(coat) = &mut material.constants.coat {
+        let lobes = lobes.filter(|_| coat.bare.kind != LayerKind::Diffuse);
+        coat.bare.tiles[TableKind::Lobes] = lobes.map(|_| 0);
+        coat.side = Some(SideRecord { lobes });
+    }
+    material
+}
+
+/// A coat that covers 0.6 of paint, which has a map.
+pub(crate) fn weighted_paint(sigma: f64) -> MaterialEntry {
+    let mut material = weighted();
+    "weighted-paint".clone_into(&mut material.name);
+    material.layers[1] = diffuse(sigma);
+    if let Some(coat) = &mut material.constants.coat {
+        coat.bare = diffuse(sigma);
+    }
+    with_map(material, MapSlot::Albedo, 1)
 }
 
 /// Paint under a patina.
@@ -374,6 +398,12 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lobes-patina-chains", vec![covered(patina()), named("grown", patina()), with_lobes(house())]),
         ("lobes-weight", vec![weighed(weighted())]),
         ("lobes-weight-mixed", vec![weighed(weighted()), covered(patina()), named("weighted-chain", weighted())]),
+        ("lobes-sides", vec![sided(weighted())]),
+        ("lobes-sides-base", vec![sided(weighted_paint(0.3))]),
+        (
+            "lobes-sides-mixed",
+            vec![sided(weighted_paint(0.0)), sided(weighted()), named("by-amount", weighed(weighted())), gold()],
+        ),
         ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]

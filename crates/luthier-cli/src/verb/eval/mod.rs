@@ -185,6 +185,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     let weight = weight(&material, inputs)?.filter(|_| ModelInputs::shows_weight(&material, model.as_ref()));
     if let Some(weight) = weight.filter(|_| model.info().shading().is_some()) {
         place.patina = Some(Growth::of_coat(weight));
+        place.has_side = material.has_side();
     } else if weight.is_some() && (place.sample.slab_factor, place.sample.film_factor) != (1.0, 1.0) {
         let text =
             format!("model `{name}` has no place: leave --slab-factor and --film-factor out for a coat with a weight");

@@ -254,6 +254,38 @@ fn coats_with_weights_are_those_of_the_twin() {
         ("undarkened", "elek", "darkening = false\nmaps = { weight = \"mask.png\" }\n", &textured, ""),
         ("metal", "lobes", "weight = 0.6\n", metal, ""),
         ("paint", "lobes", "weight = 0.6\nmaps = { weight = \"mask.png\" }\n", paint, ""),
+        // Beside what makes two surfaces of it.
+        ("slopes", "lobes", "weight = 0.6\n", &format!("{metal}maps = {{ alpha = \"mask.png\" }}\n"), ""),
+        (
+            "colors",
+            "lobes",
+            "darkening = false\nmaps = { weight = \"mask.png\", alpha = \"mask.png\" }\n",
+            &textured,
+            "",
+        ),
+        ("worn", "lobes", "weight = 0.6\nmaps = { roughness = \"mask.png\" }\n", paint, ""),
+        ("slab", "lobes", "weight = 0.6\nmaps = { thickness = \"mask.png\", normal = \"mask.png\" }\n", metal, ""),
+        (
+            "wood",
+            "lobes",
+            "weight = 0.6\n",
+            "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\nsigma = 0.3\nmaps = { albedo = \"mask.png\" }\n",
+            "",
+        ),
+        (
+            "brushed",
+            "lobes",
+            "weight = 0.6\n",
+            "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nalpha_x = 0.3\nalpha_y = 0.1\n",
+            "",
+        ),
+        (
+            "flaked",
+            "lobes",
+            "weight = 0.6\n",
+            paint,
+            "[effects.flakes]\ncells = { seed = 1, count = 64, spread_deg = 5 }\ntiling = 100\n",
+        ),
     ] {
         let text = format!("schema = 1\nname = \"{name}\"\n{coat}{weight}{below}[bake]\nmodel = \"{model}\"\n{more}");
         workshop.write(&format!("m/{name}.toml"), text);

@@ -319,3 +319,24 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     }
     return total + max(rest, vec3<f32>(0.0)) * luthier_shown_coat(prepared, frame, turned);
 }
+
+//? lobes_sides
+/// Radiance that both sides of a coat with a weight send to the eye: see `luthier_environment_lobes`.
+fn luthier_environment_sides(prepared: LuthierPreparedSides, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
+    var light = vec3<f32>(0.0);
+    if prepared.cover > 0.0 {
+        light = prepared.cover * luthier_environment_lobes(prepared.coated, frame, turn);
+    }
+    if prepared.cover < 1.0 {
+        let bare = 1.0 - prepared.cover;
+        //? lobes_side_bases
+        {
+            if prepared.is_base {
+                return light + bare * luthier_albedo_bare_side(prepared) * luthier_environment_diffuse(frame[2]);
+            }
+        }
+        //? lobes_side_rows
+        light += bare * luthier_environment_lobes(prepared.bare, frame, turn);
+    }
+    return light;
+}

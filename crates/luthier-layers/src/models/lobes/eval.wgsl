@@ -461,6 +461,13 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let unresolved = 0.0;
         //? lobes_mixed
         {
+            //? lobes_sides
+            {
+                // Where layers below a coat have lobes of their own, the number is 4 more.
+                let counted = luthier_materials[header + $word_patina_diffuse_albedo].w;
+                let lobes = select(counted, counted - 4.0, counted > 3.5);
+            }
+            //? else
             let lobes = luthier_materials[header + $word_patina_diffuse_albedo].w;
             prepared.first_shape = luthier_dark_lobe();
             //? two_lobes
@@ -749,6 +756,9 @@ fn luthier_eval_lobes($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f3
                 return wi.z * $diffuse(layer, wi, wo);
             }
         }
+        //? lobes_sides
+        return luthier_light_sides(luthier_prepare_sides($place_argument material, wo), wi);
+        //? else
         return luthier_light_lobes(luthier_prepare_lobes($place_argument material, wo), wi);
     }
     //? else

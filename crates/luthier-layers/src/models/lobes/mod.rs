@@ -80,7 +80,12 @@ use crate::monochrome::{Monochrome, MonochromeBelow};
 /// The room of the model.
 pub(crate) const ROOM: Room = Room {
     kernels: Kernels {
-        eval: concat!(include_str!("family/family.wgsl"), include_str!("tilt.wgsl"), include_str!("eval.wgsl")),
+        eval: concat!(
+            include_str!("family/family.wgsl"),
+            include_str!("tilt.wgsl"),
+            include_str!("sides.wgsl"),
+            include_str!("eval.wgsl")
+        ),
         parts: include_str!("parts.wgsl"),
         sample: include_str!("sample.wgsl"),
         environment: include_str!("environment.wgsl"),

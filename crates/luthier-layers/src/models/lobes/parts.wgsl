@@ -3,7 +3,7 @@ fn luthier_parts_lobes(given: LuthierPrepared, $place_parameter material: u32, w
     var prepared = given;
     //? lobes_diffuse
     {
-        let layer = luthier_layer(material, 0u);
+        let layer = $layer(material, 0u);
         //? lobes
         if layer.kind == LUTHIER_DIFFUSE {
             let light = luthier_mean_light(wo);
@@ -18,6 +18,6 @@ fn luthier_parts_lobes(given: LuthierPrepared, $place_parameter material: u32, w
         }
     }
     //? lobes
-    prepared.lobes = luthier_prepare_lobes($place_argument material, wo);
+    prepared.lobes = luthier_prepare_$sides($place_argument material, wo);
     return prepared;
 }

@@ -204,3 +204,51 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
     }
     return drawn;
 }
+
+//? lobes_sides
+{
+    /// Density in solid angle with which `luthier_draw_sides` draws a direction above the horizon.
+    fn luthier_density_sides(prepared: LuthierPreparedSides, wi: vec3<f32>) -> f32 {
+        let chance = luthier_covered_chance(prepared);
+        var density = 0.0;
+        if chance > 0.0 {
+            density = chance * luthier_density_lobes(prepared.coated, wi);
+        }
+        if chance < 1.0 {
+            var bare = wi.z / LUTHIER_PI;
+            //? lobes_side_rows
+            //? lobes_side_bases
+            if !prepared.is_base {
+                bare = luthier_density_lobes(prepared.bare, wi);
+            }
+            //? else
+            bare = luthier_density_lobes(prepared.bare, wi);
+            density += (1.0 - chance) * bare;
+        }
+        return density;
+    }
+
+    /// Direction and part of a draw of either side, without its density and weight: see `luthier_draw_lobes`.
+    fn luthier_draw_sides(prepared: LuthierPreparedSides, u: vec3<f32>) -> LuthierSample {
+        let chance = luthier_covered_chance(prepared);
+        if u.x < chance {
+            return luthier_draw_lobes(prepared.coated, vec3<f32>(u.x / chance, u.yz));
+        }
+        let rest = vec3<f32>((u.x - chance) / max(1.0 - chance, 1e-6), u.yz);
+        //? lobes_side_bases
+        //? lobes_side_rows
+        if prepared.is_base {
+            let phi = 2.0 * LUTHIER_PI * rest.z;
+            let across = sqrt(rest.y) * vec2<f32>(cos(phi), sin(phi));
+            return LuthierSample(vec3<f32>(across, sqrt(1.0 - rest.y)), 0.0, vec3<f32>(0.0), 3u);
+        }
+        //? else
+        {
+            let phi = 2.0 * LUTHIER_PI * rest.z;
+            let across = sqrt(rest.y) * vec2<f32>(cos(phi), sin(phi));
+            return LuthierSample(vec3<f32>(across, sqrt(1.0 - rest.y)), 0.0, vec3<f32>(0.0), 3u);
+        }
+        //? lobes_side_rows
+        return luthier_draw_lobes(prepared.bare, rest);
+    }
+}

@@ -32,7 +32,7 @@ fn luthier_environment(prepared: LuthierPrepared, frame: mat3x3<f32>, turn: f32)
         if prepared.model != $model_lobes {
             return luthier_environment_outside(prepared, frame);
         }
-        return luthier_environment_lobes(prepared.lobes, frame, turn);
+        return luthier_environment_$sides(prepared.lobes, frame, turn);
     }
     //? else
     return luthier_environment_outside(prepared, frame);

@@ -66,7 +66,7 @@ struct LuthierPrepared {
     /// Index there over that outside.
     base_eta: f32,
     /// A material of the model `lobes` as seen from the eye.
-    lobes: LuthierPreparedLobes,
+    lobes: $prepared_lobes,
 }
 
 /// A direction that stands for light from everywhere: at the mean cosine, 2/3, across the plane of the eye.

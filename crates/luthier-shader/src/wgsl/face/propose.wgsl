@@ -6,10 +6,10 @@ fn luthier_proposed_density(prepared: LuthierPrepared, wi: vec3<f32>) -> f32 {
     //? lobes
     //? several
     if prepared.model == $model_lobes {
-        return luthier_density_lobes(prepared.lobes, wi);
+        return luthier_density_$sides(prepared.lobes, wi);
     }
     //? else
-    return luthier_density_lobes(prepared.lobes, wi);
+    return luthier_density_$sides(prepared.lobes, wi);
     //? several|!lobes
     {
         var density = wi.z / LUTHIER_PI;
@@ -33,8 +33,8 @@ fn luthier_propose(prepared: LuthierPrepared, part: u32, u: vec3<f32>) -> Luthie
         //? else
         let is_whole = true;
         if is_whole && part == 0u {
-            proposed = luthier_draw_lobes(prepared.lobes, u);
-            density = luthier_density_lobes(prepared.lobes, proposed.wi);
+            proposed = luthier_draw_$sides(prepared.lobes, u);
+            density = luthier_density_$sides(prepared.lobes, proposed.wi);
         }
         //? several
         if is_whole && part > 0u {

@@ -208,10 +208,10 @@ fn luthier_density(prepared: LuthierPrepared, wi: vec3<f32>) -> f32 {
     //? lobes
     //? several
     if prepared.model == $model_lobes {
-        return luthier_density_lobes(prepared.lobes, wi);
+        return luthier_density_$sides(prepared.lobes, wi);
     }
     //? else
-    return luthier_density_lobes(prepared.lobes, wi);
+    return luthier_density_$sides(prepared.lobes, wi);
     //? several|!lobes
     {
         let wide = luthier_wide_chance(prepared);
@@ -227,10 +227,10 @@ fn luthier_draw(prepared: LuthierPrepared, u: vec3<f32>) -> LuthierSample {
     //? lobes
     //? several
     if prepared.model == $model_lobes {
-        return luthier_draw_lobes(prepared.lobes, u);
+        return luthier_draw_$sides(prepared.lobes, u);
     }
     //? else
-    return luthier_draw_lobes(prepared.lobes, u);
+    return luthier_draw_$sides(prepared.lobes, u);
     //? several|!lobes
     {
         let phi = 2.0 * LUTHIER_PI * u.z;

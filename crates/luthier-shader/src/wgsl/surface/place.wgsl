@@ -193,6 +193,20 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     return layer;
 }
 
+//? lobes_sides
+/// A place as it is for the layers below the first, where that is a coat that leaves them bare.
+fn luthier_place_below_coat(place: LuthierPlace) -> LuthierPlace {
+    var next = place;
+    next.slab_factor = 1.0;
+    next.film_factor = 1.0;
+    //? flakes
+    next.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
+    //? patina
+    next.patina = -1.0;
+    $each_below_coat
+    return next;
+}
+
 //? own_f0, brightened
 /// The colour that looks like `color` where a coat covers `weight` of the surface and sends back `share` of the light from below.
 fn luthier_brightened(color: vec3<f32>, share: f32, weight: f32) -> vec3<f32> {
@@ -236,6 +250,14 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
         var covered = shape.x;
         //? weight
         covered = saturate(covered * place.weight_factor);
+        //? lobes_sides
+        {
+            var weight = select(1.0, covered, shape.w > 1.5);
+            if luthier_has_side(material) {
+                weight = saturate(luthier_side_weight(material) * place.weight_factor);
+            }
+        }
+        //? else
         let weight = select(1.0, covered, shape.w > 1.5);
         let metal = luthier_brightened(base_color, shares.y, weight);
         let matt = luthier_brightened(base_color, shares.x, weight);

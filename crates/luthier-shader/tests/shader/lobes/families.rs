@@ -20,10 +20,10 @@ use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
 
 /// Nodes over the coat and over the base.
-const NODES: [u32; 2] = [2, 3];
+pub(super) const NODES: [u32; 2] = [2, 3];
 
 /// The tile before those of the family.
-const FIRST: u32 = 1;
+pub(super) const FIRST: u32 = 1;
 
 /// Ranges of slope parameters of coat and base.
 const RANGES: [[f64; 2]; 2] = [[0.01, 0.25], [0.04, 0.64]];
@@ -36,13 +36,19 @@ const DEPTH: Rgb = [0.1, 0.3, 0.6];
 
 /// Rows whose every part changes with the view and with the tile. Without a coat, the first lobe has no light of the metal, as in bakes.
 fn rows(is_coated: bool) -> (AtlasLayout, Image) {
-    let of_set = tables_with(&AtlasLayout { tiles: FIRST + NODES[0] * NODES[1], ..plain_layout() });
+    rows_of(FIRST + NODES[0] * NODES[1], |_| is_coated)
+}
+
+/// Rows as [`rows`] has them, with or without a coat by the number of the tile.
+pub(super) fn rows_of(tiles: u32, is_coated: impl Fn(u32) -> bool) -> (AtlasLayout, Image) {
+    let of_set = tables_with(&AtlasLayout { tiles, ..plain_layout() });
     let layout = of_set.into_iter().find(|table| table.kind == TableKind::Lobes).unwrap().layout;
     let [width, height] = layout.size();
     let mut image = Image::zeros(width, height, 4);
     for (tile, x) in (0..layout.tiles).flat_map(|tile| (0..width).map(move |x| (tile, x))) {
         let c = layout.x.node(((x % layout.row_size()).max(1) - 1).min(layout.x.size - 1));
         let (k, y) = (f64::from(tile) / 7.0, layout.origin(tile)[1]);
+        let is_coated = is_coated(tile);
         let part: [f64; 4] = match x / layout.row_size() {
             0 => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
             1 => [0.5 + 0.2 * c, 0.1 * k, 1.4, 0.3 + 0.2 * c],
@@ -68,7 +74,7 @@ fn plain_layout() -> AtlasLayout {
 }
 
 /// The axes of a family.
-fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Family {
+pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Family {
     let [coat, base] = [0, 1].map(|i: usize| {
         let [least, most] = RANGES[i];
         SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
@@ -78,7 +84,7 @@ fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Family {
 }
 
 /// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
-fn material(family: Family) -> MaterialEntry {
+pub(super) fn material(family: Family) -> MaterialEntry {
     let given = set("lobes").swap_remove(0);
     let Family { coat, base, interface, is_metallic } = family;
     let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };

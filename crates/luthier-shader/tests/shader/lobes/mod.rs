@@ -2,6 +2,7 @@
 
 mod families;
 mod normals;
+mod sides;
 
 use std::collections::BTreeMap;
 
