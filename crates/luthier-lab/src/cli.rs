@@ -45,6 +45,8 @@ pub(crate) enum Verb {
     Varying(VaryingOptions),
     /// Fit families of lobes over slope parameters and colours of a base, and compare them with the simulation at random places: a page in Markdown
     Families(FamiliesOptions),
+    /// Show textured coats five ways, simulated and by four models: a picture, and a page in Markdown
+    FiveWays(FiveWaysOptions),
     /// Fit lobes to anisotropic stacks, and compare them between the azimuths of their rows with the simulation: a page in Markdown
     Anisotropic(AnisotropicOptions),
     /// Compare the environment that pictures show with sums over all directions: a page in Markdown
@@ -294,6 +296,22 @@ pub(crate) struct FamiliesOptions {
     pub(crate) rows: u32,
     #[command(flatten)]
     pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab five-ways -o docs/pages/five-ways.md")]
+pub(crate) struct FiveWaysOptions {
+    /// Material files: a coat over a base of maps of base colour or metal
+    #[arg(default_values = ["materials/textured/board/varnished-oak.toml", "materials/textured/board/worn-brass.toml"])]
+    pub(crate) paths: Vec<PathBuf>,
+    /// Side of each ball in pixels
+    #[arg(long, value_name = "N", default_value_t = 192, value_parser = clap::value_parser!(u32).range(16..=1024))]
+    pub(crate) size: u32,
+    /// Picture to write
+    #[arg(long, value_name = "FILE", default_value = "docs/images/five-ways.png")]
+    pub(crate) picture: PathBuf,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -10,6 +10,7 @@ mod devices;
 mod environment;
 mod families;
 mod figures;
+mod five_ways;
 mod foreign;
 mod grammar;
 mod judge;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),
         Verb::Families(options) => families::run(options),
+        Verb::FiveWays(options) => five_ways::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
         Verb::Simulation(options) => simulation::run(options),
