@@ -1,6 +1,7 @@
 //! Tests of the fit, and of values and samples of fitted lobes.
 
 mod anisotropic;
+mod draws;
 mod place;
 mod tilt;
 
