@@ -40,6 +40,7 @@ mod fit;
 mod fitted;
 mod half_vector;
 mod judge;
+mod leaving;
 mod parameters;
 mod patina;
 mod prepared;

@@ -23,6 +23,14 @@
         }
     }
 
+    /// About the share of light that crosses a coat of a slope parameter as seen at a cosine, over which rows have energies.
+    fn luthier_family_crossing(alpha: f32, cos_theta: f32) -> f32 {
+        let cos_sq = cos_theta * cos_theta;
+        let leaning = 0.4 * alpha * alpha / (alpha + 0.2 * cos_theta);
+        let missed = 1.0 - sqrt(cos_sq + (1.0 - cos_sq) * leaning);
+        return 1.0 - missed * missed * (missed * missed) * missed;
+    }
+
     //? lobes_metallic
     /// Share of diffuse light that an interface of an F0 of 0.04 lets through by Schlick's formula.
     const LUTHIER_PLASTIC_PASSED: f32 = 0.9142857;
@@ -143,6 +151,8 @@
         let of_more = luthier_family_part(prepared.row, beside, 2.0);
         let sharpness = luthier_family_part(prepared.row, beside, 3.0);
         let decays = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_SHARES);
+        // Energies of rows are over the light that crosses the coat.
+        let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
         // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
         var once = of_once.rgb;
         var more = of_more.rgb;
@@ -181,14 +191,14 @@
                 once *= exp(-of_albedo.y * depth);
                 more *= exp(-of_albedo.z * depth);
             }
-            facet = vec3<f32>(of_albedo.x);
+            facet = vec3<f32>(1.0 - crossing * of_albedo.x);
             if base_layer == 0u {
-                facet += of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
+                facet = of_albedo.x + of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
             }
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
-            facet = of_albedo - wide - once - more;
+            facet = 1.0 - crossing * of_albedo;
             //? base_color
             {
                 let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
@@ -196,20 +206,24 @@
                 wide += max(of_base.rgb * (other / own - 1.0), -wide);
             }
         }
-        let below = wide + once + more;
+        let below = crossing * (wide + once + more);
         // No more light than falls in.
-        let left = min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
-        prepared.albedo = facet + left * below;
+        let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
+        prepared.albedo = facet + left * (wide + once + more);
         // Some of the trapped light is wide.
         prepared.wide = left * (wide + of_wide.w * more);
-        prepared.shares = decays.yw;
-        prepared.first_strength = left * once / max(decays.y, 1e-3);
-        prepared.second_strength = left * (1.0 - of_wide.w) * more / max(decays.w, 1e-3);
         let squares = held * held;
         let once_spread = sqrt(squares.y + 0.09 * squares.x);
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
         var first_shape = luthier_family_shape(of_once.a, sharpness.xy, decays.x, once_spread, sin_theta);
         var second_shape = luthier_family_shape(of_more.a, sharpness.zw, decays.z, more_spread, sin_theta);
+        // Rows have shares over their estimates: between rows the share is that of the shape there.
+        let disc = luthier_leaving_disc(prepared);
+        let first_leaving = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
+        let second_leaving = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
+        prepared.shares = min(decays.yw * vec2<f32>(first_leaving, second_leaving), vec2<f32>(1.0));
+        prepared.first_strength = left * once / max(prepared.shares.x, 1e-3);
+        prepared.second_strength = left * (1.0 - of_wide.w) * more / max(prepared.shares.y, 1e-3);
         //? surface
         {
             // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
@@ -224,7 +238,6 @@
             let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
             let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
             let tilt = luthier_in_frame(prepared.azimuth, turned);
-            let disc = luthier_leaving_disc(prepared);
             first_shape = luthier_lobe_about(first_shape, tilt, prepared.shares.x, disc);
             second_shape = luthier_lobe_about(second_shape, tilt, prepared.shares.y, disc);
             prepared.first_strength *= first_shape.gain;

@@ -6,7 +6,9 @@ use luthier_optics::stack::{Distribution, Stack};
 
 use super::Family;
 use super::trace::{DEPTH, Energies, Node, Rest, SHADES, WHITE};
-use crate::models::lobes::fit::{Found, indices};
+use crate::models::lobes::fit::{Found, indices, seen_from};
+use crate::models::lobes::half_vector::refracted;
+use crate::models::lobes::leaving::Leaving;
 use crate::models::lobes::{
     BaseLight, FirstInterface, FitSettings, Frame, Lobes, Painted, Row, ViewAxis, Wide, base_below, shown,
 };
@@ -49,7 +51,7 @@ impl Family {
             let falloff = node.falloff.filter(|_| base.is_some()).unwrap_or(found[1].wide_falloff());
             let own = base.map_or([0.0; 3], |base| base.albedo);
             let seen = if self.is_metallic { [WHITE; 3] } else { own };
-            let rows = self.rows(&node, &found, spreads, falloff, seen);
+            let rows = self.rows(&node, &found, spreads, (axis, index, self.alphas(number)[0]), falloff, seen);
             beside[number] = Some(found);
             nodes.push(Lobes {
                 first: first.clone(),
@@ -67,7 +69,15 @@ impl Family {
         nodes
     }
 
-    fn rows(self, node: &Node, found: &[Found; 2], spreads: [f64; 2], falloff: [f64; 2], albedo: Rgb) -> Vec<Row> {
+    fn rows(
+        self,
+        node: &Node,
+        found: &[Found; 2],
+        spreads: [f64; 2],
+        (axis, index, coat): (ViewAxis, f64, f64),
+        falloff: [f64; 2],
+        albedo: Rgb,
+    ) -> Vec<Row> {
         let sent_back = internal_of(&node.rest, albedo, |energies| energies.clear);
         let dimmed = internal_of(&node.rest, albedo, |energies| energies.dimmed);
         let around = -libm::log(ratio(dimmed[0], sent_back[0])) / DEPTH;
@@ -78,14 +88,20 @@ impl Family {
         });
         let wide_shares = node.lobes[1].wide_shares(&found[1]);
         let rows = node.rest.iter().enumerate().map(|(view, rest)| {
+            let wo = seen_from(axis, [1.0, 0.0], view);
+            let (sin_theta, leaving) = (wo.x, Leaving::new(refracted(wo, index), index));
+            let crossing = self.crossing(coat, wo.z);
+            let over = |energy: f64| energy / crossing;
             let lobes = lobes.iter().zip(spreads).enumerate().map(|(number, (lobes, spread))| {
                 let mut lobe = lobes[view];
+                // Between rows the share is that of the shape there: rows have what its estimate lacks.
+                lobe.share /= leaving.share(&lobe.in_plane(sin_theta), [0.0; 2]);
                 lobe.shift /= spread;
                 // Rows have sharpness times the root of the tail; between two tails, sharpness alone is in line.
                 lobe.tail = lobe.tail.clamp(LEAST_TAIL, 1.0);
                 lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread / lobe.tail.sqrt());
                 // Energies between nodes hang on neither node's share.
-                lobe.strength = energies[view][number];
+                lobe.strength = energies[view][number].map(over);
                 // Lobes in the plane of the eye have no shear: its place has the share of the trapped light that is in the remainder.
                 lobe.shear = if number == 0 { wide_shares[view] / lobe.tail.sqrt() } else { 0.0 };
                 lobe
@@ -100,18 +116,15 @@ impl Family {
                 let white = rest.facets.clear.iter().sum::<f64>() / 3.0;
                 let albedo = if self.is_coated() {
                     let lengths = [0, 1].map(|part: usize| length(&rest.reflected[part], 1));
-                    [facets[1], lengths[0], lengths[1]]
+                    [over(1.0 - facets[1]), lengths[0], lengths[1]]
                 } else {
                     [facets[0] - SHADES[0] * slope, slope, 0.0]
                 };
-                let energy = [light, once, length(&rest.base_once, 0)];
-                (albedo, [white, alone, 0.0], energy, [sent_back[0], more, around])
+                let energy = [over(light), over(once), length(&rest.base_once, 0)];
+                (albedo, [white, alone, 0.0].map(over), energy, [sent_back[0], over(more), around])
             } else {
-                let below = |c: usize| rest.reflected.iter().map(|part| part.clear[c]).sum::<f64>();
-                let all = [0, 1, 2]
-                    .map(|c: usize| rest.first_facet[c] + below(c) + rest.base.clear[c] + rest.facets.clear[c]);
-                let wide = [0, 1, 2].map(|c: usize| rest.base.clear[c] + rest.facets.clear[c]);
-                (all, wide, rest.base.clear, sent_back)
+                let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
+                (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
             };
             let base = Some(BaseLight { energy, internal, falloff });
             Row { albedo_dir, lobes: lobes.collect(), wide, base }
