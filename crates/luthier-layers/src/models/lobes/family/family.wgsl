@@ -185,12 +185,15 @@
             }
             wide = mix(of_wide.y + passed * diffuse / (1.0 - sent_back * diffuse), vec3<f32>(of_wide.x), metallic);
             once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, metal), metallic);
-            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
             //? lobes_tinted
             {
                 once *= exp(-of_albedo.y * depth);
-                more *= exp(-of_albedo.z * depth);
+                // Trapped light passes the slab again before each visit.
+                let again = exp(-of_albedo.z * depth);
+                more = mix(of_internal.y * again * again, luthier_family_more(of_more.rgb, metal * again), metallic);
             }
+            //? else
+            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
             facet = vec3<f32>(1.0 - crossing * of_albedo.x);
             if base_layer == 0u {
                 facet = of_albedo.x + of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);

@@ -5,6 +5,7 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::{Distribution, Stack};
 
 use super::Family;
+use super::paint::trapped;
 use super::trace::{DEPTH, Energies, Node, Rest, SHADES, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
 use crate::models::lobes::half_vector::refracted;
@@ -115,8 +116,8 @@ impl Family {
                 let slope = (facets[2] - facets[0]) / (SHADES[2] - SHADES[0]);
                 let white = rest.facets.clear.iter().sum::<f64>() / 3.0;
                 let albedo = if self.is_coated() {
-                    let lengths = [0, 1].map(|part: usize| length(&rest.reflected[part], 1));
-                    [over(1.0 - facets[1]), lengths[0], lengths[1]]
+                    let [once, more] = &rest.reflected;
+                    [over(1.0 - facets[1]), length(once, 1), between_visits(energies[view][1], more.dimmed[1])]
                 } else {
                     [facets[0] - SHADES[0] * slope, slope, 0.0]
                 };
@@ -148,6 +149,20 @@ fn chain(light: &Energies) -> Rgb {
     let slope = (light.clear[1] - light.clear[0]) / (SHADES[1] - SHADES[0]);
     [(light.clear[0] - slope * SHADES[0]).max(0.0), light.between[0], light.clear[2]]
 }
+
+/// Length of the way from visit to visit of the base, of light of more visits with such energies, which a slab of [`DEPTH`] dims to this at the F0 of the
+/// middle shade.
+fn between_visits(energies: Rgb, dimmed: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..BISECTIONS {
+        let passed = 0.5 * (low + high);
+        *if trapped(energies, SHADES[1] * passed) < dimmed { &mut low } else { &mut high } = passed;
+    }
+    -libm::log(0.5 * (low + high)) / DEPTH
+}
+
+/// Halvings of the interval in which [`between_visits`] looks: down to the digits of a half float.
+const BISECTIONS: u32 = 16;
 
 /// Share of the light of a Lambertian base that is sent back to it, by channel.
 fn internal_of(views: &[Rest], albedo: Rgb, of: impl Fn(&Energies) -> Rgb) -> Rgb {

@@ -19,7 +19,7 @@
 //!
 //! Between its energies light of one visit is `(p + q c) / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The light of the diffuse base is `t r / (1 - s r)`. A slab multiplies each
-//! energy by `exp(-length depth)`. Without a coat, the first lobe has the light of several facets of the dielectric, the second that of the metal, and the
+//! energy by `exp(-length depth)`, but for light of more visits c, because such light passes it again before each. Without a coat, the first lobe has the light of several facets of the dielectric, the second that of the metal, and the
 //! last part the albedo of one facet, `x + y F0`.
 //!
 //! Any other base keeps its colours, and rows have energies by channel, and light but that of one facet in place of the albedo. Strengths of all families are

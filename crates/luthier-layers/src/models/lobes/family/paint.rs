@@ -157,7 +157,9 @@ impl Family {
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
         let wide = mix(row.wide[0], row.wide[1] + diffuse);
         let once = mix(chain(of_once, metal), once) * passed(second);
-        let trapped = mix(trapped(of_more, metal), more) * passed(third);
+        // Trapped light passes the slab again before each visit: it is as dark as over a darker base.
+        let again = passed(third);
+        let trapped = mix(trapped(of_more, metal * again), more * again * again);
         [entering, wide, once, trapped]
     }
 }
