@@ -133,7 +133,7 @@
         let of_wide = luthier_family_part(prepared.row, beside, 0.0);
         let of_internal = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_INTERNAL);
         let of_base = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_BASE);
-        let of_albedo = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_ALBEDO).rgb;
+        let of_albedo = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_ALBEDO);
         let falloff = vec2<f32>(of_base.a, of_internal.a);
         prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
         var diffuse = painted.rgb;
@@ -201,7 +201,7 @@
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
-            facet = 1.0 - crossing * of_albedo;
+            facet = 1.0 - crossing * of_albedo.rgb;
             //? base_color
             {
                 let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
@@ -213,8 +213,8 @@
         // No more light than falls in.
         let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
         prepared.albedo = facet + left * (wide + once + more);
-        // Some of the trapped light is wide.
-        prepared.wide = left * (wide + of_wide.w * more);
+        // Some of the light of both lobes is wide.
+        prepared.wide = left * (wide + of_albedo.w * once + of_wide.w * more);
         let squares = held * held;
         let once_spread = sqrt(squares.y + 0.09 * squares.x);
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
@@ -225,7 +225,7 @@
         let first_leaving = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
         let second_leaving = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
         prepared.shares = min(decays.yw * vec2<f32>(first_leaving, second_leaving), vec2<f32>(1.0));
-        prepared.first_strength = left * once / max(prepared.shares.x, 1e-3);
+        prepared.first_strength = left * (1.0 - of_albedo.w) * once / max(prepared.shares.x, 1e-3);
         prepared.second_strength = left * (1.0 - of_wide.w) * more / max(prepared.shares.y, 1e-3);
         //? surface
         {

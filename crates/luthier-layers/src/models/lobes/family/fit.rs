@@ -87,7 +87,7 @@ impl Family {
             let energies: Vec<Rgb> = energies.iter().map(|energies| energies[lobe]).collect();
             node.lobes[lobe].with_energies(&found[lobe], &energies)
         });
-        let wide_shares = node.lobes[1].wide_shares(&found[1]);
+        let wide_shares = [0, 1].map(|lobe: usize| node.lobes[lobe].wide_shares(&found[lobe]));
         let rows = node.rest.iter().enumerate().map(|(view, rest)| {
             let wo = seen_from(axis, [1.0, 0.0], view);
             let (sin_theta, leaving) = (wo.x, Leaving::new(refracted(wo, index), index));
@@ -103,8 +103,8 @@ impl Family {
                 lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread / lobe.tail.sqrt());
                 // Energies between nodes hang on neither node's share.
                 lobe.strength = energies[view][number].map(over);
-                // Lobes in the plane of the eye have no shear: its place has the share of the trapped light that is in the remainder.
-                lobe.shear = if number == 0 { wide_shares[view] / lobe.tail.sqrt() } else { 0.0 };
+                // Lobes in the plane of the eye have no shear: its place has the share of the light of the other lobe that is in the remainder.
+                lobe.shear = wide_shares[1 - number][view] / lobe.tail.sqrt();
                 lobe
             });
             let length =

@@ -15,7 +15,7 @@
 //! | 1 | reflected by the metal once: energies at c = 0, .8, 1 | shift |
 //! | 2 | reflected by the metal more often: energies at c = .5, .9, 1 | shift |
 //! | 3, 4 | sharpness; tails, and shares over their estimates | |
-//! | 5 | light but that of one facet of the first interface, lengths of the light of both lobes | |
+//! | 5 | light but that of one facet of the first interface, lengths of the light of both lobes | share of the light of one visit that is wide |
 //!
 //! Between its energies light of one visit is `(p + q c) / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The light of the diffuse base is `t r / (1 - s r)`. A slab multiplies each
@@ -27,7 +27,8 @@
 //!
 //! Rows have quotients over closed forms, so that lines between nodes and between rows hold: slopes of lobes over [`Family::spreads`], energies over
 //! [`Family::crossing`], and shares above the horizon over their estimates (`Leaving`). An interpolated share would not be that of the interpolated shape: light would be
-//! off by a hundredth at all views. Tails are one number of the family. Some of the trapped light is wide, by the same share in all channels.
+//! off by a hundredth at all views. Tails are one number of the family. Some of the light of both lobes is wide, by the same share in all channels; above no
+//! diffuse base, whose light has a shape, of trapped light alone.
 
 mod fit;
 mod paint;

@@ -119,7 +119,9 @@ impl Family {
         }
         let crossing = self.crossing(alphas[0], cos_theta);
         let simulated = frame.base.map_or([0.0; 3], |base| base.albedo);
-        let wide_share = row.lobes.first().map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt());
+        // The place of the shear of one lobe has the share of the light of the other that is wide.
+        let [wide_once, wide_trapped] =
+            [1, 0].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt()));
         let base = row.base.unwrap_or_default();
         let more = base.more(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
@@ -133,8 +135,9 @@ impl Family {
             let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
             let (facet, below) = (1.0 - entering, wide + once + trapped);
             let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };
-            here.wide[c] = kept * (wide + wide_share * trapped);
-            for (lobe, energy) in here.lobes.iter_mut().zip([once, (1.0 - wide_share) * trapped]) {
+            here.wide[c] = kept * (wide + wide_once * once + wide_trapped * trapped);
+            for (lobe, energy) in here.lobes.iter_mut().zip([(1.0 - wide_once) * once, (1.0 - wide_trapped) * trapped])
+            {
                 lobe.strength[c] = kept * energy / lobe.share.max(SHARE_MIN);
             }
             here.albedo_dir[c] = facet + kept * below;

@@ -200,7 +200,8 @@ impl Node {
         let of_base = falloff.filter(|_| has_base);
         let [narrow, broad] = cells;
         let lobes = [
-            Simulation::of_part(axis, narrow, spreads[0], once, false, of_base),
+            // Wide light of one visit takes the shape of that of the base, or is in its lobe.
+            Simulation::of_part(axis, narrow, spreads[0], once, of_base.is_some(), of_base),
             Simulation::of_part(axis, broad, spreads[1], more, true, of_base),
         ];
         Self { lobes, rest, falloff }
