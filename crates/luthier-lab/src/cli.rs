@@ -306,7 +306,7 @@ pub(crate) struct FamiliesOptions {
 pub(crate) enum FamilyGroup {
     /// A coat over metal of any colour
     Metal,
-    /// The same with facets of Beckmann's distribution
+    /// A coat over metal of any colour, both with Beckmann's distribution
     MetalBeckmann,
     /// A coat over plastic of any colour
     Plastic,
