@@ -285,9 +285,12 @@ pub(crate) struct VaryingOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier-lab families -o docs/pages/families.md\n  luthier-lab families --places 20 --noise 0.01"
+    after_help = "Examples:\n  luthier-lab families -o docs/pages/families.md\n  luthier-lab families --group metal --places 20 --noise 0.01"
 )]
 pub(crate) struct FamiliesOptions {
+    /// Group of stacks; may be given again. By default all
+    #[arg(long, value_name = "NAME")]
+    pub(crate) group: Vec<FamilyGroup>,
     /// Random places of each group
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub(crate) places: u32,
@@ -314,6 +317,29 @@ pub(crate) struct FiveWaysOptions {
     pub(crate) picture: PathBuf,
     #[command(flatten)]
     pub(crate) destination: Destination,
+}
+
+/// Stacks of one family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FamilyGroup {
+    /// A coat over metal of any colour
+    Metal,
+    /// A coat over metal of any colour, both with Beckmann's distribution
+    MetalBeckmann,
+    /// A coat over plastic of any colour
+    Plastic,
+    /// A coat over one interface half way from plastic to metal
+    Mixture,
+    /// A tinted coat over metal or plastic of any colour
+    Tinted,
+    /// Two coats over metal of a complex index
+    TwoCoats,
+    /// A coat over metal of a complex index
+    Copper,
+    /// Metal or plastic of any colour without a coat
+    Bare,
+    /// A coat over anisotropic metal of any colour
+    Brushed,
 }
 
 /// Places of every textured material with a pair of directions each.

@@ -430,7 +430,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        6
+        if is_family(self.varying) { 7 } else { 6 }
     }
 
     fn inputs(&self) -> Value {

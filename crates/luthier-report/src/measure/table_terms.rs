@@ -489,7 +489,7 @@ impl ShaderTerms for TableTerms<'_> {
                     table.row_between(first, base.1, cos_theta, self.weights)
                 };
                 let row = if coat.1 > 0.0 { of(coat.0).between(&of(coat.0 + 1), coat.1) } else { of(coat.0) };
-                family.row_in(&row, alphas, frame.base.map_or([0.0; 3], |base| base.albedo), paint)
+                family.row_in(&row, alphas, (frame, wo.z), paint)
             }
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(varying);

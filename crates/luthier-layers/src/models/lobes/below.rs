@@ -6,22 +6,14 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 
 use super::half_vector::{outside, refracted, slope};
+use super::leaving::{LEAVING_MIN, Leaving};
 use super::{Frame, Lobe, Row, Shape};
 
 /// Least cosine of a normal against that of the surface.
 pub(super) const UP_MIN: f64 = 1e-3;
 
-/// Least reciprocal radius of the disc in [`Below::leaving`]: beyond, single precision would see noise.
-const DISC_MIN: f64 = 0.05;
-
 /// Tilts of one over this many widths of a lobe and more go by the share of the lobe in its row, and not by an estimate of that share.
 const ESTIMATED_BELOW: f64 = 4.0;
-
-/// Distance of the middles of a shape and of the disc in [`Below::leaving`], a slope, below which no direction leads from one to the other.
-const DISC_SOFT: f64 = 1e-4;
-
-/// Least share of [`Below::leaving`], so that ratios of shares are bounded.
-const LEAVING_MIN: f64 = 1e-3;
 
 /// Least squared cosine inside, times the squared index, in [`Lean::met`].
 const INSIDE_SQ_MIN: f64 = 1e-6;
@@ -57,7 +49,7 @@ impl Below {
     /// The light that a row has for `wo` (unit, above the surface).
     pub fn new(frame: Frame, row: Row, wo: DVec3) -> Self {
         let sin = libm::hypot(wo.x, wo.y);
-        let (turn, at, shapes) = match frame.axes {
+        let (turn, at, shapes): ([f64; 2], DVec3, Vec<Shape>) = match frame.axes {
             None => {
                 let turn = if sin > 0.0 { [wo.x / sin, wo.y / sin] } else { [1.0, 0.0] };
                 let plain = row.lobes.iter().map(|lobe| lobe.in_plane(sin));
@@ -77,6 +69,7 @@ impl Below {
             }
         };
         let eye = refracted(at, frame.index);
+        let row = if frame.stretch.is_some() { shared(row, &shapes, Leaving::new(eye, frame.index), sin) } else { row };
         let of_base = row.base.filter(|_| frame.base.is_some_and(|base| base.is_lambertian));
         let wide = of_base.map_or(frame.wide, |base| frame.wide.of_base(base.falloff));
         let frame = Frame { wide, ..frame };
@@ -104,9 +97,10 @@ impl Below {
         let up = normal.z.max(UP_MIN);
         let [x, y] = [normal.x, normal.y].map(|across| across * ratio / up);
         self.tilt = [cos * x + sin * y, cos * y - sin * x];
+        let leaving = Leaving::new(self.eye, self.frame.index);
         for i in 0..self.shapes.len() {
             let shape = &self.shapes[i];
-            let [level, leaned] = [[0.0; 2], self.tilt].map(|tilt| self.leaving(shape, tilt));
+            let [level, leaned] = [[0.0; 2], self.tilt].map(|tilt| leaving.share(shape, tilt));
             let [x, y] = shape.scaled([0, 1].map(|axis: usize| shape.middle[axis] + self.tilt[axis]));
             // The estimate without a tilt becomes the share of the row, so that tilts begin with no step and estimates that are too low do not count.
             let soon = (1.0 - ESTIMATED_BELOW * libm::hypot(x, y)).max(0.0);
@@ -119,33 +113,6 @@ impl Below {
             lobe.share *= left / gain;
         }
         self
-    }
-
-    /// Share of a shape above the horizon where its middle is moved by a slope, as an estimate.
-    ///
-    /// Half vectors to light above the horizon fill a disc of slopes: with the sine s and the cosine c of the eye inside, times the index n, its middle is
-    /// `s / d` and its radius `1 / d`, where `d = c + sqrt(n^2 - 1)`. GGX is a uniform density on a sphere in stereographic projection, so that the share
-    /// in a disc is that of a cap of the sphere: `(1 - cos(a + b)) / 2`, if the tangents of a and b are the distances of the middle of the shape to the near
-    /// edge (below 0 outside) and to the far edge, in widths. For other tails a distance counts as the one beyond which GGX has as much: `cos a` is the root
-    /// of the share of the shape that is farther from its middle. An ellipse has its width towards the middle of the disc, and its mean width on the
-    /// whole. For round lobes with the tail of GGX the share is exact.
-    fn leaving(&self, shape: &Shape, tilt: [f64; 2]) -> f64 {
-        let index = self.frame.index;
-        let radius = 1.0 / (index * self.eye.z + ((index - 1.0) * (index + 1.0)).max(0.0).sqrt()).max(DISC_MIN);
-        let [x, y] = [(self.eye.x, 0), (self.eye.y, 1)]
-            .map(|(eye, axis): (f64, usize)| index * eye * radius - tilt[axis] - shape.middle[axis]);
-        let away = libm::hypot(x, y);
-        // Width of the shape along the way to the middle of the disc.
-        let ([cos, sin], [first, second]) = (shape.turn, shape.width);
-        let mean = (first * second).sqrt();
-        let along = libm::hypot((cos * x + sin * y) * first, (cos * y - sin * x) * second);
-        let near = (radius - away) * (away + DISC_SOFT) / (along + DISC_SOFT * mean);
-        let far = (2.0 * radius / mean - near).max(near);
-        let [(cos_near, sin_near), (cos_far, sin_far)] = [near, far].map(|edge| {
-            let beyond = shape.beyond(edge * edge);
-            (beyond.sqrt(), (1.0 - beyond).sqrt().copysign(edge))
-        });
-        (0.5 - 0.5 * (cos_near * cos_far - sin_near * sin_far)).max(LEAVING_MIN)
     }
 
     /// The light after the diffuse base below a slab of relative index `index` is turned to a normal (unit, in the frame of the view), in the colour of the
@@ -234,6 +201,18 @@ impl Below {
         let ([x, y], factor) = slope(turned, refracted(turned, self.frame.index), self.eye, self.frame.index);
         ([x - self.tilt[0], y - self.tilt[1]], factor)
     }
+}
+
+/// A row whose lobes have other shapes in the plane of the eye than its own, with as much energy: shares above the horizon change as their estimates do.
+fn shared(mut row: Row, shapes: &[Shape], leaving: Leaving, sin: f64) -> Row {
+    for (lobe, shape) in row.lobes.iter_mut().zip(shapes) {
+        let [own, other] = [&lobe.in_plane(sin), shape].map(|shape| leaving.share(shape, [0.0; 2]));
+        let share = (lobe.share * other / own).min(1.0);
+        let gain = lobe.share.max(LEAVING_MIN) / share.max(LEAVING_MIN);
+        lobe.strength = lobe.strength.map(|strength| strength * gain);
+        lobe.share = share;
+    }
+    row
 }
 
 impl Lean {

@@ -30,7 +30,6 @@
 //! Half vectors outside the stack are the case n = 1. The fit tries an index next to 1 instead, whose lobes fall towards the horizon as facets mask
 //! them, and takes it if its lobes are the nearest.
 
-mod amounts;
 mod axes;
 mod below;
 mod ellipse;
@@ -40,6 +39,7 @@ mod fit;
 mod fitted;
 mod half_vector;
 mod judge;
+mod leaving;
 mod parameters;
 mod patina;
 mod prepared;
@@ -83,7 +83,7 @@ pub(crate) const ROOM: Room = Room {
         eval: concat!(
             include_str!("family/family.wgsl"),
             include_str!("tilt.wgsl"),
-            include_str!("sides.wgsl"),
+            include_str!("patina/sides.wgsl"),
             include_str!("eval.wgsl")
         ),
         parts: include_str!("parts.wgsl"),

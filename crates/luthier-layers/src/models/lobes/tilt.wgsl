@@ -1,12 +1,12 @@
-//? lobes_tilted
+//? lobes_tilted|lobes_family
 /// Slopes of half vectors to light above the horizon: middle of their disc, in the frame of the lobes, and its radius.
 fn luthier_leaving_disc(prepared: LuthierPreparedLobes) -> vec3<f32> {
     let radius = 1.0 / max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
     return vec3<f32>(luthier_in_frame(prepared.azimuth, prepared.wo.xy) * radius, radius);
 }
 
-//? lobes_tilted
-/// Share of a shape above the horizon, as an estimate, where its middle is so far from that of the disc: see `Below::leaving` of the f64 twin.
+//? lobes_tilted|lobes_family
+/// Share of a shape above the horizon, as an estimate, where its middle is so far from that of the disc: see `Leaving` of the f64 twin.
 fn luthier_lobe_leaving(shape: LuthierLobeShape, apart: vec2<f32>, radius: f32) -> f32 {
     //? lobes_axes
     {
@@ -24,6 +24,14 @@ fn luthier_lobe_leaving(shape: LuthierLobeShape, apart: vec2<f32>, radius: f32) 
     let near = (radius - away) * (away + 1e-4) / (along + 1e-4 / root);
     let edges = vec2<f32>(near, max(2.0 * radius * root - near, near));
     let cosines = exp2(-0.5 * shape.decay * log2(1.0 + edges * edges));
+    //? lobes_family
+    {
+        // Small sines by a series: the difference to 1 would be rounded off.
+        let small = shape.decay * edges * edges;
+        let squares = select(1.0 - cosines * cosines, small - 0.5 * small * (small + edges * edges), small < vec2<f32>(1e-3));
+        let sines = sqrt(max(squares, vec2<f32>(0.0)));
+    }
+    //? else
     let sines = sqrt(max(1.0 - cosines * cosines, vec2<f32>(0.0)));
     let of_near = select(-sines.x, sines.x, near >= 0.0);
     let of_far = select(-sines.y, sines.y, edges.y >= 0.0);

@@ -1,6 +1,5 @@
 //! Lobes of a stack that varies with a texture: nodes over the factor of the texture, or over the amount of a patina.
 
-use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
@@ -8,8 +7,8 @@ use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::tally::mean;
 use super::{
-    Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Lobes, Paint, Row, Slopes, ViewAxis, most_lobes, patina,
-    shown,
+    Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Frame, Lobes, Paint, Row, Slopes, ViewAxis, most_lobes,
+    patina, shown,
 };
 use crate::layers::ALPHA_MIN;
 
@@ -284,7 +283,6 @@ impl Varied {
             (first, (first + 1).min(axis.nodes - 1), place - first as f64)
         });
         let mut lobes = self.nodes[0].clone();
-        let (spreads, simulated) = (Family::spreads(held), lobes.frame.base.map_or([0.0; 3], |base| base.albedo));
         let rows = (0..lobes.rows.len()).map(|row| {
             let [low, high] = [next_coat.0, next_coat.1].map(|coat| {
                 let [low, high] =
@@ -296,7 +294,10 @@ impl Varied {
         lobes.rows = rows.collect();
         // Between rows, numbers are in line, and what follows from them is not.
         lobes = lobes.refined(PAINTED_STEPS);
-        lobes.rows.iter_mut().for_each(|row| *row = family.painted(row, spreads, simulated, paint));
+        let (frame, axis) = (lobes.frame, lobes.axis);
+        for (place, row) in lobes.rows.iter_mut().enumerate() {
+            *row = family.painted(row, held, (&frame, axis.cos_theta(place as f64)), paint);
+        }
         lobes.frame.stretch = family.stretch(slopes);
         lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, slopes), family), &over.color);
         Some(lobes)
@@ -319,10 +320,9 @@ impl Varied {
 }
 
 impl Family {
-    /// A row of numbers, read between nodes, at slope parameters of coat and base that are held to the ranges, and in colours.
-    /// `simulated` is the albedo of the diffuse base in the simulation.
-    pub fn row_in(self, row: &Row, alphas: [f64; 2], simulated: Rgb, paint: &Paint) -> Row {
-        self.painted(row, Self::spreads(self.held(alphas)), simulated, paint)
+    /// A row of numbers, read between nodes at a cosine of the view, at slope parameters of coat and base that are held to the ranges, and in colours.
+    pub fn row_in(self, row: &Row, alphas: [f64; 2], seen: (&Frame, f64), paint: &Paint) -> Row {
+        self.painted(row, self.held(alphas), seen, paint)
     }
 
     /// Fractional numbers of the nodes of slope parameters of coat and base.

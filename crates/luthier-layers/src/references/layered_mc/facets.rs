@@ -20,6 +20,8 @@ pub(crate) struct Facets {
     alpha_y: f64,
     /// 1 / (pi alpha_x alpha_y).
     peak: f64,
+    /// Whether samples of Beckmann's distribution are drawn by rejection.
+    is_rejecting: bool,
 }
 
 /// The facets from a direction.
@@ -45,7 +47,14 @@ impl Facets {
             alpha_x,
             alpha_y,
             peak: 1.0 / (PI * alpha_x * alpha_y),
+            is_rejecting: false,
         })
+    }
+
+    /// The facets with samples of Beckmann's distribution by rejection: three times as fast as an inversion, and less even, because they take a varying
+    /// number of random numbers.
+    pub(crate) fn rejecting(self) -> Self {
+        Self { is_rejecting: true, ..self }
     }
 
     /// Product of the slopes: the scale of light that bounces more than once.
@@ -85,6 +94,20 @@ impl Facets {
         self.area(s_sq, w.z, (w.z * w.z + s_sq).sqrt())
     }
 
+    /// A bound of [`Self::visible_area`] from below the horizon, where that is slow to work out: its exponential by a series, and without the part of the error
+    /// function.
+    #[inline(always)]
+    pub(crate) fn most_seen_from_below(&self, w: DVec3) -> Option<f64> {
+        if self.distribution != Distribution::Beckmann {
+            return None;
+        }
+        let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
+        let s_sq = x * x + y * y;
+        // Squared cotangent, over the slopes.
+        let q = w.z * w.z / s_sq.max(f64::MIN_POSITIVE);
+        Some((0.5 / PI.sqrt() * (1.0 + 1e-9)) * s_sq.sqrt() / (1.0 + q * (1.0 + q * (0.5 + q / 6.0))))
+    }
+
     #[inline(always)]
     fn area(&self, s_sq: f64, z: f64, length: f64) -> f64 {
         match self.distribution {
@@ -107,6 +130,7 @@ impl Facets {
     pub(crate) fn sample(&self, stream: &mut Stream, view: &View) -> DVec3 {
         let View { stretched, length, .. } = *view;
         let m = match self.distribution {
+            Distribution::Beckmann if self.is_rejecting && stretched.z > 0.0 => gaussian(stream, stretched / length),
             Distribution::Beckmann => {
                 let numbers = [stream.uniform(), stream.uniform()];
                 visible_normals::sample(Distribution::Beckmann, 1.0, stretched / length, numbers)
@@ -124,12 +148,42 @@ impl Facets {
     }
 }
 
+/// Cotangent, over the slopes, beyond which [`beckmann_area`] is the cosine to the last digit.
+const STEEP: f64 = 6.5;
+
+/// A visible normal of Gaussian slopes of unit scale, of any length, from a direction above the horizon.
+///
+/// Slopes x along the direction, away from it, have the density `max(0, cos - x sin) exp(-x^2)`. Below 0 that is a sum of a normal and a Rayleigh density;
+/// above 0 it is below the normal one.
+#[inline(never)]
+fn gaussian(stream: &mut Stream, from: DVec3) -> DVec3 {
+    let (sin, cos) = (libm::hypot(from.x, from.y), from.z);
+    let normal = cos * PI.sqrt();
+    let (x, y) = loop {
+        let is_normal = stream.uniform() * (normal + 0.5 * sin) < normal;
+        let (turn, u) = stream.direction_and_uniform();
+        let radius = (-libm::log(1.0 - u)).sqrt();
+        if !is_normal {
+            break (-(-libm::log(1.0 - stream.uniform())).sqrt(), radius * turn.x);
+        }
+        let x = radius * turn.x;
+        if x <= 0.0 || stream.uniform() * cos < cos - x * sin {
+            break (x, radius * turn.y);
+        }
+    };
+    let (cos_phi, sin_phi) = if sin > 0.0 { (from.x / sin, from.y / sin) } else { (1.0, 0.0) };
+    DVec3::new(-(cos_phi * x - sin_phi * y), -(sin_phi * x + cos_phi * y), 1.0)
+}
+
 #[inline(never)]
 fn beckmann_area(s: f64, z: f64) -> f64 {
     if s == 0.0 {
         return z.max(0.0);
     }
     let nu = z / s;
+    if nu > STEEP {
+        return z;
+    }
     let area = 0.5 * z * libm::erfc(-nu) + 0.5 * s * libm::exp(-nu * nu) / PI.sqrt();
     area.max(0.0)
 }
@@ -164,10 +218,24 @@ mod tests {
     }
 
     #[test]
+    fn what_is_seen_from_below_is_bounded() {
+        let surface = Surface { distribution: Distribution::Beckmann, alpha_x: 0.7, alpha_y: 0.3, rotation: 0.0 };
+        let Some(facets) = Facets::new(&surface) else { panic!("rough") };
+        for (cos, phi) in [(1e-9, 0.3), (0.01, 0.3), (0.1, 1.0), (0.4, 0.5), (0.9, 2.0), (1.0, 0.0)] {
+            let w = direction(-cos, phi);
+            let (most, area) = (facets.most_seen_from_below(w).unwrap(), facets.visible_area(w));
+            assert!(most >= area && most < 0.1 + 2.0 * area, "{cos}: {most} {area}");
+        }
+    }
+
+    #[test]
     fn visible_area_and_samples_match_quadrature_from_both_sides() {
-        for d in BOTH {
+        for (d, is_rejecting) in BOTH.map(|d| (d, false)).into_iter().chain([(Distribution::Beckmann, true)]) {
             let surface = Surface { distribution: d, alpha_x: 0.7, alpha_y: 0.3, rotation: 0.0 };
-            let Some(facets) = Facets::new(&surface) else { panic!("rough") };
+            let Some(mut facets) = Facets::new(&surface) else { panic!("rough") };
+            if is_rejecting {
+                facets = facets.rejecting();
+            }
             for (cos, phi) in [(0.9, 0.4), (0.2, 1.2), (-0.1, 0.3)] {
                 let w = direction(cos, phi);
                 let moments = |m: DVec3| [m.x, m.y, m.z, m.dot(w), m.x * m.y];

@@ -98,6 +98,16 @@ impl JointPaths {
         Some(Self { interfaces, optical_depths: depths.collect(), channels })
     }
 
+    /// The paths with facets of Beckmann's distribution drawn by rejection: faster, and less even.
+    pub(super) fn rejecting(mut self) -> Self {
+        for interface in &mut self.interfaces {
+            if let Kind::Rough(rough) = &mut interface.kind {
+                rough.facets = rough.facets.rejecting();
+            }
+        }
+        self
+    }
+
     /// The wavelengths of these paths; the others have no weight.
     pub fn channels(&self) -> [bool; 3] {
         self.channels

@@ -126,9 +126,16 @@ impl<S: Share> Walker<S> {
             self.weight = self.weight.over(survival);
         }
 
-        self.view = rough.facets.view(-next.direction);
         let up = next.direction.z;
         let v = 1.0 - stream.uniform();
+        // Most rays leave: a bound of what they see tells without its being worked out.
+        if !MORE && up > 0.0 {
+            let most = rough.facets.most_seen_from_below(-next.direction);
+            if most.is_some_and(|most| self.depth.surely_leaves(most / up, crossed, v)) {
+                return Next::Left(next);
+            }
+        }
+        self.view = rough.facets.view(-next.direction);
         let rate = self.view.area / up.abs();
         if MORE && up > 0.0 && rate > 0.0 && v > 1.0 - MEETS_MIN {
             let depth = if crossed { self.depth.flipped() } else { self.depth.value() };

@@ -54,12 +54,12 @@ pub(super) fn rows_of(tiles: u32, is_coated: impl Fn(u32) -> bool) -> (AtlasLayo
             1 => [0.5 + 0.2 * c, 0.1 * k, 1.4, 0.3 + 0.2 * c],
             2 => [0.02 * c, 0.05, 0.3 * k, 0.2 + 0.1 * c],
             3 if !is_coated => [0.0, 0.0, 0.0, 0.3 - 0.2 * c],
-            7 if !is_coated => [0.01 + 0.02 * k, 0.5, 0.0, 0.0],
+            7 if !is_coated => [0.01 + 0.02 * k, 0.5, 0.0, 0.2],
             3 => [0.01, 0.2 + 0.1 * c, 0.3 + 0.1 * k, 0.3 - 0.2 * c],
             4 => [0.02 + 0.02 * k, 0.15, 0.25, -0.1 * k],
             5 => [0.9 + 0.2 * k, 1.2 - 0.2 * c, 0.8, 0.7 + 0.1 * k],
             6 => [1.0 + 3.0 * k, 0.9 - 0.3 * c, 12.0 - 4.0 * k, 0.8],
-            _ => [0.06 + 0.02 * k, 2.5, 3.0 + k, 0.0],
+            _ => [0.94 - 0.02 * k, 2.5, 3.0 + k, 0.1 * k],
         };
         image.texel_mut(x, y).copy_from_slice(&part.map(|value| value as f32));
     }
@@ -318,7 +318,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let row = row(&layout, &image, family, alphas, eye.z);
             let plain = Paint { metal: [0.0; 3], metallic: 0.0, albedo: wide, depth };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
-            let here = family.row_in(&row, alphas, ALBEDO, &paint);
+            let here = family.row_in(&row, alphas, (&frame, eye.z), &paint);
             let below = Below::new(frame, here, eye).widened(eye, variance);
             let facets = if family.is_coated() { 0.0 } else { facets(light, eye, alphas[1].clamp(0.001, 1.0)) };
             let expected = below.eval(light);

@@ -23,6 +23,14 @@
         }
     }
 
+    /// About the share of light that crosses a coat of a slope parameter as seen at a cosine, over which rows have energies.
+    fn luthier_family_crossing(alpha: f32, cos_theta: f32) -> f32 {
+        let cos_sq = cos_theta * cos_theta;
+        let leaning = 0.4 * alpha * alpha / (alpha + 0.2 * cos_theta);
+        let missed = 1.0 - sqrt(cos_sq + (1.0 - cos_sq) * leaning);
+        return 1.0 - missed * missed * (missed * missed) * missed;
+    }
+
     //? lobes_metallic
     /// Share of diffuse light that an interface of an F0 of 0.04 lets through by Schlick's formula.
     const LUTHIER_PLASTIC_PASSED: f32 = 0.9142857;
@@ -189,7 +197,7 @@
         let of_wide = luthier_family_part(prepared.row, beside, 0.0);
         let of_internal = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_INTERNAL);
         let of_base = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_BASE);
-        let of_albedo = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_ALBEDO).rgb;
+        let of_albedo = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_ALBEDO);
         let falloff = vec2<f32>(of_base.a, of_internal.a);
         prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
         var diffuse = painted.rgb;
@@ -207,6 +215,8 @@
         let of_more = luthier_family_part(prepared.row, beside, 2.0);
         let sharpness = luthier_family_part(prepared.row, beside, 3.0);
         let decays = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_SHARES);
+        // Energies of rows are over the light that crosses the coat.
+        let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
         // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
         var once = of_once.rgb;
         var more = of_more.rgb;
@@ -239,20 +249,23 @@
             }
             wide = mix(of_wide.y + passed * diffuse / (1.0 - sent_back * diffuse), vec3<f32>(of_wide.x), metallic);
             once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, metal), metallic);
-            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
             //? lobes_tinted
             {
                 once *= exp(-of_albedo.y * depth);
-                more *= exp(-of_albedo.z * depth);
+                // Trapped light passes the slab again before each visit.
+                let again = exp(-of_albedo.z * depth);
+                more = mix(of_internal.y * again * again, luthier_family_more(of_more.rgb, metal * again), metallic);
             }
-            facet = vec3<f32>(of_albedo.x);
+            //? else
+            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
+            facet = vec3<f32>(1.0 - crossing * of_albedo.x);
             if base_layer == 0u {
-                facet += of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
+                facet = of_albedo.x + of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
             }
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
-            facet = of_albedo - wide - once - more;
+            facet = 1.0 - crossing * of_albedo.rgb;
             //? base_color
             {
                 let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
@@ -260,20 +273,22 @@
                 wide += max(of_base.rgb * (other / own - 1.0), -wide);
             }
         }
-        let below = wide + once + more;
+        let below = crossing * (wide + once + more);
         // No more light than falls in.
-        let left = min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
-        prepared.albedo = facet + left * below;
-        // Some of the trapped light is wide.
-        prepared.wide = left * (wide + of_wide.w * more);
-        prepared.shares = decays.yw;
-        prepared.first_strength = left * once / max(decays.y, 1e-3);
-        prepared.second_strength = left * (1.0 - of_wide.w) * more / max(decays.w, 1e-3);
+        let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
+        prepared.albedo = facet + left * (wide + once + more);
+        // Some of the light of both lobes is wide.
+        prepared.wide = left * (wide + of_albedo.w * once + of_wide.w * more);
         let squares = held * held;
         let once_spread = sqrt(squares.y + 0.09 * squares.x);
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
         var first_shape = luthier_family_shape(of_once.a, sharpness.xy, decays.x, once_spread, sin_theta);
         var second_shape = luthier_family_shape(of_more.a, sharpness.zw, decays.z, more_spread, sin_theta);
+        // Rows have shares over their estimates: between rows the share is that of the shape there.
+        let disc = luthier_leaving_disc(prepared);
+        let first_leaving = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
+        let second_leaving = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
+        prepared.shares = min(decays.yw * vec2<f32>(first_leaving, second_leaving), vec2<f32>(1.0));
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
             // Squared slope parameters in the plane of the eye, over those that rows were read at.
@@ -288,7 +303,12 @@
             let of_base = luthier_family_squares(base_alphas, base_turn, prepared.azimuth) * squares.y;
             first_shape = luthier_family_stretched(first_shape, (of_base + 0.09 * of_coat) / (squares.y + 0.09 * squares.x));
             second_shape = luthier_family_stretched(second_shape, (4.84 * of_base + of_coat) / (4.84 * squares.y + squares.x));
+            let first_left = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
+            let second_left = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
+            prepared.shares = min(prepared.shares * vec2<f32>(first_left / first_leaving, second_left / second_leaving), vec2<f32>(1.0));
         }
+        prepared.first_strength = left * (1.0 - of_albedo.w) * once / max(prepared.shares.x, 1e-3);
+        prepared.second_strength = left * (1.0 - of_wide.w) * more / max(prepared.shares.y, 1e-3);
         //? surface
         {
             // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
@@ -303,7 +323,6 @@
             let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
             let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
             let tilt = luthier_in_frame(prepared.azimuth, turned);
-            let disc = luthier_leaving_disc(prepared);
             first_shape = luthier_lobe_about(first_shape, tilt, prepared.shares.x, disc);
             second_shape = luthier_lobe_about(second_shape, tilt, prepared.shares.y, disc);
             prepared.first_strength *= first_shape.gain;

@@ -5,8 +5,11 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::{Distribution, Stack};
 
 use super::Family;
+use super::paint::trapped;
 use super::trace::{DEPTH, Energies, Node, Rest, SHADES, WHITE};
-use crate::models::lobes::fit::{Found, indices};
+use crate::models::lobes::fit::{Found, indices, seen_from};
+use crate::models::lobes::half_vector::refracted;
+use crate::models::lobes::leaving::Leaving;
 use crate::models::lobes::{
     BaseLight, FirstInterface, FitSettings, Frame, Lobes, Painted, Row, ViewAxis, Wide, base_below, shown,
 };
@@ -49,7 +52,7 @@ impl Family {
             let falloff = node.falloff.filter(|_| base.is_some()).unwrap_or(found[1].wide_falloff());
             let own = base.map_or([0.0; 3], |base| base.albedo);
             let seen = if self.is_metallic { [WHITE; 3] } else { own };
-            let rows = self.rows(&node, &found, spreads, falloff, seen);
+            let rows = self.rows(&node, &found, spreads, (axis, index, self.alphas(number)[0]), falloff, seen);
             beside[number] = Some(found);
             nodes.push(Lobes {
                 first: first.clone(),
@@ -68,7 +71,15 @@ impl Family {
         nodes
     }
 
-    fn rows(self, node: &Node, found: &[Found; 2], spreads: [f64; 2], falloff: [f64; 2], albedo: Rgb) -> Vec<Row> {
+    fn rows(
+        self,
+        node: &Node,
+        found: &[Found; 2],
+        spreads: [f64; 2],
+        (axis, index, coat): (ViewAxis, f64, f64),
+        falloff: [f64; 2],
+        albedo: Rgb,
+    ) -> Vec<Row> {
         let sent_back = internal_of(&node.rest, albedo, |energies| energies.clear);
         let dimmed = internal_of(&node.rest, albedo, |energies| energies.dimmed);
         let around = -libm::log(ratio(dimmed[0], sent_back[0])) / DEPTH;
@@ -77,18 +88,24 @@ impl Family {
             let energies: Vec<Rgb> = energies.iter().map(|energies| energies[lobe]).collect();
             node.lobes[lobe].with_energies(&found[lobe], &energies)
         });
-        let wide_shares = node.lobes[1].wide_shares(&found[1]);
+        let wide_shares = [0, 1].map(|lobe: usize| node.lobes[lobe].wide_shares(&found[lobe]));
         let rows = node.rest.iter().enumerate().map(|(view, rest)| {
+            let wo = seen_from(axis, [1.0, 0.0], view);
+            let (sin_theta, leaving) = (wo.x, Leaving::new(refracted(wo, index), index));
+            let crossing = self.crossing(coat, wo.z);
+            let over = |energy: f64| energy / crossing;
             let lobes = lobes.iter().zip(spreads).enumerate().map(|(number, (lobes, spread))| {
                 let mut lobe = lobes[view];
+                // Between rows the share is that of the shape there: rows have what its estimate lacks.
+                lobe.share /= leaving.share(&lobe.in_plane(sin_theta), [0.0; 2]);
                 lobe.shift /= spread;
                 // Rows have sharpness times the root of the tail; between two tails, sharpness alone is in line.
                 lobe.tail = lobe.tail.clamp(LEAST_TAIL, 1.0);
                 lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread / lobe.tail.sqrt());
                 // Energies between nodes hang on neither node's share.
-                lobe.strength = energies[view][number];
-                // Lobes in the plane of the eye have no shear: its place has the share of the trapped light that is in the remainder.
-                lobe.shear = if number == 0 { wide_shares[view] / lobe.tail.sqrt() } else { 0.0 };
+                lobe.strength = energies[view][number].map(over);
+                // Lobes in the plane of the eye have no shear: its place has the share of the light of the other lobe that is in the remainder.
+                lobe.shear = wide_shares[1 - number][view] / lobe.tail.sqrt();
                 lobe
             });
             let length =
@@ -100,19 +117,16 @@ impl Family {
                 let slope = (facets[2] - facets[0]) / (SHADES[2] - SHADES[0]);
                 let white = rest.facets.clear.iter().sum::<f64>() / 3.0;
                 let albedo = if self.is_coated() {
-                    let lengths = [0, 1].map(|part: usize| length(&rest.reflected[part], 1));
-                    [facets[1], lengths[0], lengths[1]]
+                    let [once, more] = &rest.reflected;
+                    [over(1.0 - facets[1]), length(once, 1), between_visits(energies[view][1], more.dimmed[1])]
                 } else {
                     [facets[0] - SHADES[0] * slope, slope, 0.0]
                 };
-                let energy = [light, once, length(&rest.base_once, 0)];
-                (albedo, [white, alone, 0.0], energy, [sent_back[0], more, around])
+                let energy = [over(light), over(once), length(&rest.base_once, 0)];
+                (albedo, [white, alone, 0.0].map(over), energy, [sent_back[0], over(more), around])
             } else {
-                let below = |c: usize| rest.reflected.iter().map(|part| part.clear[c]).sum::<f64>();
-                let all = [0, 1, 2]
-                    .map(|c: usize| rest.first_facet[c] + below(c) + rest.base.clear[c] + rest.facets.clear[c]);
-                let wide = [0, 1, 2].map(|c: usize| rest.base.clear[c] + rest.facets.clear[c]);
-                (all, wide, rest.base.clear, sent_back)
+                let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
+                (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
             };
             let base = Some(BaseLight { energy, internal, falloff });
             Row { albedo_dir, lobes: lobes.collect(), wide, base }
@@ -136,6 +150,20 @@ fn chain(light: &Energies) -> Rgb {
     let slope = (light.clear[1] - light.clear[0]) / (SHADES[1] - SHADES[0]);
     [(light.clear[0] - slope * SHADES[0]).max(0.0), light.between[0], light.clear[2]]
 }
+
+/// Length of the way from visit to visit of the base, of light of more visits with such energies, which a slab of [`DEPTH`] dims to this at the F0 of the
+/// middle shade.
+fn between_visits(energies: Rgb, dimmed: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..BISECTIONS {
+        let passed = 0.5 * (low + high);
+        *if trapped(energies, SHADES[1] * passed) < dimmed { &mut low } else { &mut high } = passed;
+    }
+    -libm::log(0.5 * (low + high)) / DEPTH
+}
+
+/// Halvings of the interval in which [`between_visits`] looks: down to the digits of a half float.
+const BISECTIONS: u32 = 16;
 
 /// Share of the light of a Lambertian base that is sent back to it, by channel.
 fn internal_of(views: &[Rest], albedo: Rgb, of: impl Fn(&Energies) -> Rgb) -> Rgb {

@@ -14,19 +14,22 @@
 //! | 0 | facets of the coat alone above the metal, and above the dielectric, 0 | share of the trapped light that is wide |
 //! | 1 | reflected by the metal once: energies at c = 0, .8, 1 | shift |
 //! | 2 | reflected by the metal more often: energies at c = .5, .9, 1 | shift |
-//! | 3, 4 | sharpness; tails and shares, as in other rows | |
-//! | 5 | one facet of the first interface, lengths of the light of both lobes | |
+//! | 3, 4 | sharpness; tails, and shares over their estimates | |
+//! | 5 | light but that of one facet of the first interface, lengths of the light of both lobes | share of the light of one visit that is wide |
 //!
 //! Between its energies light of one visit is `(p + q c) / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The light of the diffuse base is `t r / (1 - s r)`. A slab multiplies each
-//! energy by `exp(-length depth)`. Without a coat, the first lobe has the light of several facets of the dielectric, the second that of the metal, and the
+//! energy by `exp(-length depth)`, but for light of more visits c, because such light passes it again before each. Without a coat, the first lobe has the light of several facets of the dielectric, the second that of the metal, and the
 //! last part the albedo of one facet, `x + y F0`.
 //!
-//! Any other base keeps its colours, and rows have energies by channel. Strengths of all families are energies, not yet over the share above the horizon.
+//! Any other base keeps its colours, and rows have energies by channel, and light but that of one facet in place of the albedo. Strengths of all families are
+//! energies, not yet over the share above the horizon.
 //!
-//! Slopes of lobes are stored over closed forms ([`Family::spreads`]): ratios are of order 1 at all nodes, and lines between nodes hold. So anisotropy needs no
-//! axis: lobes of anisotropic interfaces are stretched by the matrix of their slope parameters ([`Slopes`]). Tails are one number
-//! of the family. Some of the trapped light is wide, by the same share in all channels.
+//! Rows have quotients over closed forms, so that lines between nodes and between rows hold: slopes of lobes over [`Family::spreads`], energies over
+//! [`Family::crossing`], and shares above the horizon over their estimates (`Leaving`). So anisotropy needs no axis: lobes of anisotropic interfaces are stretched by
+//! the matrix of their slope parameters ([`Slopes`]). An interpolated share would not be that of the interpolated shape: light would be
+//! off by a hundredth at all views. Tails are one number of the family. Some of the light of both lobes is wide, by the same share in all channels; above no
+//! diffuse base, whose light has a shape, of trapped light alone.
 
 mod fit;
 mod paint;
@@ -157,7 +160,28 @@ impl Family {
     pub fn slopes(self, stack: &Stack) -> [Slopes; 2] {
         [0, self.interface].map(|number| stack.layers[number].surface.into())
     }
+
+    /// About the share of light that crosses a coat of a slope parameter, at a cosine of the view: what Schlick's formula lets through where a mean facet
+    /// is seen. Energies of rows are over this; 1 without a coat.
+    ///
+    /// Facets of slope parameter a show themselves at flat views by a cosine of about the root of .4 a. Light from below follows from that within a
+    /// tenth over all slope parameters, so that energies over it hardly change from node to node, nor from row to row towards the horizon.
+    pub fn crossing(self, coat: f64, cos_theta: f64) -> f64 {
+        if !self.is_coated() {
+            return 1.0;
+        }
+        let cos_sq = cos_theta * cos_theta;
+        let leaning = FACING * coat * coat / (coat + FLAT * cos_theta);
+        let missed = 1.0 - (cos_sq + (1.0 - cos_sq) * leaning).sqrt();
+        1.0 - missed * missed * (missed * missed) * missed
+    }
 }
+
+/// Squared cosine at which flat views see the facets of a coat, over its slope parameter.
+const FACING: f64 = 0.4;
+
+/// Slope parameter, over the cosine of the view, at which facets begin to lean towards it.
+const FLAT: f64 = 0.2;
 
 /// The lowest interface of a stack.
 pub fn base_interface(stack: &Stack) -> Option<usize> {

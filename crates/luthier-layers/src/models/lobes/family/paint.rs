@@ -1,11 +1,14 @@
 //! Colours of a place, and rows of a family in them.
 
+use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::schlick::metallic_and_matt;
 use luthier_optics::stack::{Base, Stack};
 
 use super::{Family, base_interface};
-use crate::models::lobes::{BaseLight, Lobe, Row};
+use crate::models::lobes::half_vector::refracted;
+use crate::models::lobes::leaving::Leaving;
+use crate::models::lobes::{BaseLight, Frame, Lobe, Row};
 
 /// The colours of a family at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,34 +95,49 @@ impl Paint {
 const PLASTIC_F0: f64 = 0.04;
 
 impl Family {
-    /// A row in colours, from a row of numbers; `spreads` are those of [`Self::spreads`]. The albedo is at most 1: what exceeds it is taken from the
-    /// light from below. `simulated` is the albedo of the diffuse base in the simulation of rows by channel.
-    pub(in crate::models::lobes) fn painted(self, row: &Row, spreads: [f64; 2], simulated: Rgb, paint: &Paint) -> Row {
+    /// A row in colours, from a row of numbers at a cosine of the view and at slope parameters of coat and base. The albedo is at most 1: what exceeds it is
+    /// taken from the light from below.
+    pub(in crate::models::lobes) fn painted(
+        self,
+        row: &Row,
+        alphas: [f64; 2],
+        (frame, cos_theta): (&Frame, f64),
+        paint: &Paint,
+    ) -> Row {
         let mut here = row.clone();
-        for (lobe, spread) in here.lobes.iter_mut().zip(spreads) {
+        let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt();
+        let leaving = Leaving::new(refracted(DVec3::new(sin_theta, 0.0, cos_theta), frame.index), frame.index);
+        for (lobe, spread) in here.lobes.iter_mut().zip(Self::spreads(alphas)) {
             *lobe = Lobe {
                 shift: lobe.shift * spread,
                 sharpness: lobe.sharpness.map(|sharpness| sharpness * lobe.tail.sqrt() / spread),
                 shear: 0.0,
                 ..*lobe
             };
+            // Between rows the share is that of the shape there.
+            lobe.share = (lobe.share * leaving.share(&lobe.in_plane(sin_theta), [0.0; 2])).min(1.0);
         }
-        let wide_share = row.lobes.first().map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt());
+        let crossing = self.crossing(alphas[0], cos_theta);
+        let simulated = frame.base.map_or([0.0; 3], |base| base.albedo);
+        // The place of the shear of one lobe has the share of the light of the other that is wide.
+        let [wide_once, wide_trapped] =
+            [1, 0].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt()));
         let base = row.base.unwrap_or_default();
         let more = base.more(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
-            let [facet, wide, once, trapped] = if self.is_metallic {
+            let [entering, wide, once, trapped] = if self.is_metallic {
                 self.mixed(row, &base, paint, c)
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
-                let facet = row.albedo_dir[c] - row.wide[c] - once - trapped;
-                [facet, row.wide[c] + more.max(-row.wide[c]), once, trapped]
+                [row.albedo_dir[c], row.wide[c] + more.max(-row.wide[c]), once, trapped]
             };
-            let below = wide + once + trapped;
+            let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
+            let (facet, below) = (1.0 - entering, wide + once + trapped);
             let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };
-            here.wide[c] = kept * (wide + wide_share * trapped);
-            for (lobe, energy) in here.lobes.iter_mut().zip([once, (1.0 - wide_share) * trapped]) {
+            here.wide[c] = kept * (wide + wide_once * once + wide_trapped * trapped);
+            for (lobe, energy) in here.lobes.iter_mut().zip([(1.0 - wide_once) * once, (1.0 - wide_trapped) * trapped])
+            {
                 lobe.strength[c] = kept * energy / lobe.share.max(SHARE_MIN);
             }
             here.albedo_dir[c] = facet + kept * below;
@@ -129,8 +147,8 @@ impl Family {
         here
     }
 
-    /// Energies of a base that is metallic in places, by channel: one facet of the first interface, the remainder without trapped light, and light that the
-    /// base reflected once, and more often.
+    /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
+    /// light that the base reflected once, and more often.
     fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, c: usize) -> [f64; 4] {
         let (metal, metallic) = (paint.metal[c], paint.metallic);
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
@@ -138,12 +156,14 @@ impl Family {
         let ([light, once, length], [sent_back, more, around]) = (base.energy, base.internal);
         let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
         let [first, second, third] = row.albedo_dir;
-        let facet = if self.is_coated() { first } else { first + second * mix(metal, PLASTIC_F0) };
+        let entering = if self.is_coated() { first } else { 1.0 - (first + second * mix(metal, PLASTIC_F0)) };
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
         let wide = mix(row.wide[0], row.wide[1] + diffuse);
         let once = mix(chain(of_once, metal), once) * passed(second);
-        let trapped = mix(trapped(of_more, metal), more) * passed(third);
-        [facet, wide, once, trapped]
+        // Trapped light passes the slab again before each visit: it is as dark as over a darker base.
+        let again = passed(third);
+        let trapped = mix(trapped(of_more, metal * again), more * again * again);
+        [entering, wide, once, trapped]
     }
 }
 

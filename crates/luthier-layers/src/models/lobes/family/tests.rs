@@ -1,5 +1,7 @@
 //! Families against the simulation of single places.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::ior::{Ior, IorSample};
@@ -94,6 +96,30 @@ fn shades_are_no_wavelengths() {
     };
     let [found, expected] = [&dispersive, &plastic(true, [0.0; 3])].map(energies);
     assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
+}
+
+/// Oracle: a midpoint rule over directions of light. Between nodes and rows, lobes send as much light as the albedo says: no more than falls in.
+#[test]
+fn light_between_nodes_sums_to_the_albedo() {
+    let stack = plastic(true, [0.0; 3]);
+    let family = Family::new(&stack, [0.1, 0.4], [0.1, 0.5], true).unwrap();
+    let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 8000, ..SETTINGS });
+    let mix = Mix { metal: [1.0, 0.8, 0.5], matt: [0.5; 3], metallic: 1.0 };
+    let lobes = varied.painted([0.2, 0.25], &Paint::of(&stack).mixed(mix)).unwrap();
+    let side = 300;
+    for theta in [0.05, 0.7, 1.2, 1.4] {
+        let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+        let mut sum = [0.0; 3];
+        for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
+            let (z, phi) = ((f64::from(i) + 0.5) / f64::from(side), TAU * (f64::from(j) + 0.5) / f64::from(side));
+            let (sin, (sin_phi, cos_phi)) = ((1.0 - z * z).sqrt(), libm::sincos(phi));
+            let light = lobes.eval(DVec3::new(sin * cos_phi, sin * sin_phi, z), wo);
+            (0..3).for_each(|c| sum[c] += light[c] * TAU / f64::from(side * side));
+        }
+        let stated = lobes.row(wo).albedo_dir;
+        assert!((0..3).all(|c| (sum[c] - stated[c]).abs() < 0.006), "{theta}: {sum:?} {stated:?}");
+        assert!(sum[0] < 1.002, "{theta}: {sum:?}");
+    }
 }
 
 /// Light of a mix is the mean of both, and no place returns more than falls in.

@@ -132,7 +132,8 @@ impl Node {
             if family.is_metallic { (of_metal(family, &plain), of_plastic(&plain)) } else { (plain, None) };
         let spreads = Family::spreads(alphas);
         let cells = spreads.map(|spread| Cells::new(index, spread));
-        let (paths, paths_below) = (ColorPaths::new(&here, color), below.map(|below| ColorPaths::new(&below, color)));
+        let (paths, paths_below) =
+            (ColorPaths::new(&here, color).rejecting(), below.map(|below| ColorPaths::new(&below, color).rejecting()));
         let first = FirstInterface::of(&here, color);
         let has_base = stack.layers.len() > family.interface + 1;
         let (mut once, mut more, mut wide, mut rest) = (vec![], vec![], vec![], vec![]);
@@ -199,7 +200,8 @@ impl Node {
         let of_base = falloff.filter(|_| has_base);
         let [narrow, broad] = cells;
         let lobes = [
-            Simulation::of_part(axis, narrow, spreads[0], once, false, of_base),
+            // Wide light of one visit takes the shape of that of the base, or is in its lobe.
+            Simulation::of_part(axis, narrow, spreads[0], once, of_base.is_some(), of_base),
             Simulation::of_part(axis, broad, spreads[1], more, true, of_base),
         ];
         Self { lobes, rest, falloff }

@@ -5,6 +5,7 @@
 //! projection, Golub and Pereyra 1973). Cells have residuals `(e - r) / sqrt(r + c)`. One fit has all views, so that lobes keep their identity
 //! from view to view; with an anisotropic stack it has all azimuths, too ([`Basis`]).
 
+mod amounts;
 mod part;
 mod problem;
 

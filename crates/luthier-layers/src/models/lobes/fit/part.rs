@@ -50,6 +50,9 @@ impl Simulation {
 
     /// Share of the light at each view that is in the remainder.
     pub(in crate::models::lobes) fn wide_shares(&self, found: &Found) -> Vec<f64> {
+        if !self.has_remainder {
+            return vec![0.0; self.views.len()];
+        }
         let energies = Problem::new(self, 0).energies(&found.place.parameters, 1);
         let shares = energies.iter().map(|parts| {
             let [lobe, wide] = [0, 1].map(|part: usize| parts[part].iter().sum::<f64>().max(0.0));

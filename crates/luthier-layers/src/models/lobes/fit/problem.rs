@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 
+use super::amounts::{Amounts, Guess};
 use super::{Found, Simulation, Views};
 use crate::least_squares::{Column, Residuals};
-use crate::models::lobes::amounts::{Amounts, Guess};
 use crate::models::lobes::ellipse::{Numbers, Plane};
 use crate::models::lobes::half_vector::{outside, refracted};
 use crate::models::lobes::parameters::{Basis, NODES, SHIFT, Term};
@@ -20,8 +20,8 @@ const SHARE_WANTED: f64 = 0.35;
 /// Weight of a share's lack to [`SHARE_WANTED`].
 const SHARE_WEIGHT: f64 = 0.5;
 
-/// Both for a lobe without a remainder beside it, which has all the light.
-const SHARE_ALONE: [f64; 2] = [0.2, 5.0];
+/// Both for the lobe of a part of the light: shapes beyond the horizon would be good at their own view alone.
+const SHARE_OF_PART: [f64; 2] = [0.2, 5.0];
 
 /// Weight of second differences between nodes.
 const RIPPLE_WEIGHT: f64 = 0.03;
@@ -502,7 +502,7 @@ impl ViewProblem {
             self.roots[cell] * (self.found[cell] - sent)
         });
         let lobes = shares.len() - usize::from(self.has_remainder);
-        let [wanted, weight] = if self.has_remainder { [SHARE_WANTED, SHARE_WEIGHT] } else { SHARE_ALONE };
+        let [wanted, weight] = if self.has_tail { [SHARE_WANTED, SHARE_WEIGHT] } else { SHARE_OF_PART };
         residuals.chain(shares[..lobes].iter().map(|share| weight * (wanted - share).max(0.0))).collect()
     }
 
