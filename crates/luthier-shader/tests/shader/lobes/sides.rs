@@ -169,7 +169,8 @@ fn light_of_sides_is_that_of_two_materials() {
             let mix = |of: usize| -> Vec<f32> {
                 first[of].iter().zip(&second[of]).map(|(a, b)| weight * a + (1.0 - weight) * b).collect()
             };
-            let mean = |albedo: &[f32]| albedo.iter().sum::<f32>() / 3.0;
+            // Rows that no fit has made may have less than no light.
+            let mean = |albedo: &[f32]| (albedo.iter().sum::<f32>() / 3.0).max(0.0);
             let [a, b] = [weight * mean(&first[1]), (1.0 - weight) * mean(&second[1])].map(|x| x + 1e-6);
             let chance = if weight >= 1.0 {
                 1.0
