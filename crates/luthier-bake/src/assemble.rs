@@ -188,9 +188,10 @@ fn baked_materials(
 ) -> Vec<BakedMaterial> {
     let baked = materials.par_iter().zip(records).map(|(m, planned)| {
         let lobes = m.model().is_fitted().then(|| lobes::record(m, settings, results));
-        let side = m
-            .side()
-            .map(|side| SideRecord { lobes: lobes::has_rows(&side).then(|| lobes::record(&side, settings, results)) });
+        let side = m.side().map(|side| SideRecord {
+            lobes: lobes::has_rows(&side).then(|| lobes::record(&side, settings, results)),
+            without_film: m.weighs_film(),
+        });
         let (constants, color) = (constants(m, planned.bare, lobes, side), color_mode(m));
         BakedMaterial { model: m.model(), color, constants, records: planned.layers, maps: maps(m) }
     });

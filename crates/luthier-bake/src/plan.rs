@@ -44,14 +44,14 @@ pub(crate) struct PlannedLayers {
     pub(crate) layers: Vec<LayerRecord>,
     /// The layer below a patina or a coat, as it is without that.
     pub(crate) bare: Option<LayerRecord>,
-    /// Whether the layers below a coat are a side of their own, see [`MaterialEntry::side`](luthier_manifest::MaterialEntry::side).
-    pub(crate) has_side: bool,
+    /// Number of layers of the side of a coat or a film with a weight, see [`MaterialEntry::side`](luthier_manifest::MaterialEntry::side); 0 without one.
+    pub(crate) of_side: usize,
 }
 
 impl PlannedLayers {
     /// Blocks of the material buffer, see [`MaterialEntry::blocks`](luthier_manifest::MaterialEntry::blocks).
     pub(crate) fn blocks(&self) -> usize {
-        let of_side = if self.has_side { self.layers.len() - 1 } else { 0 };
+        let of_side = if self.of_side > 0 { 1 + self.of_side } else { 0 };
         self.layers.len() + usize::from(self.bare.is_some()) + of_side
     }
 }

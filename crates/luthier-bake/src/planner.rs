@@ -30,7 +30,7 @@ struct Part {
     graph: Graph,
     layers: Vec<LayerRecord>,
     bare: Option<LayerRecord>,
-    has_side: bool,
+    of_side: usize,
     /// Tiles in the order in which they stand in their tables.
     tiles: Vec<Wanted>,
 }
@@ -88,7 +88,7 @@ pub(crate) fn plan(materials: &[Material], settings: Settings, read_image: Image
 impl Part {
     /// Adds the plan of a material, and numbers its tiles.
     fn enter(self, plan: &mut Plan) {
-        let Self { graph, mut layers, mut bare, has_side, tiles } = self;
+        let Self { graph, mut layers, mut bare, of_side, tiles } = self;
         plan.graph.merge(graph);
         for Wanted { kind, key, name, reader } in tiles {
             let list = &mut plan.tiles[kind as usize];
@@ -100,7 +100,7 @@ impl Part {
                 Reader::Run => list.has_runs = true,
             }
         }
-        plan.records.push(PlannedLayers { layers, bare, has_side });
+        plan.records.push(PlannedLayers { layers, bare, of_side });
     }
 
     fn new(material: &Material, settings: &Settings, read_image: ImageReader<'_>) -> Result<Self, BakeError> {
@@ -110,12 +110,14 @@ impl Part {
         if material.is_bare_in_places() {
             part.bare = match material.side() {
                 Some(side) => {
-                    part.has_side = true;
+                    part.of_side = side.stack.layers.len();
                     // Its lobes are those of all its layers, of which shaders read the first one.
                     let records =
                         part.records(&side, settings, &side.stack, &side.layers, Some("bare-"), read_image)?;
                     records.into_iter().next()
                 }
+                // Models without lobes do not show where a film is not.
+                None if material.weighs_film() => None,
                 None => {
                     let Stack { exterior, mut layers } = material.stack.without_first();
                     layers.truncate(1);
@@ -126,7 +128,7 @@ impl Part {
                 }
             };
             // The base beside it is no layer of this stack.
-            let diffuse_part = part.layers[1].diffuse_part;
+            let diffuse_part = part.layers.get(1).map(|below| below.diffuse_part).unwrap_or_default();
             part.bare.iter_mut().for_each(|bare| bare.diffuse_part = diffuse_part);
         }
         Ok(part)

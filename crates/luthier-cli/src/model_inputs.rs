@@ -79,7 +79,7 @@ struct Textures {
     /// Factor on the thickness of the films on the first interface
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     film_factor: Option<f64>,
-    /// Factor on the weight of the first layer, a coat
+    /// Factor on the weight of the first layer, a coat, or of the film on it
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     weight_factor: Option<f64>,
     /// Variance, along either axis, of the slopes of the normals that a pixel sees
@@ -152,10 +152,10 @@ impl ModelInputs {
         material.layers.first()?.maps.weight.as_ref().filter(|_| !self.no_effects)
     }
 
-    /// Whether a model shows the weight of a coat: some with a shader do, and models without one are evaluated with and without it.
+    /// Whether a model shows the weight of a coat or a film: some with a shader do, and models without one are evaluated with and without it.
     pub(crate) fn shows_weight(material: &Material, model: &dyn Model) -> bool {
         let Some(shading) = model.info().shading() else { return true };
-        left_out(material, shading).iter().all(|part| part.feature != Feature::Weight)
+        left_out(material, shading).iter().all(|part| !matches!(part.feature, Feature::Weight | Feature::FilmWeight))
     }
 
     /// The effects of a file that a model shows, and the names of the other effects.
@@ -174,7 +174,8 @@ impl ModelInputs {
         let has_patina = is_path || has_lobes && !lacks_patina();
         let below =
             [("flakes", effects.flakes.is_some() && !has_flakes), ("patina", effects.patina.is_some() && !has_patina)];
-        let weight = ("weight of the coat", material.weight().is_some() && !Self::shows_weight(material, model));
+        let what = if material.weighs_film() { "weight of the film" } else { "weight of the coat" };
+        let weight = (what, material.weight().is_some() && !Self::shows_weight(material, model));
         let below = below.into_iter().chain([weight]);
         let dropped = below.filter(|(_, is_dropped)| *is_dropped).map(|(name, _)| name).collect();
         let shown = Effects {

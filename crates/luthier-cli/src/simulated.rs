@@ -60,7 +60,9 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
         if !layer.surface.is_smooth() && !slopes.has_walks() {
             found.push((format!("layer.{number}.{}", distribution_key(slopes)), Feature::Distribution));
         }
-        for map in material.layers[number].maps.named() {
+        // Films are refused with their weights.
+        let maps = material.layers[number].maps.named();
+        for map in maps.filter(|map| map.slot != MapSlot::Weight || !material.weighs_film()) {
             let of_surface = match map.slot {
                 MapSlot::Normal => Feature::NormalMap,
                 MapSlot::Roughness => Feature::RoughnessMap,
@@ -75,7 +77,11 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
     for (is_there, key, feature) in [
         (effects.flakes.is_some(), "effects.flakes", Feature::Flakes),
         (effects.patina.is_some(), "effects.patina", Feature::Patina),
-        (material.layers.first().is_some_and(|first| first.weight < 1.0), "layer.0.weight", Feature::Weight),
+        (
+            material.layers.first().is_some_and(|first| first.weight < 1.0 && !first.weighs_film),
+            "layer.0.weight",
+            Feature::Weight,
+        ),
         (effects.glitter.is_some(), "effects.glitter", Feature::Glitter),
     ] {
         if is_there {

@@ -134,6 +134,7 @@ impl PageShader {
             ("vec3 flake_normal;", "VIEW_TILTED"),
             (" luthier_patina_amount(", "VIEW_PATINA"),
             ("float weight_factor;", "VIEW_WEIGHTS"),
+            (" luthier_cover(", "VIEW_COVERS"),
             (" luthier_glitter_normal(", "VIEW_GLITTER"),
             ("vec3 base_color;", "VIEW_COLORS"),
             ("vec3 inner_normal;", "VIEW_LEANS"),

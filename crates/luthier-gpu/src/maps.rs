@@ -201,7 +201,9 @@ impl Scene {
             "vec3<f32>(0.0, 0.0, 1.0)"
         };
         let patina = match self.interface.fills("LuthierPlace", "patina") {
-            _ if has_weight => "luthier_cover(surface, material)",
+            _ if self.manifest.materials.iter().any(MaterialEntry::is_covered_by_amount) => {
+                "luthier_cover(surface, material)"
+            }
             true => "surface.patina",
             false => "-1.0",
         };

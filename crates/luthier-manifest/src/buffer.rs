@@ -12,7 +12,7 @@ pub const MATERIAL_WORDS: usize = 11;
 /// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
 /// layers of a material with patina, or with a coat that has a weight, the layer of [`MaterialConstants::bare`].
 ///
-/// Where such a coat has a [`MaterialEntry::side`], the other layers of the side follow this layer, and then its header. Headers and layers have as many
+/// Where such a coat has a [`MaterialEntry::side`], the header of the side follows this layer, and then its layers. Headers and layers have as many
 /// words, so that functions for a material by its number take the side by the number of the block that its header is. In place of the model's number this
 /// header has the weight of the coat.
 ///
@@ -34,13 +34,12 @@ pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
         first += material.blocks() * LAYER_WORDS;
     }
     for material in materials {
-        let first = words.len() + material.layers.len() * LAYER_WORDS;
         words.extend(material.records().flat_map(LayerRecord::words));
         if let (Some(side), Some(coat)) = (material.side(), &material.constants.coat) {
-            words.extend(side.layers[1..].iter().flat_map(LayerRecord::words));
-            let lobes = coat.bare.tiles[TableKind::Lobes].unwrap_or(0);
+            let (first, lobes) = (words.len() + MATERIAL_WORDS, coat.bare.tiles[TableKind::Lobes].unwrap_or(0));
             words.push([whole(first), whole(side.layers.len()), coat.weight as f32, lobes as f32]);
             words.extend(side.constants.words());
+            words.extend(side.layers.iter().flat_map(LayerRecord::words));
         }
     }
     words
@@ -121,7 +120,7 @@ mod tests {
             painted: None,
             error: None,
         };
-        let side = Some(SideRecord { lobes: Some(lobes) });
+        let side = Some(SideRecord { lobes: Some(lobes), without_film: false });
         let coat = Some(CoatRecord { weight: 0.25, bare: bare.clone(), side });
         let constants = MaterialConstants { lobes: Some(lobes), coat, ..MaterialConstants::default() };
         let model = ShadingModel::Lobes;
@@ -129,14 +128,19 @@ mod tests {
         let coated = MaterialEntry { model, layers, constants, ..MaterialEntry::default() };
         let plain = MaterialEntry { layers: vec![top.clone()], ..MaterialEntry::default() };
         let buffer = material_buffer(&[coated.clone(), plain]);
-        // Two headers, three layers, the bare one, the base once more, the header of the side, and the layer of the other material.
+        // Two headers, three layers, the bare one, the header of the side, its two layers, and the layer of the other material.
         let blocks: Vec<&[[f32; 4]]> = buffer.chunks(LAYER_WORDS).collect();
-        assert_eq!((blocks.len(), coated.blocks()), (9, 6));
-        assert_eq!([blocks[5], blocks[6]], [&bare.words()[..], &base.words()]);
-        assert_eq!(blocks[7][0], [whole(5 * LAYER_WORDS), whole(2), 0.25, 7.0]);
+        assert_eq!((blocks.len(), coated.blocks()), (10, 7));
+        assert_eq!([blocks[5], blocks[7], blocks[8]], [&bare.words()[..], &bare.words(), &base.words()]);
+        assert_eq!(blocks[6][0], [whole(7 * LAYER_WORDS), whole(2), 0.25, 7.0]);
         let alone = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() };
-        assert_eq!(blocks[7][1..], alone.words());
-        assert_eq!(blocks[1][0][0], whole(8 * LAYER_WORDS));
-        assert_eq!(blocks[8], top.words());
+        assert_eq!(blocks[6][1..], alone.words());
+        assert_eq!(blocks[1][0][0], whole(9 * LAYER_WORDS));
+        assert_eq!(blocks[9], top.words());
+        // Without a film the side has all layers.
+        let mut filmed = coated;
+        let side = filmed.constants.coat.as_mut().and_then(|coat| coat.side.as_mut()).unwrap();
+        side.without_film = true;
+        assert_eq!((filmed.side().unwrap().layers[1..].len(), filmed.blocks()), (2, 8));
     }
 }

@@ -7,7 +7,7 @@ use luthier_model::{
 use serde::{Deserialize, Serialize};
 
 use crate::color::ColorMode;
-use crate::constants::MaterialConstants;
+use crate::constants::{MaterialConstants, SideRecord};
 use crate::map::{MapEntry, MapSlot};
 use crate::record::{LayerKind, LayerRecord};
 
@@ -127,16 +127,18 @@ impl MaterialEntry {
         self.layers.iter().chain(self.constants.bare())
     }
 
-    /// The layers below a coat with a weight as a material of its own, where they have lobes apart from those of all layers. Its maps are those of these
+    /// The layers below a coat with a weight, or those without a film with one, as a material of its own, where they have lobes apart from those of all layers. Its maps are those of these
     /// layers, and those of the whole surface that turn or scale them.
     pub fn side(&self) -> Option<Self> {
         let coat = self.constants.coat.as_ref().filter(|_| self.model.is_fitted())?;
-        let lobes = coat.side?.lobes;
-        let layers = std::iter::once(&coat.bare).chain(self.layers.iter().skip(2)).cloned().collect();
+        let SideRecord { lobes, without_film } = coat.side?;
+        let kept = if without_film { 1 } else { 2 };
+        let layers = std::iter::once(&coat.bare).chain(self.layers.iter().skip(kept)).cloned().collect();
         let maps = self.maps.iter().filter_map(|map| {
             let layer = match (map.slot, map.layer) {
                 (MapSlot::Normal | MapSlot::Roughness, layer) => layer,
                 (MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Weight, _) | (_, None) => return None,
+                (_, layer) if without_film => layer,
                 (_, Some(layer)) => Some(layer.checked_sub(1)?),
             };
             Some(MapEntry { layer, ..map.clone() })
@@ -145,10 +147,17 @@ impl MaterialEntry {
         Some(Self { layers, maps: maps.collect(), constants, ..self.clone() })
     }
 
+    /// Whether its shader shows the weight of a coat as it shows an amount of patina, and not by a [`Self::side`].
+    pub fn is_covered_by_amount(&self) -> bool {
+        let varying = self.constants.lobes.and_then(|lobes| lobes.varying);
+        let shows_ends = self.model.is_path() || varying.is_some_and(|varying| varying.factor.is_cover());
+        self.constants.coat.as_ref().is_some_and(|coat| coat.side.is_none()) && shows_ends
+    }
+
     /// Number of blocks of [`LAYER_WORDS`](crate::LAYER_WORDS) words that the material buffer has of the material, beside its header: one for each of
-    /// [`Self::records`]; and where it has a [`Self::side`], one for each of the side's layers after the first, and one for its header.
+    /// [`Self::records`]; and where it has a [`Self::side`], one for the header of that and one for each of its layers.
     pub fn blocks(&self) -> usize {
-        self.records().count() + self.side().map_or(0, |side| side.layers.len())
+        self.records().count() + self.side().map_or(0, |side| 1 + side.layers.len())
     }
 
     /// Whether the model `lobes` shows the own normal of a layer: that of the first one, of the lowest interface and of a diffuse base. Rows of a coat with

@@ -141,6 +141,7 @@ mod tests {
         let stained = "alpha = 0.1\n[layer.maps]\nthickness = \"t.png\"\n";
         let worn = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\nthickness = \"t.png\"\n";
         let (painted, bumps) = ("[layer.maps]\nmetallic = \"m.png\"\n", "[layer.maps]\nbumps = \"n.png\"\n");
+        let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.9\nthickness_nm = 200\nweight = 0.5\n";
         let bumpy = "alpha = 0.1\n[layer.maps]\nnormal = \"n.png\"\n";
         for (body, model, without, cause) in [
             (GOLD.to_owned() + "alpha = 0.008\n", "elek", "elek", None),
@@ -169,7 +170,7 @@ mod tests {
                 "elek",
                 Some("layer.1.maps.alpha"),
             ),
-            (COAT.to_owned() + rough + WEIGHT + OWN + WHITE, "elek", "elek", Some("layer.0.maps.alpha")),
+            (COAT.to_owned() + rough + WEIGHT + OWN + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + smooth + METALLIC + brushed + painted, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + smooth + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + beckmann + GOLD + rough, "lobes", "elek", None),
@@ -212,12 +213,13 @@ mod tests {
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
             (COAT.to_owned() + smooth + COAT + rough + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
             (COAT.to_owned() + smooth + WEIGHT + GOLD + rough, "lobes", "elek", None),
-            (COAT.to_owned() + smooth + WEIGHT + WHITE + PAINT, "elek", "elek", Some("layer.1.maps.albedo")),
+            (COAT.to_owned() + smooth + WEIGHT + WHITE + PAINT, "lobes", "elek", None),
             (COAT.to_owned() + smooth + "weight = 1\n" + WHITE + PAINT, "lobes", "elek", None),
-            (COAT.to_owned() + scratched + WEIGHT_MAP + WHITE, "elek", "elek", Some("layer.0.maps.weight")),
-            (VARYING.to_owned() + COAT + rough + WEIGHT + WHITE, "elek", "elek", Some("layer.0.weight")),
+            (COAT.to_owned() + scratched + WEIGHT_MAP + WHITE, "lobes", "elek", None),
+            (VARYING.to_owned() + COAT + rough + WEIGHT + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + smooth + WEIGHT + GOLD + brushed, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + smooth + GOLD + brushed + FLAKES, "lobes", "weidlich-wilkie", None),
+            (film.to_owned() + COAT + rough + OWN + GOLD + rough, "lobes", "elek", None),
         ] {
             let found = material(&body);
             assert_eq!([found.model(), found.model_without_fit()].map(ShadingModel::name), [model, without], "{body}");

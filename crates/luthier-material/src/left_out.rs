@@ -92,7 +92,8 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         (maps.is_some_and(|maps| maps.thickness.is_some()), Feature::ThicknessMap, "layer.0.maps.thickness"),
         (effects.flakes.is_some(), Feature::Flakes, "effects.flakes"),
         (effects.patina.is_some(), Feature::Patina, "effects.patina"),
-        (material.weight().is_some(), Feature::Weight, weight_key(material)),
+        (material.weight().is_some() && !material.weighs_film(), Feature::Weight, weight_key(material)),
+        (material.weight().is_some() && material.weighs_film(), Feature::FilmWeight, weight_key(material)),
         (effects.glitter.is_some(), Feature::Glitter, "effects.glitter"),
     ] {
         if is_asked {
@@ -163,7 +164,12 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
 /// The key that gives the first layer a weight.
 fn weight_key(material: &Material) -> &'static str {
     let is_stated = material.layers.first().is_some_and(|first| first.weight < 1.0);
-    if is_stated { "layer.0.weight" } else { "layer.0.maps.weight" }
+    match (material.weighs_film(), is_stated) {
+        (false, true) => "layer.0.weight",
+        (false, false) => "layer.0.maps.weight",
+        (true, true) => "layer.0.film.0.weight",
+        (true, false) => "layer.0.film.0.maps.weight",
+    }
 }
 
 /// The forms of a model that leave a feature out.

@@ -132,10 +132,20 @@ impl Material {
         format!("{label}:{line}")
     }
 
-    /// Weight of its first layer, a coat, if that is below 1 or a map multiplies it.
+    /// Weight of its first layer, a coat, or of the film on it, if that is below 1 or a map multiplies it.
     pub fn weight(&self) -> Option<f64> {
         let LayerExtras { weight, maps, .. } = self.layers.first()?;
         (*weight < 1.0 || maps.weight.is_some()).then_some(*weight)
+    }
+
+    /// Whether its weight is that of the film on the first layer.
+    pub fn weighs_film(&self) -> bool {
+        self.layers.first().is_some_and(|first| first.weighs_film)
+    }
+
+    /// Its stack where a weight leaves it bare: without its first layer, or without the film on that.
+    pub fn bare_stack(&self) -> Stack {
+        if self.weighs_film() { self.stack.without_first_films() } else { self.stack.without_first() }
     }
 
     /// Shares of its light that its base gets back from a coat that does not darken it.
@@ -143,17 +153,21 @@ impl Material {
         self.layers.iter().find_map(|layer| layer.brightening)
     }
 
-    /// Whether its first layer leaves the others bare in places: a patina, or a coat with a weight.
+    /// Whether its first layer leaves the others bare in places: a patina, or a coat with a weight; or a film leaves the first layer bare.
     pub fn is_bare_in_places(&self) -> bool {
-        self.stack.layers.len() > 1 && (self.effects.patina.is_some() || self.weight().is_some())
+        (self.stack.layers.len() > 1 || self.weighs_film())
+            && (self.effects.patina.is_some() || self.weight().is_some())
     }
 
     /// Whether the layers below its first one, a coat with a weight, make lobes of their own in the model `lobes`: textures vary the surface in more than the
     /// weight, or a layer is anisotropic. Else rows of all layers have those of the bare ones at their end.
     pub fn has_side(&self) -> bool {
         let layers = &self.stack.layers;
-        if self.weight().is_none() || layers.len() < 2 || self.effects.patina.is_some() {
+        if self.weight().is_none() || self.effects.patina.is_some() {
             return false;
+        }
+        if self.weighs_film() || layers.len() < 2 {
+            return self.weighs_film();
         }
         let first = &self.layers[0].maps;
         self.family().is_some()
@@ -174,6 +188,12 @@ impl Material {
         }
         let mut side = self.clone();
         side.bake.model = Some(model);
+        if self.weighs_film() {
+            side.stack = self.bare_stack();
+            let first = side.layers.first_mut()?;
+            (first.weight, first.weighs_film, first.maps.weight, first.film_variation) = (1.0, false, None, None);
+            return Some(side);
+        }
         side.stack = self.stack.without_first();
         let coat = side.layers.remove(0);
         (side.effects.flakes, side.effects.patina) = (None, None);
@@ -243,7 +263,8 @@ impl Material {
         let mut found = Vec::new();
         for (i, LayerExtras { film_variation, maps, .. }) in self.layers.iter().enumerate() {
             for map in maps.named() {
-                found.push((format!("layer.{i}.maps.{}", map.key), map.texels(), map.picture));
+                let of_film = if self.layers[i].weighs_film && map.slot == MapSlot::Weight { ".film.0" } else { "" };
+                found.push((format!("layer.{i}{of_film}.maps.{}", map.key), map.texels(), map.picture));
             }
             if let Some(picture) = film_variation.as_ref().and_then(|variation| variation.source.image()) {
                 found.push((format!("layer.{i}.film.0.thickness_nm.map.image"), TexelUse::Number, picture));
@@ -270,6 +291,8 @@ impl Material {
 pub struct LayerExtras {
     /// Share of the surface that the layer covers, 0 to 1: of the first layer, where the others are bare elsewhere.
     pub weight: f64,
+    /// Whether the weight, and the map of it, are those of the film on the layer.
+    pub weighs_film: bool,
     /// Rows of the matrix from light to light of a fluorescent base, linear Rec.709 under D65 ([`luthier_optics::reradiation::rgb`]). The
     /// albedo in the stack is its colour under white light, within 0..1.
     pub reradiation: Option<[Rgb; 3]>,
@@ -292,7 +315,17 @@ impl Default for LayerExtras {
     fn default() -> Self {
         let (reradiation, film_variation, exponents, metallic, brightening) = (None, None, None, None, None);
         let (maps, texels) = (Maps::default(), TexelRanges::default());
-        Self { weight: 1.0, reradiation, film_variation, exponents, maps, metallic, texels, brightening }
+        Self {
+            weight: 1.0,
+            weighs_film: false,
+            reradiation,
+            film_variation,
+            exponents,
+            maps,
+            metallic,
+            texels,
+            brightening,
+        }
     }
 }
 

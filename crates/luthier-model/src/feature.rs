@@ -56,6 +56,8 @@ luthier_lut::named! {
         Patina = "patina",
         /// A coat whose weight is below 1 or in a map: a first layer that covers a share of the others.
         Weight = "the weight of a coat",
+        /// A film covers a share of the surface, by a number or a map.
+        FilmWeight = "the weight of a film",
         /// Glitter: particles that are tilted.
         Glitter = "glitter",
         /// Fluorescence: a base that moves light to other wavelengths.
@@ -85,14 +87,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.######.#########."),
-            (ShadingModel::WeidlichWilkie, "#####b###################."),
-            (ShadingModel::Belcour, "#####bf#..###.#.###...#..."),
-            (ShadingModel::Yamaguchi, "#####bf##.###.#####...#..."),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#....#..#"),
-            (ShadingModel::Phong, "###.##....##..........#..."),
-            (ShadingModel::Microfacet, "....#b######..##.##...#.#."),
-            (ShadingModel::Lobes, "################.######..."),
+            (ShadingModel::Elek, "#####b##.######.######.###."),
+            (ShadingModel::WeidlichWilkie, "#####b################.###."),
+            (ShadingModel::Belcour, "#####bf#..###.#.###....#..."),
+            (ShadingModel::Yamaguchi, "#####bf##.###.#####....#..."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#.....#..#"),
+            (ShadingModel::Phong, "###.##....##...........#..."),
+            (ShadingModel::Microfacet, "....#b######..##.##....#.#."),
+            (ShadingModel::Lobes, "################.#######..."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

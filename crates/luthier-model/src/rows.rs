@@ -256,6 +256,7 @@ const LOBES: Facts = Facts {
                 Films,
                 InnerFilms,
                 FilmVariation,
+                FilmWeight,
                 DiffuseSlopes,
                 Anisotropy,
                 Beckmann,

@@ -54,6 +54,16 @@ impl Stack {
     }
 }
 
+impl Stack {
+    /// The stack without films on its first layer.
+    #[must_use]
+    pub fn without_first_films(&self) -> Self {
+        let mut bare = self.clone();
+        bare.layers.iter_mut().take(1).for_each(|first| first.films.clear());
+        bare
+    }
+}
+
 /// One interface, and the material below it.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

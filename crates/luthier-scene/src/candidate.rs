@@ -73,7 +73,8 @@ impl Candidate {
         let effects = [
             (Feature::Flakes, material.effects.flakes.is_some()),
             (Feature::Patina, material.effects.patina.is_some()),
-            (Feature::Weight, material.weight().is_some()),
+            (Feature::Weight, material.weight().is_some() && !material.weighs_film()),
+            (Feature::FilmWeight, material.weight().is_some() && material.weighs_film()),
         ];
         let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map.slot)));
         let mut asked: Vec<Feature> = maps.filter_map(|(i, slot)| slot.layer_feature(i)).collect();

@@ -96,6 +96,9 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 found |= !layer.films.is_empty();
                 layer.films.clear();
                 extras.film_variation = None;
+                if std::mem::take(&mut extras.weighs_film) {
+                    (extras.weight, extras.maps.weight) = (1.0, None);
+                }
             }
         }
         Feature::InnerFilms => {
@@ -188,10 +191,10 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
         }
         Feature::Flakes => found = effects.flakes.take().is_some(),
         Feature::Patina => found = effects.patina.take().is_some(),
-        Feature::Weight => {
+        Feature::Weight | Feature::FilmWeight => {
             if let Some(first) = material.layers.first_mut() {
                 found = first.weight < 1.0 || first.maps.weight.is_some();
-                (first.weight, first.maps.weight) = (1.0, None);
+                (first.weight, first.weighs_film, first.maps.weight) = (1.0, false, None);
             }
         }
         Feature::Glitter => found = effects.glitter.take().is_some(),

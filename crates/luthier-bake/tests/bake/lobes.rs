@@ -76,8 +76,8 @@ fn sides_of_a_coat_have_the_rows_of_two_materials() {
             material.layers.iter_mut().for_each(|layer| layer.texels.alpha = [0.25, 1.0]);
             material
         };
-        let weighed = of("weighed", &format!("{coat}weight = 0.3\n{below}"));
-        let both = bake(&[weighed.clone()], RowLayout::Filtered);
+        let weighed = [of("weighed", &format!("{coat}weight = 0.3\n{below}"))];
+        let both = bake(&weighed, RowLayout::Filtered);
         let [whole, alone] = [of("whole", &(coat.clone() + below)), of("alone", below)]
             .map(|material| bake(&[material], RowLayout::Filtered));
         let constants = &both.materials[0].constants;

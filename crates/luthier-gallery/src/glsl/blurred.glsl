@@ -24,7 +24,7 @@ ViewFactors view_factors(uint material, ViewSurface surface) {
 #ifdef VIEW_PATINA
     factors.patina = surface.patina;
 #endif
-#ifdef VIEW_WEIGHTS
+#ifdef VIEW_COVERS
     factors.patina = luthier_cover(surface, material);
 #endif
 #endif

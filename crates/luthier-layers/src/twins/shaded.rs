@@ -34,8 +34,8 @@ pub struct Place {
     pub under: Under,
     /// Patina, or a coat with a weight; `None` for all layers, without the patina's diffuse term and tarnish.
     pub patina: Option<Growth>,
-    /// Whether `lobes` has rows of its own for the layers below such a coat: textures vary more than its weight.
-    pub has_side: bool,
+    /// Lobes of their own for the layers that such a coat, or a film, leaves bare; `None` where rows have both ends.
+    pub side: Option<Side>,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
@@ -54,18 +54,23 @@ impl Place {
         sample: TextureSample::NONE,
         under: Under::NONE,
         patina: None,
-        has_side: false,
+        side: None,
         base_color: None,
         reradiation: None,
         layers: Vec::new(),
         metal: None,
     };
 
-    /// The weight of a coat over layers that have lobes of their own, the place for all layers, and the place for the layers below the coat; `None` of
+    /// The weight of a coat or a film on layers that have lobes of their own, the place for all layers, and the place for those that are bare; `None` of
     /// another place.
     pub fn sides(&self) -> Option<(f64, Self, Self)> {
-        let weight = self.patina.filter(|_| self.has_side)?.amount;
-        let coated = Self { patina: None, has_side: false, ..self.clone() };
+        let (weight, side) = (self.patina?.amount, self.side?);
+        let coated = Self { patina: None, side: None, ..self.clone() };
+        if side == Side::Film {
+            let sample = TextureSample { film_factor: 1.0, ..self.sample };
+            let bare = Self { sample, ..coated.clone() };
+            return Some((weight, coated, bare));
+        }
         let sample = TextureSample { slab_factor: 1.0, film_factor: 1.0, ..self.sample };
         let under = Under { flake_normal: DVec3::Z, ..self.under };
         let layers = self.layers.iter().skip(1).copied();
@@ -74,6 +79,30 @@ impl Place {
         let bare = Self { sample, under, layers: layers.collect(), ..coated.clone() };
         let layers = coated.layers.iter().map(|own| LayerSample { normal: DVec3::Z, ..*own }).collect();
         Some((weight, Self { layers, ..coated }, bare))
+    }
+}
+
+/// What a weight leaves bare, where that has lobes of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The layers below the first, a coat.
+    Coat,
+    /// The first layer, by the film on it.
+    Film,
+}
+
+impl Side {
+    /// The stack where it is bare.
+    pub fn bare(self, stack: &Stack) -> Stack {
+        match self {
+            Self::Coat => stack.without_first(),
+            Self::Film => stack.without_first_films(),
+        }
+    }
+
+    /// Whether a stack has layers where it is bare.
+    fn is_of(self, stack: &Stack) -> bool {
+        self == Self::Film || stack.layers.len() > 1
     }
 }
 
@@ -188,10 +217,11 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
-        if let Some((weight, coated, bare)) = place.sides().filter(|_| model.is_fitted() && stack.layers.len() > 1) {
+        let side = place.side.filter(|side| model.is_fitted() && side.is_of(stack));
+        if let Some((side, (weight, coated, bare))) = side.zip(place.sides()) {
             let exact =
                 |stack: &Stack, place: &Place| Self::exact(fit, model, stack, wavelengths_nm, color, place, parts);
-            return Some(exact(stack, &coated)?.beside(weight, exact(&lobes::bare(stack), &bare)?));
+            return Some(exact(stack, &coated)?.beside(weight, exact(&side.bare(stack), &bare)?));
         }
         if let (true, Some(mix), Some(_)) = (model.is_fitted(), place.metal, base_below(stack)) {
             let paint = Paint::of(stack).mixed(mix);
@@ -507,7 +537,7 @@ impl ShaderTerms for Tarnished<'_> {
 
 #[cfg(test)]
 mod tests {
-    use luthier_optics::stack::{Diffuse, Layer, Slab};
+    use luthier_optics::stack::{Diffuse, FilmThickness, Layer, Slab};
 
     use super::*;
     use crate::effects::flakes::Flakes;
@@ -635,11 +665,45 @@ mod tests {
             let below = at(&lobes::bare(&stack), &Place { sample, layers, under: Under::NONE, ..place.clone() });
             for weight in [0.0, 0.35, 1.0] {
                 let patina = Some(Growth::of_coat(weight));
-                let found = at(&stack, &Place { patina, has_side: true, ..place.clone() });
+                let found = at(&stack, &Place { patina, side: Some(Side::Coat), ..place.clone() });
                 for c in 0..3 {
                     let expected = weight * whole[c] + (1.0 - weight) * below[c];
                     assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {below:?}");
                     assert!((whole[c] - below[c]).abs() > 1e-3);
+                }
+            }
+        }
+    }
+
+    /// Oracle: the stack with its film and the one without it, evaluated apart. One film on one interface, and one that varies above other layers.
+    #[test]
+    fn a_film_with_a_weight_is_the_mean_of_two_stacks() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let few = FitSettings { rows: 8, paths: 2000, seed: 3 };
+        let fit = |stack: &Stack, color: &Color, varying: Option<Varying>| Varied::with(stack, color, varying, few);
+        let at = |stack: &Stack, place: &Place| {
+            Shaded::fitted_by(&fit, ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
+        };
+        let thickness = FilmThickness { min_nm: 200.0, max_nm: 400.0 };
+        let film = Film { ior: Ior::constant(1.9, 0.0).unwrap(), thickness };
+        let mut coated = copper();
+        coated.layers[0].films = vec![film.clone()];
+        let mut metal = Stack { exterior: Ior::vacuum(), layers: vec![copper().layers[1].clone()] };
+        metal.layers[0].films = vec![film];
+        let sample = TextureSample { alpha_factor: 0.8, slab_factor: 0.3, film_factor: 1.2, ..TextureSample::NONE };
+        let place = Place { sample, ..Place::NONE };
+        for stack in [coated, metal] {
+            let mut bare = stack.clone();
+            bare.layers[0].films.clear();
+            let [whole, without] = [&stack, &bare].map(|stack| at(stack, &place));
+            for weight in [0.0, 0.35, 1.0] {
+                let patina = Some(Growth::of_coat(weight));
+                let found = at(&stack, &Place { patina, side: Some(Side::Film), ..place.clone() });
+                for c in 0..3 {
+                    let expected = weight * whole[c] + (1.0 - weight) * without[c];
+                    assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {without:?}");
+                    assert!((whole[c] - without[c]).abs() > 1e-3);
                 }
             }
         }

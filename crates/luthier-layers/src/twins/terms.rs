@@ -54,11 +54,12 @@ impl Exact {
         Self { varying, ..Self::new(stack, color) }
     }
 
-    /// The terms with those of the layers below the first beside them ([`ShaderTerms::bare`]). Where the terms vary with the amount of the first layer,
-    /// lobes of both are fitted together. Else lobes of the layers below are fitted with those at other factors of what varies there.
+    /// The terms with those of a stack beside them ([`ShaderTerms::bare`]): the one without the first layer, or without the film on it. Where the terms vary
+    /// with the amount of the first layer, lobes of both are fitted together. Else lobes of the bare stack are fitted with those at other factors of what
+    /// varies there.
     #[must_use]
-    pub fn over_bare(self, varying: Option<Varying>) -> Self {
-        Self { bare: Some(Box::new(Self::varying(&self.stack.without_first(), self.color, varying))), ..self }
+    pub fn over_bare(self, bare: &Stack, varying: Option<Varying>) -> Self {
+        Self { bare: Some(Box::new(Self::varying(bare, self.color, varying))), ..self }
     }
 
     /// The terms of the layers below the first, if they are beside these and have lobes of their own.

@@ -335,23 +335,26 @@ pub struct PatinaRecord {
     pub bare: LayerRecord,
 }
 
-/// A coat that covers a share of the surface, as patina does that scatters nothing and leaves the layer below as it is.
+/// A coat, or a film, that covers a share of the surface, as patina does that scatters nothing and leaves the layer below as it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoatRecord {
     /// Share of the surface that the first layer covers, 0 to 1; maps and places multiply it.
     pub weight: f64,
-    /// The layer below the first where the first is not, as it meets the medium above the surface.
+    /// The layer below the first where the first is not, as it meets the medium above the surface; of a film the first layer without it.
     pub bare: LayerRecord,
     /// The layers below where the first is not, if these have lobes apart from those of all layers: textures vary the surface in more than the weight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub side: Option<SideRecord>,
 }
 
-/// The layers below a coat as a surface of their own, see [`MaterialEntry::side`](crate::MaterialEntry::side).
+/// The layers below a coat, or the layers without the film on the first, as a surface of their own, see [`MaterialEntry::side`](crate::MaterialEntry::side).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SideRecord {
     /// Lobes; none of a diffuse base alone. Their first tile is that of [`CoatRecord::bare`].
     pub lobes: Option<LobesRecord>,
+    /// Whether the weight is that of a film: the side has all layers, the first without it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub without_film: bool,
 }
 
 /// A `metallic-roughness` surface below a coat that does not darken it: records have a brighter colour than the file, and places have one, too.
@@ -600,7 +603,7 @@ mod tests {
         // Of a coat over a side of its own all words but one are those of its lobes.
         let painted = Some(PaintedRecord { albedo, moments: None });
         let apart = LobesRecord { painted, ..lobes };
-        let side = Some(SideRecord { lobes: Some(lobes) });
+        let side = Some(SideRecord { lobes: Some(lobes), without_film: false });
         let coat = Some(CoatRecord { weight: 0.75, bare: LayerRecord::default(), side });
         let of_sides = MaterialConstants { lobes: Some(apart), coat, ..MaterialConstants::default() }.words();
         let mut expected = words(apart);

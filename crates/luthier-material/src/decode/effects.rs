@@ -44,7 +44,8 @@ pub(super) fn weight_span(layer: &Section<'_>) -> Option<Range<usize>> {
 /// Refuses a weight of the first layer beside what no model shows with it.
 fn check_weight(document: &Section<'_>, is_fluorescent: bool, sink: &mut Sink<'_>) {
     let layers = document.sections("layer");
-    let Some(span) = layers.iter().find(|at| at.text("type") != Some("thin-film")).and_then(weight_span) else {
+    let count = layers.iter().take_while(|at| at.text("type") == Some("thin-film")).count() + 1;
+    let Some(span) = layers.iter().take(count).find_map(weight_span) else {
         return;
     };
     if document.section("effects").is_some_and(|effects| effects.has("patina")) {
@@ -52,7 +53,7 @@ fn check_weight(document: &Section<'_>, is_fluorescent: bool, sink: &mut Sink<'_
         sink.error(span, "`weight` beside `patina`: both say where the first layer is", Some(hint));
     } else if is_fluorescent {
         let hint = "give the base an `albedo` in place of `reradiation`, or leave the weight out".to_owned();
-        sink.error(span, "no model has a coat with a weight over a base with `reradiation`", Some(hint));
+        sink.error(span, "no model has a weight over a base with `reradiation`", Some(hint));
     }
 }
 

@@ -6,12 +6,12 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Film, FilmThickness};
 
 use super::ior::Read;
-use super::picture;
+use super::{effects, maps, picture};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::{NOT_NEGATIVE, POSITIVE};
 use crate::material::FilmVariation;
-use crate::picture::{TexelUse, VariationSource};
+use crate::picture::{PictureRef, TexelUse, VariationSource};
 use crate::section::Section;
 use crate::suggest::short;
 
@@ -21,6 +21,11 @@ pub(super) struct Pending<'t> {
     pub(super) at: Section<'t>,
     pub(super) film: Film,
     pub(super) variation: Option<FilmVariation>,
+    /// Share of the surface that it covers, and the map that multiplies it.
+    pub(super) weight: f64,
+    pub(super) weight_map: Option<PictureRef>,
+    /// Span of the weight, if that is below 1 or in a map.
+    pub(super) weight_span: Option<Span<usize>>,
     /// Span of the `type` of the film.
     pub(super) span: Span<usize>,
     /// Span of the thickness of the film.
@@ -37,9 +42,13 @@ pub(super) fn decode<'t>(at: Section<'t>, read: Read<'_>, sink: &mut Sink<'_>, s
             (FilmThickness { min_nm: nm, max_nm: nm }, None)
         }
     };
+    maps::check(&at, 0, sink);
     Pending {
         film: Film { ior, thickness },
         variation,
+        weight: at.number("weight").unwrap_or(1.0),
+        weight_map: maps::decode(&at).weight,
+        weight_span: effects::weight_span(&at),
         span: at.value_span("type"),
         thickness_span: at.value_span("thickness_nm"),
         at,
@@ -51,6 +60,28 @@ impl Pending<'_> {
     pub(super) fn evened(&self) -> Option<String> {
         let nm = self.film.thickness.nominal_nm();
         POSITIVE.contains(nm).then(|| format!("write `thickness_nm = {}`", short(nm)))
+    }
+}
+
+/// Refuses weights of films that are not alone on the first layer, or lie beside something else that says where the surface is another.
+pub(super) fn check_weights(films: &[Pending<'_>], at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
+    for film in films {
+        let Some(span) = film.weight_span.clone() else { continue };
+        let (message, hint) = if number > 0 {
+            ("only a film of the first layer has a weight", "leave it out")
+        } else if films.len() > 1 {
+            ("a film has a weight where it is the only one of its interface", "leave it out, or leave one film")
+        } else if effects::weight_span(at).is_some() {
+            ("a weight of the film beside one of the layer that it lies on", "leave one of them out")
+        } else if at.flag("darkening") == Some(false) {
+            (
+                "a weight of a film beside `darkening = false`: the base would need a colour for either",
+                "leave one of them out",
+            )
+        } else {
+            continue;
+        };
+        sink.error(span, message, Some(hint.to_owned()));
     }
 }
 

@@ -91,13 +91,19 @@ pub(super) fn decode(
         let key = format!("layer.{number}");
         sources.places.add(&key, at);
         films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
+        films::check_weights(&films, at, number, sink);
+        let weighed = films.first().filter(|film| film.weight_span.is_some());
         let metallic = if kind == "metallic-roughness" { schlick::textured(at) } else { None };
         let extra = LayerExtras {
-            weight: at.number("weight").unwrap_or(1.0),
+            weight: weighed.map_or_else(|| at.number("weight").unwrap_or(1.0), |film| film.weight),
+            weighs_film: weighed.is_some(),
             reradiation: matrix,
             film_variation: variation(&films, sink),
             exponents: surface::exponents(at),
-            maps: maps::decode(at),
+            maps: match weighed {
+                Some(film) => Maps { weight: film.weight_map.clone(), ..maps::decode(at) },
+                None => maps::decode(at),
+            },
             metallic,
             texels: TexelRanges::default(),
             brightening: brightened.map(|below| below.shares),

@@ -97,9 +97,6 @@ pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
         ("metallic-roughness" | "conductor" | "diffuse", "darkening") => {
             Some("a coat darkens what lies below it: write `darkening = false` in the `[[layer]]` of the coat above")
         }
-        ("thin-film", "weight") => {
-            Some("a film covers the interface that it lies on; a first layer of `type = \"dielectric\"` has a weight")
-        }
         ("metallic-roughness", "ior" | "f0" | "specular") => {
             Some("its F0 without metal is 0.04; for another write a dielectric with `ior` over a diffuse base")
         }

@@ -412,7 +412,21 @@ pub(super) static THIN_FILM: Table = Table {
             Kind::OneOf(&[Kind::Number(POSITIVE), Kind::Table(&FILM_THICKNESS)]),
             "Thickness in nm: a number, or a table { min, max, extent_um, map }.",
         ),
+        Key::with_default(
+            "weight",
+            Kind::Number(UNIT),
+            "1",
+            "Share of the surface that the film covers, 0 to 1; of a film alone on the first layer.",
+        ),
+        Key::optional("maps", Kind::Table(&FILM_MAPS), MAPS_DOC),
     ],
+    exactly_one: None,
+};
+
+static FILM_MAPS: Table = Table {
+    name: "film-maps",
+    doc: MAPS_DOC,
+    keys: &[Key::optional("weight", PICTURE, "A map that multiplies `weight`.")],
     exactly_one: None,
 };
 

@@ -5,6 +5,7 @@ use luthier_layers::models::lobes::{Cover, Family, SlopeAxis, Varying};
 use luthier_layers::models::parts::Parts;
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
+use luthier_layers::twins::shaded::Side;
 use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{ColorMode, FamilyRecord, MaterialEntry, PatinaRecord, SlopesRecord, VaryingFactor};
 use luthier_optics::Rgb;
@@ -40,9 +41,10 @@ impl References {
         let coat = material.constants.coat.as_ref().filter(|_| shows_cover(material));
         let (twin, spectral, three) = match coat {
             Some(coat) => {
-                let twin = twin.covering(coat.weight, twin_of(&stack.without_first()));
+                let bare = bare_stack(material, stack);
+                let twin = twin.covering(coat.weight, twin_of(&bare));
                 let of_side = material.side().and_then(|side| varying_of(&side));
-                (twin, spectral.over_bare(of_side), three.over_bare(of_side))
+                (twin, spectral.over_bare(&bare, of_side), three.over_bare(&bare, of_side))
             }
             None => (twin, spectral, three),
         };
@@ -61,6 +63,17 @@ impl References {
             ColorMode::ThreeWavelengths => &self.three,
         }
     }
+}
+
+/// What the weight of a coat or a film leaves bare, if that has lobes of its own.
+pub(crate) fn side_of(material: &MaterialEntry) -> Option<Side> {
+    let side = material.constants.coat.as_ref()?.side?;
+    Some(if side.without_film { Side::Film } else { Side::Coat })
+}
+
+/// The stack of a material where a patina or a weight leaves it bare.
+pub(crate) fn bare_stack(material: &MaterialEntry, stack: &Stack) -> Stack {
+    side_of(material).unwrap_or(Side::Coat).bare(stack)
 }
 
 /// The parts of a model that a material chooses.

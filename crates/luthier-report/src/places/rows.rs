@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::textured::TextureSample;
-use luthier_layers::models::lobes::{self, Mix};
+use luthier_layers::models::lobes::Mix;
 use luthier_layers::models::shade::Under;
 use luthier_layers::twins::shaded::{Growth, Place, Shaded};
 use luthier_layers::twins::terms::Exact;
@@ -14,7 +14,7 @@ use luthier_optics::schlick::metallic_and_matt;
 
 use crate::error::ReportError;
 use crate::measure::directions::wide;
-use crate::measure::references::parts;
+use crate::measure::references::{bare_stack, parts, side_of};
 use crate::measure::subject::{Subject, color};
 use crate::measure::table_terms::{TableTerms, Weights};
 
@@ -45,7 +45,7 @@ impl<'a> Rows<'a> {
         if let (Some((weight, coated, below)), Some(side)) = (place.sides(), entry.side()) {
             let coated = Self::at(subject, material, &coated, weights)?.0;
             let terms = |_, _: &_, _: &_| TableTerms::of_side(subject, &side, weights, &below).ok();
-            let (stack, nm) = (lobes::bare(&subject.stacks[material]), entry.wavelengths_nm);
+            let (stack, nm) = (bare_stack(entry, &subject.stacks[material]), entry.wavelengths_nm);
             let bare = Shaded::of_terms(terms, side.model, &stack, nm, color(entry), &below, parts(&side));
             let bare = bare.ok_or_else(|| ReportError::Model { material: entry.name.clone(), model: entry.model })?;
             return Ok(Self(coated.beside(weight, bare)));
@@ -107,7 +107,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             ..Under::NONE
         },
         patina: cover(values, entry),
-        has_side: entry.side().is_some(),
+        side: side_of(entry),
         base_color: values.base_color.map(|color| color.map(f64::from)),
         reradiation: entry.layers.last().and_then(|layer| layer.reradiation),
         layers: layers.collect(),

@@ -1,7 +1,7 @@
 //! Rows of lobes at places against the simulation of the stack that the material file means there.
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{self, Lobes};
+use luthier_layers::models::lobes::Lobes;
 use luthier_layers::twins::shaded::Place;
 use luthier_manifest::{LayerValues, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{PLACE_FLOOR, Places, Rows, rows, words};
 use crate::error::ReportError;
+use crate::measure::references::bare_stack;
 use crate::measure::statistics::UNCERTAINTY_MARGIN;
 use crate::measure::subject::{Subject, color};
 use crate::measure::table_terms::Weights;
@@ -219,7 +220,7 @@ fn scatters_nothing(entry: &MaterialEntry) -> bool {
 fn meant(stack: &Stack, place: &Place, entry: &MaterialEntry) -> Option<Stack> {
     let whole = place.stack(stack);
     let is_bare = entry.constants.bare().is_some() && place.patina.is_some_and(|growth| growth.amount < 0.5);
-    let here = if is_bare { lobes::bare(&whole) } else { whole };
+    let here = if is_bare { bare_stack(entry, &whole) } else { whole };
     let is_interface = here.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
     is_interface.then_some(here)
 }

@@ -251,6 +251,8 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Metallic, 0), form);
             moved(&shader().at_layer(0, "passing", vector(&[0.2, 0.5, 0.9])), &shader())
         }
+        // The baker writes no surface without the film for models that do not show it.
+        Feature::FilmWeight => return None,
         // The baker writes no matrix for models that do not show it.
         Feature::Reradiation if !model.honours(feature, form) => return None,
         Feature::Reradiation => moved(&shader(&[coat(), fluorescent()]), &shader(&[coat(), diffuse(0.0)])),

@@ -244,9 +244,19 @@ pub(crate) fn sided(material: MaterialEntry) -> MaterialEntry {
     if let Some(coat) = &mut material.constants.coat {
         let lobes = lobes.filter(|_| coat.bare.kind != LayerKind::Diffuse);
         coat.bare.tiles[TableKind::Lobes] = lobes.map(|_| 0);
-        coat.side = Some(SideRecord { lobes });
+        coat.side = Some(SideRecord { lobes, without_film: coat.side.is_some_and(|side| side.without_film) });
     }
     material
+}
+
+/// A film that covers 0.6 of a coat on gold.
+pub(crate) fn weighted_film() -> MaterialEntry {
+    let side = Some(SideRecord { lobes: None, without_film: true });
+    let constants = MaterialConstants {
+        coat: Some(CoatRecord { weight: 0.6, bare: clear(), side }),
+        ..MaterialConstants::default()
+    };
+    MaterialEntry { constants, ..material("weighted-film", &[filmed(), conductor()]) }
 }
 
 /// A coat that covers 0.6 of paint, which has a map.
@@ -400,9 +410,16 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lobes-weight-mixed", vec![weighed(weighted()), covered(patina()), named("weighted-chain", weighted())]),
         ("lobes-sides", vec![sided(weighted())]),
         ("lobes-sides-base", vec![sided(weighted_paint(0.3))]),
+        ("lobes-sides-film", vec![sided(weighted_film())]),
         (
             "lobes-sides-mixed",
-            vec![sided(weighted_paint(0.0)), sided(weighted()), named("by-amount", weighed(weighted())), gold()],
+            vec![
+                sided(weighted_paint(0.0)),
+                sided(weighted()),
+                sided(weighted_film()),
+                named("by-amount", weighed(weighted())),
+                gold(),
+            ],
         ),
         ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),

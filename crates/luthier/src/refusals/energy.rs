@@ -178,7 +178,7 @@ fn simulated(ends: &[(f64, ColorPaths)], wo: DVec3) -> Rgb {
 fn places(material: &Material) -> Vec<Place> {
     let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
     // Where a coat has its greatest weight, no texel makes it less.
-    let patina = material.weight().map(Growth::of_coat);
+    let patina = material.weight().filter(|_| !material.weighs_film()).map(Growth::of_coat);
     let Some((number, Metallic { base_color, metallic })) = textured else {
         return vec![Place { patina, ..Place::NONE }];
     };

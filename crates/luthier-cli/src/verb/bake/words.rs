@@ -44,8 +44,8 @@ pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakePr
         let (kind, front, measured) = (search.kind.name(), search.front.len(), search.measured);
         out.push_str(&format!("{kind:<13} {what}; cost {:.0}; {front} on the front of {measured}\n", chosen.cost));
     }
-    let lobes = manifest.materials.iter().filter_map(|m| Some((&m.name, m.constants.lobes?.error?)));
-    for (number, (name, LobesError { lobe, lobe_noise, albedo, albedo_noise })) in lobes.enumerate() {
+    let lobes = errors_of_lobes(manifest);
+    for (number, (name, LobesError { lobe, lobe_noise, albedo, albedo_noise })) in lobes.into_iter().enumerate() {
         if number == 0 {
             out.push_str("\nlobes against the simulated stack, of unseen views the worst\n");
         }
@@ -58,6 +58,18 @@ pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakePr
     out.push_str(&format!("jobs: {} run, {} found in the store\n", progress.run(), progress.had()));
     out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
     out
+}
+
+/// Errors of the lobes of each material, and of what a weight leaves bare where that has lobes of its own.
+fn errors_of_lobes(manifest: &Manifest) -> Vec<(String, LobesError)> {
+    let errors = manifest.materials.iter().flat_map(|material| {
+        let side = material.constants.coat.as_ref().and_then(|coat| coat.side);
+        let where_bare = if side.is_some_and(|side| side.without_film) { "without its film" } else { "below the coat" };
+        let below = side.and_then(|side| Some((format!("{}, {where_bare}", material.name), side.lobes?.error?)));
+        let all = material.constants.lobes.and_then(|lobes| Some((material.name.clone(), lobes.error?)));
+        all.into_iter().chain(below)
+    });
+    errors.collect()
 }
 
 pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress) -> Value {
@@ -76,8 +88,9 @@ pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &Bak
             })
         })
         .collect();
-    let lobes: Vec<Value> = (manifest.materials.iter())
-        .filter_map(|m| Some(json!({ "material": m.name, "error": m.constants.lobes?.error? })))
+    let lobes: Vec<Value> = errors_of_lobes(manifest)
+        .into_iter()
+        .map(|(name, error)| json!({ "material": name, "error": error }))
         .collect();
     let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
     let phases: Value = progress.phases().iter().map(|(phase, s)| ((*phase).to_owned(), json!(s))).collect();

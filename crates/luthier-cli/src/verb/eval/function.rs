@@ -123,7 +123,7 @@ impl<'a> Function<'a> {
         let stack = &subject.material.stack;
         let whole = Self::of(subject, stack, kind);
         let bare = subject.weight.filter(|_| subject.model.info().shading().is_none());
-        let bare = bare.map(|weight| (weight, Box::new(Self::of(subject, &stack.without_first(), kind))));
+        let bare = bare.map(|weight| (weight, Box::new(Self::of(subject, &subject.material.bare_stack(), kind))));
         Self { bare, ..whole }
     }
 

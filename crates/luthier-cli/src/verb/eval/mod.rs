@@ -15,7 +15,7 @@ use luthier_layers::model::{Estimate, Model, ModelInfo};
 use luthier_layers::models::lobes::{Fit, Fitted, Varied};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
-use luthier_layers::twins::shaded::{Growth, Place};
+use luthier_layers::twins::shaded::{Growth, Place, Side};
 use luthier_manifest::ShadingModel;
 use luthier_material::{FileKind, Material};
 use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
@@ -179,13 +179,14 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     add_layers(&mut place, &material, inputs, &maps)?;
     if inputs.has_weight_factor() && material.weight().is_none() {
         let file = &material.source;
-        let text = format!("{file} has no coat with a weight below 1 or in a map: leave --weight-factor out");
+        let text = format!("{file} has no coat or film with a weight below 1 or in a map: leave --weight-factor out");
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
     let weight = weight(&material, inputs)?.filter(|_| ModelInputs::shows_weight(&material, model.as_ref()));
     if let Some(weight) = weight.filter(|_| model.info().shading().is_some()) {
         place.patina = Some(Growth::of_coat(weight));
-        place.has_side = material.has_side();
+        let side = if material.weighs_film() { Side::Film } else { Side::Coat };
+        place.side = material.has_side().then_some(side);
     } else if weight.is_some() && (place.sample.slab_factor, place.sample.film_factor) != (1.0, 1.0) {
         let text =
             format!("model `{name}` has no place: leave --slab-factor and --film-factor out for a coat with a weight");

@@ -91,7 +91,7 @@ fn a_weight_is_the_mean_of_two_files() {
     }
     workshop
         .run(&[&["eval", "b.toml", "--model", "elek", "--weight-factor", "1"], &PAIR[..]].concat())
-        .fails(2, &["b.toml has no coat with a weight", "leave --weight-factor out"]);
+        .fails(2, &["b.toml has no coat or film with a weight", "leave --weight-factor out"]);
     // What a model leaves out is told, and is not there.
     let args = [&["eval", "w.toml", "--model", "belcour"], &PAIR[..]].concat();
     let run = workshop.run(&args).exits(0);

@@ -254,38 +254,6 @@ fn coats_with_weights_are_those_of_the_twin() {
         ("undarkened", "elek", "darkening = false\nmaps = { weight = \"mask.png\" }\n", &textured, ""),
         ("metal", "lobes", "weight = 0.6\n", metal, ""),
         ("paint", "lobes", "weight = 0.6\nmaps = { weight = \"mask.png\" }\n", paint, ""),
-        // Beside what makes two surfaces of it.
-        ("slopes", "lobes", "weight = 0.6\n", &format!("{metal}maps = {{ alpha = \"mask.png\" }}\n"), ""),
-        (
-            "colors",
-            "lobes",
-            "darkening = false\nmaps = { weight = \"mask.png\", alpha = \"mask.png\" }\n",
-            &textured,
-            "",
-        ),
-        ("worn", "lobes", "weight = 0.6\nmaps = { roughness = \"mask.png\" }\n", paint, ""),
-        ("slab", "lobes", "weight = 0.6\nmaps = { thickness = \"mask.png\", normal = \"mask.png\" }\n", metal, ""),
-        (
-            "wood",
-            "lobes",
-            "weight = 0.6\n",
-            "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\nsigma = 0.3\nmaps = { albedo = \"mask.png\" }\n",
-            "",
-        ),
-        (
-            "brushed",
-            "lobes",
-            "weight = 0.6\n",
-            "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nalpha_x = 0.3\nalpha_y = 0.1\n",
-            "",
-        ),
-        (
-            "flaked",
-            "lobes",
-            "weight = 0.6\n",
-            paint,
-            "[effects.flakes]\ncells = { seed = 1, count = 64, spread_deg = 5 }\ntiling = 100\n",
-        ),
     ] {
         let text = format!("schema = 1\nname = \"{name}\"\n{coat}{weight}{below}[bake]\nmodel = \"{model}\"\n{more}");
         workshop.write(&format!("m/{name}.toml"), text);
@@ -304,6 +272,74 @@ fn coats_with_weights_are_those_of_the_twin() {
     for material in report["materials"].as_array().unwrap() {
         let errors = &material["at_places"]["shader"]["relative"];
         assert!(errors.is_null() || errors["max"].as_f64().unwrap() < 1e-4, "{}: {errors}", material["name"]);
+    }
+}
+
+/// Weights of coats beside textures, which make two surfaces of them: shaders against the twin at places, and what the report finds.
+#[test]
+fn coats_with_weights_beside_textures_are_those_of_the_twin() {
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\nthickness_um = 10\nabsorption_per_um = [0.01, 0.02, 0.04]\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nalpha = 0.3\n";
+    let paint = "[[layer]]\ntype = \"dielectric\"\nior = 1.3\nalpha = 0.1\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.3, 0.1]\n";
+    let textured = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.6, 0.3, 0.1]\nmetallic = 0.5\nroughness = 0.5\nmaps = { base_color = \"mask.png\", metallic = \"mask.png\" }\n";
+    let slopes = format!("{metal}maps = {{ alpha = \"mask.png\" }}\n");
+    let workshop = Workshop::new();
+    let mask = image::RgbImage::from_fn(8, 8, |x, y| image::Rgb([(30 * x) as u8, (200 - 20 * y) as u8, 255]));
+    std::fs::create_dir_all(workshop.path("m")).unwrap();
+    mask.save(workshop.path("m/mask.png")).unwrap();
+    for (name, weight, below, more) in [
+        ("slopes", "weight = 0.6\n", slopes.as_str(), ""),
+        ("colors", "darkening = false\nmaps = { weight = \"mask.png\", alpha = \"mask.png\" }\n", textured, ""),
+        ("worn", "weight = 0.6\nmaps = { roughness = \"mask.png\" }\n", paint, ""),
+        ("slab", "weight = 0.6\nmaps = { thickness = \"mask.png\", normal = \"mask.png\" }\n", metal, ""),
+        (
+            "wood",
+            "weight = 0.6\n",
+            "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\nsigma = 0.3\nmaps = { albedo = \"mask.png\" }\n",
+            "",
+        ),
+        (
+            "brushed",
+            "weight = 0.6\n",
+            "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nalpha_x = 0.3\nalpha_y = 0.1\n",
+            "",
+        ),
+        (
+            "flaked",
+            "weight = 0.6\n",
+            paint,
+            "[effects.flakes]\ncells = { seed = 1, count = 64, spread_deg = 5 }\ntiling = 100\n",
+        ),
+    ] {
+        let text = format!("schema = 1\nname = \"{name}\"\n{coat}{weight}{below}[bake]\nmodel = \"lobes\"\n{more}");
+        workshop.write(&format!("m/{name}.toml"), text);
+    }
+    // Films, too.
+    let film =
+        "[[layer]]\ntype = \"thin-film\"\nior = 1.8\nweight = 0.7\nmaps = { weight = \"mask.png\" }\nthickness_nm = ";
+    let varying = "{ min = 300, max = 500, extent_um = 1000, map = \"mask.png\" }\n";
+    for (name, thickness, layers) in
+        [("iridescent", "400\n", slopes.clone()), ("soapy", varying, format!("{coat}{paint}"))]
+    {
+        let text = format!("schema = 1\nname = \"{name}\"\n{film}{thickness}{layers}");
+        workshop.write(&format!("m/{name}.toml"), text);
+    }
+    let run = workshop.run(&["bake", "m"]).exits(0);
+    let has = |words: &str| run.stdout.contains(words);
+    assert!(has("brushed, below the coat") && has("soapy, without its film"), "{}", run.stdout);
+    let run = workshop.run(&["report", "--pairs", "512", "--picture-size", "0"]);
+    if run.lacks_adapter() {
+        workshop.run(&TABLES_ONLY).exits(0);
+        return;
+    }
+    run.exits(0);
+    let report = workshop.json("out/report/report.json");
+    let findings = report["findings"].as_array().unwrap();
+    assert!(!findings.iter().any(|finding| finding.to_string().contains("no layer reads it")), "{findings:?}");
+    assert!(report["max_error"].as_f64().unwrap() < 2e-2);
+    for material in report["materials"].as_array().unwrap() {
+        let errors = &material["at_places"]["shader"]["relative"];
+        assert!(errors["max"].as_f64().unwrap() < 1e-4, "{}: {errors}", material["name"]);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 38] = [
+pub(super) static SAMPLES: [Sample; 39] = [
     sample(
         "material.exterior",
         "exterior",
@@ -168,6 +168,12 @@ pub(super) static SAMPLES: [Sample; 38] = [
         "layer.0.film.0.type",
         "layer = [{ type = 'thin-film', ior = 2.3, thickness_nm = @ }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]",
         &["40", "110", "180"],
+    ),
+    sample(
+        "thin-film.weight",
+        "layer.0.film.0.weight",
+        "layer = [{ type = 'thin-film', ior = 2.3, thickness_nm = 110, weight = @ }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]",
+        &["0", "0.5", "1"],
     ),
     sample(
         "film-thickness.min",

@@ -4,7 +4,7 @@ use super::{Sample, sample};
 
 const FILM: &str = "layer.0.film.0.thickness_nm";
 
-pub(super) static SAMPLES: [Sample; 23] = [
+pub(super) static SAMPLES: [Sample; 24] = [
     sample(
         "noise.seed",
         FILM,
@@ -45,6 +45,12 @@ pub(super) static SAMPLES: [Sample; 23] = [
         "dielectric-maps.weight",
         "layer.0.maps.weight",
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.002, 0.012, 0.03], maps = { @ } }, { type = 'conductor', ior = 'al', alpha = 0.3 }]\nbake = { model = 'elek' }",
+        &["absent|", "'thickness.png'|weight = 'thickness.png'", "'patina.png'|weight = 'patina.png'"],
+    ),
+    sample(
+        "film-maps.weight",
+        "layer.0.film.0.maps.weight",
+        "layer = [{ type = 'thin-film', ior = 2.3, thickness_nm = 110, maps = { @ } }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]",
         &["absent|", "'thickness.png'|weight = 'thickness.png'", "'patina.png'|weight = 'patina.png'"],
     ),
     sample(

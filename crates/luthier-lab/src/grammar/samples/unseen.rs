@@ -30,6 +30,7 @@ pub(crate) static UNSEEN: [Unseen; 7] = [
             "dielectric.abc",
             "dielectric.sgd",
             "dielectric.maps",
+            "thin-film.maps",
             "conductor.maps",
             "diffuse.maps",
             "metallic-roughness.maps",

@@ -10,6 +10,7 @@ use luthier_optics::interface::Interface;
 use super::{Measured, Scan, User, coordinate, coordinates};
 use crate::error::ReportError;
 use crate::measure::readers::bare_users;
+use crate::measure::references::bare_stack;
 use crate::measure::scan::report::{Curves, ReflectanceCurve};
 use crate::measure::subject::{Subject, Table, color};
 use crate::measure::table_terms::{AngleAxis, Weights};
@@ -47,7 +48,7 @@ pub(super) fn scan(
     let bare = bare_users(subject, TableKind::Fresnel, tile).into_iter().filter_map(|material| {
         let (entry, stack) = (&materials[material], &subject.stacks[material]);
         // What the first layer does not cover meets the light without it.
-        let interface = Interface::of(&stack.without_first(), 0)?.sampled(&color(entry));
+        let interface = Interface::of(&bare_stack(entry, stack), 0)?.sampled(&color(entry));
         let expected: Reflectance<'_> = Box::new(move |c| interface.rgb(c));
         Some((entry.constants.bare()?, expected))
     });

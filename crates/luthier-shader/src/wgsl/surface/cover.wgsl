@@ -11,20 +11,21 @@ fn luthier_cover(place: LuthierPlace, material: u32) -> f32 {
 
 //? lobes_sides
 {
-    /// Whether the layers below the coat of a material have lobes of their own.
+    /// Whether the layers that the coat or the film of a material leaves bare have lobes of their own.
     fn luthier_has_side(material: u32) -> bool {
         return luthier_materials[luthier_header(material) + $word_patina_diffuse_albedo].w > 3.5;
     }
 
-    /// These layers as a material: their header lies behind the layers of the material, which are as long as a header.
+    /// These layers, or those without the film on the first, as a material: their header lies behind the layers of the material and the bare one, which are
+    /// as long as a header.
     fn luthier_side(material: u32) -> u32 {
         // Whole numbers below 2^23 have no remainder.
         let first = f32(luthier_whole(luthier_materials[luthier_header(material)].x));
         let block = u32(first / f32(LUTHIER_MATERIAL_WORDS) + 0.5);
-        return block + 2u * luthier_layer_count(material) - 1u;
+        return block + luthier_layer_count(material) + 1u;
     }
 
-    /// Weight of the coat of a material with such layers.
+    /// Weight of the coat or of the film of a material with such layers.
     fn luthier_side_weight(material: u32) -> f32 {
         return luthier_materials[luthier_header(luthier_side(material))].z;
     }

@@ -194,11 +194,14 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
 }
 
 //? lobes_sides
-/// A place as it is for the layers below the first, where that is a coat that leaves them bare.
-fn luthier_place_below_coat(place: LuthierPlace) -> LuthierPlace {
+/// A place as it is for the layers that a coat leaves bare, or for a first layer that its film leaves bare: `coats` is the number of layers that are not there.
+fn luthier_place_below_coat(place: LuthierPlace, coats: u32) -> LuthierPlace {
     var next = place;
-    next.slab_factor = 1.0;
     next.film_factor = 1.0;
+    if coats == 0u {
+        return next;
+    }
+    next.slab_factor = 1.0;
     //? flakes
     next.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
     //? patina

@@ -28,8 +28,12 @@ impl Shader {
         let set = MaterialSet { functions, ..MaterialSet::new(materials, tables_with(layout)) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         let grey = Image { data: vec![0.1; 36], ..Image::zeros(3, 3, 4) };
-        let textures =
-            [("luthier_fresnel", grey.clone()), ("luthier_distribution", grey), ("luthier_lobes", image.clone())];
+        let textures = [
+            ("luthier_fresnel", grey.clone()),
+            ("luthier_distribution", grey.clone()),
+            ("luthier_film", grey),
+            ("luthier_lobes", image.clone()),
+        ];
         let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
         Self { machine: Machine::new(&text, &material_buffer(materials), textures), text }
     }
@@ -111,7 +115,11 @@ fn of_families(is_metallic: bool, nodes: [u32; 2]) -> MaterialEntry {
     let side = material(family(0, is_metallic, [1, nodes[1]]));
     let mut bare = LayerRecord { alpha: coated.layers[1].alpha, ..side.layers[0].clone() };
     bare.tiles[TableKind::Lobes] = Some(FIRST + nodes[0] * nodes[1]);
-    let coat = CoatRecord { weight: WEIGHT.into(), bare, side: Some(SideRecord { lobes: side.constants.lobes }) };
+    let coat = CoatRecord {
+        weight: WEIGHT.into(),
+        bare,
+        side: Some(SideRecord { lobes: side.constants.lobes, without_film: false }),
+    };
     coated.constants.coat = Some(coat);
     coated
 }
@@ -134,6 +142,7 @@ fn light_of_sides_is_that_of_two_materials() {
         family(false, &both),
         scene("lobes-sides"),
         scene("lobes-sides-base"),
+        scene("lobes-sides-film"),
     ];
     for (number, (material, rows)) in cases.into_iter().enumerate() {
         let mut material = material;
@@ -142,6 +151,8 @@ fn light_of_sides_is_that_of_two_materials() {
         if let Some(coat) = &mut constants.coat {
             coat.weight = WEIGHT.into();
         }
+        // Without a film all layers are there.
+        let coats = material.layers.len() - material.side().unwrap().layers.len();
         let is_base = material.constants.coat.as_ref().is_some_and(|coat| coat.side.unwrap().lobes.is_none());
         let below = material.side().unwrap();
         // A map, so that its shader has places.
@@ -164,7 +175,7 @@ fn light_of_sides_is_that_of_two_materials() {
                 continue;
             }
             let first = coated.at(&coated.place(&values, 0), wi, wo);
-            let second = below.at(&below.place(&values, 1), wi, wo);
+            let second = below.at(&below.place(&values, coats), wi, wo);
             let weight = (WEIGHT * values.weight_factor).min(1.0);
             let mix = |of: usize| -> Vec<f32> {
                 first[of].iter().zip(&second[of]).map(|(a, b)| weight * a + (1.0 - weight) * b).collect()

@@ -1,6 +1,6 @@
 //? lobes_sides
 {
-    /// A coat with a weight over layers that have lobes of their own, as seen from a direction: both surfaces, by area.
+    /// A coat or a film with a weight on layers that have lobes of their own, as seen from a direction: both surfaces, by area.
     struct LuthierPreparedSides {
         /// Share of the surface that the coat covers.
         cover: f32,
@@ -29,7 +29,7 @@
             let side = luthier_side(material);
             prepared.cover = saturate(luthier_side_weight(material) * place.weight_factor);
             if prepared.cover < 1.0 {
-                let below = luthier_place_below_coat(place);
+                let below = luthier_place_below_coat(place, luthier_layer_count(material) - luthier_layer_count(side));
                 //? lobes_side_bases
                 {
                     //? lobes_side_rows
