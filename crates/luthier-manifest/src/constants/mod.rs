@@ -295,7 +295,7 @@ impl VaryingFactor {
     }
 }
 
-/// What the number of lobes in the words is more by where a coat has a [`CoatRecord::side`].
+/// Added to the number of lobes in the words where a coat has a [`CoatRecord::side`].
 const OVER_SIDE: f32 = 4.0;
 
 /// Least factor on slopes if tiles are over no such factor.

@@ -83,7 +83,7 @@ pub(crate) const ROOM: Room = Room {
         eval: concat!(
             include_str!("family/family.wgsl"),
             include_str!("tilt.wgsl"),
-            include_str!("sides.wgsl"),
+            include_str!("patina/sides.wgsl"),
             include_str!("eval.wgsl")
         ),
         parts: include_str!("parts.wgsl"),
