@@ -82,7 +82,7 @@ impl Place {
     }
 }
 
-/// What a weight leaves bare, where that has lobes of its own.
+/// Layers that a weight leaves bare, where these have lobes of their own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// The layers below the first, a coat.

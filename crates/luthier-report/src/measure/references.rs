@@ -65,7 +65,7 @@ impl References {
     }
 }
 
-/// What the weight of a coat or a film leaves bare, if that has lobes of its own.
+/// Layers that the weight of a coat or a film leaves bare, if these have lobes of their own.
 pub(crate) fn side_of(material: &MaterialEntry) -> Option<Side> {
     let side = material.constants.coat.as_ref()?.side?;
     Some(if side.without_film { Side::Film } else { Side::Coat })
