@@ -42,7 +42,7 @@ fn read(name: &str, text: &str) -> Parsed {
     }
 }
 
-/// What a file has on its header lines; none is empty.
+/// Asserts the header lines of a file; none is empty, and the source has a licence.
 #[track_caller]
 fn header(name: &str, text: &str) {
     for (line, start) in text.lines().zip(HEADER) {
@@ -71,7 +71,7 @@ fn all_keep_lobes_whole() {
     assert!(plain <= PLAIN, "{plain} have no texture");
 }
 
-/// What was tried and is out says why; the test of the command holds it against what `check` says.
+/// Every file of `out` says why it is out; the test of the command holds it against what `check` says.
 #[test]
 fn what_is_out_says_why() {
     for (name, text) in materials(&folder().join("out")) {
