@@ -108,10 +108,15 @@ recipes() {
     luthier preview "$file" --shape sphere --size 160 -o "docs/images/recipes/$(basename "$file" .toml).png"
   done
 }
+# The test that checks the materials of public collections takes what they show; their pictures come first.
+assets() {
+  python3 scripts/asset-pictures.py crates/luthier-material/tests/assets
+  LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- check::assets
+}
 # The test that follows the tutorial takes its outputs and pictures.
 tutorial() { LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- tutorial; }
 
-all=(materials cost shapes devices layouts sets papers budgets scenes parity places textured stability figures models lobes varying families anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes tutorial)
+all=(materials cost shapes devices layouts sets papers budgets scenes parity places textured stability figures models lobes varying families anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes assets tutorial)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;
