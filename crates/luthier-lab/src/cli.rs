@@ -310,7 +310,7 @@ pub(crate) struct FiveWaysOptions {
     #[arg(default_values = ["materials/textured/board/varnished-oak.toml", "materials/textured/board/worn-brass.toml"])]
     pub(crate) paths: Vec<PathBuf>,
     /// Side of each ball in pixels
-    #[arg(long, value_name = "N", default_value_t = 192, value_parser = clap::value_parser!(u32).range(16..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 112, value_parser = clap::value_parser!(u32).range(16..=1024))]
     pub(crate) size: u32,
     /// Picture to write
     #[arg(long, value_name = "FILE", default_value = "docs/images/five-ways.png")]

@@ -266,7 +266,7 @@ pub(crate) fn run(options: &FiveWaysOptions) -> Outcome {
             let (light, error) = (mean(image) / mean(&ways[0]), compared.rms_err / mean(&ways[0]));
             let _ = writeln!(page, "| {name} | {way} | {:+.3} | {error:.3} | {:.3} |", light - 1.0, compared.flip_mean);
         }
-        pictures.extend(WAYS.iter().zip(ways).map(|(way, image)| (format!("{name}: {way}"), TONE.image(image))));
+        pictures.extend(WAYS.iter().zip(ways).map(|(way, image)| ((*way).to_owned(), TONE.image(image))));
         bar.set(number as u64 + 1, total);
     }
     drop(bar);

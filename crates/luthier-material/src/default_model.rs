@@ -171,6 +171,7 @@ mod tests {
                 Some("layer.1.maps.alpha"),
             ),
             (COAT.to_owned() + rough + WEIGHT + OWN + WHITE, "lobes", "elek", None),
+            (COAT.to_owned() + rough + WEIGHT + COAT + rough + "f0 = 0.016\n" + OWN + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + smooth + METALLIC + brushed + painted, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + smooth + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + beckmann + GOLD + rough, "lobes", "elek", None),

@@ -113,8 +113,8 @@ pub(super) fn check_bare(document: &Section<'_>, stack: &Stack, sink: &mut Sink<
     }
 }
 
-/// Reports a weight of a coat over a dielectric with an F0, whose index follows from the medium above or bends light by it: where the coat is not, that is
-/// the exterior. A `metallic-roughness` layer bends nothing, neither below the coat nor in its place.
+/// Reports a weight of a coat over a dielectric with an F0 alone, whose index follows from the medium above: where the coat is not, that is the exterior. A
+/// dielectric that has an index, too, keeps it, and bends nothing in either place if it is that of the coat; nor does a `metallic-roughness` layer.
 pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     let sections = document.sections("layer");
     let layers: Vec<&Section<'_>> = sections.iter().filter(|at| at.text("type") != Some("thin-film")).collect();
@@ -122,9 +122,11 @@ pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     if let Some(span) = effects::weight_span(first)
         && below.text("type") == Some("dielectric")
         && below.has("f0")
+        && !below.has("ior")
     {
         let message = "below this coat lies a dielectric with an `f0`: the medium above decides how that bends light, and the coat is there in places only";
-        let hint = "give that layer an `ior` in place of its `f0`, or write it as `type = \"metallic-roughness\"`";
+        let hint =
+            "give that layer an `ior` beside its `f0` or in its place, or write it as `type = \"metallic-roughness\"`";
         sink.error(span, message, Some(hint.to_owned()));
     }
 }
