@@ -10,5 +10,5 @@ mod gallery_page;
 mod noise;
 #[cfg(feature = "gpu")]
 mod preview;
-#[cfg(feature = "view")]
+#[cfg(all(feature = "view", unix))]
 mod view;

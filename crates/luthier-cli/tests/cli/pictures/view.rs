@@ -1,8 +1,10 @@
 //! The window, on a display without a screen.
 
 use std::io::{BufRead, BufReader};
+use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 use assert_cmd::cargo::cargo_bin;
 use image::RgbImage;
@@ -24,7 +26,21 @@ struct Display {
 impl Display {
     /// `None` where there is no server; on a build server there must be one.
     fn open() -> Option<Self> {
-        let arguments = ["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"];
+        for _ in 0..ATTEMPTS {
+            let display = Self::start()?;
+            let socket = format!("/tmp/.X11-unix/X{}", display.name.trim_start_matches(':'));
+            if UnixStream::connect(socket).is_ok() {
+                return Some(display);
+            }
+        }
+        panic!("no server answers at its display");
+    }
+
+    fn start() -> Option<Self> {
+        // Servers that start or end together may take the same number: they look for locks of others, and remove what was left behind.
+        let _alone = STARTING.lock().unwrap_or_else(PoisonError::into_inner);
+        // Without `-noreset` a server begins anew after its last client, and refuses the next one meanwhile.
+        let arguments = ["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-noreset"];
         let started = Command::new("Xvfb").args(arguments).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
         let Ok(mut server) = started else {
             assert!(std::env::var_os("CI").is_none(), "`Xvfb` is missing: install the package xvfb");
@@ -37,9 +53,20 @@ impl Display {
     }
 }
 
+/// Held while a server starts or ends.
+static STARTING: Mutex<()> = Mutex::new(());
+
+/// Servers that are tried before a test fails.
+const ATTEMPTS: u32 = 4;
+
 impl Drop for Display {
+    /// Asks the server to end, so that it takes its lock and its socket with it.
     fn drop(&mut self) {
-        let _ = self.server.kill();
+        let _alone = STARTING.lock().unwrap_or_else(PoisonError::into_inner);
+        let asked = Command::new("kill").arg(self.server.id().to_string()).status();
+        if !asked.is_ok_and(|status| status.success()) {
+            let _ = self.server.kill();
+        }
         let _ = self.server.wait();
     }
 }
