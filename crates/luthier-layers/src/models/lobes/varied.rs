@@ -254,10 +254,10 @@ impl Varied {
 
     /// The lobes of the stack itself, without a texture.
     pub fn nominal(mut self) -> Lobes {
-        if let Some(Over { varying: Varying::Family(family), stack, .. }) = &self.varying {
-            if let Some(lobes) = self.painted(family.slopes(stack), &Paint::of(stack)) {
-                return lobes;
-            }
+        if let Some(Over { varying: Varying::Family(family), stack, .. }) = &self.varying
+            && let Some(lobes) = self.painted(family.slopes(stack), &Paint::of(stack))
+        {
+            return lobes;
         }
         let node = self.varying().map_or(0, Varying::nominal);
         self.nodes.swap_remove(node)
