@@ -45,9 +45,9 @@ impl LayerSample {
         libm::sqrt(self.alpha_factors[0] * self.alpha_factors[1])
     }
 
-    /// Whether it changes slope parameters or the F0.
+    /// Whether it changes slope parameters, their directions, or the F0.
     pub(crate) fn has_slopes_or_f0(&self) -> bool {
-        self.alpha_factors != [1.0; 2] || self.f0.is_some()
+        self.alpha_factors != [1.0; 2] || self.tangent != DVec2::X || self.f0.is_some()
     }
 
     /// Turns the tangent of a layer, and scales its slab; its slope parameters depend on the model.

@@ -419,7 +419,7 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
         for (number, layer) in here.layers.iter_mut().enumerate().filter(|_| is_family) {
             let own = place.layers.get(number).unwrap_or(&LayerSample::NONE);
             own.apply(layer);
-            layer.surface = lobes::scaled_surface(layer.surface, own.alpha_factor());
+            layer.surface = lobes::scaled_along(layer.surface, own.alpha_factors);
             // Lobes of a family are those of the base in its colour.
             if let (Base::Diffuse(base), Some(color)) = (&mut layer.base, place.base_color) {
                 base.albedo = color;

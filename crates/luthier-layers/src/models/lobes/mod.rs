@@ -60,7 +60,7 @@ pub use patina::{Cover, bare};
 pub use prepared::{Prepared, Sample};
 pub use rows::{BaseLight, Critical, Lobe, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
-pub(crate) use varied::scaled_surface;
+pub(crate) use varied::scaled_along;
 pub use varied::{Fit, Traced, Varied, Varying};
 
 use glam::DVec3;

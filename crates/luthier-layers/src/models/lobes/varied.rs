@@ -439,11 +439,16 @@ fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
 
 /// A surface with a factor on its slope parameters, within the range of layer records before and after.
 pub(crate) fn scaled_surface(surface: Surface, factor: f64) -> Surface {
-    if factor == 1.0 {
+    scaled_along(surface, [factor; 2])
+}
+
+/// [`scaled_surface`] with factors along the tangent and the bitangent.
+pub(crate) fn scaled_along(surface: Surface, factors: [f64; 2]) -> Surface {
+    if factors == [1.0; 2] {
         return surface;
     }
-    let [alpha_x, alpha_y] =
-        [surface.alpha_x, surface.alpha_y].map(|alpha| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0));
+    let [alpha_x, alpha_y] = [(surface.alpha_x, factors[0]), (surface.alpha_y, factors[1])]
+        .map(|(alpha, factor)| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0));
     Surface { alpha_x, alpha_y, ..surface }
 }
 

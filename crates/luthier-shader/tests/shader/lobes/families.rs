@@ -215,6 +215,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         // From here on slope parameters differ along tangents.
         (family(1, true, NODES), &surface[1..], vec![]),
         (family(1, false, NODES), &surface[..], vec![plain.clone(), material(family(1, false, NODES))]),
+        (family(0, false, [1, 3]), &surface[1..], vec![]),
     ]
     .into_iter()
     .enumerate()
@@ -231,7 +232,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         // A first interface that is a coat is black. Without one it has the nominal F0 at all angles, and so that of the place.
         let mut reflected = Image::zeros(3, 3, 4);
-        if !family.is_coated() {
+        let has_facets = !family.is_coated() && family.is_metallic;
+        if has_facets {
             reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
         }
         let textures = [
@@ -305,7 +307,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             }
             if is_brushed {
                 let slopes = [0, 1].map(|i: usize| {
-                    let (along, angle) = (ALPHAS[i] * f64::from(factor), TURNS[i] + f64::from(turn));
+                    let (along, angle) =
+                        (ALPHAS[i] * f64::from(factor), TURNS[i.min(family.interface)] + f64::from(turn));
                     let own = f64::from(own[i]);
                     Slopes {
                         along: [along * BRUSHED[0] * own * own, along * BRUSHED[1]],
@@ -320,7 +323,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
             let here = family.row_in(&row, alphas, (&frame, eye.z), &paint);
             let below = Below::new(frame, here, eye).widened(eye, variance);
-            let facets = if family.is_coated() { 0.0 } else { facets(light, eye, alphas[1].clamp(0.001, 1.0)) };
+            let facets = if !has_facets { 0.0 } else { facets(light, eye, alphas[1].clamp(0.001, 1.0)) };
             let expected = below.eval(light);
             let expected = [0, 1, 2].map(|c: usize| expected[c] + (0.04 + mix.metallic * (wide[c] - 0.04)) * facets);
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
