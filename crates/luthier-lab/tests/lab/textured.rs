@@ -32,7 +32,7 @@ fn shader_rows_and_simulation_agree_where_two_maps_vary() {
 #[test]
 fn energies_in_tables_are_those_of_the_metal_of_a_place() {
     let workshop = Workshop::with(&[]);
-    for material in ["base-color-metallic-roughness", "coated-base-color-metallic", "coated-tangent"] {
+    for material in ["base-color-metallic-roughness", "coated-base-color-metallic", "tangent", "coated-tangent"] {
         let run = workshop.run(&["textured", "--only", material, "--pairs", "400"]);
         if run.lacks_adapter() {
             return;
