@@ -76,7 +76,7 @@ struct Subject {
     metallic: Option<(PictureRef, Image)>,
     weight: Option<(PictureRef, Image)>,
     roughness: Option<(PictureRef, Image)>,
-    /// Of the first layer and of the base.
+    /// Maps of slope parameters of the first layer and of the base.
     alphas: [Option<(PictureRef, Image)>; 2],
 }
 
@@ -322,3 +322,29 @@ varnished-oak asks for a coat that does not darken its base (`darkening = false`
 | material | way | light | error | FLIP |
 |---|---|--:|--:|--:|
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand, along the normal: D V = 1 / (4 pi alpha^2), .5 / pi of the colour, and .04 of light for the coat and for the surface.
+    #[test]
+    fn the_formula_of_gltf_along_the_normal() {
+        let mix = |metallic| Mix { metal: [0.5; 3], matt: [0.5; 3], metallic };
+        let here =
+            |metallic, weight| Here { color: [0.5; 3], mix: mix(metallic), weight, slopes: [0.1.into(), 0.5.into()] };
+        let found = |metallic, weight| gltf(&here(metallic, weight), DVec3::Z, DVec3::Z)[0];
+        for (metallic, weight, expected) in [
+            (0.0, 0.0, 0.152_788_745 + 0.012_732_395),
+            (1.0, 0.0, 0.159_154_943),
+            (0.0, 1.0, 0.165_521_140 + 0.04 * (7.957_747_155 - 0.165_521_140)),
+            (0.5, 0.5, 0.162_338_042 + 0.02 * (7.957_747_155 - 0.162_338_042)),
+        ] {
+            assert!(
+                (found(metallic, weight) - expected).abs() < 1e-8,
+                "{metallic} {weight}: {}",
+                found(metallic, weight)
+            );
+        }
+    }
+}

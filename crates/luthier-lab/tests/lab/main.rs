@@ -3,6 +3,7 @@
 mod command;
 mod costs;
 mod figures;
+mod five_ways;
 mod foreign;
 mod golden;
 mod grammar;

@@ -630,16 +630,18 @@ mod tests {
         assert_eq!(at(&brushed, Some(growth)), at(&brushed, None));
     }
 
-    /// Oracle: the stack and the one without its first layer, evaluated apart at the places that textures make of them.
-    #[test]
-    fn a_coat_over_a_side_is_the_mean_of_two_stacks() {
+    /// Light of lobes by few paths, at a place.
+    fn lobes_at(stack: &Stack, place: &Place) -> Rgb {
         let (wi, wo) = directions();
         let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
         let few = FitSettings { rows: 8, paths: 2000, seed: 3 };
         let fit = |stack: &Stack, color: &Color, varying: Option<Varying>| Varied::with(stack, color, varying, few);
-        let at = |stack: &Stack, place: &Place| {
-            Shaded::fitted_by(&fit, ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
-        };
+        Shaded::fitted_by(&fit, ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
+    }
+
+    /// Oracle: the stack and the one without its first layer, evaluated apart at the places that textures make of them.
+    #[test]
+    fn a_coat_over_a_side_is_the_mean_of_two_stacks() {
         let plastic = |f0: f64| Base::Dielectric {
             ior: Ior::constant(1.5, 0.0).unwrap().with_f0([f0; 3]),
             slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
@@ -659,13 +661,13 @@ mod tests {
             (engine, Place { metal: Some(mix), ..plain.clone() }),
             (paint, Place { base_color: Some([0.2, 0.6, 0.9]), layers: Vec::new(), ..plain }),
         ] {
-            let whole = at(&stack, &place);
+            let whole = lobes_at(&stack, &place);
             let sample = TextureSample { slab_factor: 1.0, ..place.sample };
             let layers = place.layers.iter().skip(1).copied().collect();
-            let below = at(&lobes::bare(&stack), &Place { sample, layers, under: Under::NONE, ..place.clone() });
+            let below = lobes_at(&lobes::bare(&stack), &Place { sample, layers, under: Under::NONE, ..place.clone() });
             for weight in [0.0, 0.35, 1.0] {
                 let patina = Some(Growth::of_coat(weight));
-                let found = at(&stack, &Place { patina, side: Some(Side::Coat), ..place.clone() });
+                let found = lobes_at(&stack, &Place { patina, side: Some(Side::Coat), ..place.clone() });
                 for c in 0..3 {
                     let expected = weight * whole[c] + (1.0 - weight) * below[c];
                     assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {below:?}");
@@ -678,13 +680,6 @@ mod tests {
     /// Oracle: the stack with its film and the one without it, evaluated apart. One film on one interface, and one that varies above other layers.
     #[test]
     fn a_film_with_a_weight_is_the_mean_of_two_stacks() {
-        let (wi, wo) = directions();
-        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
-        let few = FitSettings { rows: 8, paths: 2000, seed: 3 };
-        let fit = |stack: &Stack, color: &Color, varying: Option<Varying>| Varied::with(stack, color, varying, few);
-        let at = |stack: &Stack, place: &Place| {
-            Shaded::fitted_by(&fit, ShadingModel::Lobes, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
-        };
         let thickness = FilmThickness { min_nm: 200.0, max_nm: 400.0 };
         let film = Film { ior: Ior::constant(1.9, 0.0).unwrap(), thickness };
         let mut coated = copper();
@@ -696,10 +691,10 @@ mod tests {
         for stack in [coated, metal] {
             let mut bare = stack.clone();
             bare.layers[0].films.clear();
-            let [whole, without] = [&stack, &bare].map(|stack| at(stack, &place));
+            let [whole, without] = [&stack, &bare].map(|stack| lobes_at(stack, &place));
             for weight in [0.0, 0.35, 1.0] {
                 let patina = Some(Growth::of_coat(weight));
-                let found = at(&stack, &Place { patina, side: Some(Side::Film), ..place.clone() });
+                let found = lobes_at(&stack, &Place { patina, side: Some(Side::Film), ..place.clone() });
                 for c in 0..3 {
                     let expected = weight * whole[c] + (1.0 - weight) * without[c];
                     assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {without:?}");

@@ -111,7 +111,7 @@ impl Varying {
         let first = here.layers.first_mut();
         match self {
             Self::Alpha => {
-                here.layers.iter_mut().for_each(|layer| layer.surface = scaled_surface(layer.surface, factor));
+                here.layers.iter_mut().for_each(|layer| layer.surface = scaled_along(layer.surface, [factor; 2]));
             }
             Self::Slab => {
                 if let Some(Base::Dielectric { slab, .. }) = first.map(|layer| &mut layer.base) {
@@ -437,12 +437,7 @@ fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
     varying.filter(|_| Varying::axes(varying, stack).is_none())
 }
 
-/// A surface with a factor on its slope parameters, within the range of layer records before and after.
-pub(crate) fn scaled_surface(surface: Surface, factor: f64) -> Surface {
-    scaled_along(surface, [factor; 2])
-}
-
-/// [`scaled_surface`] with factors along the tangent and the bitangent.
+/// A surface with factors on its slope parameters along the tangent and the bitangent, within the range of layer records before and after.
 pub(crate) fn scaled_along(surface: Surface, factors: [f64; 2]) -> Surface {
     if factors == [1.0; 2] {
         return surface;

@@ -347,7 +347,6 @@ fn rows_of_a_family_are_those_of_the_formulas() {
 /// Drawn directions at places of a family: the mean of their weights is the integral of the light by a midpoint rule, and densities sum to at most 1.
 #[test]
 fn directions_of_a_family_are_drawn_as_their_density_says() {
-    const DRAWN: u32 = 16384;
     let family = family(1, true, NODES);
     let (layout, image) = rows(true);
     let materials = [material(family)];
@@ -364,31 +363,37 @@ fn directions_of_a_family_are_drawn_as_their_density_says() {
         let place = machine.call("luthier_metallic_place", arguments);
         let wo = [theta.sin() * 0.8, theta.sin() * 0.6, theta.cos()].map(|w| w as f32);
         let prepared = machine.call("luthier_prepare_at", vec![place, Value::U(0), vector(&wo)]);
-        let call = |name: &str, arguments: &[f32]| machine.call(name, vec![prepared.clone(), vector(arguments)]);
-        let mut mean = [0.0; 3];
-        for i in 0..DRAWN {
-            // Roberts 2018: multiples of the powers of the root of x^4 = x + 1.
-            let u = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|s: f64| ((f64::from(i) + 0.5) * s).fract() as f32);
-            let drawn = call("luthier_sample", &u);
-            let weight = drawn.members()[2].floats();
-            if drawn.members()[1].floats()[0] > 0.0 {
-                (0..3).for_each(|c| mean[c] += f64::from(weight[c]) / f64::from(DRAWN));
-            }
-        }
-        let (rings, sectors) = (160, 160);
-        let (mut whole, mut density) = ([0.0; 3], 0.0);
-        for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
-            let (z, phi) = ((f64::from(i) + 0.5) / f64::from(rings), (f64::from(j) + 0.5) / f64::from(sectors));
-            let (sin, angle) = ((1.0 - z * z).sqrt(), std::f64::consts::TAU * phi);
-            let wi = [sin * angle.cos(), sin * angle.sin(), z].map(|w| w as f32);
-            let solid_angle = std::f64::consts::TAU / f64::from(rings * sectors);
-            let light = call("luthier_light", &wi).floats();
-            (0..3).for_each(|c| whole[c] += f64::from(light[c]) * solid_angle);
-            density += f64::from(call("luthier_pdf", &wi).floats()[0]) * solid_angle;
-        }
-        for c in 0..3 {
-            assert!((mean[c] - whole[c]).abs() < 0.01, "{color:?} {metal} {theta}: {mean:?} {whole:?}");
-        }
-        assert!(density < 1.01, "{density}");
+        drawn_as_the_density_says(&machine, &prepared, &format!("{color:?} {metal} {theta}"));
     }
+}
+
+/// Directions drawn of a prepared material. Oracle: the mean of their weights is the integral of the light by a midpoint rule, and densities sum to at most 1.
+pub(super) fn drawn_as_the_density_says(machine: &Machine, prepared: &Value, words: &str) {
+    const DRAWN: u32 = 16384;
+    let call = |name: &str, arguments: &[f32]| machine.call(name, vec![prepared.clone(), vector(arguments)]);
+    let mut mean = [0.0; 3];
+    for i in 0..DRAWN {
+        // Roberts 2018: multiples of the powers of the root of x^4 = x + 1.
+        let u = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|s: f64| ((f64::from(i) + 0.5) * s).fract() as f32);
+        let drawn = call("luthier_sample", &u);
+        let weight = drawn.members()[2].floats();
+        if drawn.members()[1].floats()[0] > 0.0 {
+            (0..3).for_each(|c| mean[c] += f64::from(weight[c]) / f64::from(DRAWN));
+        }
+    }
+    let (rings, sectors) = (160, 160);
+    let (mut whole, mut density) = ([0.0; 3], 0.0);
+    for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
+        let (z, phi) = ((f64::from(i) + 0.5) / f64::from(rings), (f64::from(j) + 0.5) / f64::from(sectors));
+        let (sin, angle) = ((1.0 - z * z).sqrt(), std::f64::consts::TAU * phi);
+        let wi = [sin * angle.cos(), sin * angle.sin(), z].map(|w| w as f32);
+        let solid_angle = std::f64::consts::TAU / f64::from(rings * sectors);
+        let light = call("luthier_light", &wi).floats();
+        (0..3).for_each(|c| whole[c] += f64::from(light[c]) * solid_angle);
+        density += f64::from(call("luthier_pdf", &wi).floats()[0]) * solid_angle;
+    }
+    for c in 0..3 {
+        assert!((mean[c] - whole[c]).abs() < 0.01, "{words}: {mean:?} {whole:?}");
+    }
+    assert!(density < 1.01, "{words}: {density}");
 }

@@ -8,7 +8,7 @@ use luthier_manifest::{
 };
 use luthier_shader::{Form, MaterialSet, Target, emit};
 
-use super::families::{FIRST, NODES, family, material, rows_of};
+use super::families::{FIRST, NODES, drawn_as_the_density_says, family, material, rows_of};
 use super::{set, tables_with};
 use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
@@ -221,33 +221,7 @@ fn directions_of_sides_are_drawn_as_their_density_says() {
             let place = shader.place(&values(k), 0);
             let wo = [theta.sin() * 0.8, theta.sin() * 0.6, theta.cos()].map(|w| w as f32);
             let prepared = shader.machine.call("luthier_prepare_at", vec![place, Value::U(0), vector(&wo)]);
-            let call =
-                |name: &str, arguments: &[f32]| shader.machine.call(name, vec![prepared.clone(), vector(arguments)]);
-            let mut mean = [0.0; 3];
-            for i in 0..DRAWN {
-                // Roberts 2018: multiples of the powers of the root of x^4 = x + 1.
-                let u = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|s: f64| ((f64::from(i) + 0.5) * s).fract() as f32);
-                let drawn = call("luthier_sample", &u);
-                let weight = drawn.members()[2].floats();
-                if drawn.members()[1].floats()[0] > 0.0 {
-                    (0..3).for_each(|c| mean[c] += f64::from(weight[c]) / f64::from(DRAWN));
-                }
-            }
-            let (rings, sectors) = (160, 160);
-            let (mut light, mut density) = ([0.0; 3], 0.0);
-            for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
-                let (z, phi) = ((f64::from(i) + 0.5) / f64::from(rings), (f64::from(j) + 0.5) / f64::from(sectors));
-                let (sin, angle) = ((1.0 - z * z).sqrt(), std::f64::consts::TAU * phi);
-                let wi = [sin * angle.cos(), sin * angle.sin(), z].map(|w| w as f32);
-                let solid_angle = std::f64::consts::TAU / f64::from(rings * sectors);
-                let here = call("luthier_light", &wi).floats();
-                (0..3).for_each(|c| light[c] += f64::from(here[c]) * solid_angle);
-                density += f64::from(call("luthier_pdf", &wi).floats()[0]) * solid_angle;
-            }
-            for c in 0..3 {
-                assert!((mean[c] - light[c]).abs() < 0.01, "{k} {theta}: {mean:?} {light:?}");
-            }
-            assert!(density < 1.01, "{density}");
+            drawn_as_the_density_says(&shader.machine, &prepared, &format!("{k} {theta}"));
         }
     }
 }
