@@ -209,7 +209,6 @@ fn light_of_sides_is_that_of_two_materials() {
 /// The mean of the weights of drawn directions is the albedo in a midpoint rule, and densities sum to at most 1.
 #[test]
 fn directions_of_sides_are_drawn_as_their_density_says() {
-    const DRAWN: u32 = 16384;
     let whole = FIRST + NODES[0] * NODES[1];
     let family = (of_families(true, NODES), rows_of(whole + NODES[1], |tile| tile < whole));
     for (material, rows) in [family, (set("lobes-sides-base").swap_remove(0), super::rows())] {
