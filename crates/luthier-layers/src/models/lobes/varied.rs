@@ -296,7 +296,9 @@ impl Varied {
         lobes = lobes.refined(PAINTED_STEPS);
         let (frame, axis) = (lobes.frame, lobes.axis);
         for (place, row) in lobes.rows.iter_mut().enumerate() {
-            *row = family.painted(row, held, (&frame, axis.cos_theta(place as f64)), paint);
+            // Rows of the horizon are traced just above it.
+            let cos_theta = if place == 0 { 0.0 } else { axis.cos_theta(place as f64) };
+            *row = family.painted(row, held, (&frame, cos_theta), paint);
         }
         lobes.frame.stretch = family.stretch(slopes);
         lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, slopes), family), &over.color);

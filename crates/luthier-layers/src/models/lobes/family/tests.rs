@@ -172,3 +172,26 @@ fn errors_between_nodes_are_stated() {
         assert!((0..3).all(|c| (own[c] - alone[c]).abs() < 0.01), "{own:?} {alone:?}");
     }
 }
+
+/// Painted lobes are in line between steps of a row. Oracle: the stored rows, in colours at the very view, down to the horizon, where what crosses a smooth coat is
+/// steep.
+#[test]
+fn painted_lobes_are_the_stored_rows_down_to_the_horizon() {
+    let stack = plastic(true, [0.0; 3]);
+    let alphas = [0.001, 0.6];
+    let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], true).unwrap();
+    let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 4000, ..SETTINGS });
+    let paint = Paint::of(&stack).mixed(Mix { metal: [0.9; 3], matt: [0.9; 3], metallic: 1.0 });
+    let lobes = varied.painted(alphas, &paint).unwrap();
+    let stored = &varied.nodes[0];
+    for cos_theta in [0.002, 0.004, 0.008, 0.03, 0.2] {
+        let place = stored.axis.place(cos_theta);
+        let first = place as usize;
+        let [low, high] = [first, first + 1].map(|row| varied.stored(0, row));
+        let row = low.between(&high, place - first as f64);
+        let expected = family.row_in(&row, alphas, (&stored.frame, cos_theta), &paint);
+        let found = lobes.row(DVec3::new((1.0 - cos_theta * cos_theta).sqrt(), 0.0, cos_theta));
+        let [found, expected] = [&found, &expected].map(|row| row.lobes[0].strength[0] * row.lobes[0].share);
+        assert!((found / expected - 1.0).abs() < 0.06, "{cos_theta}: {found} {expected}");
+    }
+}
