@@ -343,7 +343,7 @@ impl Family {
 const MANY_NODES: usize = 7;
 
 /// Steps from row to row of painted lobes.
-const PAINTED_STEPS: usize = 8;
+const PAINTED_STEPS: usize = 16;
 
 impl Lobes {
     fn refined(mut self, parts: usize) -> Self {
