@@ -281,7 +281,8 @@ fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::f
          | group | nodes of the coat | of the base | rows | bytes | seconds of one core |\n|---|--:|--:|--:|--:|--:|"
     )?;
     for Results { group, family, seconds, .. } in results {
-        let bytes = family.nodes() * (options.rows as usize + 2) * PARTS * 8;
+        let parts = family.parts(*group == Group::Tinted, false);
+        let bytes = family.nodes() * (options.rows as usize + 2) * parts * 8;
         writeln!(
             out,
             "| {} | {} | {} | {} | {bytes} | {seconds:.0} |",
@@ -311,9 +312,6 @@ fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::f
     }
     Ok(out)
 }
-
-/// Parts of a row of a family: two of a base, and six.
-const PARTS: usize = 8;
 
 /// Places of a group with the largest errors that the page lists.
 const WORST: usize = 3;

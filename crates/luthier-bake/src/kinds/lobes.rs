@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use luthier_layers::models::lobes::{
-    Axes, Cover, Critical, EXCESS, Family, FitError, FitSettings, Judge, LOBES, Painted, Row, SlopeAxis, Traced,
+    Axes, Cover, Critical, EXCESS, Family, FitError, FitSettings, Judge, LOBES, Paint, Painted, Row, SlopeAxis, Traced,
     Varied, Varying, base_below, most_lobes, shown,
 };
 use luthier_lut::{
@@ -48,8 +48,7 @@ pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
-        let has_base = |material: &Material| has_base(material) || side(material).is_some_and(|side| has_base(&side));
-        Ok(shape(LOBES, materials.iter().any(has_base), common_step(materials), RowLayout::Filtered.format()))
+        Ok(shape(parts(materials, LOBES), common_step(materials), RowLayout::Filtered.format()))
     }
 
     /// A tile for the first layer, whose lobes contain the light of all layers below.
@@ -130,12 +129,29 @@ pub fn is_too_deep(material: &Material) -> bool {
         && (is_varied(material) || side(material).is_some())
 }
 
-/// Whether rows of a material contain the light of a diffuse base.
+/// Whether rows of a material contain the light of a diffuse base, as parts before the others. Families have parts of their own.
 fn has_base(material: &Material) -> bool {
-    let is_covered = matches!(varying(material), Some(Varying::Patina(_)));
-    // Rows of a family have the shape of the remainder there, with or without a base.
-    let has_shape = is_family(varying(material));
-    material.model().is_fitted() && !is_covered && (has_shape || base_below(&material.stack).is_some())
+    let is_other = matches!(varying(material), Some(Varying::Patina(_) | Varying::Family(_)));
+    !is_other && base_below(&material.stack).is_some()
+}
+
+/// Numbers of the first part and of the last that rows of materials have, with at most so many lobes.
+fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
+    let fitted: Vec<&Material> = materials.iter().filter(|material| material.model().is_fitted()).collect();
+    let sides: Vec<Material> = fitted.iter().filter_map(|material| side(material)).collect();
+    let ends = fitted.into_iter().chain(&sides).map(|material| match varying(material) {
+        Some(Varying::Family(family)) => {
+            [0, family.parts(is_tinted(material), base_below(&material.stack).is_some()) as i32 - 1]
+        }
+        _ => [if has_base(material) { -(Row::BASE_PARTS as i32) } else { 0 }, Row::parts(lobes) as i32 - 1],
+    });
+    ends.reduce(|[first, last], [from, to]| [first.min(from), last.max(to)])
+        .unwrap_or([0, Row::parts(lobes) as i32 - 1])
+}
+
+/// Whether the first slab absorbs.
+fn is_tinted(material: &Material) -> bool {
+    Paint::of(&material.stack).depth != [0.0; 3]
 }
 
 /// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].
@@ -153,14 +169,12 @@ pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budg
     })
 }
 
-/// The shape of tiles for some lobes, with or without the light of diffuse bases. `step` is the distance of the rows
-/// that are kept.
-fn shape(lobes: usize, has_base: bool, step: usize, format: TexelFormat) -> Shape {
+/// The shape of tiles with parts from the first to the last. `step` is the distance of the rows that are kept.
+fn shape([first, last]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
     let rows = (ROWS - 1) / step + 1;
-    let (first, last) = (if has_base { Row::BASE_PARTS } else { 0 } as f64, (Row::parts(lobes) - 1) as f64);
     let axes = [
         axis("cos_theta", "", [0.0, 1.0], rows as u32, Mapping::Rational { bend: 1.0 }),
-        axis("part", "", [0.0 - first, last], (first + last) as u32 + 1, Mapping::Apart),
+        axis("part", "", [first, last].map(f64::from), (last - first) as u32 + 1, Mapping::Apart),
     ];
     Shape::grid(axes, format)
 }
@@ -191,17 +205,16 @@ pub(crate) fn decide(
     lock: &[Decision],
 ) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
-    let has_base = fits.iter().any(|fits| fits.of(None).varied.nodes[0].frame.base.is_some());
     let format = settings.fixed(TableKind::Lobes).format;
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(lobes_of(&fits, None), has_base, common_step(materials), format));
+        settings.take_lobes(shape(parts(materials, lobes_of(&fits, None)), common_step(materials), format));
         return Ok(None);
     }
     let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
     let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
     let candidates = choices.iter().map(|&(most, i)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
-        let Shape { x, y, base, format } = shape(lobes_of(&fits, Some(most)), has_base, STEPS[i], format);
+        let Shape { x, y, base, format } = shape(parts(materials, lobes_of(&fits, Some(most))), STEPS[i], format);
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
@@ -226,7 +239,7 @@ pub(crate) fn decide(
     })?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
-    settings.take_lobes(shape(lobes_of(&fits, Some(most)), has_base, STEPS[i], format));
+    settings.take_lobes(shape(parts(materials, lobes_of(&fits, Some(most))), STEPS[i], format));
     Ok(Some(candidates::report(&found[0], chosen, budget)))
 }
 
@@ -298,7 +311,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
     });
     let fits = results.get::<Fits>(fit(material, settings.lobes.is_some()).key());
     let Some((fits, shape)) = fits.zip(settings.shape(TableKind::Lobes)) else {
-        let base = base_below(&material.stack).filter(|_| has_base(material));
+        let base = base_below(&material.stack).filter(|_| has_base(material) || is_family(varying(material)));
         let painted = base.map(|base| PaintedRecord { albedo: base.albedo, moments: None });
         let varying = varying(material).and_then(|varying| match varying {
             Varying::Family(family) => Some(VaryingRecord {
@@ -430,7 +443,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 7 } else { 6 }
+        if is_family(self.varying) { 8 } else { 6 }
     }
 
     fn inputs(&self) -> Value {
@@ -493,10 +506,41 @@ fn factor_name(varying: Varying) -> &'static str {
     }
 }
 
-/// A row filled up to `most` lobes, and with the light of a base if tiles have a place for it (0 if the row has no
-/// base).
-fn filled(row: Row, most: usize, has_base: bool) -> Row {
-    Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) }
+/// Rows as parts of four numbers.
+#[derive(Debug, Clone, Copy)]
+enum Parts {
+    /// With so many lobes, and the light of a base (0 if rows have none) or without its parts.
+    Lobes(usize, bool),
+    /// Of a family, with lobes of this tail.
+    Family(Family, f64),
+}
+
+impl Parts {
+    /// A row filled up to the lobes of the tile, and with the light of a base if it has a place for it.
+    fn filled(self, row: Row) -> Row {
+        match self {
+            Self::Lobes(most, has_base) => {
+                Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) }
+            }
+            Self::Family(..) => row,
+        }
+    }
+
+    /// The row as parts, all that it may have.
+    fn of(self, row: Row) -> Vec<[f64; 4]> {
+        match self {
+            Self::Lobes(..) => self.filled(row).to_parts(),
+            Self::Family(family, _) => family.to_parts(&row),
+        }
+    }
+
+    /// The row of parts, those that a tile has.
+    fn read(self, parts: &[[f64; 4]]) -> Row {
+        match self {
+            Self::Lobes(_, has_base) => Row::of_parts(parts, has_base),
+            Self::Family(family, tail) => family.of_parts(parts, tail),
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -517,7 +561,7 @@ impl Job for LobesJob {
     }
 
     fn revision(&self) -> u32 {
-        6
+        if is_family(self.fit.varying) { 7 } else { 6 }
     }
 
     fn inputs(&self) -> Value {
@@ -539,31 +583,41 @@ impl Job for LobesJob {
         let fits: &Fits = inputs.part(self.fit.as_ref());
         let varied = fits.of(self.most).thinned(step(x.size));
         let (lobes, tile) = varied.tile(self.tile);
-        let (has_base, last) = (y.min < 0.0, y.max as usize);
-        let most = (last + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
+        let most = (y.max as usize + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
+        let layout = match varied.varying() {
+            Some(Varying::Family(family)) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
+            _ => Parts::Lobes(most.min(LOBES), y.min < 0.0),
+        };
+        // Parts of families begin with part 0, where those of a base have a place before it.
+        let first = if matches!(layout, Parts::Family(..)) { (0.0 - y.min) as u32 } else { 0 };
         // Parts lie side by side. The first and the last node of each are repeated, so that filtering does not mix in a
         // neighbour.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
             let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
-            let mut parts = filled(row, most, has_base).to_parts();
+            let mut parts = layout.of(row);
             if let (Some(Varying::Patina(_)), Some([.., free])) = (varied.varying(), parts.last_mut()) {
                 *free = varied.bare_facets(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
             }
-            for (j, part) in (0..y.size).zip(parts) {
+            for (j, part) in (first..y.size).zip(parts) {
                 truth.texel_mut(j * (x.size + 2) + i, 0).copy_from_slice(&part.map(|value| value as f32));
             }
         }
         let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
         let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
-        let errors = (0..most + 3).map(|part| {
+        let energies = layout.filled(lobes.row_of(tile, 0.0)).energies().len();
+        let errors = (0..energies).map(|part| {
             measure_scan(
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
-                    let parts = (0..y.size).map(|j| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8)));
-                    let read = Row::of_parts(&parts.collect::<Vec<_>>(), has_base);
-                    let [expected, sampled] = [filled(lobes.row_of(tile, c), most, has_base), read].map(|row| {
+                    let parts =
+                        (first..y.size).map(|j| atlas.sample(0, [c, y.min + f64::from(j)], WeightBits::Fixed(8)));
+                    let read = layout.read(&parts.collect::<Vec<_>>());
+                    // Without what the tile has no part for.
+                    let mut truth = layout.of(lobes.row_of(tile, c));
+                    truth.truncate((y.size - first) as usize);
+                    let [expected, sampled] = [layout.read(&truth), read].map(|row| {
                         let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });

@@ -260,11 +260,11 @@ impl LobesRecord {
     }
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
-    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of a family: 0, the number of the base among the
-    /// layers, 0. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
+    /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of a family: the reciprocal tail of its lobes, the number of the
+    /// base among the layers, 0. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
     fn sheet(&self) -> [f64; 3] {
         if let Some(family) = self.family() {
-            return [0.0, f64::from(family.interface), 0.0];
+            return [self.inverse_tails[0], f64::from(family.interface), 0.0];
         }
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
             return [1.0 / (least - most), most / (most - least), -1.0];
@@ -410,7 +410,7 @@ impl MaterialConstants {
     /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes, and 4 more where a coat has a weight and [`CoatRecord::side`] |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 0, number of the base among the layers, 0; of lobes with one tile 1 over the tail of each, 0; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 1 over the tail of its lobes, number of the base among the layers, 0; of lobes with one tile 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);

@@ -55,8 +55,21 @@ impl Table<'_> {
         Row::of_parts(&self.parts(tile, cos_theta, weights), self.has_base())
     }
 
-    /// A row of lobes between two tiles. The stored numbers are interpolated, not the lobes that they encode, because shaders do so.
+    /// A row of lobes between two tiles.
     fn row_between(&self, tile: u32, share: f64, cos_theta: f64, weights: Weights) -> Row {
+        Row::of_parts(&self.parts_between(tile, share, cos_theta, weights), self.has_base())
+    }
+
+    /// A row of a family, whose lobes have a tail, between two tiles.
+    fn family_row(&self, (family, tail): (Family, f64), tile: (u32, f64), cos_theta: f64, weights: Weights) -> Row {
+        let parts = self.parts_between(tile.0, tile.1, cos_theta, weights);
+        // Parts of a family begin with part 0.
+        let before = self.entry.layout.y.as_ref().map_or(0.0, |y| 0.0 - y.min) as usize;
+        family.of_parts(&parts[before..], tail)
+    }
+
+    /// The parts of a row between two tiles. The stored numbers are interpolated, not the lobes that they encode, because shaders do so.
+    fn parts_between(&self, tile: u32, share: f64, cos_theta: f64, weights: Weights) -> Vec<[f64; 4]> {
         let share = match weights.bits(self.entry.format) {
             WeightBits::Exact => share,
             WeightBits::Fixed(bits) => {
@@ -65,11 +78,11 @@ impl Table<'_> {
             }
         };
         if share == 0.0 {
-            return self.row(tile, cos_theta, weights);
+            return self.parts(tile, cos_theta, weights);
         }
         let [first, second] = [tile, tile + 1].map(|tile| self.parts(tile, cos_theta, weights));
         let parts = first.iter().zip(&second).map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i])));
-        Row::of_parts(&parts.collect::<Vec<_>>(), self.has_base())
+        parts.collect()
     }
 
     fn parts(&self, tile: u32, cos_theta: f64, weights: Weights) -> Vec<[f64; 4]> {
@@ -156,6 +169,8 @@ struct Lobes {
     axis: ViewAxis,
     frame: Frame,
     varying: Option<VaryingRecord>,
+    /// Tail of the lobes of a family.
+    tail: f64,
     /// A family, with slope parameters of coat and base and the colours of the place.
     family: Option<(Family, [Slopes; 2], Paint)>,
 }
@@ -173,7 +188,8 @@ impl Lobes {
             .painted
             .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
         let frame = Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None };
-        Self { tile, axis, frame, varying: record.varying, family: None }
+        let tail = 1.0 / record.inverse_tails[0].max(1.0);
+        Self { tile, axis, frame, varying: record.varying, tail, family: None }
     }
 
     /// Takes the slope parameters and colours of a place, if rows are those of a family.
@@ -477,7 +493,7 @@ impl ShaderTerms for TableTerms<'_> {
     }
 
     fn below(&self, wo: DVec3) -> Option<Below> {
-        let Lobes { tile, axis, frame, varying, family } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
+        let Lobes { tile, axis, frame, varying, tail, family } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
         let (table, cos_theta) = (self.table(TableKind::Lobes)?, axis.cosine(wo.z));
         let row = match (frame.axes, varying) {
             (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
@@ -486,7 +502,7 @@ impl ShaderTerms for TableTerms<'_> {
                 let [coat, base] = family.places(alphas).map(|place| (place as usize, place.fract()));
                 let of = |coat: usize| {
                     let first = tile + (coat * family.base.nodes + base.0) as u32;
-                    table.row_between(first, base.1, cos_theta, self.weights)
+                    table.family_row((*family, *tail), (first, base.1), cos_theta, self.weights)
                 };
                 let row = if coat.1 > 0.0 { of(coat.0).between(&of(coat.0 + 1), coat.1) } else { of(coat.0) };
                 family.row_in(&row, alphas, (frame, wo.z), paint)

@@ -195,6 +195,8 @@ luthier_lut::named! {
         LobesMetallic = "lobes_metallic",
         /// Light of such a family is absorbed below the coat.
         LobesTinted = "lobes_tinted",
+        /// Lobes of a family have other tails than GGX.
+        LobesTails = "lobes_tails",
         /// Flakes, or own normals of interfaces, tilt lobes.
         LobesTilted = "lobes_tilted",
         /// A material of `lobes` has normals of single layers.

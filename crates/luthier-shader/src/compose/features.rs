@@ -94,10 +94,10 @@ impl Features {
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe.
+                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe. Families have two lobes and up to eight parts.
                 let (word, most) = match parts.max as u32 {
                     3 => (Some(Feature::OneLobe), 1),
-                    5 => (Some(Feature::TwoLobes), 2),
+                    4..=7 => (Some(Feature::TwoLobes), 2),
                     _ => (None, 0),
                 };
                 names.extend(word);
@@ -519,6 +519,7 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
         (Feature::LobesCoats, family.has_two_axes()),
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
+        (Feature::LobesTails, material.constants.lobes.is_some_and(|lobes| lobes.inverse_tails[0] > 1.0)),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }

@@ -584,8 +584,17 @@ fn luthier_half_slope_density(shape: LuthierLobeShape, slope: vec2<f32>) -> f32 
     let apart = shape.sharpness * slope - shape.middle;
     //? else
     let apart = vec2<f32>(slope.x * shape.sharpness.x - shape.middle, slope.y * shape.sharpness.y);
-    let falloff = (1.0 + shape.decay) * log2(1.0 + dot(apart, apart));
-    return exp2(-falloff) * shape.peak;
+    //? !lobes_family|~lobes_family|lobes_tails
+    {
+        let falloff = (1.0 + shape.decay) * log2(1.0 + dot(apart, apart));
+        return exp2(-falloff) * shape.peak;
+    }
+    //? else
+    {
+        // All tails are those of GGX.
+        let falloff = 1.0 / (1.0 + dot(apart, apart));
+        return falloff * falloff * shape.peak;
+    }
 }
 
 /// The half vector with light from wi between refracted directions: its slopes in the frame of the lobes, and the factor from half

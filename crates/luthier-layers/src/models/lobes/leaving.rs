@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Shape;
+use super::{Lobe, Shape};
 
 /// Least reciprocal radius of the disc: beyond, single precision would see noise.
 const DISC_MIN: f64 = 0.05;
@@ -30,6 +30,19 @@ impl Leaving {
         Self { middle: [eye.x, eye.y].map(|eye| index * eye * radius), radius }
     }
 
+    /// Share above the horizon of a lobe in the plane of the eye, as an estimate.
+    ///
+    /// As [`Self::share`], but an ellipse whose middle is that of the disc counts as a circle of its mean width, and the nearer its middle is to the edge of
+    /// the disc the more its width along the way counts. So estimates change slowly from view to view.
+    pub(super) fn in_plane(&self, lobe: &Lobe, sin_theta: f64) -> f64 {
+        let away = (self.middle[0] - lobe.shift * sin_theta).abs();
+        let [along, across] = lobe.sharpness;
+        let mean = (along * across).sqrt();
+        let out = (away / self.radius).min(1.0);
+        let near = self.radius * (mean - (mean - along) * out * (2.0 - out)) - away * along;
+        self.between(&lobe.in_plane(sin_theta), near, mean)
+    }
+
     /// Share of a shape above the horizon where its middle is moved by a slope, as an estimate.
     ///
     /// GGX is a uniform density on a sphere in stereographic projection, so that the share in a disc is that of a cap of the sphere:
@@ -46,7 +59,12 @@ impl Leaving {
         let mean = (first * second).sqrt();
         let along = libm::hypot((cos * x + sin * y) * first, (cos * y - sin * x) * second);
         let near = (radius - away) * (away + DISC_SOFT) / (along + DISC_SOFT * mean);
-        let far = (2.0 * radius / mean - near).max(near);
+        self.between(shape, near, 1.0 / mean)
+    }
+
+    /// Share of a shape of a mean sharpness between the near edge and the far one.
+    fn between(&self, shape: &Shape, near: f64, mean_sharpness: f64) -> f64 {
+        let far = (2.0 * self.radius * mean_sharpness - near).max(near);
         let [(cos_near, sin_near), (cos_far, sin_far)] = [near, far].map(|edge| {
             let beyond = shape.beyond(edge * edge);
             (beyond.sqrt(), (1.0 - beyond).sqrt().copysign(edge))

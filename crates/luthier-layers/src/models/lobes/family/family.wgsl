@@ -2,11 +2,11 @@
 {
     //? lobes_metallic
     {
-        /// Light of one visit to the metal of a family, over its F0: (p + q f) / (1 - R f) through the energies at 0, .8 and 1.
-        fn luthier_family_once(energies: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
-            let beyond = max(0.8 * (energies.z - energies.y), 1e-9);
-            let pole = clamp((0.2 * energies.x + 0.8 * energies.z - energies.y) / beyond, 0.0, 0.99);
-            return (energies.x + f0 * (energies.z * (1.0 - pole) - energies.x)) / (1.0 - pole * f0);
+        /// Light of one visit to the metal of a family, over its F0 and that of the dielectric in w: q f / (1 - R f) through the energies at .8 and 1.
+        fn luthier_family_once(energies: vec2<f32>, f0: vec4<f32>) -> vec4<f32> {
+            let beyond = max(0.8 * (energies.y - energies.x), 1e-9);
+            let pole = clamp((0.8 * energies.y - energies.x) / beyond, 0.0, 0.99);
+            return f0 * (energies.y * (1.0 - pole)) / (1.0 - pole * f0);
         }
 
         /// Light of more visits, f^2 (p + q f) / (1 - R f) through the energies at .5, .9 and 1.
@@ -45,13 +45,34 @@
         return here;
     }
 
-    /// A lobe of a family by its shift, its sharpness and decay, and the factor on its slopes, seen at an angle of this sine.
-    fn luthier_family_shape(shift: f32, sharpness: vec2<f32>, decay: f32, spread: f32, sin_theta: f32) -> LuthierLobeShape {
-        let numbers = vec3<f32>(sharpness * (inverseSqrt(max(decay, 1.0)) / spread), max(decay, 1.0));
+    /// A lobe of a family by its shift, its sharpness and decay, seen at an angle of this sine.
+    fn luthier_family_shape(shift: f32, sharpness: vec2<f32>, decay: f32, sin_theta: f32) -> LuthierLobeShape {
         //? lobes_axes
-        return luthier_lobe_in_axes(shift * spread, numbers, 0.0, vec2<f32>(sin_theta, 0.0), false);
+        return luthier_lobe_in_axes(shift, vec3<f32>(sharpness, decay), 0.0, vec2<f32>(sin_theta, 0.0), false);
         //? else
-        return luthier_lobe_shape(shift * spread, numbers, sin_theta);
+        return luthier_lobe_shape(shift, vec3<f32>(sharpness, decay), sin_theta);
+    }
+
+    /// Shares above the horizon of both lobes of a family in the plane of the eye, as estimates: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
+    /// to light above the horizon, in that plane, and their radius; `slope` that of the middle of the first lobe.
+    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
+        let near = (disc.y - abs(disc.x - vec2<f32>(slope, 0.0))) * sharpness.xz;
+        let far = max(2.0 * disc.y * sqrt(sharpness.xz * sharpness.yw) - near, near);
+        //? lobes_tails
+        {
+            let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
+            let far_cos = exp2(-0.5 * decay * log2(1.0 + far * far));
+            // Small sines by a series: the difference to 1 would be rounded off.
+            let small_near = decay * near * near;
+            let small_far = decay * far * far;
+            let near_sq = select(1.0 - near_cos * near_cos, small_near - 0.5 * small_near * (small_near + near * near), small_near < vec2<f32>(1e-3));
+            let far_sq = select(1.0 - far_cos * far_cos, small_far - 0.5 * small_far * (small_far + far * far), small_far < vec2<f32>(1e-3));
+            let sines = sign(near) * sign(far) * sqrt(max(near_sq * far_sq, vec2<f32>(0.0)));
+            return max(0.5 - 0.5 * (near_cos * far_cos - sines), vec2<f32>(1e-3));
+        }
+        //? else
+        // Tails are those of GGX.
+        return max(0.5 - 0.5 * (1.0 - near * far) * inverseSqrt((1.0 + near * near) * (1.0 + far * far)), vec2<f32>(1e-3));
     }
 
     //? anisotropic
@@ -138,8 +159,8 @@
             var alphas = vec2<f32>(luthier_materials[first_word + $word_numbers].y, luthier_materials[base_word + $word_numbers].y);
             //? own_alphas
             {
-                let along = vec2<f32>(own_coat.alpha_factors.x, own_base.alpha_factors.x);
-                alphas *= sqrt(max(along * vec2<f32>(own_coat.alpha_factors.y, own_base.alpha_factors.y), vec2<f32>(0.0)));
+                // Both are the same where interfaces are isotropic.
+                alphas *= vec2<f32>(own_coat.alpha_factors.x, own_base.alpha_factors.x);
             }
             //? place
             alphas *= place.alpha_factor;
@@ -194,34 +215,27 @@
         //? else
         let cos_theta = wo.z;
         prepared.row = vec2<f32>(tile, cos_theta);
-        let of_wide = luthier_family_part(prepared.row, beside, 0.0);
-        let of_internal = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_INTERNAL);
-        let of_base = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_BASE);
-        let of_albedo = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_ALBEDO);
-        let falloff = vec2<f32>(of_base.a, of_internal.a);
-        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
+        let of_once = luthier_family_part(prepared.row, beside, 0.0);
+        let of_more = luthier_family_part(prepared.row, beside, 1.0);
+        let sharpness = luthier_family_part(prepared.row, beside, 2.0);
+        let of_facet = luthier_family_part(prepared.row, beside, 3.0);
+        let of_rest = luthier_family_part(prepared.row, beside, 4.0);
+        // Energies of rows are over the light that crosses the coat.
+        let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
         var diffuse = painted.rgb;
         //? base_color
         if place.base_color.x >= 0.0 {
             diffuse = place.base_color;
         }
-        //? lobes_tinted
-        {
-            var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
-            //? place
-            depth *= place.slab_factor;
-        }
-        let of_once = luthier_family_part(prepared.row, beside, 1.0);
-        let of_more = luthier_family_part(prepared.row, beside, 2.0);
-        let sharpness = luthier_family_part(prepared.row, beside, 3.0);
-        let decays = luthier_family_part(prepared.row, beside, LUTHIER_LOBES_SHARES);
-        // Energies of rows are over the light that crosses the coat.
-        let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
         // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
         var once = of_once.rgb;
         var more = of_more.rgb;
-        var wide = of_wide.rgb;
-        var facet = vec3<f32>(0.0);
+        var wide = of_rest.rgb;
+        var facet = 1.0 - crossing * of_facet.rgb;
+        // Coefficients of the remainder, share of the light of one visit that is wide, and what rows have beside estimates of shares.
+        var falloff = vec2<f32>(0.0);
+        var once_wide = 0.0;
+        var leaving = vec2<f32>(of_facet.a, of_rest.a);
         //? lobes_metallic
         //? ~lobes_metallic
         let is_metallic = coat_axis.w > 0.0;
@@ -233,64 +247,87 @@
         if is_metallic {
             var metal = vec3<f32>(0.0);
             var metallic = 0.0;
+            var passed = vec3<f32>(1.0);
             //? own_f0
             if place.metal.w >= 0.0 {
-                // The dielectric has an F0 of 0.04: its diffuse base shows the colour of the place (Saunderson 1942).
                 metal = place.metal.rgb;
                 metallic = place.metal.w;
-                diffuse = place.matt / (LUTHIER_PLASTIC_PASSED + place.matt * (1.0 - LUTHIER_PLASTIC_PASSED));
+                // The dielectric has an F0 of 0.04: its diffuse base, of the albedo diffuse / passed, shows the colour of the place (Saunderson 1942).
+                diffuse = place.matt;
+                passed = LUTHIER_PLASTIC_PASSED + diffuse * (1.0 - LUTHIER_PLASTIC_PASSED);
             }
-            var passed = vec3<f32>(of_base.x);
-            var sent_back = vec3<f32>(of_internal.x);
+            falloff = of_rest.zw;
+            once_wide = of_once.z;
+            leaving = of_facet.zw;
+            var light = vec3<f32>(of_rest.x);
+            var sent_back = vec3<f32>(of_rest.y);
+            let of_one = luthier_family_once(of_once.xy, vec4<f32>(metal, 0.04));
+            once = mix(vec3<f32>(of_one.w), of_one.rgb, metallic);
             //? lobes_tinted
             {
-                passed *= exp(-of_base.z * depth);
-                sent_back *= exp(-of_internal.z * depth);
-            }
-            wide = mix(of_wide.y + passed * diffuse / (1.0 - sent_back * diffuse), vec3<f32>(of_wide.x), metallic);
-            once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, metal), metallic);
-            //? lobes_tinted
-            {
-                once *= exp(-of_albedo.y * depth);
+                let lengths = luthier_family_part(prepared.row, beside, 5.0);
+                var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
+                //? place
+                depth *= place.slab_factor;
+                light *= exp(-lengths.x * depth);
+                sent_back *= exp(-lengths.y * depth);
+                once *= exp(-lengths.z * depth);
                 // Trapped light passes the slab again before each visit.
-                let again = exp(-of_albedo.z * depth);
-                more = mix(of_internal.y * again * again, luthier_family_more(of_more.rgb, metal * again), metallic);
+                metal *= exp(-lengths.w * depth);
             }
-            //? else
-            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
-            facet = vec3<f32>(1.0 - crossing * of_albedo.x);
+            more = metallic * luthier_family_more(of_more.rgb, metal);
+            wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
+            facet = vec3<f32>(1.0 - crossing * of_facet.x);
             if base_layer == 0u {
-                facet = of_albedo.x + of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
+                // Several facets of the dielectric, and one of either.
+                once = vec3<f32>((1.0 - metallic) * of_once.x);
+                //? own_f0
+                facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), place.metal.rgb, metallic);
+                //? else
+                facet = vec3<f32>(of_facet.x + of_once.y * 0.04);
             }
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
-            facet = 1.0 - crossing * of_albedo.rgb;
+            let of_wide = luthier_family_part(prepared.row, beside, 5.0);
+            falloff = of_wide.xy;
+            once_wide = of_wide.z;
             //? base_color
-            {
-                let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
-                let other = diffuse * (1.0 - of_internal.rgb * painted.rgb);
-                wide += max(of_base.rgb * (other / own - 1.0), -wide);
+            if place.base_color.x >= 0.0 {
+                let of_base = luthier_family_part(prepared.row, beside, 6.0).rgb;
+                let of_internal = luthier_family_part(prepared.row, beside, 7.0).rgb;
+                let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal * diffuse, vec3<f32>(1e-3));
+                let other = diffuse * (1.0 - of_internal * painted.rgb);
+                wide += max(of_base * (other / own - 1.0), -wide);
             }
         }
+        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
         let below = crossing * (wide + once + more);
         // No more light than falls in.
         let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
         prepared.albedo = facet + left * (wide + once + more);
         // Some of the light of both lobes is wide.
-        prepared.wide = left * (wide + of_albedo.w * once + of_wide.w * more);
+        prepared.wide = left * (wide + once_wide * once + of_more.a * more);
         let squares = held * held;
         let once_spread = sqrt(squares.y + 0.09 * squares.x);
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
-        var first_shape = luthier_family_shape(of_once.a, sharpness.xy, decays.x, once_spread, sin_theta);
-        var second_shape = luthier_family_shape(of_more.a, sharpness.zw, decays.z, more_spread, sin_theta);
+        let sharp = sharpness / vec2<f32>(once_spread, more_spread).xxyy;
+        //? lobes_tails
+        let decay = luthier_materials[header + $word_glitter_tilt].y;
+        //? else
+        let decay = 1.0;
+        let shift = of_once.a * once_spread;
+        var first_shape = luthier_family_shape(shift, sharp.xy, decay, sin_theta);
+        var second_shape = luthier_family_shape(0.0, sharp.zw, decay, sin_theta);
         // Rows have shares over their estimates: between rows the share is that of the shape there.
-        let disc = luthier_leaving_disc(prepared);
-        let first_leaving = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
-        let second_leaving = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
-        prepared.shares = min(decays.yw * vec2<f32>(first_leaving, second_leaving), vec2<f32>(1.0));
+        let radius = 1.0 / max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
+        let left_over = luthier_family_leaving(shift * sin_theta, sharp, decay, vec2<f32>(sin_theta * radius, radius));
+        prepared.shares = min(leaving * left_over, vec2<f32>(1.0));
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
+            let disc = luthier_leaving_disc(prepared);
+            let first_level = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
+            let second_level = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
             // Squared slope parameters in the plane of the eye, over those that rows were read at.
             var coat_turn = coat_tangent.zw;
             var base_turn = base_tangent.zw;
@@ -305,10 +342,11 @@
             second_shape = luthier_family_stretched(second_shape, (4.84 * of_base + of_coat) / (4.84 * squares.y + squares.x));
             let first_left = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
             let second_left = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
-            prepared.shares = min(prepared.shares * vec2<f32>(first_left / first_leaving, second_left / second_leaving), vec2<f32>(1.0));
+            prepared.shares = min(prepared.shares * vec2<f32>(first_left / first_level, second_left / second_level), vec2<f32>(1.0));
         }
-        prepared.first_strength = left * (1.0 - of_albedo.w) * once / max(prepared.shares.x, 1e-3);
-        prepared.second_strength = left * (1.0 - of_wide.w) * more / max(prepared.shares.y, 1e-3);
+        let over_shares = (1.0 - vec2<f32>(once_wide, of_more.a)) / max(prepared.shares, vec2<f32>(1e-3));
+        prepared.first_strength = left * (over_shares.x * once);
+        prepared.second_strength = left * (over_shares.y * more);
         //? surface
         {
             // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
@@ -323,6 +361,7 @@
             let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
             let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
             let tilt = luthier_in_frame(prepared.azimuth, turned);
+            let disc = luthier_leaving_disc(prepared);
             first_shape = luthier_lobe_about(first_shape, tilt, prepared.shares.x, disc);
             second_shape = luthier_lobe_about(second_shape, tilt, prepared.shares.y, disc);
             prepared.first_strength *= first_shape.gain;

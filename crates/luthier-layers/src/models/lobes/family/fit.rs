@@ -97,7 +97,7 @@ impl Family {
             let lobes = lobes.iter().zip(spreads).enumerate().map(|(number, (lobes, spread))| {
                 let mut lobe = lobes[view];
                 // Between rows the share is that of the shape there: rows have what its estimate lacks.
-                lobe.share /= leaving.share(&lobe.in_plane(sin_theta), [0.0; 2]);
+                lobe.share /= leaving.in_plane(&lobe, sin_theta);
                 lobe.shift /= spread;
                 // Rows have sharpness times the root of the tail; between two tails, sharpness alone is in line.
                 lobe.tail = lobe.tail.clamp(LEAST_TAIL, 1.0);
@@ -112,18 +112,16 @@ impl Family {
                 |energies: &Energies, c: usize| -libm::log(ratio(energies.dimmed[c], energies.clear[c])) / DEPTH;
             let (albedo_dir, wide, energy, internal) = if self.is_metallic {
                 let facets = rest.first_facet;
-                let [once, more, alone] = rest.plastic;
                 let light = rest.base_once.clear[0] / WHITE;
-                let slope = (facets[2] - facets[0]) / (SHADES[2] - SHADES[0]);
                 let white = rest.facets.clear.iter().sum::<f64>() / 3.0;
                 let albedo = if self.is_coated() {
                     let [once, more] = &rest.reflected;
                     [over(1.0 - facets[1]), length(once, 1), between_visits(energies[view][1], more.dimmed[1])]
                 } else {
-                    [facets[0] - SHADES[0] * slope, slope, 0.0]
+                    [facets[0] - SHADES[0] * slope(facets), 0.0, 0.0]
                 };
-                let energy = [over(light), over(once), length(&rest.base_once, 0)];
-                (albedo, [white, alone, 0.0].map(over), energy, [sent_back[0], over(more), around])
+                let energy = [over(light), length(&rest.base_once, 0), 0.0];
+                (albedo, [over(white), 0.0, 0.0], energy, [sent_back[0], around, 0.0])
             } else {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
@@ -140,15 +138,18 @@ impl Family {
         if !self.is_metallic {
             return [once.clear, more.clear];
         }
-        [chain(once), [more.clear[1], more.between[1], more.clear[2]]]
+        let once = if self.is_coated() {
+            [once.between[0], once.clear[2], 0.0]
+        } else {
+            [rest.plastic, slope(rest.first_facet), 0.0]
+        };
+        [once, [more.clear[1], more.between[1], more.clear[2]]]
     }
 }
 
-/// Energies of light of one visit to the base, at an F0 of 0, of the first of [`BETWEEN`] and of 1.
-fn chain(light: &Energies) -> Rgb {
-    // At an F0 of 0 on the line through the two least.
-    let slope = (light.clear[1] - light.clear[0]) / (SHADES[1] - SHADES[0]);
-    [(light.clear[0] - slope * SHADES[0]).max(0.0), light.between[0], light.clear[2]]
+/// Steepness of an energy in the F0, from those of the least of [`SHADES`] and the greatest.
+fn slope(energy: Rgb) -> f64 {
+    (energy[2] - energy[0]) / (SHADES[2] - SHADES[0])
 }
 
 /// Length of the way from visit to visit of the base, of light of more visits with such energies, which a slab of [`DEPTH`] dims to this at the F0 of the

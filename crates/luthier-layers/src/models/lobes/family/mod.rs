@@ -7,23 +7,33 @@
 //! A base that is metallic in places ([`Family::is_metallic`]) is a mix of two surfaces: a metal of the F0 c with the share m, and a dielectric over a
 //! diffuse base of the albedo r with the share 1 - m. Its rows have
 //!
-//! | part | x, y, z | w |
-//! |---|---|---|
-//! | -2 | share of the light of the diffuse base that is sent back to it, once more than once reflected by the dielectric, length | b of the remainder |
-//! | -1 | light of a white diffuse base that sends nothing back, light that the dielectric reflected once, length | a of the remainder |
-//! | 0 | facets of the coat alone above the metal, and above the dielectric, 0 | share of the trapped light that is wide |
-//! | 1 | reflected by the metal once: energies at c = 0, .8, 1 | shift |
-//! | 2 | reflected by the metal more often: energies at c = .5, .9, 1 | shift |
-//! | 3, 4 | sharpness; tails, and shares over their estimates | |
-//! | 5 | light but that of one facet of the first interface, lengths of the light of both lobes | share of the light of one visit that is wide |
+//! | part | x, y, z, w |
+//! |---|---|
+//! | 0 | reflected by the metal once: energies at c = .8 and 1; share of it that is wide; shift |
+//! | 1 | reflected by the metal more often: energies at c = .5, .9, 1; share of it that is wide |
+//! | 2 | sharpness of both lobes |
+//! | 3 | light but that of one facet of the first interface; facets of the coat alone; shares of both lobes above the horizon, over their estimates |
+//! | 4 | light of a white diffuse base that sends nothing back, share of it that is sent back to the base; a and b of the remainder |
+//! | 5, below a slab that absorbs | lengths of the light of the diffuse base, of that sent back to it, of light of one visit, and of more |
 //!
-//! Between its energies light of one visit is `(p + q c) / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
-//! linear in c, and trapped light is reflected by the metal again and again. The light of the diffuse base is `t r / (1 - s r)`. A slab multiplies each
-//! energy by `exp(-length depth)`, but for light of more visits c, because such light passes it again before each. Without a coat, the first lobe has the light of several facets of the dielectric, the second that of the metal, and the
-//! last part the albedo of one facet, `x + y F0`.
+//! Between its energies light of one visit is `q c / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
+//! linear in c, and trapped light is reflected by the metal again and again. The dielectric reflects once as a metal of its F0 does. The light of the diffuse
+//! base is `t r / (1 - s r)`. A slab multiplies each
+//! energy by `exp(-length depth)`, but for light of more visits c, because such light passes it again before each. Without a coat, the first lobe has the
+//! light of several facets of the dielectric, x of part 0, and the second that of the metal; the albedo of one facet is x of part 3, plus y of part 0 times the F0.
 //!
-//! Any other base keeps its colours, and rows have energies by channel, and light but that of one facet in place of the albedo. Strengths of all families are
-//! energies, not yet over the share above the horizon.
+//! Any other base keeps its colours, and rows have energies by channel:
+//!
+//! | part | x, y, z, w |
+//! |---|---|
+//! | 0 | reflected by the base once RGB, shift |
+//! | 1 | reflected by the base more often RGB, share of it that is wide |
+//! | 2 | sharpness of both lobes |
+//! | 3, 4 | light but that of one facet of the first interface RGB, wide remainder RGB; shares above the horizon over their estimates |
+//! | 5 | a and b of the remainder, share of the light of one visit that is wide, 0 |
+//! | 6, 7, to recolour a diffuse base | its light RGB, share of it that is sent back to it RGB |
+//!
+//! Strengths of all families are energies, not yet over the share above the horizon. The lobe of trapped light has its middle at the normal.
 //!
 //! Rows have quotients over closed forms, so that lines between nodes and between rows hold: slopes of lobes over [`Family::spreads`], energies over
 //! [`Family::crossing`], and shares above the horizon over their estimates (`Leaving`). So anisotropy needs no axis: lobes of anisotropic interfaces are stretched by
@@ -36,6 +46,7 @@ mod paint;
 mod slopes;
 #[cfg(test)]
 mod tests;
+mod texels;
 mod trace;
 
 pub use paint::{Mix, Paint};

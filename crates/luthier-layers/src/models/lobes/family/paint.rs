@@ -115,7 +115,7 @@ impl Family {
                 ..*lobe
             };
             // Between rows the share is that of the shape there.
-            lobe.share = (lobe.share * leaving.share(&lobe.in_plane(sin_theta), [0.0; 2])).min(1.0);
+            lobe.share = (lobe.share * leaving.in_plane(lobe, sin_theta)).min(1.0);
         }
         let crossing = self.crossing(alphas[0], cos_theta);
         let simulated = frame.base.map_or([0.0; 3], |base| base.albedo);
@@ -153,28 +153,31 @@ impl Family {
         let (metal, metallic) = (paint.metal[c], paint.metallic);
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
-        let ([light, once, length], [sent_back, more, around]) = (base.energy, base.internal);
+        let ([light, length, _], [sent_back, around, _]) = (base.energy, base.internal);
         let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
-        let [first, second, third] = row.albedo_dir;
-        let entering = if self.is_coated() { first } else { 1.0 - (first + second * mix(metal, PLASTIC_F0)) };
+        let [facet, once_length, more_length] = row.albedo_dir;
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
-        let wide = mix(row.wide[0], row.wide[1] + diffuse);
-        let once = mix(chain(of_once, metal), once) * passed(second);
-        // Trapped light passes the slab again before each visit: it is as dark as over a darker base.
-        let again = passed(third);
-        let trapped = mix(trapped(of_more, metal * again), more * again * again);
-        [entering, wide, once, trapped]
+        let [entering, once] = if self.is_coated() {
+            [facet, mix(chain(of_once, metal), chain(of_once, PLASTIC_F0)) * passed(once_length)]
+        } else {
+            let [several, slope, _] = of_once;
+            [1.0 - (facet + slope * mix(metal, PLASTIC_F0)), mix(0.0, several)]
+        };
+        // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric reflects hardly any.
+        let again = passed(more_length);
+        [entering, row.wide[0] + mix(0.0, diffuse), once, metallic * trapped(of_more, metal * again)]
     }
 }
 
 /// Least share above the horizon by which an energy is divided.
 const SHARE_MIN: f64 = 1e-3;
 
-/// Energy of light of one visit to the base at an F0: `(p + q f) / (1 - R f)` through its energies at 0, .8 and 1.
-pub(super) fn chain([none, bright, white]: Rgb, f: f64) -> f64 {
+/// Energy of light of one visit to the base at an F0: `q f / (1 - R f)` through its energies at .8 and 1. Below a coat light meets the base so steeply that
+/// without F0 it reflects nothing.
+fn chain([bright, white, _]: Rgb, f: f64) -> f64 {
     let beyond = (0.8 * (white - bright)).max(BEYOND_MIN);
-    let pole = ((0.2 * none + 0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX);
-    (none + f * (white * (1.0 - pole) - none)) / (1.0 - pole * f)
+    let pole = ((0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX);
+    f * white * (1.0 - pole) / (1.0 - pole * f)
 }
 
 /// Energy of light of more visits at an F0: `f^2 (p + q f) / (1 - R f)` through its energies at .5, .9 and 1.

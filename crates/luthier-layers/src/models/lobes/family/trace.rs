@@ -40,8 +40,8 @@ pub(super) const BETWEEN: [f64; 2] = [0.8, 0.9];
 pub(super) struct Rest {
     /// Light that the base reflected once, and more often.
     pub(super) reflected: [Energies; 2],
-    /// Light of a colourless dielectric in place of the metal, in the first channel: what it reflected once, more often, and facets alone.
-    pub(super) plastic: [f64; 3],
+    /// Light that several facets of a colourless dielectric without a coat reflected.
+    pub(super) plastic: f64,
     /// Light of a diffuse base.
     pub(super) base: Energies,
     /// Light that met the diffuse base exactly once.
@@ -155,15 +155,14 @@ impl Node {
             };
             let mut of_facets = Vec::new();
             if let Some(paths) = &paths_below {
-                paths.trace(seed.wrapping_add(1), settings.paths, wo, |path| match path.reflections {
-                    _ if path.is_first_facet => {}
+                paths.trace(seed.wrapping_add(1), settings.paths, wo, |path| match path.is_first_facet {
+                    true => {}
                     _ if path.base_visits > 0 => add_base(&path, &mut energies),
-                    0 if family.is_coated() => energies.plastic[2] += share(&path)[0],
-                    reflections => {
-                        energies.plastic[usize::from(family.is_coated() && reflections > 1)] += share(&path)[0];
-                        if !family.is_coated() {
-                            of_once.add(&cells[..1], [path.wi, wo], share(&path), 0);
-                        }
+                    // Below a coat the dielectric reflects as a metal of its F0 does.
+                    _ if family.is_coated() => {}
+                    _ => {
+                        energies.plastic += share(&path)[0];
+                        of_once.add(&cells[..1], [path.wi, wo], share(&path), 0);
                     }
                 });
             }
@@ -202,7 +201,7 @@ impl Node {
         let lobes = [
             // Wide light of one visit takes the shape of that of the base, or is in its lobe.
             Simulation::of_part(axis, narrow, spreads[0], once, of_base.is_some(), of_base),
-            Simulation::of_part(axis, broad, spreads[1], more, true, of_base),
+            Simulation::of_part(axis, broad, spreads[1], more, true, of_base).centred(),
         ];
         Self { lobes, rest, falloff }
     }

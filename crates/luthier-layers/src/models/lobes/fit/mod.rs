@@ -100,6 +100,8 @@ pub struct Simulation {
     has_remainder: bool,
     /// Whether tails of lobes are unknowns of a fit.
     has_tail: bool,
+    /// Whether lobes may have their middles beside the normal.
+    has_shift: bool,
 }
 
 /// Numbers of views: from grazing views up, one azimuth after the other. All azimuths share the view along the normal, which comes last.
@@ -250,6 +252,7 @@ impl Simulation {
             base_falloff,
             has_remainder: true,
             has_tail: true,
+            has_shift: true,
         }
     }
 

@@ -33,7 +33,14 @@ impl Simulation {
             base_falloff,
             has_remainder,
             has_tail: false,
+            has_shift: true,
         }
+    }
+
+    /// With a lobe that has its middle at the normal.
+    #[must_use]
+    pub(in crate::models::lobes) fn centred(self) -> Self {
+        Self { has_shift: false, ..self }
     }
 
     /// The lobe of a tail that is nearest to the light at all views. It stays near that of a neighbour, `factor` times as wide as it.

@@ -163,7 +163,8 @@ impl<'a> Problem<'a> {
             let floor = WEIGHT_FLOOR / cells.count() as f64;
             let weights: Vec<f64> = expected.iter().map(|energy| 1.0 / (energy + floor)).collect();
             let found = found[number].clone();
-            let terms = basis.terms(sin_theta * sin_theta, [(cos - sin) * (cos + sin), 2.0 * cos * sin]);
+            let mut terms = basis.terms(sin_theta * sin_theta, [(cos - sin) * (cos + sin), 2.0 * cos * sin]);
+            terms.retain(|term| simulation.has_shift || term.number != SHIFT);
             ViewProblem {
                 axis,
                 has_remainder: simulation.has_remainder,
