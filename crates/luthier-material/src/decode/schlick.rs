@@ -131,19 +131,12 @@ pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Reports films on an interface that they cannot coat.
-pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
-    for film in films {
-        let (message, hint) = match kind {
-            "metallic-roughness" => (
-                "a film interferes by the index below it, and a metallic-roughness surface has none",
-                "leave the film out, or write the surface as a conductor, or as a dielectric over a diffuse base, by its `ior`",
-            ),
-            _ => (
-                "a film interferes by the index below it: the `f0` of the next layer has no phase",
-                "give that layer an `ior` in place of its `f0`, or leave the film out",
-            ),
-        };
+/// Reports films on a surface whose texels give it another F0 at each place.
+pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
+    for film in films.iter().filter(|_| textured(at).is_some()) {
+        let message =
+            "a film interferes by the index below it, which follows from the F0, and maps give each place another F0";
+        let hint = "leave the film out, or leave out the maps of `base_color` and `metallic`";
         sink.error(film.span.clone(), message, Some(hint.to_owned()));
     }
 }
