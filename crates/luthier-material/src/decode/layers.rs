@@ -82,7 +82,7 @@ pub(super) fn decode(
         if kind == "diffuse" {
             uncoatable(&films, sink);
         }
-        schlick::check_films(at, &films, sink);
+        schlick::check_films(at, &films, layers.len(), sink);
         maps::check(at, layers.len(), sink);
         let number = layers.len();
         let key = format!("layer.{number}");

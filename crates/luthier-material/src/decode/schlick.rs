@@ -131,13 +131,34 @@ pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Reports films on a surface whose texels give it another F0 at each place.
-pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
-    for film in films.iter().filter(|_| textured(at).is_some()) {
-        let message =
-            "a film interferes by the index below it, which follows from the F0, and maps give each place another F0";
-        let hint = "leave the film out, or leave out the maps of `base_color` and `metallic`";
-        sink.error(film.span.clone(), message, Some(hint.to_owned()));
+/// Reports films on a surface whose texels give it another F0 at each place, but for one even film on the first layer, a base.
+pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number: usize, sink: &mut Sink<'_>) {
+    if textured(at).is_none() {
+        return;
+    }
+    for (i, film) in films.iter().enumerate() {
+        let (span, message, hint) = if number > 0 {
+            (
+                film.span.clone(),
+                "a film below a coat on a surface whose maps give each place another F0, by which it interferes",
+                "leave the coat or the film out, or leave out the maps of `base_color` and `metallic`",
+            )
+        } else if i > 0 {
+            (
+                film.span.clone(),
+                "a second film on a surface whose maps give each place another F0, by which films interfere",
+                "leave one film, or leave out the maps of `base_color` and `metallic`",
+            )
+        } else if film.film.varies() {
+            (
+                film.thickness_span.clone(),
+                "a film that varies on a surface whose maps give each place another F0, by which it interferes",
+                "write one number, or leave out the maps of `base_color` and `metallic`",
+            )
+        } else {
+            continue;
+        };
+        sink.error(span, message, Some(hint.to_owned()));
     }
 }
 

@@ -519,6 +519,7 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
         (Feature::LobesCoats, family.has_two_axes()),
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
+        (Feature::FilmF0, material.layers.first().is_some_and(LayerRecord::has_film_over_f0)),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }

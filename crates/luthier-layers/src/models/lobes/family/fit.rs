@@ -120,10 +120,10 @@ impl Family {
                     let [once, more] = &rest.reflected;
                     [over(1.0 - facets[1]), length(once, 1), between_visits(energies[view][1], more.dimmed[1])]
                 } else {
-                    [facets[0] - SHADES[0] * slope, slope, 0.0]
+                    [facets[0] - SHADES[0] * slope, slope, rest.facing[0]]
                 };
                 let energy = [over(light), over(once), length(&rest.base_once, 0)];
-                (albedo, [white, alone, 0.0].map(over), energy, [sent_back[0], over(more), around])
+                (albedo, [over(white), over(alone), rest.facing[1]], energy, [sent_back[0], over(more), around])
             } else {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)

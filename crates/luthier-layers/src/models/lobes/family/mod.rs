@@ -31,6 +31,9 @@
 //! off by a hundredth at all views. Tails are one number of the family. Some of the light of both lobes is wide, by the same share in all channels; above no
 //! diffuse base, whose light has a shape, of trapped light alone.
 
+mod film;
+#[cfg(test)]
+mod film_tests;
 mod fit;
 mod paint;
 mod slopes;
@@ -38,6 +41,8 @@ mod slopes;
 mod tests;
 mod trace;
 
+pub use film::FilmLight;
+pub(super) use film::Filmed;
 pub use paint::{Mix, Paint};
 pub use slopes::{Slopes, Stretch};
 
