@@ -229,7 +229,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(0, false, [1, 3]), &surface[1..], vec![]),
         // And here a film lies on the base.
         (family(0, true, [1, 3]), &surface[1..], vec![]),
-        (family(0, true, [1, 3]), &surface[..], vec![plain.clone(), material(family(0, true, [1, 3]))]),
+        (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(0, true, [1, 3]))]),
     ]
     .into_iter()
     .enumerate()
@@ -254,8 +254,11 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         if has_facets {
             reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
         }
-        let mut under_film = Image::zeros(3, 3, 4);
-        under_film.data = [UNDER_FILM[0], UNDER_FILM[1], UNDER_FILM[2], 0.0].map(|x| x as f32).repeat(9);
+        let film = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Film).unwrap();
+        let [width, height] = film.layout.size();
+        let mut under_film = Image::zeros(width, height, 4);
+        let texel = [UNDER_FILM[0], UNDER_FILM[1], UNDER_FILM[2], 0.0].map(|x| x as f32);
+        under_film.data = texel.repeat((width * height) as usize);
         let textures = [
             ("luthier_fresnel", reflected.clone()),
             ("luthier_distribution", reflected),
