@@ -154,6 +154,12 @@ impl Part {
                 last.albedo = rows.map(|row| row.iter().sum::<f64>().max(0.0));
             }
         }
+        // Maps give each place an F0 below the film: its tile is over that F0.
+        for (i, (record, extras)) in records.iter_mut().zip(extras).enumerate() {
+            if extras.metallic.is_some() {
+                record.f0 = Interface::of(stack, i).and_then(|interface| interface.below.f0());
+            }
+        }
         let count = if bare.is_some() { 1 } else { stack.layers.len() };
         for (i, layer) in stack.layers.iter().enumerate().take(count) {
             let Some(interface) = Interface::of(stack, i) else { continue };

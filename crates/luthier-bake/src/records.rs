@@ -97,7 +97,8 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
                 }
             }
             if let Some(interface) = Interface::of(stack, i) {
-                record.f0 = interface.below.f0();
+                // Films interfere by the index of the F0, which stands in the record like any other.
+                record.f0 = interface.below.f0().filter(|_| interface.films.is_empty());
                 if i > 0 {
                     record.lower_reflectance = parts.lower_reflectance;
                     record.lower_cosine = parts.path.lower_cosine;

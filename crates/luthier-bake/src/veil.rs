@@ -44,7 +44,9 @@ fn wavelengths(stack: &Stack, base: usize, color: &Color) -> Vec<WavelengthNode>
     let mut spectra: Vec<Vec<f64>> = Vec::new();
     for cos in SPECTRUM_COS_THETA {
         for interface in &interfaces {
-            spectra.push(nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect());
+            for channel in interface.channels() {
+                spectra.push(nodes.iter().map(|n| interface.at(n.wavelength_nm, channel).reflectance(cos)).collect());
+            }
         }
     }
     color.sparse_nodes(&spectra, SPECTRUM_TOLERANCE)

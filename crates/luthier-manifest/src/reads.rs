@@ -19,11 +19,12 @@ fn is_met(when: ReadWhen, layers: &[LayerRecord], number: usize) -> bool {
     let layer = &layers[number];
     let is_tabled = layer.reflectance == Reflectance::Table;
     let has_film = layer.film_ior_n[0] > 0.0;
+    let has_film_tile = layer.varies() || layer.has_film_over_f0();
     match when {
         ReadWhen::Always => true,
         ReadWhen::Tabled => is_tabled,
-        ReadWhen::Steady => is_tabled && !layer.varies(),
-        ReadWhen::Varying => is_tabled && layer.varies(),
+        ReadWhen::Steady => is_tabled && !has_film_tile,
+        ReadWhen::Varying => is_tabled && has_film_tile,
         ReadWhen::FirstVarying => layer.varies() && number == 0,
         ReadWhen::Filmed => has_film,
         ReadWhen::BareConductor => !has_film && layer.kind == LayerKind::Conductor,

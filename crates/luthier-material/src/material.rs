@@ -143,6 +143,12 @@ impl Material {
         self.layers.first().is_some_and(|first| first.weighs_film)
     }
 
+    /// Whether a film lies on a base whose maps give each place an F0: only `lobes` shows it.
+    pub fn has_film_over_maps(&self) -> bool {
+        let layers = self.layers.iter().zip(&self.stack.layers);
+        layers.into_iter().any(|(extras, layer)| extras.metallic.is_some() && !layer.films.is_empty())
+    }
+
     /// Its stack where a weight leaves it bare: without its first layer, or without the film on that.
     pub fn bare_stack(&self) -> Stack {
         if self.weighs_film() { self.stack.without_first_films() } else { self.stack.without_first() }
@@ -220,12 +226,14 @@ impl Material {
             || is_turned && self.layers[0].maps.roughness.is_some();
         let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i].maps));
         // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
+        // A film on this base itself has closed forms.
         let has_color = |(number, layer): (usize, &Layer)| {
             let is_tinted = match &layer.base {
                 Base::Dielectric { slab, .. } => number > 0 && slab.optical_depth() != [0.0; 3],
                 Base::Conductor { .. } | Base::Diffuse(_) => false,
             };
-            is_tinted || !layer.films.is_empty()
+            let films = if number == 0 && interface == 0 { 1 } else { 0 };
+            is_tinted || layer.films.len() > films || layer.films.iter().any(Film::varies)
         };
         let has_film = if self.layers[interface].metallic.is_some() {
             layers.iter().enumerate().any(has_color)

@@ -6,7 +6,7 @@ use crate::Rgb;
 use crate::color::{Color, WavelengthNode};
 use crate::fresnel::{FilmLayer, coated};
 use crate::ior::Ior;
-use crate::schlick::{Lazanyi, schlick};
+use crate::schlick::{Lazanyi, index_below_film, schlick};
 use crate::stack::{Base, Film, Stack};
 
 /// The optics of one interface: the medium above, films, the medium below. No micro-surface.
@@ -25,7 +25,8 @@ pub struct Interface {
     pub above: Ior,
     /// Films from the top down, at their nominal thickness.
     pub films: Vec<Film>,
-    /// Medium below. Where it has an F0 ([`Ior::with_f0`]), the interface reflects by Schlick's formula, and has no films.
+    /// Medium below. Where it has an F0 ([`Ior::with_f0`]), the interface reflects by Schlick's formula, and under films as if the medium had the index of
+    /// that F0 ([`index_below_film`]).
     pub below: Ior,
 }
 
@@ -47,14 +48,30 @@ impl Interface {
         Some(Self { above, films: here.films.clone(), below })
     }
 
-    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2. Channels differ in the F0 alone, if there is one.
+    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2. Channels differ in the F0 alone, or under films in its index, if
+    /// there is one.
     pub fn at(&self, wavelength_nm: f64, channel: usize) -> Monochrome {
+        let above = self.above.at(wavelength_nm).re;
+        let f0 = self.below.f0().map(|f0| f0[channel]);
+        let index = f0.filter(|_| !self.films.is_empty()).map(|f0| Complex64::new(index_below_film(above, f0), 0.0));
         Monochrome {
-            f0: self.below.f0().map(|f0| f0[channel]),
-            above: Complex64::new(self.above.at(wavelength_nm).re, 0.0),
+            f0: f0.filter(|_| index.is_none()),
+            above: Complex64::new(above, 0.0),
             films: self.films.iter().map(|film| film.at(wavelength_nm)).collect(),
-            below: self.below.at(wavelength_nm),
+            below: index.unwrap_or_else(|| self.below.at(wavelength_nm)),
         }
+    }
+
+    /// The channels whose spectra stand for all: each by itself under films over a coloured F0, else the first.
+    pub fn channels(&self) -> std::ops::Range<usize> {
+        let is_colored = self.below.f0().is_some_and(|[r, g, b]| r != g || g != b);
+        0..if is_colored && !self.films.is_empty() { 3 } else { 1 }
+    }
+
+    /// Index below over index above that bends light at a wavelength, where films lie over an F0: they interfere by another. `None` elsewhere.
+    pub fn eta_under_films(&self, wavelength_nm: f64) -> Option<f64> {
+        let is_other = self.below.f0().is_some() && !self.films.is_empty();
+        is_other.then(|| self.below.at(wavelength_nm).re / self.above.at(wavelength_nm).re)
     }
 
     /// Whether the reflectance has kinks over the cosine of incidence and over the cosine of the refracted direction alike. It does if some

@@ -105,7 +105,7 @@ impl Ior {
     }
 
     /// The index of a medium whose interface reflects `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994), by colour channel (linear Rec.709,
-    /// each in 0..=1), whatever lies above it.
+    /// each in 0..=1), whatever lies above it. Films on it interfere by the index of its F0 ([`crate::schlick::index_below_film`]).
     #[must_use]
     pub fn with_f0(self, f0: Rgb) -> Self {
         Self { f0: Some(f0), ..self }

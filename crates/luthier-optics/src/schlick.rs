@@ -32,6 +32,25 @@ pub fn index_of_f0(f0: f64) -> f64 {
     (1.0 + root) / (1.0 - root)
 }
 
+/// Largest index over that above that a film lies on by [`index_below_film`]: it reflects all but 4e-4.
+const FILM_BASE_MAX: f64 = 1e4;
+
+/// Real index of the medium below a film where the interface has an F0 in place of an index: that of [`index_of_f0`] over the index above the film, at most
+/// 10,000. Without the film the interface reflects F0 at normal incidence, but not more than .9996.
+///
+/// ```
+/// use luthier_optics::{fresnel::{FilmLayer, coated}, num_complex::Complex64, schlick::index_below_film};
+///
+/// let [above, film] = [1.0, 1.3].map(|n| Complex64::new(n, 0.0));
+/// let below = Complex64::new(index_below_film(1.0, 0.5), 0.0);
+/// let thin = FilmLayer { ior: film, waves: 1e-6 };
+/// assert!((coated(above, &[thin], below, 1.0).unpolarised() - 0.5).abs() < 1e-5);
+/// ```
+pub fn index_below_film(above: f64, f0: f64) -> f64 {
+    let root = libm::sqrt(f0.clamp(0.0, 1.0));
+    above * (1.0 + root) / (1.0 - root).max(2.0 / FILM_BASE_MAX)
+}
+
 /// F0 of the interface of a `metallic-roughness` surface, and albedo of the diffuse base below it (glTF 2.0, appendix B):
 ///
 /// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;

@@ -139,7 +139,9 @@ fn spectrum(stack: &Stack, color: Color) -> Vec<(Monochrome, Rgb)> {
     let mut spectra = Vec::new();
     for interface in &interfaces {
         for cos in SPECTRUM_COS_THETA {
-            spectra.push(nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect());
+            for channel in interface.channels() {
+                spectra.push(nodes.iter().map(|n| interface.at(n.wavelength_nm, channel).reflectance(cos)).collect());
+            }
         }
     }
     let mut found: Vec<(Monochrome, Rgb)> = Vec::new();

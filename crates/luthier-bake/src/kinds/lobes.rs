@@ -141,7 +141,7 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
     let sides: Vec<Material> = fitted.iter().filter_map(|material| side(material)).collect();
     let ends = fitted.into_iter().chain(&sides).map(|material| match varying(material) {
         Some(Varying::Family(family)) => {
-            [0, family.parts(is_tinted(material), base_below(&material.stack).is_some()) as i32 - 1]
+            [0, family.parts(has_lengths(material, family), base_below(&material.stack).is_some()) as i32 - 1]
         }
         _ => [if has_base(material) { -(Row::BASE_PARTS as i32) } else { 0 }, Row::parts(lobes) as i32 - 1],
     });
@@ -149,9 +149,10 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
         .unwrap_or([0, Row::parts(lobes) as i32 - 1])
 }
 
-/// Whether the first slab absorbs.
-fn is_tinted(material: &Material) -> bool {
-    Paint::of(&material.stack).depth != [0.0; 3]
+/// Whether rows of a family have lengths of light in a slab, or cosines at which the facets below a film are seen.
+fn has_lengths(material: &Material, family: Family) -> bool {
+    let is_under_film = !family.is_coated() && !material.stack.layers[0].films.is_empty();
+    is_under_film || Paint::of(&material.stack).depth != [0.0; 3]
 }
 
 /// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].

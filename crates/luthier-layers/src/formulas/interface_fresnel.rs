@@ -3,11 +3,10 @@
 use luthier_optics::Rgb;
 use luthier_optics::film_color::{BelcourBarla, granier_two_beam};
 use luthier_optics::schlick::{F82, F82_COS_THETA, Lazanyi, complex_f0, f0, schlick};
-use num_complex::Complex64;
 
 use crate::formulas::transfer_matrix::transfer_matrix;
 use crate::memo::Memo;
-use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::monochrome::{Monochrome, MonochromeLayer};
 
 /// Formula for the reflectance of an interface. All but [`Fresnel::Exact`] and [`Fresnel::TransferMatrix`] are approximations; their errors
 /// are in [`luthier_optics::schlick`] and [`luthier_optics::film_color`].
@@ -39,11 +38,11 @@ const ORDERS: u32 = 2;
 pub(crate) type LazanyiMemo = Memo<[u64; 3], Lazanyi>;
 
 impl Fresnel {
-    /// Reflectance of an interface for light from above; 0 for a diffuse base, which has no interface. All formulas agree on an interface with an F0:
+    /// Reflectance of an interface for light from above; 0 for a diffuse base, which has no interface. All formulas agree on a bare interface with an F0:
     /// it has Schlick's reflectance, and no index for which they could differ.
     pub(crate) fn reflectance(self, fits: &LazanyiMemo, layer: &MonochromeLayer, cos_theta_i: f64) -> f64 {
-        let Some(below) = index_below(layer) else { return 0.0 };
-        if layer.f0.is_some() {
+        let Some(below) = layer.index_below() else { return 0.0 };
+        if layer.bare_f0().is_some() {
             return layer.reflectance(cos_theta_i);
         }
         let above = layer.above;
@@ -91,22 +90,17 @@ impl Fresnel {
 
 /// The film of an interface, its thickness in units of the wavelength's.
 fn belcour_barla(layer: &MonochromeLayer, wavelength: f64) -> Option<BelcourBarla> {
-    let (film, below) = (layer.films.first()?, index_below(layer)?);
+    let (film, below) = (layer.films.first()?, layer.index_below()?);
     let thickness_nm = film.waves * wavelength;
     Some(BelcourBarla { above: layer.above, film: film.ior.re, thickness_nm, below, orders: ORDERS })
 }
 
-fn index_below(layer: &MonochromeLayer) -> Option<Complex64> {
-    match layer.below {
-        MonochromeBelow::Dielectric { complex_ior, .. } => Some(complex_ior),
-        MonochromeBelow::Conductor { ior } => Some(ior),
-        MonochromeBelow::Diffuse { .. } => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use num_complex::Complex64;
+
     use super::*;
+    use crate::monochrome::MonochromeBelow;
     use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::Surface;
 

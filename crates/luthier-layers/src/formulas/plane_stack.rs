@@ -78,11 +78,17 @@ fn add(powers: Powers, layer: &MonochromeLayer, [cos_above, cos_below]: [f64; 2]
     };
     let down = layer.reflectance(cos_above);
     // Without absorption, reflectances of the two sides are the same.
-    let up = if layer.f0.is_some() || complex_ior.im == 0.0 && layer.films.iter().all(|f| f.ior.im == 0.0) {
+    let is_clear = (layer.f0.is_some() || complex_ior.im == 0.0) && layer.films.iter().all(|f| f.ior.im == 0.0);
+    let up = if is_clear || layer.bare_f0().is_some() {
         down
     } else {
         let films: Vec<_> = layer.films.iter().rev().copied().collect();
-        coated(Complex64::from(ior), &films, Complex64::from(layer.above), cos_below).unpolarised()
+        // Films over an F0 lie on another index than that which bends light.
+        let (index, cos_theta) = match (layer.f0, layer.index_below()) {
+            (Some(_), Some(index)) => (index, refracted_cosine(cos_above, index.re / layer.above).unwrap_or(0.0)),
+            _ => (Complex64::from(ior), cos_below),
+        };
+        coated(index, &films, Complex64::from(layer.above), cos_theta).unpolarised()
     };
     let transmitted = (1.0 - down).max(0.0);
     let echo = 1.0 - powers.below * down;

@@ -56,7 +56,8 @@ fn without_absorption(layer: &mut MonochromeLayer) {
         }
         MonochromeBelow::Conductor { .. } => {
             layer.below = MIRROR;
-            layer.f0 = layer.f0.map(|_| 1.0);
+            // A mirror under films is one by its index.
+            layer.f0 = layer.bare_f0().map(|_| 1.0);
         }
         MonochromeBelow::Diffuse { albedo, .. } => *albedo = 1.0,
     }

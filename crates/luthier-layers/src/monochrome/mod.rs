@@ -6,7 +6,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::interface::Interface;
-use luthier_optics::schlick::schlick;
+use luthier_optics::schlick::{index_below_film, schlick};
 use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -36,8 +36,8 @@ pub struct MonochromeLayer {
     pub films: Vec<FilmLayer>,
     /// Material below the interface.
     pub below: MonochromeBelow,
-    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. The interface then has no films, and the index below is
-    /// not lower than the index above.
+    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. The index below is not lower than the index above then, and bends
+    /// directions only: films interfere by the index of the F0 ([`MonochromeLayer::index_below`]).
     pub f0: Option<f64>,
 }
 
@@ -139,24 +139,36 @@ impl MonochromeLayer {
 
     /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
-        match self.f0 {
+        match self.bare_f0() {
             Some(f0) => schlick(f0, cos_theta_i),
             None => self.polarised(cos_theta_i).map_or(0.0, |powers| powers.unpolarised()),
         }
     }
 
-    /// Reflectance of either polarisation by the indices. `None` for a diffuse base, which has no interface, and for an interface with an F0: Schlick's
+    /// Reflectance of either polarisation by the indices. `None` for a diffuse base, which has no interface, and for a bare interface with an F0: Schlick's
     /// formula knows no polarisation.
     pub fn polarised(&self, cos_theta_i: f64) -> Option<Polarised> {
+        let below = self.index_below()?;
+        if self.bare_f0().is_some() {
+            return None;
+        }
+        Some(coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i))
+    }
+
+    /// The F0, if the interface reflects by Schlick's formula: it has one, and no films.
+    pub fn bare_f0(&self) -> Option<f64> {
+        self.f0.filter(|_| self.films.is_empty())
+    }
+
+    /// The index by which the interface reflects: that of the medium below, or of its F0 under films. `None` for a diffuse base.
+    pub fn index_below(&self) -> Option<Complex64> {
         let below = match self.below {
             MonochromeBelow::Dielectric { complex_ior, .. } => complex_ior,
             MonochromeBelow::Conductor { ior } => ior,
             MonochromeBelow::Diffuse { .. } => return None,
         };
-        if self.f0.is_some() {
-            return None;
-        }
-        Some(coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i))
+        let under_films = self.f0.filter(|_| !self.films.is_empty());
+        Some(under_films.map_or(below, |f0| Complex64::new(index_below_film(self.above, f0), 0.0)))
     }
 
     /// `2 cos(2 Phi)` of the first film for the sum of the cosines in it (Granier and Heidrich 2003, eq. 3 and 19); 0 without a film.

@@ -117,7 +117,11 @@ impl Exact {
     /// F0 of a Schlick interface here and in the nominal stack, whose energies are in tables.
     fn f0(&self, layer: usize) -> Option<[Rgb; 2]> {
         let nominal = &self.nominal.as_ref()?.stack;
-        Some([Interface::of(&self.stack, layer)?.below.f0()?, Interface::of(nominal, layer)?.below.f0()?])
+        let [here, nominal] = [Interface::of(&self.stack, layer)?, Interface::of(nominal, layer)?];
+        if !here.films.is_empty() {
+            return None;
+        }
+        Some([here.below.f0()?, nominal.below.f0()?])
     }
 
     /// The stack whose energies are in tables: this one, with the F0 of the nominal stack.

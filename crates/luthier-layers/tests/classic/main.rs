@@ -5,6 +5,7 @@
 mod claims;
 mod energy;
 mod everywhere;
+mod films_on_f0;
 mod granier_heidrich;
 mod random;
 mod sampling;

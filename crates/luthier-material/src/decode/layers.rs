@@ -79,13 +79,10 @@ pub(super) fn decode(
             _ => continue,
         };
         let films = std::mem::take(&mut pending);
-        match &base {
-            Base::Diffuse(_) => uncoatable(&films, sink),
-            Base::Dielectric { ior, .. } | Base::Conductor { ior } if ior.f0().is_some() => {
-                schlick::uncoatable(kind, &films, sink);
-            }
-            _ => {}
+        if kind == "diffuse" {
+            uncoatable(&films, sink);
         }
+        schlick::check_films(at, &films, layers.len(), sink);
         maps::check(at, layers.len(), sink);
         let number = layers.len();
         let key = format!("layer.{number}");

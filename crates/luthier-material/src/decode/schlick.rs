@@ -131,20 +131,34 @@ pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Reports films on an interface that they cannot coat.
-pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
-    for film in films {
-        let (message, hint) = match kind {
-            "metallic-roughness" => (
-                "a film interferes by the index below it, and a metallic-roughness surface has none",
-                "leave the film out, or write the surface as a conductor, or as a dielectric over a diffuse base, by its `ior`",
-            ),
-            _ => (
-                "a film interferes by the index below it: the `f0` of the next layer has no phase",
-                "give that layer an `ior` in place of its `f0`, or leave the film out",
-            ),
+/// Reports films on a surface whose texels give it another F0 at each place, but for one even film on the first layer, a base.
+pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number: usize, sink: &mut Sink<'_>) {
+    if textured(at).is_none() {
+        return;
+    }
+    for (i, film) in films.iter().enumerate() {
+        let (span, message, hint) = if number > 0 {
+            (
+                film.span.clone(),
+                "a film below a coat on a surface whose maps give each place another F0, by which it interferes",
+                "leave the coat or the film out, or leave out the maps of `base_color` and `metallic`",
+            )
+        } else if i > 0 {
+            (
+                film.span.clone(),
+                "a second film on a surface whose maps give each place another F0, by which films interfere",
+                "leave one film, or leave out the maps of `base_color` and `metallic`",
+            )
+        } else if film.film.varies() {
+            (
+                film.thickness_span.clone(),
+                "a film that varies on a surface whose maps give each place another F0, by which it interferes",
+                "write one number, or leave out the maps of `base_color` and `metallic`",
+            )
+        } else {
+            continue;
         };
-        sink.error(film.span.clone(), message, Some(hint.to_owned()));
+        sink.error(span, message, Some(hint.to_owned()));
     }
 }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, Frame, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+    Axes, Below, Critical, Family, FilmLight, Frame, Paint, Painted, Row, Slopes, ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -227,11 +227,19 @@ struct Here {
     film_factor: f64,
     /// A layer, and the factor on the light that its interface does not reflect.
     passing: Option<(usize, Rgb)>,
+    /// F0 of the metal below a film on the first layer, and its share.
+    metal: (Rgb, f64),
 }
 
 impl Here {
-    const NOMINAL: Self =
-        Self { part: Part::All, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0, passing: None };
+    const NOMINAL: Self = Self {
+        part: Part::All,
+        alpha_factor: 1.0,
+        slab_factor: 1.0,
+        film_factor: 1.0,
+        passing: None,
+        metal: ([0.0; 3], 0.0),
+    };
 
     /// Fractional number of the tile of lobes, and the factor by which the slopes of its rows are divided.
     fn tile(&self, varying: &VaryingRecord) -> (f64, f64) {
@@ -375,6 +383,7 @@ impl<'a> TableTerms<'a> {
             slab_factor: sample.slab_factor,
             film_factor: sample.film_factor,
             passing,
+            metal: place.metal.map_or(([0.0; 3], 0.0), |mix| (mix.metal, mix.metallic)),
         };
     }
 
@@ -393,6 +402,15 @@ impl<'a> TableTerms<'a> {
         let record = &self.records[layer];
         let factor = if layer == 0 { self.here.film_factor } else { 1.0 };
         factor * record.film_thickness_nm / record.film_thickness_max_nm
+    }
+
+    /// Reflectances at a cosine of a film on the first layer, over the metal of this place and over the dielectric; `None` of any other layer.
+    fn film_ends(&self, layer: usize, cos_theta: f64) -> Option<[Rgb; 2]> {
+        let (table, _, tile) = self.read_at(TableKind::Film, layer)?;
+        let at = |root: f64| table.read(tile, [cos_theta, root], self.weights);
+        let [r, g, b, _] = at(libm::sqrt(PLASTIC_F0));
+        let metal = [0, 1, 2].map(|c: usize| at(libm::sqrt(self.here.metal.0[c].max(0.0)))[c]);
+        self.records[layer].has_film_over_f0().then_some([metal, [r, g, b]])
     }
 
     /// The tile that a layer reads; `None` if the table does not have it.
@@ -420,6 +438,9 @@ impl<'a> TableTerms<'a> {
     }
 }
 
+/// F0 of a `metallic-roughness` surface without metal.
+const PLASTIC_F0: f64 = 0.04;
+
 /// The veil of the layers above a diffuse base, as the record gives it to shaders of the statistical models.
 pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
     let constants = &entry.constants;
@@ -436,6 +457,9 @@ fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
+        if let Some([metal, plastic]) = self.film_ends(layer, cos_theta_d) {
+            return [0, 1, 2].map(|c: usize| plastic[c] + self.here.metal.1 * (metal[c] - plastic[c]));
+        }
         let [r, g, b, _] = if let Some((table, _, tile)) = self.read_at(TableKind::Film, layer) {
             table.read(tile, [cos_theta_d, self.film_share(layer)], self.weights)
         } else if let Some((table, angle, tile)) = self.read_at(TableKind::Fresnel, layer) {
@@ -505,7 +529,10 @@ impl ShaderTerms for TableTerms<'_> {
                     table.family_row((*family, *tail), (first, base.1), cos_theta, self.weights)
                 };
                 let row = if coat.1 > 0.0 { of(coat.0).between(&of(coat.0 + 1), coat.1) } else { of(coat.0) };
-                family.row_in(&row, alphas, (frame, wo.z), paint)
+                let film = self
+                    .film_ends(0, 1.0)
+                    .map(|_| FilmLight::new(&row, |cos_theta| self.film_ends(0, cos_theta).unwrap_or_default()));
+                family.row_in(&row, alphas, (frame, wo.z), paint, film.as_ref())
             }
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(varying);

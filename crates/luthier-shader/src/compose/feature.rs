@@ -223,6 +223,8 @@ luthier_lut::named! {
         OwnSlabs = "own_slabs",
         /// Maps of a layer have base colours and metal.
         OwnF0 = "own_f0",
+        /// A film lies on the base of such a material.
+        FilmF0 = "film_f0",
         /// Such base colours are brighter below a coat that does not darken them.
         Brightened = "brightened",
         /// A map of a layer has tangents.

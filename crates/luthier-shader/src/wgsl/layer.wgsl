@@ -84,6 +84,9 @@ struct LuthierLayer {
     tarnish: vec3<f32>,
     /// Factor on what its interface does not reflect, RGB.
     passing: vec3<f32>,
+    //? film_f0
+    /// Roots of the F0 of the metal below the film at a place, RGB, and the share of the metal.
+    film_roots: vec4<f32>,
     /// Normal of its interface at a place, unit, in the frame of the place.
     normal: vec3<f32>,
 }
@@ -179,6 +182,8 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);
     layer.passing = vec3<f32>(1.0);
+    //? film_f0
+    layer.film_roots = vec4<f32>(0.0);
     layer.normal = vec3<f32>(0.0, 0.0, 1.0);
     return layer;
 }

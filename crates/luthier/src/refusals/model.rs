@@ -25,6 +25,9 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let model = asked.unwrap_or_else(|| material.model());
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
+    if material.has_film_over_maps() && !model.is_fitted() {
+        doubts.push(film_over_maps(material, model));
+    }
     if asked.is_none() {
         doubts.extend(material.unfit_for_lobes().iter().map(|part| instead(material, part)));
     }
@@ -54,6 +57,16 @@ fn too_deep(material: &Material) -> Diagnostic {
     );
     let hint = "join layers, or write `[bake] model = \"elek\"`, which simulates nothing".to_owned();
     material.diagnostic(Severity::Error, &format!("layer.{most}"), message, Some(hint))
+}
+
+/// An error for a film over maps of the F0 in a model that has one reflectance for all places.
+fn film_over_maps(material: &Material, model: ShadingModel) -> Diagnostic {
+    let message = format!(
+        "`{}` shows no film on a surface whose maps give each place another F0: only `lobes` does",
+        model.name()
+    );
+    let hint = "leave the film out, or leave out the maps of `base_color` and `metallic`".to_owned();
+    material.diagnostic(Severity::Error, "layer.0.film.0.type", message, Some(hint))
 }
 
 /// A warning where the default model is not `lobes`, with the reason.

@@ -92,12 +92,15 @@ impl Weighted {
 fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<WavelengthNode> {
     let nodes = color.nodes();
     let mut spectra = Vec::new();
-    for cos in SPECTRUM_COS_THETA {
-        let reflectance: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect();
-        let mut power = vec![1.0; nodes.len()];
-        for _ in 0..SPECTRUM_POWERS {
-            power.iter_mut().zip(&reflectance).for_each(|(p, r)| *p *= r);
-            spectra.push(power.clone());
+    for channel in interface.channels() {
+        for cos in SPECTRUM_COS_THETA {
+            let at = |n: &WavelengthNode| interface.at(n.wavelength_nm, channel).reflectance(cos);
+            let reflectance: Vec<f64> = nodes.iter().map(at).collect();
+            let mut power = vec![1.0; nodes.len()];
+            for _ in 0..SPECTRUM_POWERS {
+                power.iter_mut().zip(&reflectance).for_each(|(p, r)| *p *= r);
+                spectra.push(power.clone());
+            }
         }
     }
     color.sparse_nodes(&spectra, tolerance)

@@ -139,7 +139,10 @@ impl FresnelJob {
         let over = if curve.critical_cot_sq > 0.0 { ", over the cosine of the refracted direction" } else { "" };
         TileData {
             model: match self.interface.below.f0() {
-                Some(_) => "Schlick 1994, from F0 by channel; bare interface".to_owned(),
+                Some(_) if self.interface.films.is_empty() => {
+                    "Schlick 1994, from F0 by channel; bare interface".to_owned()
+                }
+                Some(_) => format!("films, Airy, over the index of F0 by channel; {}", color_in_words(&self.color)),
                 None => format!("exact complex Fresnel, unpolarised; {films}{over}; {}", color_in_words(&self.color)),
             },
             truth,

@@ -68,6 +68,7 @@ fn coherent(stack: &Stack) -> Result<(), String> {
     }
     if let Base::Dielectric { ior, .. } | Base::Conductor { ior } = &only.base
         && ior.f0().is_some()
+        && only.films.is_empty()
     {
         return Err("its `f0` stands for Schlick's formula, which knows no polarisation (give an index)".to_owned());
     }

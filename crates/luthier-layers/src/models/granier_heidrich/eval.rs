@@ -38,7 +38,7 @@ fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
         }
     }
     // The record of a Schlick interface has one index for all channels.
-    let has_f0 = channels[0].layers.first().is_some_and(|layer| layer.f0.is_some());
+    let has_f0 = channels[0].layers.first().is_some_and(|layer| layer.bare_f0().is_some());
     channels.map(|one| if has_f0 { bend_alike(one, stack) } else { one })
 }
 

@@ -52,7 +52,8 @@ mod varied;
 
 pub use axes::Axes;
 pub use below::Below;
-pub use family::{Family, Mix, Paint, SlopeAxis, Slopes, Stretch, base_interface};
+use family::Filmed;
+pub use family::{Family, FilmLight, Mix, Paint, SlopeAxis, Slopes, Stretch, base_interface};
 pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};
@@ -154,6 +155,31 @@ impl FirstInterface {
     /// whose roots are evenly spaced.
     fn energy(&self, wo: DVec3) -> Rgb {
         let intervals = self.intervals();
+        let mut sum = [0.0; 3];
+        for (i, weight) in self.weights(wo).into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
+            let reflected = self.reflectance.rgb(cos_theta(i, intervals));
+            (0..3).for_each(|c| sum[c] += weight * reflected[c]);
+        }
+        sum
+    }
+
+    /// Mean and standard deviation of the cosine at which single facets that send light to `wo` are seen, if all reflect alike.
+    fn facing(&self, wo: DVec3) -> [f64; 2] {
+        let intervals = self.intervals();
+        let [mut all, mut first, mut second] = [0.0; 3];
+        for (i, weight) in self.weights(wo).into_iter().enumerate() {
+            let cos = cos_theta(i, intervals);
+            all += weight;
+            first += weight * cos;
+            second += weight * cos * cos;
+        }
+        let mean = if all > 0.0 { first / all } else { wo.z };
+        [mean, if all > 0.0 { (second / all - mean * mean).max(0.0).sqrt() } else { 0.0 }]
+    }
+
+    /// Energy of single facets that reflect all light, by the cosines between intervals.
+    fn weights(&self, wo: DVec3) -> Vec<f64> {
+        let intervals = self.intervals();
         let mut weights = vec![0.0; intervals + 1];
         for i in 0..NORMALS {
             // Hammersley's points.
@@ -168,12 +194,7 @@ impl FirstInterface {
             weights[first] += weight * (1.0 - share);
             weights[first + 1] += weight * share;
         }
-        let mut sum = [0.0; 3];
-        for (i, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
-            let reflected = self.reflectance.rgb(cos_theta(i, intervals));
-            (0..3).for_each(|c| sum[c] += weight * reflected[c]);
-        }
-        sum
+        weights
     }
 
     /// Intervals between cosines: more where films make the reflectance wave.

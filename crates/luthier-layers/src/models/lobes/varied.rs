@@ -7,8 +7,8 @@ use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::tally::mean;
 use super::{
-    Axes, Cover, EXCESS, Family, FirstInterface, FitSettings, Frame, Lobes, Paint, Row, Slopes, ViewAxis, most_lobes,
-    patina, shown,
+    Axes, Cover, EXCESS, Family, FilmLight, Filmed, FirstInterface, FitSettings, Frame, Lobes, Paint, Row, Slopes,
+    ViewAxis, most_lobes, patina, shown,
 };
 use crate::layers::ALPHA_MIN;
 
@@ -295,13 +295,18 @@ impl Varied {
         // Between rows, numbers are in line, and what follows from them is not.
         lobes = lobes.refined(PAINTED_STEPS);
         let (frame, axis) = (lobes.frame, lobes.axis);
+        let filmed = Filmed::new(&over.stack, family, paint, &over.color);
         for (place, row) in lobes.rows.iter_mut().enumerate() {
             // Rows of the horizon are traced just above it.
             let cos_theta = if place == 0 { 0.0 } else { axis.cos_theta(place as f64) };
-            *row = family.painted(row, held, (&frame, cos_theta), paint);
+            let film = filmed.as_ref().map(|film| FilmLight::new(row, |cos_theta| film.reflected(cos_theta)));
+            *row = family.painted(row, held, (&frame, cos_theta), paint, film.as_ref());
         }
         lobes.frame.stretch = family.stretch(slopes);
         lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, slopes), family), &over.color);
+        if let (Some(film), Some(first)) = (filmed, &mut lobes.first) {
+            first.reflectance = film.mixed(paint.metallic);
+        }
         Some(lobes)
     }
 
@@ -323,8 +328,16 @@ impl Varied {
 
 impl Family {
     /// A row of numbers, read between nodes at a cosine of the view, at slope parameters of coat and base that are held to the ranges, and in colours.
-    pub fn row_in(self, row: &Row, alphas: [f64; 2], seen: (&Frame, f64), paint: &Paint) -> Row {
-        self.painted(row, self.held(alphas), seen, paint)
+    /// A film on the base is one at the place.
+    pub fn row_in(
+        self,
+        row: &Row,
+        alphas: [f64; 2],
+        seen: (&Frame, f64),
+        paint: &Paint,
+        film: Option<&FilmLight>,
+    ) -> Row {
+        self.painted(row, self.held(alphas), seen, paint, film)
     }
 
     /// Fractional numbers of the nodes of slope parameters of coat and base.

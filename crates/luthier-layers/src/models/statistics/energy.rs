@@ -11,6 +11,7 @@ use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
 use super::total_reflection::escaping_share;
+use crate::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::layers::Layers;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
@@ -125,19 +126,29 @@ impl ColorEnergy {
         let mut facets = FacetCache { detail: FINE, surfaces: Vec::new() };
         let shader = Layers::rgb(stack);
         let layers = (0..stack.layers.len()).map(|i| {
-            let interface = Interface::of(stack, i)?.sampled(&color);
+            let interface = Interface::of(stack, i)?;
+            let bent = interface.eta_under_films(REFRACTION_WAVELENGTH_NM);
             let transparent = matches!(stack.layers[i].base, Base::Dielectric { .. });
-            Some(ColorLayer::new(interface, transparent, &shader.layers[i].surface, &mut facets))
+            let sampled = interface.sampled(&color);
+            Some(ColorLayer::new(sampled, transparent, bent, &shader.layers[i].surface, &mut facets))
         });
         Self { layers: layers.collect() }
     }
 }
 
 impl ColorLayer {
-    fn new(interface: Sampled, transparent: bool, surface: &Surface, facets: &mut FacetCache) -> Self {
+    /// `bent` is the relative index that bends light, where it is not that by which the interface reflects.
+    fn new(
+        interface: Sampled,
+        transparent: bool,
+        bent: Option<f64>,
+        surface: &Surface,
+        facets: &mut FacetCache,
+    ) -> Self {
         let curves = ReflectanceCurves::new(interface.nodes.len(), |k, cos| interface.nodes[k].1.reflectance(cos));
         let ones = interface.nodes.iter().map(|(_, one)| one);
-        let etas: Vec<Option<f64>> = ones.map(|one| transparent.then(|| one.below.re / one.above.re)).collect();
+        let eta = |one: &interface::Monochrome| bent.unwrap_or(one.below.re / one.above.re);
+        let etas: Vec<Option<f64>> = ones.map(|one| transparent.then(|| eta(one))).collect();
         let nearly_smooth = surface.alpha_isotropic() < NEARLY_SMOOTH;
         let nodes = albedo_nodes(surface, &curves, &etas, facets)
             .map(|(cos, albedos)| {

@@ -67,15 +67,18 @@ enum Kind {
     Conductor(Complex64),
     /// Bare, by Schlick's formula with this F0.
     Schlick { f0: f64, opaque: bool },
-    /// Films, or a trace of absorption in the medium below.
+    /// Films, or a trace of absorption in the medium below. The index below is that by which the interface reflects, which an F0 under films may decide.
     Coated { films: Vec<FilmLayer>, below: Complex64, opaque: bool, absorbing: bool },
 }
 
 impl Optics {
     /// The interface at the top of a layer, which is not diffuse: a diffuse base has none, and counts as nothing.
     pub(crate) fn of(layer: &MonochromeLayer) -> Self {
-        if let Some(f0) = layer.f0 {
+        if let Some(f0) = layer.bare_f0() {
             return Self::of_schlick(layer, f0);
+        }
+        if let (Some(_), Some(index)) = (layer.f0, layer.index_below()) {
+            return Self::of_coated_schlick(layer, index);
         }
         match layer.below {
             MonochromeBelow::Conductor { ior } => Self::opaque(layer.above, &layer.films, ior),
@@ -89,14 +92,19 @@ impl Optics {
     /// An interface that reflects by Schlick's formula. Light from below is reflected as much as light from above along the refracted ray.
     fn of_schlick(layer: &MonochromeLayer, f0: f64) -> Self {
         let above = layer.above;
-        match layer.below {
-            // Light that goes through an index match has no density.
-            MonochromeBelow::Dielectric { ior, .. } => {
-                let below = if (ior / above - 1.0).abs() < INDEX_MATCH { above * (1.0 + INDEX_MATCH) } else { ior };
-                Self::between(above, below, Kind::Schlick { f0, opaque: false })
-            }
-            _ => Self::between(above, above, Kind::Schlick { f0, opaque: true }),
+        match bending(layer) {
+            Some(below) => Self::between(above, below, Kind::Schlick { f0, opaque: false }),
+            None => Self::between(above, above, Kind::Schlick { f0, opaque: true }),
         }
+    }
+
+    /// An interface with films over an F0: they interfere by the index of the F0, and light is bent by the index of the medium, as it is without films.
+    fn of_coated_schlick(layer: &MonochromeLayer, index: Complex64) -> Self {
+        let films = layer.films.clone();
+        let below = bending(layer);
+        let absorbing = is_absorbing(&films);
+        let kind = Kind::Coated { films, below: index, opaque: below.is_none(), absorbing };
+        Self::between(layer.above, below.unwrap_or(layer.above), kind)
     }
 
     /// An interface to an opaque medium of complex index `below`.
@@ -230,16 +238,26 @@ impl Optics {
             Side::Above => coated(above, films, *below, cos).unpolarised(),
             Side::Below => {
                 let upward: Vec<FilmLayer> = films.iter().rev().copied().collect();
-                coated(Complex64::new(self.below, 0.0), &upward, above, cos).unpolarised()
+                // Over an F0 the ray has its own direction in the medium of the index of that F0.
+                let sin = (1.0 - cos_above * cos_above).max(0.0).sqrt() * self.above / below.re;
+                let cos = if below.re == self.below { cos } else { (1.0 - sin * sin).max(0.0).sqrt() };
+                coated(Complex64::new(below.re, 0.0), &upward, above, cos).unpolarised()
             }
         };
         let transmittance = if cos_t > 0.0 && cos > 0.0 {
-            transmitted(self.above, films, self.below, cos_above).clamp(0.0, 1.0 - reflectance)
+            transmitted(self.above, films, below.re, cos_above).clamp(0.0, 1.0 - reflectance)
         } else {
             0.0
         };
         Split { reflectance, transmittance, cos_theta: cos, cos_theta_t: cos_t }
     }
+}
+
+/// The index that bends light which enters by an interface with an F0; `None` if none enters. Light that goes through an index match has no density.
+fn bending(layer: &MonochromeLayer) -> Option<f64> {
+    let MonochromeBelow::Dielectric { ior, .. } = layer.below else { return None };
+    let is_match = (ior / layer.above - 1.0).abs() < INDEX_MATCH;
+    Some(if is_match { layer.above * (1.0 + INDEX_MATCH) } else { ior })
 }
 
 fn is_absorbing(films: &[FilmLayer]) -> bool {

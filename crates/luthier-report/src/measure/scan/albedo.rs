@@ -1,8 +1,9 @@
 //! Scan of FGD tiles against new estimates of the directional albedo.
 
+use luthier_layers::formulas::refraction::REFRACTION_WAVELENGTH_NM;
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
-use luthier_optics::color::{Color, luminance};
+use luthier_optics::color::{Color, WavelengthNode, luminance};
 use luthier_optics::interface::Interface;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::{Base, Distribution};
@@ -159,14 +160,18 @@ fn crossing(interface: &Interface, color: &Color) -> Vec<Crossing> {
     let nodes = color.nodes();
     let mut spectra = Vec::new();
     for cos_theta in CROSSED_COS_THETA {
-        let once: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos_theta)).collect();
-        let twice = once.iter().map(|r| r * r).collect();
-        spectra.extend([once, twice]);
+        for channel in interface.channels() {
+            let at = |n: &WavelengthNode| interface.at(n.wavelength_nm, channel).reflectance(cos_theta);
+            let once: Vec<f64> = nodes.iter().map(at).collect();
+            let twice = once.iter().map(|r| r * r).collect();
+            spectra.extend([once, twice]);
+        }
     }
     let sampled = interface.at_nodes(&color.sparse_nodes(&spectra, CROSSED_TOLERANCE));
+    let bent = interface.eta_under_films(REFRACTION_WAVELENGTH_NM);
     let crossings = sampled.nodes.into_iter().map(|(weight, at)| Crossing {
         weight,
-        eta: at.below.re / at.above.re,
+        eta: bent.unwrap_or(at.below.re / at.above.re),
         curve: ReflectanceCurves::new(1, |_, cos_theta| at.reflectance(cos_theta)),
     });
     crossings.collect()

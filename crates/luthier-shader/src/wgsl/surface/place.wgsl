@@ -139,6 +139,10 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     layer.optical_depth_log2 *= own.slab_factor;
     //? own_f0
     layer.passing = own.passing;
+    //? film_f0
+    if index == 0u && place.metal.w >= 0.0 {
+        layer.film_roots = vec4<f32>(sqrt(max(place.metal.rgb, vec3<f32>(0.0))), place.metal.w);
+    }
     //? own_alphas
     {
         let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Below, Critical, Family, Frame, Mix, Paint, Painted, Row, SlopeAxis, Slopes, ViewAxis, Wide,
+    Below, Critical, Family, FilmLight, Frame, Mix, Paint, Painted, Row, SlopeAxis, Slopes, ViewAxis, Wide,
 };
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
@@ -171,6 +171,17 @@ fn brushed(mut given: MaterialEntry) -> MaterialEntry {
     given
 }
 
+/// A material whose base has a film, which reflects [`UNDER_FILM`] at all angles over every F0.
+fn filmed(mut given: MaterialEntry) -> MaterialEntry {
+    let first = &mut given.layers[0];
+    (first.film_ior_n, first.film_thickness_nm, first.film_thickness_max_nm) = ([1.5; 3], 400.0, 400.0);
+    first.tiles = first.tiles.with([(TableKind::Film, Some(0)), (TableKind::Fresnel, None)]);
+    given
+}
+
+/// What the film of the tests reflects.
+const UNDER_FILM: Rgb = [0.3, 0.15, 0.55];
+
 /// Slope parameters along tangent and bitangent, over their mean, and the angles of the tangents of coat and base.
 const BRUSHED: [f64; 2] = [1.6, 0.4];
 const TURNS: [f64; 2] = [0.4, 2.0];
@@ -216,12 +227,19 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(1, true, NODES), &surface[1..], vec![]),
         (family(1, false, NODES), &surface[..], vec![plain.clone(), material(family(1, false, NODES))]),
         (family(0, false, [1, 3]), &surface[1..], vec![]),
+        // And here a film lies on the base.
+        (family(0, true, [1, 3]), &surface[1..], vec![]),
+        (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(0, true, [1, 3]))]),
     ]
     .into_iter()
     .enumerate()
     {
-        let is_brushed = number >= 7;
-        let first = if is_brushed { brushed(material(family)) } else { material(family) };
+        let (is_brushed, is_filmed) = ((7..10).contains(&number), number >= 10);
+        let first = match (is_brushed, is_filmed) {
+            (true, _) => brushed(material(family)),
+            (_, true) => filmed(material(family)),
+            _ => material(family),
+        };
         let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
         for (number, material) in materials.iter_mut().enumerate() {
             material.name = format!("m{number}");
@@ -236,10 +254,16 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         if has_facets {
             reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
         }
+        let film = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Film).unwrap();
+        let [width, height] = film.layout.size();
+        let mut under_film = Image::zeros(width, height, 4);
+        let texel = [UNDER_FILM[0], UNDER_FILM[1], UNDER_FILM[2], 0.0].map(|x| x as f32);
+        under_film.data = texel.repeat((width * height) as usize);
         let textures = [
             ("luthier_fresnel", reflected.clone()),
             ("luthier_distribution", reflected),
             ("luthier_lobes", image.clone()),
+            ("luthier_film", under_film.clone()),
         ];
         let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
         let machine = Machine::new(&text, &material_buffer(&materials), textures);
@@ -321,18 +345,22 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let row = row(&layout, &image, family, alphas, eye.z);
             let plain = Paint { metal: [0.0; 3], metallic: 0.0, albedo: wide, depth };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
-            let here = family.row_in(&row, alphas, (&frame, eye.z), &paint);
+            let film = is_filmed.then(|| FilmLight::new(&row, |_| [UNDER_FILM; 2]));
+            let here = family.row_in(&row, alphas, (&frame, eye.z), &paint, film.as_ref());
             let below = Below::new(frame, here, eye).widened(eye, variance);
             let facets = if !has_facets { 0.0 } else { facets(light, eye, alphas[1].clamp(0.001, 1.0)) };
             let expected = below.eval(light);
-            let expected = [0, 1, 2].map(|c: usize| expected[c] + (0.04 + mix.metallic * (wide[c] - 0.04)) * facets);
+            let f0 = |c: usize| if is_filmed { UNDER_FILM[c] } else { 0.04 + mix.metallic * (wide[c] - 0.04) };
+            let expected = [0, 1, 2].map(|c: usize| expected[c] + f0(c) * facets);
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
             let prepared = machine.call("luthier_prepare_lobes", arguments);
             let found =
                 machine.call("luthier_light_lobes", vec![prepared.clone(), vector(&wi.map(|w| w as f32))]).floats();
             let stated = machine.call("luthier_albedo_lobes", vec![prepared]).floats();
             for c in 0..3 {
-                let error = (f64::from(found[c]) - expected[c]).abs() / expected[c].abs().max(0.03);
+                // A film reflects more than an F0 of 0.04, of facets whose light far from the mirror direction has few digits.
+                let floor = if is_filmed { 0.1 } else { 0.03 };
+                let error = (f64::from(found[c]) - expected[c]).abs() / expected[c].abs().max(floor);
                 assert!(error < 3e-4, "{family:?} {k} {wi:?} {wo:?}: {found:?} {expected:?}");
                 let error = (f64::from(stated[c]) - below.row().albedo_dir[c]).abs();
                 assert!(error < 2e-5, "{family:?} {k} {wo:?}: {stated:?} {:?}", below.row().albedo_dir);

@@ -23,6 +23,20 @@
         }
     }
 
+    //? film_f0
+    {
+        /// Cosines at which the mean of a reflectance over all directions is taken, by Gauss.
+        const LUTHIER_MEAN_COSINES: vec2<f32> = vec2<f32>(0.3550510, 0.8449490);
+
+        /// F0 of an interface that reflects as much of diffuse light as a film does, of its reflectances at these cosines.
+        fn luthier_film_mean(flat: vec3<f32>, steep: vec3<f32>) -> vec3<f32> {
+            // Fifth powers of what the cosines lack.
+            let powers = vec2<f32>(0.1115904, 0.0000896);
+            let f0 = 0.3639172 * (flat - powers.x) / (1.0 - powers.x) + 0.6360828 * (steep - powers.y) / (1.0 - powers.y);
+            return clamp(f0, vec3<f32>(0.0), vec3<f32>(1.0));
+        }
+    }
+
     /// About the share of light that crosses a coat of a slope parameter as seen at a cosine, over which rows have energies.
     fn luthier_family_crossing(alpha: f32, cos_theta: f32) -> f32 {
         let cos_sq = cos_theta * cos_theta;
@@ -261,30 +275,60 @@
             leaving = of_facet.zw;
             var light = vec3<f32>(of_rest.x);
             var sent_back = vec3<f32>(of_rest.y);
+            //? lobes_tinted|film_f0
+            let of_lengths = luthier_family_part(prepared.row, beside, 5.0);
             let of_one = luthier_family_once(of_once.xy, vec4<f32>(metal, 0.04));
             once = mix(vec3<f32>(of_one.w), of_one.rgb, metallic);
+            var several = vec3<f32>(of_once.x);
+            var seen_metal = metal;
+            //? film_f0
+            {
+                let all = of_facet.x + of_once.y;
+                let is_filmed = base_layer == 0u && luthier_is_film_over(prepared.coat);
+                var seen_plastic = vec3<f32>(0.04);
+                if is_filmed {
+                    // Facets are seen at a cosine in the mean, and as far to both sides of it.
+                    let near = clamp(of_lengths.z - of_lengths.w, 0.0, 1.0);
+                    let far = clamp(of_lengths.z + of_lengths.w, 0.0, 1.0);
+                    seen_plastic = 0.5 * (luthier_film_over_plastic(prepared.coat, near) + luthier_film_over_plastic(prepared.coat, far));
+                    let mean_plastic = luthier_film_mean(luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.y));
+                    if metallic > 0.0 {
+                        seen_metal = 0.5 * (luthier_film_over_metal(prepared.coat, near) + luthier_film_over_metal(prepared.coat, far));
+                        metal = luthier_film_mean(luthier_film_over_metal(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_metal(prepared.coat, LUTHIER_MEAN_COSINES.y));
+                    }
+                    // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
+                    let added = luthier_family_more(of_more.rgb, mean_plastic) - luthier_family_more(of_more.rgb, vec3<f32>(0.04));
+                    several = max(of_once.x + added, vec3<f32>(0.0));
+                    // What facets do not reflect enters, seen from the eye as well as in the mean.
+                    let entering = max(1.0 - all * seen_plastic - several, vec3<f32>(0.0)) / max(1.0 - (of_facet.x + 0.04 * of_once.y) - of_once.x, 0.02);
+                    let diffused = mean_plastic + (1.0 - mean_plastic) / 21.0;
+                    let staying = max(1.0 - all * diffused - several, vec3<f32>(0.0)) / max(1.0 - all * (1.0 - LUTHIER_PLASTIC_PASSED) - of_once.x, 0.02);
+                    light *= entering * staying;
+                    sent_back = 1.0 - staying * (1.0 - sent_back);
+                }
+            }
             //? lobes_tinted
             {
-                let lengths = luthier_family_part(prepared.row, beside, 5.0);
                 var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
                 //? place
                 depth *= place.slab_factor;
-                light *= exp(-lengths.x * depth);
-                sent_back *= exp(-lengths.y * depth);
-                once *= exp(-lengths.z * depth);
+                light *= exp(-of_lengths.x * depth);
+                sent_back *= exp(-of_lengths.y * depth);
+                once *= exp(-of_lengths.z * depth);
                 // Trapped light passes the slab again before each visit.
-                metal *= exp(-lengths.w * depth);
+                metal *= exp(-of_lengths.w * depth);
             }
             more = metallic * luthier_family_more(of_more.rgb, metal);
             wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
             facet = vec3<f32>(1.0 - crossing * of_facet.x);
             if base_layer == 0u {
                 // Several facets of the dielectric, and one of either.
-                once = vec3<f32>((1.0 - metallic) * of_once.x);
-                //? own_f0
-                facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), place.metal.rgb, metallic);
-                //? else
-                facet = vec3<f32>(of_facet.x + of_once.y * 0.04);
+                once = (1.0 - metallic) * several;
+                facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), seen_metal, metallic);
+                //? film_f0
+                if is_filmed {
+                    facet = all * mix(seen_plastic, seen_metal, metallic);
+                }
             }
         }
         //? !lobes_metallic|~lobes_metallic

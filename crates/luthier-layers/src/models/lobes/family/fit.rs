@@ -118,7 +118,7 @@ impl Family {
                     let [once, more] = &rest.reflected;
                     [over(1.0 - facets[1]), length(once, 1), between_visits(energies[view][1], more.dimmed[1])]
                 } else {
-                    [facets[0] - SHADES[0] * slope(facets), 0.0, 0.0]
+                    [facets[0] - SHADES[0] * slope(facets), rest.facing[0], rest.facing[1]]
                 };
                 let energy = [over(light), length(&rest.base_once, 0), 0.0];
                 (albedo, [over(white), 0.0, 0.0], energy, [sent_back[0], around, 0.0])

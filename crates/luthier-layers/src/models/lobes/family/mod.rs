@@ -15,6 +15,7 @@
 //! | 3 | light but that of one facet of the first interface; facets of the coat alone; shares of both lobes above the horizon, over their estimates |
 //! | 4 | light of a white diffuse base that sends nothing back, share of it that is sent back to the base; a and b of the remainder |
 //! | 5, below a slab that absorbs | lengths of the light of the diffuse base, of that sent back to it, of light of one visit, and of more |
+//! | 5, under a film on the base | 0, 0, mean and standard deviation of the cosine at which facets are seen |
 //!
 //! Between its energies light of one visit is `q c / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The dielectric reflects once as a metal of its F0 does. The light of the diffuse
@@ -41,6 +42,9 @@
 //! off by a hundredth at all views. Tails are one number of the family. Some of the light of both lobes is wide, by the same share in all channels; above no
 //! diffuse base, whose light has a shape, of trapped light alone.
 
+mod film;
+#[cfg(test)]
+mod film_tests;
 mod fit;
 mod paint;
 mod slopes;
@@ -49,6 +53,8 @@ mod tests;
 mod texels;
 mod trace;
 
+pub use film::FilmLight;
+pub(super) use film::Filmed;
 pub use paint::{Mix, Paint};
 pub use slopes::{Slopes, Stretch};
 

@@ -5,6 +5,7 @@ use luthier_optics::Rgb;
 use luthier_optics::schlick::metallic_and_matt;
 use luthier_optics::stack::{Base, Stack};
 
+use super::film::{FilmLight, PLASTIC_F0};
 use super::{Family, base_interface};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
@@ -91,9 +92,6 @@ impl Paint {
     }
 }
 
-/// F0 of a `metallic-roughness` surface without metal.
-const PLASTIC_F0: f64 = 0.04;
-
 impl Family {
     /// A row in colours, from a row of numbers at a cosine of the view and at slope parameters of coat and base. The albedo is at most 1: what exceeds it is
     /// taken from the light from below.
@@ -103,6 +101,7 @@ impl Family {
         alphas: [f64; 2],
         (frame, cos_theta): (&Frame, f64),
         paint: &Paint,
+        film: Option<&FilmLight>,
     ) -> Row {
         let mut here = row.clone();
         let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt();
@@ -126,7 +125,7 @@ impl Family {
         let more = base.more(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
-                self.mixed(row, &base, paint, c)
+                self.mixed(row, &base, paint, film, c)
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
@@ -149,20 +148,31 @@ impl Family {
 
     /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
     /// light that the base reflected once, and more often.
-    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, c: usize) -> [f64; 4] {
-        let (metal, metallic) = (paint.metal[c], paint.metallic);
+    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, film: Option<&FilmLight>, c: usize) -> [f64; 4] {
+        let metallic = paint.metallic;
+        let metal = film.map_or(paint.metal[c], |film| film.mean[0][c]);
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
         let ([light, length, _], [sent_back, around, _]) = (base.energy, base.internal);
-        let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
-        let [facet, once_length, more_length] = row.albedo_dir;
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
-        let [entering, once] = if self.is_coated() {
-            [facet, mix(chain(of_once, metal), chain(of_once, PLASTIC_F0)) * passed(once_length)]
-        } else {
-            let [several, slope, _] = of_once;
-            [1.0 - (facet + slope * mix(metal, PLASTIC_F0)), mix(0.0, several)]
+        let [facet, once_length, more_length] = row.albedo_dir;
+        let [several, slope, _] = of_once;
+        let (light, sent_back, once, entering) = match film {
+            _ if self.is_coated() => {
+                let once = mix(chain(of_once, metal), chain(of_once, PLASTIC_F0)) * passed(once_length);
+                (light, sent_back, once, facet)
+            }
+            // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
+            Some(film) => {
+                let filmed = (several + trapped(of_more, film.mean[1][c]) - trapped(of_more, PLASTIC_F0)).max(0.0);
+                let all = facet + slope;
+                let [leaving, staying] = film.passed(c, all, facet + slope * PLASTIC_F0, [several, filmed]);
+                let facet = all * mix(film.seen[0][c], film.seen[1][c]);
+                (leaving * light, 1.0 - staying * (1.0 - sent_back), mix(0.0, filmed), 1.0 - facet)
+            }
+            None => (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, PLASTIC_F0))),
         };
+        let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
         // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric reflects hardly any.
         let again = passed(more_length);
         [entering, row.wide[0] + mix(0.0, diffuse), once, metallic * trapped(of_more, metal * again)]

@@ -190,7 +190,7 @@ fn painted_lobes_are_the_stored_rows_down_to_the_horizon() {
         let first = place as usize;
         let [low, high] = [first, first + 1].map(|row| varied.stored(0, row));
         let row = low.between(&high, place - first as f64);
-        let expected = family.row_in(&row, alphas, (&stored.frame, cos_theta), &paint);
+        let expected = family.row_in(&row, alphas, (&stored.frame, cos_theta), &paint, None);
         let found = lobes.row(DVec3::new((1.0 - cos_theta * cos_theta).sqrt(), 0.0, cos_theta));
         let [found, expected] = [&found, &expected].map(|row| row.lobes[0].strength[0] * row.lobes[0].share);
         assert!((found / expected - 1.0).abs() < 0.03, "{cos_theta}: {found} {expected}");

@@ -6,7 +6,7 @@ use super::Family;
 use crate::models::lobes::{BaseLight, Lobe, Row};
 
 impl Family {
-    /// Number of parts of a row: with the lengths of light in a slab that absorbs, or with the light of a diffuse base apart, to recolour it.
+    /// Number of parts of a row: with the lengths of light in a slab that absorbs or cosines of facets below a film, or with the light of a diffuse base apart, to recolour it.
     pub fn parts(self, is_tinted: bool, has_base: bool) -> usize {
         match (self.is_metallic, is_tinted, has_base) {
             (true, false, _) => 5,

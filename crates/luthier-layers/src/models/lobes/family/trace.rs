@@ -5,6 +5,7 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::Family;
+use super::film::is_filmed;
 use crate::models::lobes::fit::{Simulation, seen_from};
 use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{FirstInterface, FitSettings, ViewAxis, Wide};
@@ -50,6 +51,8 @@ pub(super) struct Rest {
     pub(super) facets: Energies,
     /// Light of one facet of the first interface.
     pub(super) first_facet: Rgb,
+    /// Under a film on the base, mean and standard deviation of the cosine at which facets are seen; else 0.
+    pub(super) facing: [f64; 2],
 }
 
 /// Energies by channel: without a slab, and below one of [`DEPTH`].
@@ -86,10 +89,11 @@ fn between([_, half, whole]: Rgb, facets: u32) -> [f64; 2] {
 fn of_metal(family: Family, stack: &Stack) -> Stack {
     let mut metal = clear(stack);
     metal.layers.truncate(family.interface + 1);
-    if let Some(Layer { base, .. }) = metal.layers.last_mut()
+    if let Some(Layer { base, films, .. }) = metal.layers.last_mut()
         && let Base::Conductor { ior } | Base::Dielectric { ior, .. } = base
     {
         *base = Base::Conductor { ior: ior.clone().with_f0(SHADES) };
+        films.clear();
     }
     metal
 }
@@ -97,7 +101,10 @@ fn of_metal(family: Family, stack: &Stack) -> Stack {
 /// The stack without metal, over a diffuse base of [`WHITE`].
 fn of_plastic(stack: &Stack) -> Option<Stack> {
     let mut plastic = clear(stack);
-    let [.., Layer { base: Base::Diffuse(base), .. }] = plastic.layers.as_mut_slice() else { return None };
+    let [.., Layer { films, .. }, Layer { base: Base::Diffuse(base), .. }] = plastic.layers.as_mut_slice() else {
+        return None;
+    };
+    films.clear();
     base.albedo = [WHITE; 3];
     Some(plastic)
 }
@@ -190,6 +197,9 @@ impl Node {
                 of_rest.add(&[], [wi, wo], weight, u32::from(!has_base));
             }
             energies.first_facet = first.as_ref().map_or([0.0; 3], |first| first.energy(wo));
+            if is_filmed(stack, family) {
+                energies.facing = first.as_ref().map_or([0.0; 2], |first| first.facing(wo));
+            }
             once.push(of_once);
             more.push(of_more);
             wide.push(of_rest);

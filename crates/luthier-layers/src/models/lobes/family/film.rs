@@ -1,0 +1,104 @@
+//! A thin film on the base of a family that is metallic in places, which is the first interface.
+//!
+//! Rows of the family are those without the film: reflectances by Schlick's formula, energies in closed form in the F0. One facet of the film has its own
+//! reflectance, a function of the angle and of the F0 at the place. For all other light the film is an F0 of equal reflectance, by channel: at the angle at
+//! which the eye sees the facets for the light that leaves, and in the mean over all directions for light between facets and from the base.
+
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::interface::{Interface, Sampled};
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::Stack;
+
+use super::{Family, Paint};
+use crate::models::lobes::Row;
+
+/// F0 of a `metallic-roughness` surface without metal.
+pub(super) const PLASTIC_F0: f64 = 0.04;
+
+/// Gauss's nodes and weights for means over the hemisphere, `2 mu` being the density of the cosine.
+const MEANS: [(f64, f64); 2] =
+    [(0.355_051_025_721_682, 0.363_917_236_512_047), (0.844_948_974_278_318, 0.636_082_763_487_953)];
+
+/// What a film reflects at a place, as a row of a family sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilmLight {
+    /// In the mean over the facets that the eye sees, of the metal and of the dielectric.
+    pub seen: [Rgb; 2],
+    /// F0 of interfaces that reflect as much of diffuse light, of the metal and of the dielectric.
+    pub mean: [Rgb; 2],
+}
+
+impl FilmLight {
+    /// The film of a place for a row of a family, from reflectances of the metal and of the dielectric at a cosine.
+    pub fn new(row: &Row, reflected: impl Fn(f64) -> [Rgb; 2]) -> Self {
+        // Facets are seen at a cosine in the mean, and as far to both sides of it.
+        let [_, facing, apart] = row.albedo_dir;
+        let [near, far] = [facing - apart, facing + apart].map(|cos_theta| reflected(cos_theta.clamp(0.0, 1.0)));
+        let seen = [0, 1].map(|i: usize| [0, 1, 2].map(|c: usize| 0.5 * (near[i][c] + far[i][c])));
+        let mut mean = [[0.0; 3]; 2];
+        for (cos_theta, weight) in MEANS {
+            let away = 1.0 - cos_theta;
+            let power = away * away * (away * away) * away;
+            for (mean, found) in mean.iter_mut().zip(reflected(cos_theta)) {
+                (0..3).for_each(|c| mean[c] += weight * (found[c] - power) / (1.0 - power));
+            }
+        }
+        Self { seen, mean: mean.map(|rgb| rgb.map(|f0| f0.clamp(0.0, 1.0))) }
+    }
+
+    /// Light of a channel that one facet of the dielectric reflects to the eye, of `all`, and factors on the light of the diffuse base that leaves, and on the
+    /// share of it that leaves at all. What facets do not reflect enters, seen from the eye as well as in the mean: `several` are energies of several facets
+    /// without the film and with it, and `plain` of one without it.
+    pub(super) fn passed(&self, c: usize, all: f64, plain: f64, several: [f64; 2]) -> [f64; 2] {
+        let ratio = |one: [f64; 2]| {
+            let [without, with] = [0, 1].map(|i: usize| 1.0 - one[i] - several[i]);
+            with.max(0.0) / without.max(ENTERING_MIN)
+        };
+        let mean = [PLASTIC_F0, self.mean[1][c]].map(|f0| all * (f0 + (1.0 - f0) / 21.0));
+        let staying = ratio(mean);
+        [ratio([plain, all * self.seen[1][c]]) * staying, staying]
+    }
+}
+
+/// Least share of light that enters, by which light is divided.
+const ENTERING_MIN: f64 = 0.02;
+
+/// The film on the base of a family, with its exact reflectance.
+#[derive(Debug, Clone)]
+pub(in crate::models::lobes) struct Filmed {
+    /// Of the metal of a place, and of the dielectric.
+    sampled: [Sampled; 2],
+}
+
+impl Filmed {
+    /// The film of a stack on the metal of some colours; `None` without a film, or of a family whose energies are those of the film.
+    pub(in crate::models::lobes) fn new(stack: &Stack, family: Family, paint: &Paint, color: &Color) -> Option<Self> {
+        if !is_filmed(stack, family) {
+            return None;
+        }
+        let interface = Interface::of(stack, 0)?;
+        let over = |f0: Rgb| Interface { below: Ior::vacuum().with_f0(f0), ..interface.clone() }.sampled(color);
+        Some(Self { sampled: [over(paint.metal), over([PLASTIC_F0; 3])] })
+    }
+
+    /// Reflectances at a cosine, of the metal and of the dielectric.
+    pub(in crate::models::lobes) fn reflected(&self, cos_theta: f64) -> [Rgb; 2] {
+        self.sampled.each_ref().map(|sampled| sampled.rgb(cos_theta))
+    }
+
+    /// The interface of a mix by area.
+    pub(in crate::models::lobes) fn mixed(self, metallic: f64) -> Sampled {
+        let [metal, plastic] = self.sampled;
+        let ends = [(metal, metallic), (plastic, 1.0 - metallic)].into_iter().filter(|(_, share)| *share > 0.0);
+        let nodes = ends.flat_map(|(end, share)| {
+            end.nodes.into_iter().map(move |(weight, at)| (weight.map(|weight| weight * share), at))
+        });
+        Sampled { nodes: nodes.collect() }
+    }
+}
+
+/// Whether a film lies on the base of a family that is metallic in places: rows are those without it.
+pub(in crate::models::lobes) fn is_filmed(stack: &Stack, family: Family) -> bool {
+    family.is_metallic && !stack.layers[family.interface].films.is_empty()
+}

@@ -1,0 +1,84 @@
+//! Films on the base of a family against the simulation of single places.
+
+use glam::DVec3;
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
+
+use super::{Family, Mix, Paint};
+use crate::models::lobes::{FitSettings, Varied, Varying};
+use crate::references::layered_mc::ColorPaths;
+
+const SETTINGS: FitSettings = FitSettings { rows: 19, paths: 16_000, seed: 5 };
+
+/// A film on a base without metal.
+fn filmed(ior: f64, nm: f64) -> Stack {
+    let film = Film { ior: Ior::constant(ior, 0.0).unwrap(), thickness: FilmThickness { min_nm: nm, max_nm: nm } };
+    let surface = Surface::isotropic(Distribution::Ggx, 0.5);
+    let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+    let interface = Base::Dielectric { ior: Ior::vacuum().with_f0([0.04; 3]), slab };
+    let diffuse = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
+    let layers = vec![
+        Layer { films: vec![film], surface, base: interface },
+        Layer { films: Vec::new(), surface: Surface::smooth(), base: diffuse },
+    ];
+    Stack { exterior: Ior::vacuum(), layers }
+}
+
+/// Oracle: paths of the stack in one colour, which meet the film at every facet. Closed forms in the F0 of a place are as far from them as the approximations
+/// of the film say, a hundredth in the median; a white place returns all light, and no place more.
+#[test]
+fn films_in_closed_form_are_those_of_the_simulation() {
+    let color = Color::Spectral;
+    let colors = [([0.3, 0.7, 0.95], 1.0), ([0.9, 0.4, 0.1], 0.0), ([1.0; 3], 1.0), ([1.0; 3], 0.0)];
+    let mut differences = Vec::new();
+    for (ior, nm) in [(1.5, 400.0), (1.8, 250.0)] {
+        let stack = filmed(ior, nm);
+        for alpha in [0.1, 0.5] {
+            let family = Family::new(&stack, [alpha; 2], [alpha; 2], true).unwrap();
+            let varied = Varied::with(&stack, &color, Some(Varying::Family(family)), SETTINGS);
+            for (base, metallic) in colors {
+                let level = family.apply(&stack, [alpha; 2]);
+                let paint = Paint::of(&level).mixed(Mix { metal: base, matt: base, metallic });
+                let here = if metallic > 0.0 { paint.metal_of(&level) } else { paint.plastic_of(&level) };
+                let lobes = varied.painted([alpha; 2], &paint).unwrap();
+                for theta in [0.0, 1.0, 1.3] {
+                    let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                    let (mut sum, count) = ([0.0; 3], 30_000);
+                    ColorPaths::new(&here, &color)
+                        .trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c] / count as f64));
+                    let found = lobes.row(wo).albedo_dir;
+                    let apart = (0..3).map(|c: usize| (found[c] - sum[c]).abs()).fold(0.0, f64::max);
+                    let limit = if base == [1.0; 3] { 0.004 } else { 0.035 };
+                    assert!(apart < limit, "{ior} {nm} {alpha} {base:?} {metallic} {theta}: {found:?} {sum:?}");
+                    assert!(found.iter().all(|albedo| *albedo < 1.002), "{found:?}");
+                    differences.push(apart);
+                }
+            }
+        }
+    }
+    differences.sort_by(f64::total_cmp);
+    assert!(differences[differences.len() / 2] < 0.005, "{differences:?}");
+}
+
+/// Oracle: the film by itself at another F0. One facet of a mix reflects the mean of both surfaces, at every angle and in every channel.
+#[test]
+fn one_facet_of_a_mix_is_the_mean_of_both() {
+    let stack = filmed(1.6, 350.0);
+    let family = Family::new(&stack, [0.2; 2], [0.2; 2], true).unwrap();
+    let few = FitSettings { paths: 500, ..SETTINGS };
+    let varied = Varied::with(&stack, &Color::Spectral, Some(Varying::Family(family)), few);
+    let mix = Mix { metal: [0.9, 0.5, 0.2], matt: [0.1; 3], metallic: 0.3 };
+    let level = family.apply(&stack, [0.2; 2]);
+    let paint = Paint::of(&level).mixed(mix);
+    let first = varied.painted([0.2; 2], &paint).unwrap().first.unwrap();
+    let [metal, plastic] = [paint.metal_of(&level), paint.plastic_of(&level)]
+        .map(|stack| Interface::of(&stack, 0).unwrap().sampled(&Color::Spectral));
+    for cos in [1.0, 0.6, 0.1] {
+        let [found, metal, plastic] = [&first.reflectance, &metal, &plastic].map(|sampled| sampled.rgb(cos));
+        for c in 0..3 {
+            assert!((found[c] - 0.3 * metal[c] - 0.7 * plastic[c]).abs() < 1e-12, "{found:?} {metal:?} {plastic:?}");
+        }
+    }
+}
