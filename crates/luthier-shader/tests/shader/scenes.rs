@@ -426,6 +426,8 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
             "lobes-sides-bumps",
             vec![bumpy(sided(weighted())), bumpy(sided(weighted_paint(0.3))), with_lobes(house()), gold()],
         ),
+        ("weighted-film", vec![weighted_film()]),
+        ("weighted-film-mixed", vec![weighted_film(), weighted(), flaked(), house()]),
         ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]
