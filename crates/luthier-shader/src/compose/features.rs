@@ -181,6 +181,9 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
             MapSlot::Bumps if has_base_light(material) => {
                 &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps, Feature::LobesBase, Feature::LobesLean]
             }
+            MapSlot::Bumps if family(material).is_some() && material.layers.last().is_some_and(is_diffuse) => {
+                &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps, Feature::LobesLean]
+            }
             MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps],
             MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
             MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],

@@ -222,6 +222,9 @@
         var more = of_more.rgb;
         var wide = of_wide.rgb;
         var facet = vec3<f32>(0.0);
+        //? lobes_lean
+        // Light of the base that came through the coat, and not back from it.
+        var met = vec3<f32>(0.0);
         //? lobes_metallic
         //? ~lobes_metallic
         let is_metallic = coat_axis.w > 0.0;
@@ -248,6 +251,8 @@
                 sent_back *= exp(-of_internal.z * depth);
             }
             wide = mix(of_wide.y + passed * diffuse / (1.0 - sent_back * diffuse), vec3<f32>(of_wide.x), metallic);
+            //? lobes_lean
+            met = (1.0 - metallic) * passed * diffuse;
             once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, metal), metallic);
             //? lobes_tinted
             {
@@ -266,6 +271,8 @@
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
             facet = 1.0 - crossing * of_albedo.rgb;
+            //? lobes_lean
+            met = of_base.rgb * max(1.0 - of_internal.rgb * painted.rgb, vec3<f32>(0.0)) * diffuse / max(painted.rgb, vec3<f32>(1e-6));
             //? base_color
             {
                 let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
@@ -279,6 +286,14 @@
         prepared.albedo = facet + left * (wide + once + more);
         // Some of the light of both lobes is wide.
         prepared.wide = left * (wide + of_albedo.w * once + of_wide.w * more);
+        //? lobes_lean
+        {
+            let base_normal = luthier_own_normal(place, luthier_layer_count(material) - 1u);
+            prepared.leaning = left * met;
+            prepared.lean = base_normal.xy;
+            prepared.albedo -= (1.0 - base_normal.z) * prepared.leaning;
+            prepared.wide -= (1.0 - base_normal.z) * prepared.leaning;
+        }
         let squares = held * held;
         let once_spread = sqrt(squares.y + 0.09 * squares.x);
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);

@@ -124,8 +124,13 @@ impl Family {
             [1, 0].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt()));
         let base = row.base.unwrap_or_default();
         let more = base.more(simulated, paint.albedo);
+        let mut met = base.of_one_direction(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
+                met[c] = (1.0 - paint.metallic)
+                    * base.energy[0]
+                    * libm::exp(-base.energy[2] * paint.depth[c])
+                    * paint.albedo[c];
                 self.mixed(row, &base, paint, c)
             } else {
                 let [once, trapped] =
@@ -135,6 +140,7 @@ impl Family {
             let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
             let (facet, below) = (1.0 - entering, wide + once + trapped);
             let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };
+            met[c] *= crossing * kept;
             here.wide[c] = kept * (wide + wide_once * once + wide_trapped * trapped);
             for (lobe, energy) in here.lobes.iter_mut().zip([(1.0 - wide_once) * once, (1.0 - wide_trapped) * trapped])
             {
@@ -143,7 +149,7 @@ impl Family {
             here.albedo_dir[c] = facet + kept * below;
         }
         // The shape of the remainder stays: its light is in the remainder.
-        here.base = row.base.map(|base| BaseLight { falloff: base.falloff, ..BaseLight::default() });
+        here.base = row.base.map(|base| BaseLight { falloff: base.falloff, met: Some(met), ..BaseLight::default() });
         here
     }
 
