@@ -96,9 +96,9 @@ struct Values {
     weight_factor: f32,
     /// Factors on the slope parameters of coat and base.
     alphas: [f32; 2],
-    /// Normal of the surface, and own normals of coat and base in its frame.
+    /// Normal of the surface, and own normals of coat, base and diffuse base in its frame: the last two have one map.
     normal: [f32; 3],
-    normals: [[f32; 3]; 2],
+    normals: [[f32; 3]; 3],
     color: [f32; 3],
     metal: f32,
 }
@@ -111,6 +111,7 @@ fn unit(v: [f32; 3]) -> [f32; 3] {
 /// The values of a place by number.
 fn values(k: usize) -> Values {
     let share = |step: f64| (0.003 + k as f64 * step).fract() as f32;
+    let of_base = unit([0.5 * share(0.47) - 0.3, -0.2, 1.0]);
     Values {
         factor: 1.0 - 0.5 * share(0.29),
         slab: share(0.43),
@@ -118,7 +119,7 @@ fn values(k: usize) -> Values {
         weight_factor: [0.0, 0.4, 1.0, 1.3, 2.0][k % 5],
         alphas: [share(0.37).max(1e-3), share(0.61).max(1e-3)],
         normal: unit([0.3 * share(0.53) - 0.1, 0.1, 1.0]),
-        normals: [unit([0.1, 0.4 * share(0.19) - 0.2, 1.0]), unit([0.5 * share(0.47) - 0.3, -0.2, 1.0])],
+        normals: [unit([0.1, 0.4 * share(0.19) - 0.2, 1.0]), of_base, of_base],
         color: [share(0.17), share(0.23), share(0.31)],
         metal: share(0.71),
     }
