@@ -188,10 +188,12 @@ fn baked_materials(
 ) -> Vec<BakedMaterial> {
     let baked = materials.par_iter().zip(records).map(|(m, planned)| {
         let lobes = m.model().is_fitted().then(|| lobes::record(m, settings, results));
-        let side = m.side().map(|side| SideRecord {
+        let of_lobes = m.side().map(|side| SideRecord {
             lobes: lobes::has_rows(&side).then(|| lobes::record(&side, settings, results)),
             without_film: m.weighs_film(),
         });
+        let of_path = m.weighs_film() && m.model().is_path();
+        let side = of_lobes.or(of_path.then_some(SideRecord { lobes: None, without_film: true }));
         let (constants, color) = (constants(m, planned.bare, lobes, side), color_mode(m));
         BakedMaterial { model: m.model(), color, constants, records: planned.layers, maps: maps(m) }
     });

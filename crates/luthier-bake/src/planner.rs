@@ -116,19 +116,21 @@ impl Part {
                         part.records(&side, settings, &side.stack, &side.layers, Some("bare-"), read_image)?;
                     records.into_iter().next()
                 }
-                // Models without lobes do not show where a film is not.
-                None if material.weighs_film() => None,
+                // Models of statistics and of one interface do not show where a film is not.
+                None if material.weighs_film() && !material.model().is_path() => None,
                 None => {
-                    let Stack { exterior, mut layers } = material.stack.without_first();
+                    let Stack { exterior, mut layers } = material.bare_stack();
                     layers.truncate(1);
                     let stack = Stack { exterior, layers };
-                    let extras = &material.layers[1..2];
+                    let second = usize::from(!material.weighs_film());
+                    let extras = &material.layers[second..=second];
                     let records = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?;
                     records.into_iter().next()
                 }
             };
             // The base beside it is no layer of this stack.
-            let diffuse_part = part.layers.get(1).map(|below| below.diffuse_part).unwrap_or_default();
+            let second = usize::from(!material.weighs_film());
+            let diffuse_part = part.layers.get(second).map(|below| below.diffuse_part).unwrap_or_default();
             part.bare.iter_mut().for_each(|bare| bare.diffuse_part = diffuse_part);
         }
         Ok(part)

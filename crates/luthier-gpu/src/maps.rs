@@ -61,7 +61,8 @@ impl Scene {
             headers[6] = word(tarnish, 0.0).map(f32::to_bits);
         } else if entry.constants.coat.is_some() {
             headers[5] = word([0.0; 3], -1.0).map(f32::to_bits);
-            headers[6] = word([1.0; 3], 0.0).map(f32::to_bits);
+            // Without a film all layers are there, of which the first has another record.
+            headers[6] = word([1.0; 3], f32::from(u8::from(entry.weighs_film_of_path()))).map(f32::to_bits);
         }
         headers.extend(texels);
         headers

@@ -48,14 +48,16 @@ pub(crate) fn off(normal: DVec3, wi: DVec3, wo: DVec3) -> Option<(DVec3, DVec3, 
 }
 
 /// A place in the frame of its first interface: the normal of that interface, and the normals of all layers against it, the first of which is +z. `normal`
-/// is that of the place, and `own` are the normals of its layers in the frame of the place. All are unit, and missing layers are level.
-pub(crate) fn on_first(normal: DVec3, own: &[DVec3]) -> (DVec3, Vec<DVec3>) {
+/// is that of the place, and `own` are the normals of its layers in the frame of the place. All are unit, and layers without one, up to `count`, are level
+/// there.
+pub(crate) fn on_first(normal: DVec3, own: &[DVec3], count: usize) -> (DVec3, Vec<DVec3>) {
     if own.iter().all(|own| *own == DVec3::Z) {
         return (normal, own.to_vec());
     }
     // The least rotation back is that to the normal's mirror image.
     let back = DVec3::new(-normal.x, -normal.y, normal.z);
-    let above = own.iter().map(|own| local(back, *own));
+    let level = std::iter::repeat_n(DVec3::Z, count.saturating_sub(own.len()));
+    let above = own.iter().copied().chain(level).map(|own| local(back, own));
     let first = above.clone().next().unwrap_or(normal);
     (first, std::iter::once(DVec3::Z).chain(above.skip(1).map(|own| local(first, own))).collect())
 }
@@ -68,7 +70,7 @@ mod tests {
     fn a_place_on_its_first_interface_has_the_same_normals() {
         let unit = |x, y, z| DVec3::new(x, y, z).normalize();
         let (normal, own) = (unit(0.2, 0.1, 0.9), [unit(-0.3, 0.2, 0.8), unit(0.1, 0.4, 1.0), DVec3::Z]);
-        let (first, layers) = on_first(normal, &own);
+        let (first, layers) = on_first(normal, &own, 3);
         assert_eq!(layers[0], DVec3::Z);
         // Angles between all normals stay, and so does that to a direction.
         let w = unit(0.5, -0.3, 0.7);
@@ -77,9 +79,13 @@ mod tests {
             assert!((a.dot(in_place) - b.dot(on_coat)).abs() < 1e-15);
             assert!((a.dot(own[0]) - b.dot(layers[0])).abs() < 1e-15);
         }
-        assert_eq!(on_first(normal, &[DVec3::Z; 2]), (normal, vec![DVec3::Z; 2]));
+        assert_eq!(on_first(normal, &[DVec3::Z; 2], 2), (normal, vec![DVec3::Z; 2]));
+        // Layers without a normal are level in the place, as those that say so.
+        let stated = on_first(normal, &[own[0], DVec3::Z, DVec3::Z], 3);
+        assert_eq!(on_first(normal, &own[..1], 3), stated);
+        assert!((local(first, normal) - stated.1[1]).length() < 1e-15);
         // Once more changes nothing.
-        let (again, twice) = on_first(first, &layers);
+        let (again, twice) = on_first(first, &layers, 3);
         assert!((again - first).length() < 1e-15 && twice.iter().zip(&layers).all(|(a, b)| (*a - *b).length() < 1e-15));
     }
 

@@ -137,7 +137,8 @@ impl MaterialEntry {
         let maps = self.maps.iter().filter_map(|map| {
             let layer = match (map.slot, map.layer) {
                 (MapSlot::Normal | MapSlot::Roughness, layer) => layer,
-                (MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Weight, _) | (_, None) => return None,
+                (MapSlot::FlakeNormal | MapSlot::Weight, _) | (_, None) => return None,
+                (MapSlot::Bumps, Some(layer)) if !self.tilts_lobes(layer) => return None,
                 (_, layer) if without_film => layer,
                 (_, Some(layer)) => Some(layer.checked_sub(1)?),
             };
@@ -151,7 +152,15 @@ impl MaterialEntry {
     pub fn is_covered_by_amount(&self) -> bool {
         let varying = self.constants.lobes.and_then(|lobes| lobes.varying);
         let shows_ends = self.model.is_path() || varying.is_some_and(|varying| varying.factor.is_cover());
-        self.constants.coat.as_ref().is_some_and(|coat| coat.side.is_none()) && shows_ends
+        let is_apart = |side: SideRecord| side.lobes.is_some() || self.model.is_fitted();
+        self.constants.coat.as_ref().is_some_and(|coat| !coat.side.is_some_and(is_apart)) && shows_ends
+    }
+
+    /// Whether its weight is that of a film, in a model of paths: where that is not, its first layer is [`CoatRecord::bare`](crate::CoatRecord::bare), above the
+    /// same layers.
+    pub fn weighs_film_of_path(&self) -> bool {
+        let side = self.constants.coat.as_ref().and_then(|coat| coat.side);
+        self.model.is_path() && side.is_some_and(|side| side.without_film)
     }
 
     /// Number of blocks of [`LAYER_WORDS`](crate::LAYER_WORDS) words that the material buffer has of the material, beside its header: one for each of
@@ -160,13 +169,14 @@ impl MaterialEntry {
         self.records().count() + self.side().map_or(0, |side| 1 + side.layers.len())
     }
 
-    /// Whether the model `lobes` shows the own normal of a layer: that of the first one, of the lowest interface and of a diffuse base. Rows of a coat with
-    /// a weight know no frame of the layers that it leaves bare.
+    /// Whether the model `lobes` shows the own normal of a layer: that of the first one, of the lowest interface and of a diffuse base. Rows of both ends of a
+    /// patina or a coat share one frame: they have no own normals.
     fn tilts_lobes(&self, layer: u32) -> bool {
         let layers = &self.layers;
         let lowest = layers.iter().rposition(|layer| layer.kind != LayerKind::Diffuse);
         let ends = [Some(0), lowest, layers.len().checked_sub(1)];
-        self.constants.bare().is_none() && ends.contains(&Some(layer as usize))
+        let has_side = self.constants.coat.as_ref().is_some_and(|coat| coat.side.is_some());
+        (self.constants.bare().is_none() || has_side) && ends.contains(&Some(layer as usize))
     }
 
     /// Maps of single layers that the model shows, in order: number of the layer, and quantity. `LuthierPlace` has their values; the value of

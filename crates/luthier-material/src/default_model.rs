@@ -150,7 +150,7 @@ mod tests {
             (GOLD.to_owned() + brushed, "lobes", "weidlich-wilkie", None),
             (GOLD.to_owned() + scratched, "lobes", "elek", None),
             (GOLD.to_owned() + rough + "[layer.maps]\nbumps = \"n.png\"\n", "lobes", "elek", None),
-            (COAT.to_owned() + smooth + WEIGHT + WHITE + bumps, "elek", "elek", Some("layer.1.maps.bumps")),
+            (COAT.to_owned() + smooth + WEIGHT + WHITE + bumps, "lobes", "elek", None),
             (COAT.to_owned() + smooth + COAT + rough + bumps + WHITE + bumps, "lobes", "elek", None),
             (
                 COAT.to_owned() + smooth + COAT + rough + bumps + COAT + rough + WHITE + bumps,

@@ -131,8 +131,6 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 }
             }
         }
-        let bumps = material.layers.iter().position(|layer| layer.maps.bumps.is_some());
-        let bumps_key = format!("layer.{}.maps.bumps", bumps.unwrap_or(0));
         for (lacks, feature, key) in [
             (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
             (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
@@ -142,8 +140,6 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 Feature::Patina,
                 "effects.patina",
             ),
-            // Rows of a coat with a weight know no frame of the layers that it leaves bare.
-            (material.weight().is_some() && bumps.is_some(), Feature::Bumps, bumps_key.as_str()),
         ] {
             if lacks {
                 found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });

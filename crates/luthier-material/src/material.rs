@@ -181,7 +181,8 @@ impl Material {
             || first.thickness.is_some()
             || layers[0].films.first().is_some_and(Film::varies)
             || layers.iter().any(Layer::is_anisotropic)
-            || self.layers.iter().any(|layer| layer.maps.albedo.is_some())
+            // Own normals make a frame for each of the two surfaces.
+            || self.layers.iter().any(|layer| layer.maps.albedo.is_some() || layer.maps.bumps.is_some())
             // Flakes lie below the coat alone.
             || self.effects.flakes.is_some() && layers.len() > 2
     }

@@ -87,8 +87,8 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.######.######.###."),
-            (ShadingModel::WeidlichWilkie, "#####b################.###."),
+            (ShadingModel::Elek, "#####b##.######.##########."),
+            (ShadingModel::WeidlichWilkie, "#####b####################."),
             (ShadingModel::Belcour, "#####bf#..###.#.###....#..."),
             (ShadingModel::Yamaguchi, "#####bf##.###.#####....#..."),
             (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#.....#..#"),

@@ -38,7 +38,7 @@ const MAPS: &[Feature] = &[NormalMap, RoughnessMap, ThicknessMap, LayerAlpha, In
 /// Maps of colour.
 const COLOR: &[Feature] = &[AlbedoMap, MetallicMap];
 /// Effects of layers that are there in places.
-const EFFECTS: &[Feature] = &[Flakes, Patina, Weight, Glitter];
+const EFFECTS: &[Feature] = &[Flakes, Patina, Weight, FilmWeight, Glitter];
 
 /// Headings that models share.
 const ONE_LAYER: &str = "One layer";
@@ -256,7 +256,6 @@ const LOBES: Facts = Facts {
                 Films,
                 InnerFilms,
                 FilmVariation,
-                FilmWeight,
                 DiffuseSlopes,
                 Anisotropy,
                 Beckmann,

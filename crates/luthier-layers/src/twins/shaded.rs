@@ -34,15 +34,15 @@ pub struct Place {
     pub under: Under,
     /// Patina, or a coat with a weight; `None` for all layers, without the patina's diffuse term and tarnish.
     pub patina: Option<Growth>,
-    /// Lobes of their own for the layers that such a coat, or a film, leaves bare; `None` where rows have both ends.
+    /// Lobes of their own for the layers that such a coat, or a film, leaves bare; `None` where rows have both ends. Other models go by whether it is a film.
     pub side: Option<Side>,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]. They have no effect beside a base colour or patina.
     pub reradiation: Option<[Rgb; 3]>,
     /// Textures of single layers, from the top down; missing layers have none. Models show those of the layers that they read, and none beside patina.
-    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base, and no
-    /// normals beside a coat with a weight.
+    /// `phong` shows none. `lobes` shows slope parameters, F0 and the normals of the first layer, of the lowest interface and of a diffuse base; either side of
+    /// a coat with a weight has the frame of its own first layer.
     pub layers: Vec<LayerSample>,
     /// Base of a `metallic-roughness` surface for `lobes`, which shows it as a mix of a metal and of a dielectric.
     pub metal: Option<Mix>,
@@ -73,12 +73,9 @@ impl Place {
         }
         let sample = TextureSample { slab_factor: 1.0, film_factor: 1.0, ..self.sample };
         let under = Under { flake_normal: DVec3::Z, ..self.under };
-        let layers = self.layers.iter().skip(1).copied();
-        // Rows of these layers know no frame of the layers that the coat leaves bare.
-        let layers = layers.map(|own| LayerSample { normal: DVec3::Z, ..own });
-        let bare = Self { sample, under, layers: layers.collect(), ..coated.clone() };
-        let layers = coated.layers.iter().map(|own| LayerSample { normal: DVec3::Z, ..*own }).collect();
-        Some((weight, Self { layers, ..coated }, bare))
+        let layers = self.layers.iter().skip(1).copied().collect();
+        let bare = Self { sample, under, layers, ..coated.clone() };
+        Some((weight, coated, bare))
     }
 }
 
@@ -132,7 +129,7 @@ impl Growth {
 pub struct Shaded<T = Exact> {
     place: Place,
     layers: PartTwin<T>,
-    /// The layers below the first, for the part that patina leaves bare.
+    /// The layers below the first, or those without a film, for the part that is bare.
     bare: Option<PartTwin<T>>,
     /// Whether the model is `lobes`, whose light is linear in the amount of patina.
     has_lobes: bool,
@@ -149,7 +146,7 @@ pub enum Part {
     All,
     /// All layers, with the patina fully grown.
     Grown,
-    /// The layers below the patina.
+    /// The layers below the patina, or those without a film.
     Bare,
 }
 
@@ -274,14 +271,16 @@ impl<T: ShaderTerms> Shaded<T> {
         parts: Parts,
     ) -> Option<Self> {
         let is_shown = model.is_path() || model.is_fitted() && !is_over_another(stack);
-        let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
+        // Two surfaces with lobes of their own are no ends of one: `Self::beside`.
+        let side = place.side.filter(|side| *side == Side::Film && model.is_path()).unwrap_or(Side::Coat);
+        let patina = place.patina.filter(|_| is_shown && side.is_of(stack));
         let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
         let whole = at(stack, model, place, patina);
         let own: Vec<DVec3> = place.layers.iter().map(|layer| layer.normal).collect();
         // Lobes have the frame of the first interface.
         let (normal, own) = match (model.is_fitted(), patina) {
             (false, _) => (place.sample.normal, own),
-            (true, None) => frame::on_first(place.sample.normal, &own),
+            (true, None) => frame::on_first(place.sample.normal, &own, stack.layers.len()),
             (true, Some(_)) => (place.sample.normal, Vec::new()),
         };
         let layers = |part: Part, here: &Stack| {
@@ -292,7 +291,7 @@ impl<T: ShaderTerms> Shaded<T> {
             }
             // The twin takes chosen reflectances from its terms, because tarnish dims these, too.
             let facets = Parts { reflectance: Reflectance::Table, ..parts };
-            let above = usize::from(part == Part::Bare);
+            let above = usize::from(part == Part::Bare && side == Side::Coat);
             let normals = own.iter().skip(above).copied().collect();
             let twin =
                 Twin::with(model, &first, wavelengths_nm, color, facets).reradiating(reradiation).tilting(normals);
@@ -302,7 +301,7 @@ impl<T: ShaderTerms> Shaded<T> {
         };
         let (all, bare) = match patina {
             None => (layers(Part::All, &whole)?, None),
-            Some(_) => (layers(Part::Grown, &whole)?, Some(layers(Part::Bare, &lobes::bare(&whole))?)),
+            Some(_) => (layers(Part::Grown, &whole)?, Some(layers(Part::Bare, &side.bare(&whole))?)),
         };
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let sample = TextureSample { normal, ..place.sample };
@@ -359,7 +358,9 @@ impl<T: ShaderTerms> Shaded<T> {
         let dull = patina.tarnish.map(|tarnish| 1.0 + (tarnish - 1.0) * amount);
         let passed = terms.fresnel(0, frame::cos_theta_d(wi, wo)).map(|reflected| 1.0 - reflected);
         let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
-        let ends = [(1.0 - amount, bare, dull, &Under::NONE), (amount, &self.layers, [1.0; 3], under)];
+        // Without its film the first layer is still there, and so are its flakes.
+        let under_bare = if self.place.side == Some(Side::Film) { under } else { &Under::NONE };
+        let ends = [(1.0 - amount, bare, dull, under_bare), (amount, &self.layers, [1.0; 3], under)];
         for (share, layers, first, under) in ends.into_iter().filter(|(share, ..)| *share > 0.0) {
             let tarnished = Tarnished { terms: layers.terms(), first, below: dull };
             let part = layers.twin.eval_over(&tarnished, under, wi, wo);
@@ -651,15 +652,23 @@ mod tests {
         let mut paint = copper();
         paint.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.8, 0.5, 0.2], sigma: 0.3 });
         engine.layers.push(paint.layers[1].clone());
-        let own = |factor: f64| LayerSample { alpha_factors: [factor; 2], ..LayerSample::NONE };
-        let sample = TextureSample { alpha_factor: 0.8, slab_factor: 0.3, ..TextureSample::NONE };
+        let leaning = |x: f64, y: f64| DVec3::new(x, y, 0.9).normalize();
+        let own = |factor: f64| LayerSample {
+            alpha_factors: [factor; 2],
+            normal: leaning(0.1 - 0.2 * factor, 0.1),
+            ..LayerSample::NONE
+        };
+        let normal = leaning(-0.05, 0.1);
+        let sample = TextureSample { normal, alpha_factor: 0.8, slab_factor: 0.3, ..TextureSample::NONE };
         let mix = Mix { metal: [0.9, 0.6, 0.3], matt: [0.5, 0.4, 0.2], metallic: 0.3 };
         let flakes = Under { flake_normal: DVec3::new(0.2, 0.1, 0.9).normalize(), ..Under::NONE };
         let plain = Place { sample, layers: vec![own(0.5), own(0.7)], ..Place::NONE };
         for (stack, place) in [
             (copper(), Place { under: flakes, ..plain.clone() }),
             (engine, Place { metal: Some(mix), ..plain.clone() }),
-            (paint, Place { base_color: Some([0.2, 0.6, 0.9]), layers: Vec::new(), ..plain }),
+            (paint.clone(), Place { base_color: Some([0.2, 0.6, 0.9]), layers: Vec::new(), ..plain.clone() }),
+            // Bumps of the coat alone leave the base level.
+            (paint, Place { layers: vec![LayerSample { normal: leaning(0.2, 0.1), ..LayerSample::NONE }], ..plain }),
         ] {
             let whole = lobes_at(&stack, &place);
             let sample = TextureSample { slab_factor: 1.0, ..place.sample };
@@ -699,6 +708,45 @@ mod tests {
                     let expected = weight * whole[c] + (1.0 - weight) * without[c];
                     assert!((found[c] - expected).abs() < 1e-12, "{weight}: {found:?} {whole:?} {without:?}");
                     assert!((whole[c] - without[c]).abs() > 1e-3);
+                }
+            }
+        }
+    }
+
+    /// Oracle: the stack with its film and the one without it, at places with flakes and own normals, in models of paths.
+    #[test]
+    fn a_film_with_a_weight_is_the_mean_of_two_stacks_in_paths() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let thickness = FilmThickness { min_nm: 200.0, max_nm: 400.0 };
+        let film = Film { ior: Ior::constant(1.9, 0.0).unwrap(), thickness };
+        let mut coated = copper();
+        coated.layers[0].films = vec![film.clone()];
+        let mut metal = Stack { exterior: Ior::vacuum(), layers: vec![copper().layers[1].clone()] };
+        metal.layers[0].films = vec![film];
+        let leaning = |x: f64, y: f64| DVec3::new(x, y, 0.9).normalize();
+        let own = |normal: DVec3| LayerSample { normal, ..LayerSample::NONE };
+        let sample = TextureSample { alpha_factor: 1.5, slab_factor: 0.3, film_factor: 1.2, ..TextureSample::NONE };
+        let under = Under { flake_normal: leaning(0.1, -0.1), ..Under::NONE };
+        let layers = vec![own(leaning(-0.05, 0.1)), own(leaning(0.1, 0.1))];
+        for (model, stack) in [
+            (ShadingModel::Elek, &coated),
+            (ShadingModel::WeidlichWilkie, &coated),
+            (ShadingModel::Elek, &metal),
+            (ShadingModel::WeidlichWilkie, &metal),
+        ] {
+            let place = Place { sample, under, layers: layers.clone(), ..Place::NONE };
+            let at = |stack: &Stack, place: &Place| {
+                Shaded::new(model, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
+            };
+            let [whole, without] = [stack.clone(), stack.without_first_films()].map(|stack| at(&stack, &place));
+            assert_ne!(whole, without);
+            for weight in [0.0, 0.35, 1.0] {
+                let patina = Some(Growth::of_coat(weight));
+                let found = at(stack, &Place { patina, side: Some(Side::Film), ..place.clone() });
+                for c in 0..3 {
+                    let expected = weight * whole[c] + (1.0 - weight) * without[c];
+                    assert!((found[c] - expected).abs() < 1e-12, "{model:?} {weight}: {found:?} {whole:?} {without:?}");
                 }
             }
         }

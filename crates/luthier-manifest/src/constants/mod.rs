@@ -350,7 +350,7 @@ pub struct CoatRecord {
 /// The layers below a coat, or the layers without the film on the first, as a surface of their own, see [`MaterialEntry::side`](crate::MaterialEntry::side).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SideRecord {
-    /// Lobes; none of a diffuse base alone. Their first tile is that of [`CoatRecord::bare`].
+    /// Lobes; none of a diffuse base alone, and of other models. Their first tile is that of [`CoatRecord::bare`].
     pub lobes: Option<LobesRecord>,
     /// Whether the weight is that of a film: the side has all layers, the first without it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -406,7 +406,7 @@ impl MaterialConstants {
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start; in w of a brightened base the share of the light of a diffuse base that comes back, else 0 |
-    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
+    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2, and of a film with one in other models 3; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
     /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes, and 4 more where a coat has a weight and [`CoatRecord::side`] |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
@@ -435,7 +435,10 @@ impl MaterialConstants {
             words[4] = vec4([f.spread, f.scale, f.fade_start], 0.0);
         }
         let lobes = f64::from(words[6][3]);
-        let side = self.coat.as_ref().and_then(|coat| coat.side);
+        // Models of paths have no lobes: films with a weight are as coats there.
+        let weighs_film = |side: &SideRecord| side.without_film && side.lobes.is_none();
+        let whole = self.coat.as_ref().and_then(|coat| coat.side);
+        let side = whole.filter(|side| !weighs_film(side));
         let cover = self.bare().filter(|_| side.is_none());
         if let (Some(base), None) = (self.lobes.and_then(|lobes| lobes.painted), cover) {
             let [fifth, square] = base.moments.unwrap_or_default();
@@ -459,7 +462,7 @@ impl MaterialConstants {
         } else if side.is_some() {
             words[6][3] += OVER_SIDE;
         } else if let Some(coat) = &self.coat {
-            words[5] = vec4([coat.weight, 0.0, -1.0], 2.0);
+            words[5] = vec4([coat.weight, 0.0, -1.0], if whole.is_some() { 3.0 } else { 2.0 });
             words[7] = vec4([1.0; 3], self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
         }
         if let Some(g) = &self.glitter {
@@ -603,6 +606,10 @@ mod tests {
         // Of a coat over a side of its own all words but one are those of its lobes.
         let painted = Some(PaintedRecord { albedo, moments: None });
         let apart = LobesRecord { painted, ..lobes };
+        let film = Some(SideRecord { lobes: None, without_film: true });
+        let coat = Some(CoatRecord { weight: 0.75, bare: LayerRecord::default(), side: film });
+        let of_film = MaterialConstants { coat, ..MaterialConstants::default() }.words();
+        assert_eq!((of_film[5], of_film[6], of_film[7]), ([0.75, 0.0, -1.0, 3.0], [0.0; 4], [1.0, 1.0, 1.0, 0.0]));
         let side = Some(SideRecord { lobes: Some(lobes), without_film: false });
         let coat = Some(CoatRecord { weight: 0.75, bare: LayerRecord::default(), side });
         let of_sides = MaterialConstants { lobes: Some(apart), coat, ..MaterialConstants::default() }.words();

@@ -77,25 +77,19 @@ fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Refuses maps of single layers beside effects that decide the same quantities.
+/// Refuses maps of single layers beside a patina, which decides the same quantities.
 pub(super) fn check_effects(document: &Section<'_>, extras: &[LayerExtras], sink: &mut Sink<'_>) {
     let Some(effects) = document.section("effects") else { return };
     let maps = extras.iter().enumerate().flat_map(|(i, extra)| extra.maps.named().map(move |map| (i, map.key)));
     let maps: Vec<(usize, &str)> = maps.collect();
-    let bumps = maps.iter().find(|(_, key)| *key == "bumps");
-    let any = maps.iter().find(|(i, key)| match *key {
+    let clash = maps.iter().find(|(i, key)| match *key {
         // A weight beside a patina is refused by itself.
         "normal" | "roughness" | "weight" => false,
         "thickness" => *i > 0,
         _ => true,
     });
-    for (effect, clash, why) in [
-        ("flakes", bumps, "both say which way the layers below the first interface face"),
-        ("patina", any, "no model has both"),
-    ] {
-        if let (true, Some((layer, key))) = (effects.has(effect), clash) {
-            let message = format!("`{effect}` beside the map `{key}` of layer {}: {why}", layer + 1);
-            sink.error(effects.key_span(effect), message, Some(format!("leave `{effect}` or `maps.{key}` out")));
-        }
+    if let (true, Some((layer, key))) = (effects.has("patina"), clash) {
+        let message = format!("`patina` beside the map `{key}` of layer {}: no model has both", layer + 1);
+        sink.error(effects.key_span("patina"), message, Some(format!("leave `patina` or `maps.{key}` out")));
     }
 }

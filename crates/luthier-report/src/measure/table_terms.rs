@@ -347,9 +347,11 @@ impl<'a> TableTerms<'a> {
         let entry = &subject.manifest.materials[material];
         terms.place(entry, place, part);
         if let (Part::Bare, Some(bare)) = (part, entry.constants.bare()) {
+            // A film leaves its layer, and those below are numbered as with it.
+            let missing = usize::from(!entry.weighs_film_of_path());
             let passing = terms.here.passing;
-            terms.here.passing = passing.and_then(|(layer, passing)| Some((layer.checked_sub(1)?, passing)));
-            terms.records = std::iter::once(bare).chain(entry.layers.iter().skip(2)).cloned().collect();
+            terms.here.passing = passing.and_then(|(layer, passing)| Some((layer.checked_sub(missing)?, passing)));
+            terms.records = std::iter::once(bare).chain(entry.layers.iter().skip(1 + missing)).cloned().collect();
         }
         Ok(terms)
     }

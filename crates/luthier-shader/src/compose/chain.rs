@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use luthier_layers::models::room;
-use luthier_manifest::{LayerRecord, ShadingModel};
+use luthier_manifest::{LayerRecord, MaterialEntry, ShadingModel};
 
 use crate::MaterialSet;
 use crate::compose::face::parts_function;
@@ -35,6 +35,13 @@ fn has_patina(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     set.materials.iter().any(|material| material.model == model && material.constants.patina.is_some())
 }
 
+/// Whether materials of a model have a weight of a film, and whether some leave layers below the first bare.
+fn covers(set: &MaterialSet<'_>, model: ShadingModel) -> (bool, bool) {
+    let mut of_model = set.materials.iter().filter(|material| material.model == model);
+    let is_film = |material: &MaterialEntry| material.weighs_film_of_path();
+    (of_model.clone().any(is_film), of_model.any(|material| material.constants.bare().is_some() && !is_film(material)))
+}
+
 /// The function of a model that adds an interface to a `LuthierPath`.
 fn interface(model: ShadingModel, features: &Features) -> String {
     let owner = if is_clamped(model, features) { model.name().replace('-', "_") } else { "add".to_owned() };
@@ -49,7 +56,15 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
     let has_cover = has_cover(set, model);
     let (name, bare) =
         if has_cover { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
-    let without = if has_cover { "; where it is bare, without the first layer" } else { "" };
+    let (weighs_films, weighs_layers) = covers(set, model);
+    let without = match (weighs_films, weighs_layers) {
+        (false, true) => "; where it is bare, without the first layer",
+        (true, false) => "; where it is bare, without the film",
+        (true, true) => "; where it is bare, without the first layer or without the film on it",
+        (false, false) => "",
+    };
+    // Whether the first layer is missing.
+    let missing = if weighs_films { "is_bare && !is_film" } else { "is_bare" };
     let is_lit = features.has(Feature::Fluorescent);
     let (lit, given, what) = match is_lit {
         true => ("_lit", ", light: vec3<f32>", "Light to the eye, of light of a colour, by"),
@@ -78,13 +93,16 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         return out + &cover(set, model, features) + &white(model, features);
     }
     let (least, depth) = depths(&layers);
-    if least < depth || depth > 1 && has_cover {
+    if least < depth || depth > 1 && has_cover || weighs_films {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    let below = match (features.has(Feature::Flakes), has_cover) {
-        (false, _) => "",
-        (true, false) => ", place.flake_normal",
-        (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
+    if weighs_films && weighs_layers {
+        out.push_str("    let is_film = luthier_weighs_film(material);\n");
+    }
+    let below = match (features.has(Feature::Flakes), weighs_layers) {
+        (false, _) => String::new(),
+        (true, false) => ", place.flake_normal".to_owned(),
+        (true, true) => format!(", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), {missing})"),
     };
     let alpha = if features.has(Feature::Clamped) { "0.0, " } else { "" };
     let outer = if features.has(Feature::InnerCosine) { ", down.z" } else { "" };
@@ -97,8 +115,12 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
              var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below}{outer});"
     );
     for i in 0..depth {
-        // The layer below patina or a coat has a second record, for bare places.
-        let index = if has_cover && i == 1 { "select(1u, count, is_bare)".to_owned() } else { format!("{i}u") };
+        // The layer below patina or a coat, or that below a film, has a second record, for bare places.
+        let index = match i {
+            0 if weighs_films => "select(0u, count, is_bare)".to_owned(),
+            1 if weighs_layers => format!("select(1u, count, {missing})"),
+            _ => format!("{i}u"),
+        };
         let diffuse = diffuse_at(&layers, i);
         let (mut lines, mut layer) = (Vec::new(), format!("$layer(material, {index})"));
         if diffuse == (true, false) {
@@ -108,10 +130,11 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         }
         let base = [format!("path = luthier_add_diffuse(path, {layer});")];
         lines.extend(step(diffuse, &layer, base, [format!("path = {interface}(path, {layer});")]));
-        let indent = if i == 0 && !has_cover { "    " } else { "        " };
+        let indent = if i == 0 && !weighs_layers { "    " } else { "        " };
         let step: String = lines.iter().map(|line| format!("{indent}{line}\n")).collect();
         let _ = match i {
-            0 if has_cover => write!(out, "    if !is_bare {{\n{step}    }}\n"),
+            0 if weighs_layers && weighs_films => write!(out, "    if !is_bare || is_film {{\n{step}    }}\n"),
+            0 if weighs_layers => write!(out, "    if !is_bare {{\n{step}    }}\n"),
             0 => write!(out, "{step}"),
             _ if i < least => write!(out, "    if path.open {{\n{step}    }}\n"),
             _ => write!(out, "    if path.open & (count > {i}u) {{\n{step}    }}\n"),
@@ -159,6 +182,9 @@ fn cover(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Str
         true => {
             ("with patina (Elek 2010, section 4.2)", format!("{factor}luthier_patina_diffuse(place, material, wi, wo)"))
         }
+        false if covers(set, model).0 => {
+            ("with and without a coat or a film, by its weight", "vec3<f32>(0.0)".to_owned())
+        }
         false => ("with and without a coat, by its weight", "vec3<f32>(0.0)".to_owned()),
     };
     let amount = amount(features);
@@ -186,10 +212,10 @@ fn interfaces(set: &MaterialSet<'_>, model: ShadingModel) -> usize {
     lowest.map(|last| last + 1).max().unwrap_or(0)
 }
 
-/// Number of the parts of a model: its interfaces, and with patina or a weight those of the bare stacks, which begin one layer below the top.
+/// Number of the parts of a model: its interfaces, and with patina or the weight of a coat those of the bare stacks, which begin one layer below the top.
 pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel) -> usize {
     let depth = interfaces(set, model);
-    if has_cover(set, model) { (2 * depth).saturating_sub(1) } else { depth }
+    if covers(set, model).1 { (2 * depth).saturating_sub(1) } else { depth }
 }
 
 /// `luthier_parts_<model>`: the interfaces as light from the mirror direction meets them, and the light of a base for light at a mean cosine.
@@ -223,17 +249,27 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
             );
         }
         let _ = write!(out, "    {}\n    if amount > 0.0 {{\n", amount(features));
-        out.push_str(&walk(&layers, model, features, &Walk { share: "amount", is_bare: false, first_part: 0 }));
-        out.push_str("    }\n    if amount < 1.0 {\n");
-        out.push_str(&walk(
-            &layers,
-            model,
-            features,
-            &Walk { share: "1.0 - amount", is_bare: true, first_part: count },
-        ));
+        let whole = Walk { share: "amount", is_bare: false, is_filmless: false, first_part: 0 };
+        out.push_str(&walk(&layers, model, features, &whole));
         out.push_str("    }\n");
+        let (weighs_films, weighs_layers) = covers(set, model);
+        let [of_layer, of_film] = match (weighs_films, weighs_layers) {
+            (true, true) => [" && !luthier_weighs_film(material)", " && luthier_weighs_film(material)"],
+            _ => ["", ""],
+        };
+        if weighs_layers {
+            let bare = Walk { share: "1.0 - amount", is_bare: true, is_filmless: false, first_part: count };
+            let walk = walk(&layers, model, features, &bare);
+            let _ = write!(out, "    if amount < 1.0{of_layer} {{\n{walk}    }}\n");
+        }
+        if weighs_films {
+            let bare = Walk { share: "1.0 - amount", is_bare: false, is_filmless: true, first_part: 0 };
+            let walk = walk(&layers, model, features, &bare);
+            let _ = write!(out, "    if amount < 1.0{of_film} {{\n{walk}    }}\n");
+        }
     } else {
-        out.push_str(&walk(&layers, model, features, &Walk { share: "1.0", is_bare: false, first_part: 0 }));
+        let whole = Walk { share: "1.0", is_bare: false, is_filmless: false, first_part: 0 };
+        out.push_str(&walk(&layers, model, features, &whole));
     }
     out + "    return prepared;\n}\n"
 }
@@ -244,6 +280,8 @@ struct Walk<'w> {
     share: &'w str,
     /// Whether the first layer is missing.
     is_bare: bool,
+    /// Whether the film on it is: its parts are those of the walk before, and have the light of both.
+    is_filmless: bool,
     /// Number of the part of its first interface.
     first_part: usize,
 }
@@ -291,7 +329,8 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
         }
     }
     for i in first..depth {
-        let index = if walk.is_bare && i == 1 { "count".to_owned() } else { format!("{i}u") };
+        let is_second = walk.is_bare && i == 1 || walk.is_filmless && i == 0;
+        let index = if is_second { "count".to_owned() } else { format!("{i}u") };
         let has_own = features.has(Feature::OwnNormals);
         let media = match (i == first, has_flakes) {
             // Nothing lies above the first layer: index 1, and a level normal unless a map turns it.
@@ -306,12 +345,14 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
             (true, true) => ", 1.0",
             (true, false) => ", least",
         };
+        let part = format!("luthier_path_part(path, layer, {alpha}, {axis}, {media}{narrowest})");
+        let number = walk.first_part + i - first;
         let mut add = vec![
             format!("let next = {interface}(path, layer);"),
-            format!(
-                "prepared.parts[{}] = luthier_path_part(path, layer, {alpha}, {axis}, {media}{narrowest});",
-                walk.first_part + i - first
-            ),
+            match walk.is_filmless {
+                true => format!("prepared.parts[{number}] = luthier_joined_part(prepared.parts[{number}], {part});"),
+                false => format!("prepared.parts[{number}] = {part};"),
+            },
             "if mean.open {".to_owned(),
             format!("    mean = {interface}(mean, layer);"),
             "}".to_owned(),
@@ -340,7 +381,8 @@ fn walk(layers: &[&[LayerRecord]], model: ShadingModel, features: &Features, wal
         });
         let mut steps = vec![format!("let layer = $layer(material, {index});")];
         steps.extend(step(diffuse_at(layers, i), "layer", base, add));
-        lines.extend(steps.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
+        let named = if walk.is_filmless { 2 * depth } else { walk.first_part };
+        lines.extend(steps.iter().map(|line| format!("    {}", of_layer(line, named + i))));
         lines.push("}".to_owned());
     }
     let indent = if walk.share == "1.0" { "    " } else { "        " };

@@ -185,6 +185,8 @@ luthier_lut::named! {
         LobesSideRows = "lobes_side_rows",
         /// Such layers are a diffuse base alone.
         LobesSideBases = "lobes_side_bases",
+        /// Either side of such a coat has a frame of its own, by the normals of its layers.
+        LobesSideFrames = "lobes_side_frames",
         /// Lobes have the light of a base as a part.
         LobesBase = "lobes_base",
         /// Rows of lobes are those of a family: over slope parameters of single layers, with colours in closed form.
@@ -237,6 +239,8 @@ luthier_lut::named! {
         Patina = "patina",
         /// A material has a coat with a weight, and its model shows it.
         Weight = "weight",
+        /// Such a coat is a film, in a model of paths.
+        WeightFilm = "weight_film",
         /// A material has glitter.
         Glitter = "glitter",
         /// The function group `surface` was asked for.

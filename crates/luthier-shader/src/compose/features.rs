@@ -33,7 +33,10 @@ impl Features {
         let mut all: Option<BTreeSet<Feature>> = None;
         for material in &*set.materials {
             let side = material.side();
-            let of_sides = of_sides(side.as_ref());
+            let mut of_sides = of_sides(side.as_ref());
+            if side.is_some() && material.shown_layer_maps(form).any(|(_, slot)| slot == MapSlot::Bumps) {
+                of_sides.insert(Feature::LobesSideFrames);
+            }
             // The layers below a coat with a weight are a material like others, if they have rows.
             let side = side.filter(|side| !side.layers.first().is_some_and(is_diffuse));
             for material in std::iter::once(material).chain(&side) {
@@ -177,6 +180,9 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
             MapSlot::Bumps if !material.model.is_fitted() => &[Feature::Layered, Feature::OwnNormals],
             MapSlot::Bumps if has_base_light(material) => {
                 &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps, Feature::LobesBase, Feature::LobesLean]
+            }
+            MapSlot::Bumps if family(material).is_some() && material.layers.last().is_some_and(is_diffuse) => {
+                &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps, Feature::LobesLean]
             }
             MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps],
             MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
@@ -424,6 +430,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             }
             if material.constants.bare().is_some() {
                 names.insert(cover(material));
+            }
+            if material.weighs_film_of_path() {
+                names.insert(Feature::WeightFilm);
             }
             if material.constants.patina.is_some() {
                 names.insert(Feature::ChainPatina);

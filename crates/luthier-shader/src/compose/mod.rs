@@ -21,7 +21,7 @@ use luthier_layers::models::path;
 use luthier_layers::models::room;
 use luthier_layers::models::room::Kernels;
 use luthier_lut::TableKind;
-use luthier_manifest::{BindingEntry, MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_manifest::{BindingEntry, MapSlot, MaterialEntry, MaterialTexture, SIDE, ShadingModel, material_buffer};
 use luthier_model::Family;
 
 use self::blocks::prune;
@@ -123,6 +123,8 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
     let shown = set.materials.iter().flat_map(|material| material.shown_layer_maps(form));
     let shown = shown.filter(|(layer, slot)| slot.is_of_layer_place(*layer));
     let count = shown.map(|(layer, _)| layer + 1).max().unwrap_or(0);
+    let framed = set.materials.iter().filter(|material| has_level_layers(material, form));
+    let count = framed.map(|material| material.layers.len() as u32).fold(count, u32::max);
     let each: String = (0..count).map(|i| format!("    place.layers[{i}] = luthier_layer_place();\n")).collect();
     let each_on_first: String = (1..count)
         .map(|i| {
@@ -131,6 +133,10 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
         .collect();
     let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);
     let module = module.replace("    $each_on_first\n", &each_on_first);
+    let each_on_surface: String = (0..count)
+        .map(|i| format!("        next.layers[{i}].normal = luthier_local(back, place.layers[{i}].normal);\n"))
+        .collect();
+    let module = module.replace("        $each_on_surface\n", &each_on_surface);
     let each_below_coat: String = (0..count)
         .map(|i| match i + 1 {
             below if below < count => format!("    next.layers[{i}] = place.layers[{below}];\n"),
@@ -139,6 +145,12 @@ fn place(set: &MaterialSet<'_>, form: Form) -> String {
         .collect();
     let module = module.replace("    $each_below_coat\n", &each_below_coat);
     module.replace("$layers", &format!("{count}u"))
+}
+
+/// Whether layers of a material that no map turns still have places: they lean against a first one that a map turns, or against either side of a weight.
+fn has_level_layers(material: &MaterialEntry, form: Form) -> bool {
+    let mut maps = material.shown_layer_maps(form).filter(|_| material.model.is_fitted());
+    maps.any(|(layer, slot)| slot == MapSlot::Bumps && (layer == 0 || material.side().is_some()))
 }
 
 /// The lines of a module that a set keeps, with these words replaced:
@@ -375,7 +387,10 @@ fn on_first(set: &MaterialSet<'_>, features: &Features) -> (&'static str, String
     if !features.has(Feature::LobesBumps) {
         return ("place", String::new());
     }
-    let next = "luthier_place_on_first(place)";
+    let next = match features.has(Feature::LobesSideFrames) {
+        true => "luthier_place_of_lobes(place, material)",
+        false => "luthier_place_on_first(place)",
+    };
     let model = set.models().find(|model| model.is_fitted());
     let statements = match model.filter(|_| set.models().count() > 1) {
         None => format!("    let here = {next};\n"),

@@ -59,7 +59,8 @@ fn full_form_agrees_with_the_paper() {
             for (wi, wo) in directions(800) {
                 let mut expected = paper::eval(&material.layers, wi, wo);
                 if let Some(coat) = &material.constants.coat {
-                    let below = [std::slice::from_ref(&coat.bare), &material.layers[2..]].concat();
+                    let missing = if material.weighs_film_of_path() { 1 } else { 2 };
+                    let below = [std::slice::from_ref(&coat.bare), &material.layers[missing..]].concat();
                     let below = paper::eval(&below, wi, wo);
                     expected = [0, 1, 2].map(|c| coat.weight * expected[c] + (1.0 - coat.weight) * below[c]);
                 }

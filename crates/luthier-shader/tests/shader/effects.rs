@@ -7,20 +7,23 @@ use glam::{DVec2, DVec3};
 use luthier_layers::effects::flakes::Flakes;
 use luthier_layers::effects::heterogeneous::{Map, Switch};
 use luthier_layers::effects::patina::Patina;
+use luthier_layers::frame::local;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::noise::perlin::Perlin;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_manifest::{
-    CellsRecord, FunctionGroup, LayerRecord, MaterialConstants, MaterialEntry, ParticlesRecord, ShadingModel,
+    CellsRecord, FunctionGroup, LayerRecord, MapSlot, MaterialConstants, MaterialEntry, ParticlesRecord, ShadingModel,
     SurfaceEntry, SwitchBy, SwitchRecord, material_buffer,
 };
 use luthier_optics::stack::Surface;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 use num_complex::Complex64;
 
+use crate::features::with_map;
 use crate::machine::{Machine, Value, vector};
 use crate::scenes::{
-    FLAKES, GLITTER, conductor, dielectric, diffuse, flaked, glitter, material, patina, tables, weighted,
+    FLAKES, GLITTER, bumpy, conductor, dielectric, diffuse, flaked, glitter, material, patina, tables, weighted,
+    weighted_film,
 };
 
 /// Sines, logarithms and square roots of f32, a few operations deep.
@@ -34,6 +37,7 @@ const FLOOR: f64 = 1e-3;
 /// Members of `LuthierPlace` in a set without Granier's model.
 const FLAKE_NORMAL: usize = 4;
 const PATINA: usize = 4;
+const SLAB_FACTOR: usize = 2;
 
 fn machine(materials: &[MaterialEntry]) -> Machine {
     let set = MaterialSet::new(materials, Vec::new());
@@ -372,6 +376,45 @@ fn flakes_tilt_what_is_below_as_in_f64() {
     assert!(changed > 500, "{changed}");
 }
 
+/// Flakes turn the frame in which the metal has its own normal. Oracle: the metal with the normal that both give it in the frame of the place. Bumps take light
+/// by its cosine to them, and flakes do not.
+#[test]
+fn own_normals_are_in_the_frame_of_flakes() {
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
+        let mut material = bumpy(MaterialEntry { model, ..flaked() });
+        material.layers[0].optical_depth = [0.0; 3];
+        let machine = machine(&[material]);
+        let neutral = machine.call("luthier_place", Vec::new());
+        let mut changed = 0;
+        for (i, (wi, wo)) in directions(1500).enumerate() {
+            let leaning = |x: f64, y: f64| DVec3::new(x, y, 1.0).normalize().as_vec3().as_dvec3().normalize();
+            let t = 0.001 * i as f64;
+            let (flake, own) = (leaning(0.2 - t % 0.3, 0.1), leaning(-0.1, t % 0.4 - 0.2));
+            let both = local(DVec3::new(-flake.x, -flake.y, flake.z), own);
+            let below = |w: DVec3| DVec3::new(w.x / 1.5, w.y / 1.5, (1.25 + w.z * w.z).sqrt() / 1.5);
+            let [light, eye] = [wi, wo].map(below);
+            if [light, eye].iter().any(|w| w.dot(flake) < 0.05 || w.dot(both) < 0.05) {
+                continue;
+            }
+            let at = |flake: DVec3, metal: DVec3| {
+                let mut place = with(&neutral, FLAKE_NORMAL, single(flake));
+                let layers = place.members_mut().last_mut().unwrap();
+                layers.members_mut()[1].members_mut()[0] = single(metal);
+                let value = machine.call("luthier_eval_at", vec![place, Value::U(0), single(wi), single(wo)]);
+                vec3(&value)
+            };
+            // A metal that turns away shows the coat alone.
+            let first = at(DVec3::Z, DVec3::NEG_Z);
+            let found = at(flake, own);
+            let expected = first + (at(DVec3::Z, both) - first) * (light.z / light.dot(flake));
+            let apart = ((found - expected).abs() / expected.max(DVec3::splat(FLOOR))).max_element();
+            assert!(apart < EVAL_TOLERANCE, "{model:?} {wi} {wo} {flake} {own}: {found} {expected}");
+            changed += usize::from((at(flake, DVec3::Z) - expected).length() > 0.05 * expected.length());
+        }
+        assert!(changed > 300, "{changed}");
+    }
+}
+
 #[test]
 fn patina_is_that_of_f64() {
     let material = patina();
@@ -436,6 +479,44 @@ fn a_weight_is_the_share_of_the_first_layer() {
                 assert!(error(&found, mean((0.6 * factor).min(1.0))) < 1e-5, "{model:?} {factor} {wi} {wo}");
                 let plain = machine.call("luthier_eval", arguments(number));
                 assert!(error(&plain, mean(0.6)) < 1e-5, "{model:?} {wi} {wo}");
+            }
+        }
+    }
+}
+
+/// The value at the weight of a film is the mean of those of two sets, one with the film and one without it. Other materials of a set change nothing.
+#[test]
+fn a_weight_of_a_film_is_the_share_of_the_film() {
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
+        let mut coated = MaterialEntry { model, ..weighted_film() };
+        coated.layers[0].optical_depth = [0.1, 0.3, 0.6];
+        coated.constants.bare_mut().unwrap().optical_depth = [0.1, 0.3, 0.6];
+        let whole = MaterialEntry { constants: MaterialConstants::default(), ..coated.clone() };
+        let mut bare = whole.clone();
+        bare.layers[0] = coated.constants.bare().unwrap().clone();
+        let of = |material: MaterialEntry| MaterialEntry { model, ..material };
+        // A map, so that both have places.
+        let [whole, bare] = [whole, bare].map(|material| machine(&[with_map(material, MapSlot::Thickness, 0)]));
+        for (materials, number) in
+            [(vec![coated.clone()], 0), (vec![of(flaked()), of(weighted()), of(patina()), coated.clone()], 3)]
+        {
+            let machine = machine(&materials);
+            let neutral = machine.call("luthier_place", Vec::new());
+            for (i, (wi, wo)) in directions(300).enumerate() {
+                let factor = [0.0, 0.5, 1.0, 1.25, 3.0_f64][i % 5];
+                let slab = 0.1 * (i % 7) as f32;
+                let mut place = with(&neutral, SLAB_FACTOR, Value::F(slab));
+                *place.members_mut().last_mut().unwrap() = Value::F(factor as f32);
+                let at = |machine: &Machine, place: &Value, number| {
+                    machine.call("luthier_eval_at", vec![place.clone(), Value::U(number), single(wi), single(wo)])
+                };
+                let [all, without] = [&whole, &bare].map(|machine| {
+                    let place = with(&machine.call("luthier_place", Vec::new()), SLAB_FACTOR, Value::F(slab));
+                    at(machine, &place, 0).floats()
+                });
+                let weight = (0.6 * factor).min(1.0);
+                let mean = [0, 1, 2].map(|c| weight * f64::from(all[c]) + (1.0 - weight) * f64::from(without[c]));
+                assert!(error(&at(&machine, &place, number), mean) < 1e-5, "{model:?} {factor} {wi} {wo}");
             }
         }
     }

@@ -189,9 +189,10 @@ fn inward() -> LayerRecord {
 }
 
 /// A material with normals of all of its layers.
-fn bumpy(material: MaterialEntry) -> MaterialEntry {
+pub(crate) fn bumpy(material: MaterialEntry) -> MaterialEntry {
     let layers = 0..material.layers.len() as u32;
-    let maps = layers.flat_map(|layer| with_map(material.clone(), MapSlot::Bumps, layer).maps).collect();
+    let maps = layers.flat_map(|layer| with_map(material.clone(), MapSlot::Bumps, layer).maps);
+    let maps = material.maps.iter().cloned().chain(maps).collect();
     MaterialEntry { maps, ..material }
 }
 
@@ -421,6 +422,12 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
                 gold(),
             ],
         ),
+        (
+            "lobes-sides-bumps",
+            vec![bumpy(sided(weighted())), bumpy(sided(weighted_paint(0.3))), with_lobes(house()), gold()],
+        ),
+        ("weighted-film", vec![weighted_film()]),
+        ("weighted-film-mixed", vec![weighted_film(), weighted(), flaked(), house()]),
         ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]

@@ -11,7 +11,7 @@ use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::glam::DVec3;
 use luthier_layers::models::lobes::Mix;
 use luthier_layers::references::layered_mc::ColorPaths;
-use luthier_layers::twins::shaded::{Growth, Place, Shaded};
+use luthier_layers::twins::shaded::{Growth, Place, Shaded, Side};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Metallic, Severity};
 use luthier_model::Family;
@@ -136,10 +136,12 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
     let color = Color::ThreeWavelengths(nm);
     let reflecting = if model.is_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
     let mut all = Vec::new();
-    for place in places(material) {
+    for place in places(material, model) {
         let stack = at(&material.stack, &place);
         let ends = match place.patina {
-            Some(coat) => vec![(coat.amount, stack.clone()), (1.0 - coat.amount, stack.without_first())],
+            Some(coat) => {
+                vec![(coat.amount, stack.clone()), (1.0 - coat.amount, place.side.unwrap_or(Side::Coat).bare(&stack))]
+            }
             None => vec![(1.0, stack)],
         };
         let paths = is_simulated
@@ -175,12 +177,13 @@ fn simulated(ends: &[(f64, ColorPaths)], wo: DVec3) -> Rgb {
 }
 
 /// Places of a material where its albedos are compared.
-fn places(material: &Material) -> Vec<Place> {
+fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
     let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
     // Where a coat has its greatest weight, no texel makes it less.
-    let patina = material.weight().filter(|_| !material.weighs_film()).map(Growth::of_coat);
+    let patina = material.weight().filter(|_| !material.weighs_film() || model.is_path()).map(Growth::of_coat);
+    let side = material.weighs_film().then_some(Side::Film);
     let Some((number, Metallic { base_color, metallic })) = textured else {
-        return vec![Place { patina, ..Place::NONE }];
+        return vec![Place { patina, side, ..Place::NONE }];
     };
     let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
     let places = shares.into_iter().map(|metallic| {
@@ -194,7 +197,7 @@ fn places(material: &Material) -> Vec<Place> {
         let (f0, albedo) = metallic_and_matt(mix.metal, mix.matt, metallic);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(f0);
-        Place { patina, base_color: Some(albedo), layers, metal: Some(mix), ..Place::NONE }
+        Place { patina, side, base_color: Some(albedo), layers, metal: Some(mix), ..Place::NONE }
     });
     places.collect()
 }

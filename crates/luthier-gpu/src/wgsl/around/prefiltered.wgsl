@@ -33,8 +33,10 @@ fn shading_prefiltered(
     var spread = 1.0;
     var total = vec3<f32>(0.0);
     let count = shading_layer_count(material);
-    for (var i = select(0u, 1u, is_bare); i < count; i++) {
-        var layer = shading_layer(material, select(i, count, is_bare && i == 1u));
+    let is_film = bitcast<f32>(shading_map_header(material, 6u).w) > 0.5;
+    let first = select(0u, 1u, is_bare && !is_film);
+    for (var i = first; i < count; i++) {
+        var layer = shading_layer(material, select(i, count, is_bare && i == first));
         if layer.kind == 2.0 {
             total += leaving * entering * layer.albedo * environment_diffuse(normal);
             break;

@@ -124,10 +124,8 @@ impl Below {
     #[must_use]
     pub fn leaning(mut self, normal: DVec3, index: f64, albedo: Option<Rgb>) -> Self {
         let Some((base, simulated)) = self.row.base.zip(self.frame.base) else { return self };
-        let albedo = albedo.unwrap_or(simulated.albedo);
-        let more = base.more(simulated.albedo, albedo);
         let light =
-            [0, 1, 2].map(|c: usize| (base.energy[c] + more[c]) * (1.0 - base.internal[c] * albedo[c]).max(0.0));
+            base.met.unwrap_or_else(|| base.of_one_direction(simulated.albedo, albedo.unwrap_or(simulated.albedo)));
         for (c, light) in light.into_iter().enumerate() {
             self.row.wide[c] -= light * (1.0 - normal.z);
             self.row.albedo_dir[c] -= light * (1.0 - normal.z);

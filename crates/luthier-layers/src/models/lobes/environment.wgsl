@@ -320,22 +320,50 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     return total + max(rest, vec3<f32>(0.0)) * luthier_shown_coat(prepared, frame, turned);
 }
 
+//? lobes_sides, lobes_side_frames
+/// Tangent, bitangent and normal in the world of a side whose normal this is in the frame of both.
+fn luthier_frame_of_side(frame: mat3x3<f32>, normal: vec3<f32>) -> mat3x3<f32> {
+    let back = vec3<f32>(-normal.xy, normal.z);
+    return mat3x3<f32>(
+        frame * luthier_local(back, vec3<f32>(1.0, 0.0, 0.0)),
+        frame * luthier_local(back, vec3<f32>(0.0, 1.0, 0.0)),
+        frame * normal,
+    );
+}
+
 //? lobes_sides
 /// Radiance that both sides of a coat with a weight send to the eye: see `luthier_environment_lobes`.
 fn luthier_environment_sides(prepared: LuthierPreparedSides, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
+    //? lobes_side_frames
+    if prepared.cover > 0.0 && prepared.coated_open {
+        light = prepared.cover * luthier_environment_lobes(prepared.coated, luthier_frame_of_side(frame, prepared.coated_normal), turn);
+    }
+    //? else
     if prepared.cover > 0.0 {
         light = prepared.cover * luthier_environment_lobes(prepared.coated, frame, turn);
     }
+    //? lobes_side_frames
+    if !prepared.bare_open {
+        return light;
+    }
     if prepared.cover < 1.0 {
         let bare = 1.0 - prepared.cover;
+        //? lobes_side_frames
+        let bare_frame = luthier_frame_of_side(frame, prepared.bare_normal);
         //? lobes_side_bases
         {
             if prepared.is_base {
+                //? lobes_side_frames
+                return light + bare * luthier_albedo_bare_side(prepared) * luthier_environment_diffuse(bare_frame[2]);
+                //? else
                 return light + bare * luthier_albedo_bare_side(prepared) * luthier_environment_diffuse(frame[2]);
             }
         }
         //? lobes_side_rows
+        //? lobes_side_frames
+        light += bare * luthier_environment_lobes(prepared.bare, bare_frame, turn);
+        //? else
         light += bare * luthier_environment_lobes(prepared.bare, frame, turn);
     }
     return light;

@@ -24,7 +24,7 @@ pub(super) fn twin(given: &Given<'_>) -> Box<dyn Shade> {
 impl Shade for Twin {
     fn eval(&self, terms: &dyn ShaderTerms, under: &Under, tilts: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
         let Some(layer) = self.layers.layers.first() else { return [0.0; 3] };
-        let (normal, own) = frame::on_first(DVec3::Z, tilts.own);
+        let (normal, own) = frame::on_first(DVec3::Z, tilts.own, self.layers.layers.len());
         let [wi, wo] = [wi, wo].map(|w| frame::local(normal, w));
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return [0.0; 3];

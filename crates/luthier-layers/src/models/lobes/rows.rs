@@ -212,6 +212,9 @@ pub struct BaseLight {
     pub internal: Rgb,
     /// Coefficients of the shape of a Lambertian base's light, which the remainder takes; 0 above another base.
     pub falloff: [f64; 2],
+    /// Energy of the light that meets the base from one direction, in a row of a family in colours; its other numbers know no colour.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub met: Option<Rgb>,
 }
 
 impl BaseLight {
@@ -223,6 +226,12 @@ impl BaseLight {
             // A base that was simulated black leaves no light to scale.
             if own > 0.0 { self.energy[c] * (other / own - 1.0) } else { 0.0 }
         })
+    }
+
+    /// Energy that a base of another albedo has of light that comes through the layers, without what these send back to it.
+    pub(super) fn of_one_direction(&self, simulated: Rgb, albedo: Rgb) -> Rgb {
+        let more = self.more(simulated, albedo);
+        [0, 1, 2].map(|c: usize| (self.energy[c] + more[c]) * (1.0 - self.internal[c] * albedo[c]).max(0.0))
     }
 }
 
@@ -307,7 +316,7 @@ impl Row {
         let [shear_first, shear_second] = [0, 1]
             .map(|lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt()));
         let mut parts = Vec::new();
-        if let Some(BaseLight { energy, internal, falloff: [a, b] }) = self.base {
+        if let Some(BaseLight { energy, internal, falloff: [a, b], .. }) = self.base {
             parts.extend([part(internal, b), part(energy, a)]);
         }
         parts.push(part(self.wide, shear_first));
@@ -337,7 +346,7 @@ impl Row {
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
-        let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff };
+        let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff, met: None };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
         let shears = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part[3]));
         let shaped = match *inner {
@@ -427,9 +436,14 @@ impl Row {
     /// The row between two others.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
+        let met = self.base.and_then(|base| base.met).zip(other.base.and_then(|base| base.met));
         let (own, other) = (self.to_parts(), other.to_parts());
         let parts = own.iter().zip(&other).map(|(a, b)| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i])));
-        Self::of_parts(&parts.collect::<Vec<_>>(), self.base.is_some())
+        let mut between = Self::of_parts(&parts.collect::<Vec<_>>(), self.base.is_some());
+        if let (Some(base), Some((a, b))) = (&mut between.base, met) {
+            base.met = Some([0, 1, 2].map(|c: usize| a[c] + t * (b[c] - a[c])));
+        }
+        between
     }
 }
 
@@ -516,7 +530,7 @@ mod tests {
             tail: 0.25,
         };
         for lobes in [vec![], vec![lobe(0.0)], vec![lobe(0.0), lobe(0.25)]] {
-            let base = BaseLight { energy: [0.7, 0.8, 0.9], internal: [0.4, 0.5, 0.6], falloff: [0.2, 0.1] };
+            let base = BaseLight { energy: [0.7, 0.8, 0.9], internal: [0.4, 0.5, 0.6], falloff: [0.2, 0.1], met: None };
             for base in [None, Some(base)] {
                 let row = Row { albedo_dir: [4.0, 5.0, 6.0], lobes: lobes.clone(), wide: [0.1, 0.2, 0.3], base };
                 let (parts, of_base) = (row.to_parts(), base.map_or(0, |_| Row::BASE_PARTS));

@@ -211,27 +211,62 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
     fn luthier_density_sides(prepared: LuthierPreparedSides, wi: vec3<f32>) -> f32 {
         let chance = luthier_covered_chance(prepared);
         var density = 0.0;
-        if chance > 0.0 {
-            density = chance * luthier_density_lobes(prepared.coated, wi);
-        }
-        if chance < 1.0 {
-            var bare = wi.z / LUTHIER_PI;
-            //? lobes_side_rows
-            //? lobes_side_bases
-            if !prepared.is_base {
-                bare = luthier_density_lobes(prepared.bare, wi);
+        //? lobes_side_frames
+        {
+            let coated_wi = luthier_local(prepared.coated_normal, wi);
+            let bare_wi = luthier_local(prepared.bare_normal, wi);
+            if chance > 0.0 && prepared.coated_open && coated_wi.z > 0.0 {
+                density = chance * luthier_density_lobes(prepared.coated, coated_wi);
             }
-            //? else
-            bare = luthier_density_lobes(prepared.bare, wi);
-            density += (1.0 - chance) * bare;
+            if chance < 1.0 && prepared.bare_open && bare_wi.z > 0.0 {
+                var bare = bare_wi.z / LUTHIER_PI;
+                //? lobes_side_rows
+                //? lobes_side_bases
+                if !prepared.is_base {
+                    bare = luthier_density_lobes(prepared.bare, bare_wi);
+                }
+                //? else
+                bare = luthier_density_lobes(prepared.bare, bare_wi);
+                density += (1.0 - chance) * bare;
+            }
+            return density;
         }
-        return density;
+        //? else
+        {
+            if chance > 0.0 {
+                density = chance * luthier_density_lobes(prepared.coated, wi);
+            }
+            if chance < 1.0 {
+                var bare = wi.z / LUTHIER_PI;
+                //? lobes_side_rows
+                //? lobes_side_bases
+                if !prepared.is_base {
+                    bare = luthier_density_lobes(prepared.bare, wi);
+                }
+                //? else
+                bare = luthier_density_lobes(prepared.bare, wi);
+                density += (1.0 - chance) * bare;
+            }
+            return density;
+        }
+    }
+
+    //? lobes_side_frames
+    /// A draw of a side in the frame of both; below the horizon where it is below that of the side.
+    fn luthier_off_side(normal: vec3<f32>, given: LuthierSample) -> LuthierSample {
+        var drawn = given;
+        let there = luthier_local(vec3<f32>(-normal.xy, normal.z), given.wi);
+        drawn.wi = select(vec3<f32>(0.0, 0.0, -1.0), there, given.wi.z > 0.0);
+        return drawn;
     }
 
     /// Direction and part of a draw of either side, without its density and weight: see `luthier_draw_lobes`.
     fn luthier_draw_sides(prepared: LuthierPreparedSides, u: vec3<f32>) -> LuthierSample {
         let chance = luthier_covered_chance(prepared);
         if u.x < chance {
+            //? lobes_side_frames
+            return luthier_off_side(prepared.coated_normal, luthier_draw_lobes(prepared.coated, vec3<f32>(u.x / chance, u.yz)));
+            //? else
             return luthier_draw_lobes(prepared.coated, vec3<f32>(u.x / chance, u.yz));
         }
         let rest = vec3<f32>((u.x - chance) / max(1.0 - chance, 1e-6), u.yz);
@@ -240,15 +275,24 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
         if prepared.is_base {
             let phi = 2.0 * LUTHIER_PI * rest.z;
             let across = sqrt(rest.y) * vec2<f32>(cos(phi), sin(phi));
+            //? lobes_side_frames
+            return luthier_off_side(prepared.bare_normal, LuthierSample(vec3<f32>(across, sqrt(1.0 - rest.y)), 0.0, vec3<f32>(0.0), 3u));
+            //? else
             return LuthierSample(vec3<f32>(across, sqrt(1.0 - rest.y)), 0.0, vec3<f32>(0.0), 3u);
         }
         //? else
         {
             let phi = 2.0 * LUTHIER_PI * rest.z;
             let across = sqrt(rest.y) * vec2<f32>(cos(phi), sin(phi));
+            //? lobes_side_frames
+            return luthier_off_side(prepared.bare_normal, LuthierSample(vec3<f32>(across, sqrt(1.0 - rest.y)), 0.0, vec3<f32>(0.0), 3u));
+            //? else
             return LuthierSample(vec3<f32>(across, sqrt(1.0 - rest.y)), 0.0, vec3<f32>(0.0), 3u);
         }
         //? lobes_side_rows
+        //? lobes_side_frames
+        return luthier_off_side(prepared.bare_normal, luthier_draw_lobes(prepared.bare, rest));
+        //? else
         return luthier_draw_lobes(prepared.bare, rest);
     }
 }

@@ -28,6 +28,13 @@ fn luthier_path_part(
     return part;
 }
 
+/// A part with the light of another one, which has its shape: that of the surface with a film, and of that without.
+fn luthier_joined_part(given: LuthierPart, next: LuthierPart) -> LuthierPart {
+    var part = next;
+    part.energy += given.energy;
+    return part;
+}
+
 /// A path whose light is mirrored at the layers below.
 fn luthier_path_mirrored(path: LuthierPath) -> LuthierPath {
     var next = path;

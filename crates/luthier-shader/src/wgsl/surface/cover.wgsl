@@ -9,6 +9,12 @@ fn luthier_cover(place: LuthierPlace, material: u32) -> f32 {
     return select(other, saturate(shape.x * place.weight_factor), shape.w > 1.5);
 }
 
+//? weight_film
+/// Whether the weight of a material is that of a film: the bare record is the first layer without it.
+fn luthier_weighs_film(material: u32) -> bool {
+    return luthier_materials[luthier_header(material) + $word_patina].w > 2.5;
+}
+
 //? lobes_sides
 {
     /// Whether the layers that the coat or the film of a material leaves bare have lobes of their own.

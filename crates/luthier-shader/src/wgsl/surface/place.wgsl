@@ -123,6 +123,9 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         //? weight
         {
             // The record behind the others is the second layer where the first is not.
+            //? weight_film
+            let number = select(index, select(1u, 0u, luthier_weighs_film(material)), index == luthier_layer_count(material));
+            //? else
             let number = select(index, 1u, index == luthier_layer_count(material));
             if number < $layers {
                 own = here.layers[number];
@@ -173,6 +176,13 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
     }
     //? absorption|film
+    //? weight_film
+    if index == 0u || index == luthier_layer_count(material) && luthier_weighs_film(material) {
+        layer.optical_depth_log2 *= place.slab_factor;
+        layer.film_thickness_waves *= place.film_factor;
+        layer.film_thickness_nm *= place.film_factor;
+    }
+    //? else
     if index == 0u {
         layer.optical_depth_log2 *= place.slab_factor;
         layer.film_thickness_waves *= place.film_factor;
@@ -237,6 +247,28 @@ fn luthier_place_on_first(place: LuthierPlace) -> LuthierPlace {
     $each_on_first
     next.layers[0].normal = vec3<f32>(0.0, 0.0, 1.0);
     return next;
+}
+
+//? lobes_side_frames
+{
+    /// A place in the frame of the surface: its normal is +z, and normals of layers are against it.
+    fn luthier_place_on_surface(place: LuthierPlace) -> LuthierPlace {
+        let back = vec3<f32>(-place.normal.xy, place.normal.z);
+        var next = place;
+        next.normal = vec3<f32>(0.0, 0.0, 1.0);
+        $each_on_surface
+        return next;
+    }
+
+    /// A place in the frame in which the lobes of a material are prepared: that of the first interface, or that of the surface where two sides have frames
+    /// of their own.
+    fn luthier_place_of_lobes(place: LuthierPlace, material: u32) -> LuthierPlace {
+        //? ~lobes_sides
+        if !luthier_has_side(material) {
+            return luthier_place_on_first(place);
+        }
+        return luthier_place_on_surface(place);
+    }
 }
 
 //? own_f0

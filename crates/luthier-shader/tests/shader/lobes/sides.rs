@@ -12,6 +12,7 @@ use super::families::{FIRST, NODES, drawn_as_the_density_says, family, material,
 use super::{set, tables_with};
 use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
+use crate::scenes::bumpy;
 
 /// Weight of the coat.
 const WEIGHT: f32 = 0.625;
@@ -59,14 +60,18 @@ impl Shader {
                 place.members_mut()[number] = value;
             }
         }
-        if let (Some(layers), Some(own)) =
-            (self.member("LuthierPlace", "layers"), self.member("LuthierLayerPlace", "alpha_factors"))
-        {
+        let alphas: Vec<Value> = values.alphas.iter().map(|alpha| vector(&[*alpha, 1.0])).collect();
+        let normals: Vec<Value> = values.normals.iter().map(|normal| vector(normal)).collect();
+        for (name, given) in [("alpha_factors", alphas), ("normal", normals)] {
+            let members = (self.member("LuthierPlace", "layers"), self.member("LuthierLayerPlace", name));
+            let (Some(layers), Some(own)) = members else { continue };
             let layers = place.members_mut()[layers].members_mut();
-            for (layer, alpha) in layers.iter_mut().zip(values.alphas.iter().skip(first)) {
-                layer.members_mut()[own] = vector(&[*alpha, 1.0]);
+            for (layer, value) in layers.iter_mut().zip(given.into_iter().skip(first)) {
+                layer.members_mut()[own] = value;
             }
         }
+        let normal = self.member("LuthierPlace", "normal").unwrap();
+        place.members_mut()[normal] = vector(&values.normal);
         if self.text.contains("fn luthier_metallic_place(") {
             let arguments = vec![place, Value::U(0), vector(&values.color), Value::F(values.metal)];
             place = self.machine.call("luthier_metallic_place", arguments);
@@ -91,19 +96,30 @@ struct Values {
     weight_factor: f32,
     /// Factors on the slope parameters of coat and base.
     alphas: [f32; 2],
+    /// Normal of the surface, and own normals of coat, base and diffuse base in its frame: the last two have one map.
+    normal: [f32; 3],
+    normals: [[f32; 3]; 3],
     color: [f32; 3],
     metal: f32,
+}
+
+fn unit(v: [f32; 3]) -> [f32; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f32>().sqrt();
+    v.map(|x| x / length)
 }
 
 /// The values of a place by number.
 fn values(k: usize) -> Values {
     let share = |step: f64| (0.003 + k as f64 * step).fract() as f32;
+    let of_base = unit([0.5 * share(0.47) - 0.3, -0.2, 1.0]);
     Values {
         factor: 1.0 - 0.5 * share(0.29),
         slab: share(0.43),
         // From no coat to one that would be there more than once.
         weight_factor: [0.0, 0.4, 1.0, 1.3, 2.0][k % 5],
         alphas: [share(0.37).max(1e-3), share(0.61).max(1e-3)],
+        normal: unit([0.3 * share(0.53) - 0.1, 0.1, 1.0]),
+        normals: [unit([0.1, 0.4 * share(0.19) - 0.2, 1.0]), of_base, of_base],
         color: [share(0.17), share(0.23), share(0.31)],
         metal: share(0.71),
     }
@@ -136,6 +152,7 @@ fn light_of_sides_is_that_of_two_materials() {
         (of_families(is_metallic, *nodes), rows.clone())
     };
     let scene = |name| (set(name).swap_remove(0), plain());
+    let own = |(material, rows): (MaterialEntry, (AtlasLayout, Image))| (bumpy(material), rows);
     let cases = [
         family(true, &both),
         family(true, &one),
@@ -143,6 +160,11 @@ fn light_of_sides_is_that_of_two_materials() {
         scene("lobes-sides"),
         scene("lobes-sides-base"),
         scene("lobes-sides-film"),
+        own(family(true, &both)),
+        own(family(false, &one)),
+        own(scene("lobes-sides")),
+        own(scene("lobes-sides-base")),
+        own(scene("lobes-sides-film")),
     ];
     for (number, (material, rows)) in cases.into_iter().enumerate() {
         let mut material = material;
@@ -171,7 +193,8 @@ fn light_of_sides_is_that_of_two_materials() {
         for (k, (wi, wo)) in directions(120).enumerate() {
             let values = values(k);
             let [wi, wo] = [wi, wo].map(|w| w.map(|x| x as f32));
-            if wi[2] <= 0.0 || wo[2] <= 0.0 {
+            let faces = |w: [f32; 3], normal: [f32; 3]| w.iter().zip(normal).map(|(w, n)| w * n).sum::<f32>() > 1e-3;
+            if wi[2] <= 0.0 || wo[2] <= 0.0 || !faces(wi, values.normal) || !faces(wo, values.normal) {
                 continue;
             }
             let first = coated.at(&coated.place(&values, 0), wi, wo);
@@ -183,9 +206,10 @@ fn light_of_sides_is_that_of_two_materials() {
             // Rows that no fit has made may have less than no light.
             let mean = |albedo: &[f32]| (albedo.iter().sum::<f32>() / 3.0).max(0.0);
             let [a, b] = [weight * mean(&first[1]), (1.0 - weight) * mean(&second[1])].map(|x| x + 1e-6);
-            let chance = if weight >= 1.0 {
+            // A side that turns away from the eye has no draws.
+            let chance = if weight >= 1.0 || weight > 0.0 && second[1] == [0.0; 3] {
                 1.0
-            } else if weight <= 0.0 {
+            } else if weight <= 0.0 || first[1] == [0.0; 3] {
                 0.0
             } else {
                 a / (a + b)
@@ -211,7 +235,9 @@ fn light_of_sides_is_that_of_two_materials() {
 fn directions_of_sides_are_drawn_as_their_density_says() {
     let whole = FIRST + NODES[0] * NODES[1];
     let family = (of_families(true, NODES), rows_of(whole + NODES[1], |tile| tile < whole));
-    for (material, rows) in [family, (set("lobes-sides-base").swap_remove(0), super::rows())] {
+    let paint = (set("lobes-sides-base").swap_remove(0), super::rows());
+    let bumps = [&family, &paint].map(|(material, rows)| (bumpy(material.clone()), rows.clone()));
+    for (material, rows) in [family, paint].into_iter().chain(bumps) {
         let mut material = material;
         let MaterialEntry { layers, constants, .. } = &mut material;
         layers.iter_mut().chain(constants.bare_mut()).for_each(|layer| layer.tiles[TableKind::Distribution] = None);

@@ -250,6 +250,9 @@
         var falloff = vec2<f32>(0.0);
         var once_wide = 0.0;
         var leaving = vec2<f32>(of_facet.a, of_rest.a);
+        //? lobes_lean
+        // Light of the base that came through the coat, and not back from it.
+        var met = vec3<f32>(0.0);
         //? lobes_metallic
         //? ~lobes_metallic
         let is_metallic = coat_axis.w > 0.0;
@@ -320,6 +323,8 @@
             }
             more = metallic * luthier_family_more(of_more.rgb, metal);
             wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
+            //? lobes_lean
+            met = (1.0 - metallic) * (light * diffuse / passed);
             facet = vec3<f32>(1.0 - crossing * of_facet.x);
             if base_layer == 0u {
                 // Several facets of the dielectric, and one of either.
@@ -336,13 +341,25 @@
             let of_wide = luthier_family_part(prepared.row, beside, 5.0);
             falloff = of_wide.xy;
             once_wide = of_wide.z;
-            //? base_color
-            if place.base_color.x >= 0.0 {
-                let of_base = luthier_family_part(prepared.row, beside, 6.0).rgb;
-                let of_internal = luthier_family_part(prepared.row, beside, 7.0).rgb;
-                let own = max(painted.rgb, vec3<f32>(1e-6)) * max(1.0 - of_internal * diffuse, vec3<f32>(1e-3));
-                let other = diffuse * (1.0 - of_internal * painted.rgb);
-                wide += max(of_base * (other / own - 1.0), -wide);
+            //? base_color|lobes_lean
+            {
+                //? lobes_lean
+                let is_own = dot(painted.rgb, vec3<f32>(1.0)) > 0.0;
+                //? else
+                let is_own = place.base_color.x >= 0.0;
+                if is_own {
+                    let of_base = luthier_family_part(prepared.row, beside, 6.0).rgb;
+                    let of_internal = luthier_family_part(prepared.row, beside, 7.0).rgb;
+                    let simulated = max(painted.rgb, vec3<f32>(1e-6));
+                    //? lobes_lean
+                    met = of_base * max(1.0 - of_internal * painted.rgb, vec3<f32>(0.0)) * diffuse / simulated;
+                    //? base_color
+                    {
+                        let own = simulated * max(1.0 - of_internal * diffuse, vec3<f32>(1e-3));
+                        let other = diffuse * (1.0 - of_internal * painted.rgb);
+                        wide += max(of_base * (other / own - 1.0), -wide);
+                    }
+                }
             }
         }
         prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
@@ -352,6 +369,14 @@
         prepared.albedo = facet + left * (wide + once + more);
         // Some of the light of both lobes is wide.
         prepared.wide = left * (wide + once_wide * once + of_more.a * more);
+        //? lobes_lean
+        {
+            let base_normal = luthier_own_normal(place, luthier_layer_count(material) - 1u);
+            prepared.leaning = left * met;
+            prepared.lean = base_normal.xy;
+            prepared.albedo -= (1.0 - base_normal.z) * prepared.leaning;
+            prepared.wide -= (1.0 - base_normal.z) * prepared.leaning;
+        }
         let squares = held * held;
         let once_spread = sqrt(squares.y + 0.09 * squares.x);
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);

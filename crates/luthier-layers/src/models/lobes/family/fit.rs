@@ -126,7 +126,7 @@ impl Family {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
             };
-            let base = Some(BaseLight { energy, internal, falloff });
+            let base = Some(BaseLight { energy, internal, falloff, met: None });
             Row { albedo_dir, lobes: lobes.collect(), wide, base }
         });
         rows.collect()

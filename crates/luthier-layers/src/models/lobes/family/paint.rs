@@ -123,9 +123,12 @@ impl Family {
             [1, 0].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt()));
         let base = row.base.unwrap_or_default();
         let more = base.more(simulated, paint.albedo);
+        let mut met = base.of_one_direction(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
-                self.mixed(row, &base, paint, film, c)
+                let [entering, wide, once, trapped, direct] = self.mixed(row, &base, paint, film, c);
+                met[c] = direct;
+                [entering, wide, once, trapped]
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
@@ -134,6 +137,7 @@ impl Family {
             let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
             let (facet, below) = (1.0 - entering, wide + once + trapped);
             let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };
+            met[c] *= crossing * kept;
             here.wide[c] = kept * (wide + wide_once * once + wide_trapped * trapped);
             for (lobe, energy) in here.lobes.iter_mut().zip([(1.0 - wide_once) * once, (1.0 - wide_trapped) * trapped])
             {
@@ -142,13 +146,13 @@ impl Family {
             here.albedo_dir[c] = facet + kept * below;
         }
         // The shape of the remainder stays: its light is in the remainder.
-        here.base = row.base.map(|base| BaseLight { falloff: base.falloff, ..BaseLight::default() });
+        here.base = row.base.map(|base| BaseLight { falloff: base.falloff, met: Some(met), ..BaseLight::default() });
         here
     }
 
     /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
-    /// light that the base reflected once, and more often.
-    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, film: Option<&FilmLight>, c: usize) -> [f64; 4] {
+    /// light that the base reflected once, and more often; and light of the diffuse base that came through the coat, and not back from it.
+    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, film: Option<&FilmLight>, c: usize) -> [f64; 5] {
         let metallic = paint.metallic;
         let metal = film.map_or(paint.metal[c], |film| film.mean[0][c]);
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
@@ -172,10 +176,11 @@ impl Family {
             }
             None => (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, PLASTIC_F0))),
         };
-        let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
+        let direct = light * passed(length) * paint.albedo[c];
+        let diffuse = direct / (1.0 - sent_back * passed(around) * paint.albedo[c]);
         // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric reflects hardly any.
         let again = passed(more_length);
-        [entering, row.wide[0] + mix(0.0, diffuse), once, metallic * trapped(of_more, metal * again)]
+        [entering, row.wide[0] + mix(0.0, diffuse), once, metallic * trapped(of_more, metal * again), mix(0.0, direct)]
     }
 }
 

@@ -78,6 +78,28 @@ fn colours_in_closed_form_are_those_of_the_simulation() {
     }
 }
 
+/// Oracle: the simulation of the dielectric in its colour. Light that meets the base from one direction, in rows of a family and between colours that a fit saw.
+#[test]
+fn light_that_meets_the_base_is_that_of_the_simulation() {
+    let (stack, alphas) = (plastic(true, [0.1, 0.3, 0.7]), [0.1, 0.3]);
+    let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], true).unwrap();
+    let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), SETTINGS);
+    let level = family.apply(&stack, alphas);
+    let mix = Mix { metal: [0.8; 3], matt: [0.9, 0.4, 0.1], metallic: 0.0 };
+    let paint = Paint::of(&level).mixed(mix);
+    let [lobes, halved] = [0.0, 0.5].map(|metallic| varied.painted(alphas, &Paint { metallic, ..paint }).unwrap());
+    let alone = Lobes::with(&paint.plastic_of(&level), &COLOR, SETTINGS);
+    for theta in [0.0, 0.7, 1.2] {
+        let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+        let [met, half] = [&lobes, &halved].map(|lobes| lobes.row(wo).base.unwrap().met.unwrap());
+        let expected = alone.row(wo).base.unwrap().of_one_direction(paint.albedo, paint.albedo);
+        for c in 0..3 {
+            assert!((met[c] - expected[c]).abs() < 0.02, "{theta}: {met:?} {expected:?}");
+            assert!((half[c] - 0.5 * met[c]).abs() < 1e-3, "{theta}: {half:?} {met:?}");
+        }
+    }
+}
+
 /// Channels of such a simulation are shades of the metal: a coat whose index hangs on the wavelength has, in a spectrum, the energies of its index at the
 /// sodium line.
 #[test]

@@ -63,13 +63,17 @@ impl Family {
         let (strength, shares, once_wide, albedo_dir, wide, base) = if self.is_metallic {
             let ([facet, wide, first, second], [light, sent_back, a, b]) = (part(3), part(4));
             let [base_length, around, once_length, more_length] = part(5);
-            let base =
-                BaseLight { energy: [light, base_length, 0.0], internal: [sent_back, around, 0.0], falloff: [a, b] };
+            let base = BaseLight {
+                energy: [light, base_length, 0.0],
+                internal: [sent_back, around, 0.0],
+                falloff: [a, b],
+                ..BaseLight::default()
+            };
             let albedo_dir = [facet, once_length, more_length];
             ([once[0], once[1], 0.0], [first, second], once[2], albedo_dir, [wide, 0.0, 0.0], base)
         } else {
             let [a, b, once_wide, _] = part(5);
-            let base = BaseLight { energy: rgb(6), internal: rgb(7), falloff: [a, b] };
+            let base = BaseLight { energy: rgb(6), internal: rgb(7), falloff: [a, b], ..BaseLight::default() };
             (rgb(0), [part(3)[3], part(4)[3]], once_wide, rgb(3), rgb(4), base)
         };
         let lobe = |strength, share, shift, sharpness, wide: f64| Lobe {

@@ -235,6 +235,7 @@ impl<'a> Problem<'a> {
                 energy: tally.base,
                 internal,
                 falloff: self.simulation.base_falloff.map_or([0.0; 2], |_| wide.falloff()),
+                met: None,
             }),
         });
         let rows: Vec<Row> = rows.collect();

@@ -12,9 +12,10 @@ use num_complex::Complex64;
 use crate::effects::layer_sample::LayerSample;
 use crate::formulas::facets::Facets;
 use crate::frame;
-use crate::models::lobes::{Below, FitSettings, Lobes, Simulation};
+use crate::layers::ALPHA_MIN;
+use crate::models::lobes::{Below, Family, FitSettings, Lobes, Paint, Simulation, Varied, Varying};
 use crate::models::parts::Parts;
-use crate::models::shade::ShaderTerms;
+use crate::models::shade::{ShaderTerms, Under};
 use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::Energy;
 use crate::terms::Terms;
@@ -280,10 +281,11 @@ fn walked_between(
 }
 
 /// `f cos_theta_i` of the twin without the first facets, of a stack whose layers have normals of their own, on the grid of the surface.
-fn twin_below(stack: &Stack, lobes: &Lobes, own: [DVec3; 2], wo: DVec3) -> Grid {
+fn twin_below(stack: &Stack, lobes: &Lobes, own: [DVec3; 2], flake: DVec3, wo: DVec3) -> Grid {
     let color = Color::ThreeWavelengths([550.0; 3]);
     let layers = own.map(|normal| LayerSample { normal, ..LayerSample::NONE });
-    let place = Place { layers: layers.to_vec(), ..Place::NONE };
+    let under = Under { flake_normal: flake, ..Under::NONE };
+    let place = Place { layers: layers.to_vec(), under, ..Place::NONE };
     // A first interface that reflects nothing.
     let terms = |_: Part, _: &Stack, _: &Stack| Some(Dark(Exact::with_lobes(stack, color, lobes.clone())));
     let parts = Parts::PLAIN;
@@ -317,7 +319,7 @@ impl ShaderTerms for Dark {
     }
 }
 
-/// Own normals of the coat, of the base and of both, over a metal. Oracle: paths in the frame of the surface, which know no relative normals.
+/// Own normals of the coat, of the base and of both, over a metal, and flakes beside them. Oracle: paths in the frame of the surface, which know no relative normals.
 #[test]
 fn own_normals_are_those_of_tilted_interfaces() {
     let (stack, lobes) = (coated_metal(), fitted());
@@ -332,29 +334,46 @@ fn own_normals_are_those_of_tilted_interfaces() {
     };
     for theta_deg in [10.0, 50.0] {
         let wo = eye(theta_deg);
-        let error = |own: [DVec3; 2]| {
-            let truth = walked_between(wo, own[0], own[1], 100_000, bounce);
-            lobe_error(&twin_below(&stack, &lobes, own, wo), &truth)
+        // Flakes turn what lies below the coat in the frame of the coat, and the metal has its own normal there.
+        let error = |own: [DVec3; 2], flake: DVec3| {
+            let back = |normal: DVec3| DVec3::new(-normal.x, -normal.y, normal.z);
+            let turned = frame::local(back(flake), frame::local(own[0], own[1]));
+            let truth = walked_between(wo, own[0], frame::local(back(own[0]), turned), 100_000, bounce);
+            lobe_error(&twin_below(&stack, &lobes, own, flake, wo), &truth)
         };
-        let straight = error([DVec3::Z; 2]);
+        let straight = error([DVec3::Z; 2], DVec3::Z);
         for (tilt_deg, most) in [(5.0, 0.03), (10.0, 0.1), (20.0, 0.6)] {
             let [a, b] = [leaning(tilt_deg, 2.0), leaning(0.5 * tilt_deg, -0.4)];
             for own in [[a, DVec3::Z], [DVec3::Z, a], [a, a], [a, b]] {
-                let found = error(own);
+                let found = error(own, DVec3::Z);
                 assert!(found < straight + most, "{theta_deg} {tilt_deg} {own:?}: {found} {straight}");
+            }
+            // Beside flakes, the metal leans against the coat by as much as above.
+            let (flake, less) = (leaning(0.5 * tilt_deg, 0.5), leaning(0.5 * tilt_deg, -0.4));
+            for own in [[less, DVec3::Z], [DVec3::Z, less]] {
+                let found = error(own, flake);
+                assert!(found < straight + most, "{theta_deg} {tilt_deg} {own:?}, flakes: {found} {straight}");
             }
         }
     }
 }
 
-/// Own normals over a diffuse base, which has no lobe. Oracle: paths in the frame of the surface.
+/// Own normals over a diffuse base, which has no lobe, with rows of the stack and with those of a family in a colour that no fit saw. Oracle: paths in the frame
+/// of the surface.
 #[test]
 fn a_diffuse_base_leans() {
     const WHITE: f64 = 0.7;
     let mut stack = coated_metal();
     stack.layers[1].surface = Surface::smooth();
     stack.layers[1].base = Base::Diffuse(Diffuse { albedo: [WHITE; 3], sigma: 0.0 });
-    let lobes = Lobes::of(&stack, &Color::ThreeWavelengths([550.0; 3]));
+    let color = Color::ThreeWavelengths([550.0; 3]);
+    let lobes = Lobes::of(&stack, &color);
+    let mut darker = stack.clone();
+    darker.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.4; 3], sigma: 0.0 });
+    let family = Family::new(&darker, [ALPHA_MIN; 2], [ALPHA_MIN; 2], false).unwrap();
+    let settings = FitSettings { rows: 10, paths: 16_000, seed: 1 };
+    let varied = Varied::with(&darker, &color, Some(Varying::Family(family)), settings);
+    let of_family = varied.painted([ALPHA_MIN; 2], &Paint::of(&stack)).unwrap();
     let bounce = |_: DVec3, uniform: &mut dyn FnMut() -> f64| {
         let (u, (sin, cos)) = (uniform(), libm::sincos(std::f64::consts::TAU * uniform()));
         Some((DVec3::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt()), WHITE))
@@ -366,7 +385,9 @@ fn a_diffuse_base_leans() {
             for own in [[a, DVec3::Z], [DVec3::Z, a], [a, a]] {
                 let truth = walked_between(wo, own[0], own[1], 400_000, bounce);
                 let [found, left] =
-                    [own, [own[0]; 2]].map(|own| lobe_error(&twin_below(&stack, &lobes, own, wo), &truth));
+                    [own, [own[0]; 2]].map(|own| lobe_error(&twin_below(&stack, &lobes, own, DVec3::Z, wo), &truth));
+                let painted = lobe_error(&twin_below(&stack, &of_family, own, DVec3::Z, wo), &truth);
+                assert!(painted < found + 0.03, "{theta_deg} {tilt_deg} {own:?}: {painted} {found} {left}");
                 assert!(
                     found < 0.03 + 0.1 * f64::from(tilt_deg >= 20.0),
                     "{theta_deg} {tilt_deg} {own:?}: {found} {left}"
