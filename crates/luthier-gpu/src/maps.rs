@@ -13,7 +13,7 @@ pub(crate) const MAP_WORDS: usize = 10;
 const TEXELS_MAX: usize = 1 << 22;
 
 /// Words of each layer that has maps of its own, behind those.
-const OWN_WORDS: usize = 8;
+const OWN_WORDS: usize = 9;
 
 impl Scene {
     /// The words of a material's maps, then their texels. `first` is the number of the first word.
@@ -114,6 +114,11 @@ impl Scene {
             (
                 self.interface.fills("LuthierLayerPlace", "slab_factor"),
                 "own.slab_factor = shading_own_factor(material, layer, 5u, uv);",
+            ),
+            (
+                self.interface.fills("LuthierLayerPlace", "absorption_factors"),
+                "let absorption = shading_own(material, layer, 8u);\n    if absorption.y > 0u {\n        \
+                 own.absorption_factors = shading_bilinear(absorption, uv).xyz;\n    }",
             ),
         ];
         let fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
@@ -241,6 +246,7 @@ fn slot_word(slot: MapSlot) -> usize {
         | MapSlot::AlphaX
         | MapSlot::AlphaY
         | MapSlot::Tangent
+        | MapSlot::Absorption
         | MapSlot::BaseColor
         | MapSlot::Metallic => usize::MAX,
     }
@@ -256,6 +262,7 @@ fn own_word(slot: MapSlot) -> usize {
         MapSlot::Tangent => 4,
         MapSlot::BaseColor => 6,
         MapSlot::Metallic => 7,
+        MapSlot::Absorption => 8,
         _ => 5,
     }
 }

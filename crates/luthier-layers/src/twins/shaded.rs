@@ -425,6 +425,11 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
                 base.albedo = color;
             }
         }
+        // A family has tinted its slabs above. Other rows are over what the first one absorbs.
+        let first = here.layers.first_mut().zip(place.layers.first()).filter(|_| !is_family);
+        if let Some((Layer { base: Base::Dielectric { slab, .. }, .. }, own)) = first {
+            own.tint(slab);
+        }
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
     }

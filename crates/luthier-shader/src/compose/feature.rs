@@ -195,6 +195,8 @@ luthier_lut::named! {
         LobesMetallic = "lobes_metallic",
         /// Light of such a family is absorbed below the coat.
         LobesTinted = "lobes_tinted",
+        /// Maps of what the first slab absorbs give each channel a tile of rows over its thickness.
+        LobesTints = "lobes_tints",
         /// Flakes, or own normals of interfaces, tilt lobes.
         LobesTilted = "lobes_tilted",
         /// A material of `lobes` has normals of single layers.
@@ -219,6 +221,8 @@ luthier_lut::named! {
         OwnAlphas = "own_alphas",
         /// A map of a layer has thicknesses.
         OwnSlabs = "own_slabs",
+        /// A map of a layer has colours that its slab absorbs.
+        OwnTints = "own_tints",
         /// Maps of a layer have base colours and metal.
         OwnF0 = "own_f0",
         /// Such base colours are brighter below a coat that does not darken them.

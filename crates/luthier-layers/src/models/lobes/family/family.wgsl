@@ -210,6 +210,8 @@
             var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
             //? place
             depth *= place.slab_factor;
+            //? own_tints
+            depth *= own_coat.absorption_factors;
         }
         let of_once = luthier_family_part(prepared.row, beside, 1.0);
         let of_more = luthier_family_part(prepared.row, beside, 2.0);
