@@ -1,7 +1,7 @@
 //! Maps that vary a surface, for the renderer.
 
 use luthier_lut::Image;
-use luthier_manifest::{MapSlot, MaterialEntry};
+use luthier_manifest::{LiveEntry, MapSlot, MaterialEntry};
 
 use crate::context::word;
 use crate::{GpuError, Map, Scene};
@@ -15,7 +15,52 @@ const TEXELS_MAX: usize = 1 << 22;
 /// Words of each layer that has maps of its own, behind those.
 const OWN_WORDS: usize = 9;
 
+/// Value of a live number of a material: a factor, a colour or a direction, as a program writes it into a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveValue {
+    /// Number of the material.
+    pub material: u32,
+    /// Quantity.
+    pub slot: MapSlot,
+    /// Number of the layer from the top.
+    pub layer: u32,
+    /// One number and anything, RGB, or a vector.
+    pub value: [f32; 3],
+}
+
+impl LiveValue {
+    /// The texel that gives a place this value.
+    fn texel(&self) -> [f32; 3] {
+        let [x, y, z] = self.value;
+        match self.slot {
+            MapSlot::Normal | MapSlot::Bumps | MapSlot::Lean | MapSlot::FlakeNormal => {
+                [x, y, z].map(|component| 0.5 + 0.5 * component)
+            }
+            MapSlot::Tangent => {
+                let length_sq = (x * x + y * y).max(f32::MIN_POSITIVE);
+                [0.5 + 0.5 * (x * x - y * y) / length_sq, 0.5 + x * y / length_sq, 0.0]
+            }
+            MapSlot::Roughness => [x.max(0.0).sqrt(); 3],
+            MapSlot::Absorption | MapSlot::Albedo | MapSlot::BaseColor => [x, y, z],
+            _ => [x; 3],
+        }
+    }
+}
+
 impl Scene {
+    /// The texel of a live number: of its value, or of the number of the file where a place does not have that by itself.
+    fn live_texel(&self, material: usize, live: &LiveEntry) -> Option<[f32; 3]> {
+        let is_own = |value: &&LiveValue| {
+            (value.material as usize, value.slot, value.layer) == (material, live.slot, live.layer)
+        };
+        if let Some(value) = self.live.iter().find(is_own) {
+            return Some(value.texel());
+        }
+        let is_color = matches!(live.slot, MapSlot::BaseColor | MapSlot::Metallic);
+        let value = |c: usize| live.default[c.min(live.default.len() - 1)] as f32;
+        is_color.then(|| [0, 1, 2].map(value))
+    }
+
     /// The words of a material's maps, then their texels. `first` is the number of the first word.
     pub(crate) fn map_words(&self, material: usize, entry: &MaterialEntry, first: usize) -> Vec<[u32; 4]> {
         let mut headers = self.no_map_words();
@@ -42,9 +87,25 @@ impl Scene {
             let image = shrunk(map);
             let [width, height] = image.size();
             *header = [(behind + texels.len()) as u32, width, height, transform.map_or(0, |_| at)];
-            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
-            let [r, g, b] = factor.map(|factor| factor as f32);
+            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]).map(|factor| factor as f32);
+            // A live number takes the place of that of the file. Of directions, those of the map hold.
+            let is_direction = matches!(map.slot, MapSlot::Normal | MapSlot::Bumps | MapSlot::Tangent | MapSlot::Lean);
+            let live = entry.live.iter().find(|live| (live.slot, Some(live.layer)) == (map.slot, map.layer));
+            let live = live.filter(|_| !is_direction).and_then(|live| self.live_texel(material, live));
+            let [r, g, b] = live.unwrap_or(factor);
             texels.extend(image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
+        }
+        for live in &entry.live {
+            let number = if live.slot.is_of_layer_place(live.layer) {
+                MAP_WORDS + OWN_WORDS * live.layer as usize + own_word(live.slot)
+            } else {
+                slot_word(live.slot)
+            };
+            let header = headers.get_mut(number).filter(|header| header[1] == 0);
+            if let (Some(header), Some([r, g, b])) = (header, self.live_texel(material, live)) {
+                *header = [(behind + texels.len()) as u32, 1, 1, 0];
+                texels.push([r, g, b, 1.0].map(f32::to_bits));
+            }
         }
         // A map of metal alone leaves the base colour to the file, where the albedo of the base is that of a brighter one.
         let metals = self.maps.iter().find(|map| map.material as usize == material && map.slot == MapSlot::Metallic);

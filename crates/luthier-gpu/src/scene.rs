@@ -9,6 +9,7 @@ use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest};
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
 use crate::floor::Grounded;
+use crate::maps::LiveValue;
 use luthier_export::{Map, Package};
 
 use crate::GpuError;
@@ -20,6 +21,8 @@ pub struct Scene {
     pub(crate) context: Context,
     pub(crate) manifest: Manifest,
     pub(crate) maps: Vec<Map>,
+    /// Live numbers whose values are not those of the files.
+    pub(crate) live: Vec<LiveValue>,
     form: Form,
     wgsl: String,
     /// The part of the shader that kernels call and fill.
@@ -59,6 +62,7 @@ impl Scene {
             context,
             manifest: package.manifest.clone(),
             maps: package.maps.clone(),
+            live: Vec::new(),
             form,
             wgsl: wgsl.to_owned(),
             interface,
@@ -90,6 +94,7 @@ impl Scene {
             context: self.context.clone(),
             manifest: package.manifest.clone(),
             maps: package.maps.clone(),
+            live: Vec::new(),
             form: self.form,
             wgsl: self.wgsl.clone(),
             interface: self.interface.clone(),
@@ -113,6 +118,11 @@ impl Scene {
     pub fn with_words(self, words: &[[f32; 4]]) -> Result<Self, GpuError> {
         let group = self.bindings.group(&self.context, words, &Surroundings::black(&self.context)?)?;
         Ok(Self { group, ..self })
+    }
+
+    /// Takes values of live numbers ([`LiveEntry`](luthier_manifest::LiveEntry)) in place of those taken before: pictures show them without a bake.
+    pub fn set_live(&mut self, values: &[LiveValue]) {
+        self.live = values.to_vec();
     }
 
     /// Form of the shader that runs here: `baked` or `full`.
