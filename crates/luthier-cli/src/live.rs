@@ -67,9 +67,7 @@ pub(crate) fn set(
         };
         let feature = live.slot.layer_feature(live.layer);
         let is_lost = |feature| {
-            left_out(material, shader)
-                .iter()
-                .any(|part| part.feature == feature && part.forms.len() == Form::ALL.len())
+            left_out(material, shader).iter().any(|part| part.feature == feature && part.forms.len() == Form::ALL.len())
         };
         if feature.is_some_and(is_lost) {
             return usage(format!("model `{}` does not show the live `{key}`", shader.name()));

@@ -193,7 +193,9 @@ impl MaterialEntry {
         let is_base = slot == MapSlot::Albedo && has_base;
         let is_read = match slot {
             MapSlot::Bumps if self.model.is_fitted() => self.tilts_lobes(layer),
-            _ if self.model.is_fitted() && matches!(feature, Feature::LayerAlpha | Feature::MetallicMap) => {
+            _ if self.model.is_fitted()
+                && matches!(feature, Feature::LayerAlpha | Feature::Tangents | Feature::MetallicMap) =>
+            {
                 self.has_axis_of(layer)
             }
             MapSlot::Absorption if self.model.is_fitted() => layer == 0 && self.tints_lobes(),

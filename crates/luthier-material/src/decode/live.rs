@@ -52,13 +52,11 @@ fn own_slope(slot: MapSlot, surface: &Surface) -> Option<f64> {
 /// Refuses live numbers that say too little, or that no program could set.
 pub(super) fn check(at: &Section<'_>, number: usize, surface: &Surface, sink: &mut Sink<'_>) {
     let Some(live) = at.section("live") else { return };
-    for (name, own) in [("normal", "bumps"), ("roughness", "alpha"), ("weight", "")] {
+    // A weight below the first layer is refused as that of the layer.
+    for (name, own) in [("normal", "bumps"), ("roughness", "alpha")] {
         if number > 0 && live.has(name) {
             let message = format!("a live `{name}` belongs to the first layer: it is that of the whole surface");
-            let hint = match own {
-                "" => "move it to the first layer".to_owned(),
-                own => format!("write `{own}`, which is that of this layer alone, or move it to the first layer"),
-            };
+            let hint = format!("write `{own}`, which is that of this layer alone, or move it to the first layer");
             sink.error(live.value_span(name), message, Some(hint));
         }
     }
@@ -102,3 +100,76 @@ pub(super) fn check(at: &Section<'_>, number: usize, surface: &Surface, sink: &m
 
 /// Share of a slope parameter that rounding may take: roughnesses are squared, and slopes are tangents.
 const SLACK: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use luthier_manifest::{MapSlot, ShadingModel};
+
+    use crate::material::Material;
+    use crate::parse;
+
+    const COAT: &str =
+        "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\nthickness_um = 20\nabsorption_per_um = 0.05\n";
+    const ENGINE: &str = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.5\nroughness = 0.5\n";
+    const METAL: &str = "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nalpha_x = 0.3\nalpha_y = 0.1\n";
+
+    fn read(layers: &str) -> Result<Material, Vec<String>> {
+        let text = format!("schema = 1\nname = \"m\"\n{layers}");
+        let parsed = parse("m.toml", &text, &|_| Err(std::io::ErrorKind::NotFound.into()));
+        parsed.map(|parsed| parsed.material).map_err(|faults| {
+            faults.iter().filter(|fault| fault.message != "").map(|fault| fault.message.clone()).collect()
+        })
+    }
+
+    /// Ranges of slope parameters become the axes of a family, with the number of the file between; other numbers have none.
+    #[test]
+    fn ranges_are_axes() {
+        let text = format!(
+            "{COAT}live = {{ alpha = [0.05, 0.2], thickness = true, absorption = true, weight = true }}\n\
+             {ENGINE}live = {{ base_color = true, metallic = true, alpha = [0.1, 0.5] }}\n"
+        );
+        let material = read(&text).unwrap();
+        let family = material.family().unwrap();
+        let near = |a: [f64; 2], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+        assert!(near(family.coat, [0.05, 0.2]) && near(family.base, [0.1, 0.5]) && family.is_metallic, "{family:?}");
+        assert_eq!((material.weight(), material.model(), material.has_side()), (Some(1.0), ShadingModel::Lobes, true));
+        let factors = material.layers[1].live.of(MapSlot::Alpha).unwrap().factors.unwrap();
+        assert!(near(factors, [0.4, 2.0]), "{factors:?}");
+        // Without live numbers none of this is.
+        let plain = read(&format!("{COAT}{ENGINE}")).unwrap();
+        assert!(plain.family().is_none() && plain.weight().is_none() && !plain.layers[0].varies_slab());
+    }
+
+    /// The layers below a coat keep their numbers, and have those of the whole surface.
+    #[test]
+    fn sides_have_their_own() {
+        let text = format!(
+            "{COAT}live = {{ weight = true, normal = true }}\n{METAL}live = {{ tangent = true, alpha_x = [0.1, 0.4] }}\n"
+        );
+        let side = read(&text).unwrap().side().unwrap();
+        let slots: Vec<MapSlot> = side.layers[0].live.numbers().iter().map(|number| number.slot).collect();
+        assert_eq!(slots, [MapSlot::AlphaX, MapSlot::Tangent, MapSlot::Normal]);
+    }
+
+    #[test]
+    fn what_no_program_could_set_is_refused() {
+        let smooth = COAT.replace("alpha = 0.1", "smooth = true");
+        let metal = ENGINE.replace("base_color", "metallic = 1\nbase_color");
+        for (layers, message) in [
+            (format!("{COAT}live = {{ alpha = [0.2, 0.4] }}\n{ENGINE}"), "leaves the slope parameter of the layer out"),
+            (format!("{COAT}live = {{ alpha = [0.4, 0.2] }}\n{ENGINE}"), "begins above its end"),
+            (format!("{smooth}live = {{ alpha = [0.2, 0.4] }}\n{ENGINE}"), "a smooth surface has no slopes"),
+            (format!("{COAT}live = {{ alpha_x = [0.1, 0.4] }}\n{ENGINE}"), "anisotropic surface"),
+            (format!("{COAT}{METAL}live = {{ alpha = [0.1, 0.4] }}\n"), "two slope parameters"),
+            (format!("{COAT}{METAL}live = {{ roughness = true }}\n"), "belongs to the first layer"),
+            (format!("{COAT}{metal}live = {{ base_color = true }}\n"), "needs a live `metallic`"),
+            (
+                format!("{COAT}live = {{ color = true }}\n{ENGINE}"),
+                "unknown key `color` in the `live` of a dielectric layer",
+            ),
+        ] {
+            let faults = read(&layers).unwrap_err();
+            assert!(faults.len() == 1 && faults[0].contains(message), "{faults:?}");
+        }
+    }
+}
