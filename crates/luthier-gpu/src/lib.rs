@@ -41,10 +41,9 @@ pub use luthier_environment::{Blur, Environment, EnvironmentError, Scenery, Sky,
 pub use luthier_export::{Map, Package, PackageError, Shader, Table};
 pub use luthier_manifest::{LayerValues, PlaceValues};
 pub use luthier_mesh::{Mesh, MeshError, model, soup};
-pub use maps::LiveValue;
 pub use places::Spot;
 pub use render::{Backdrop, RenderSettings};
-pub use scene::Scene;
+pub use scene::{LiveValue, Scene};
 pub use shape::{Camera, GRID_SIDE, Shape};
 pub use shown::Shown;
 pub use simulate::{Facets, Simulated, Simulation, SimulationSettings};

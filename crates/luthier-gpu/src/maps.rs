@@ -4,7 +4,7 @@ use luthier_lut::Image;
 use luthier_manifest::{LiveEntry, MapSlot, MaterialEntry};
 
 use crate::context::word;
-use crate::{GpuError, Map, Scene};
+use crate::{GpuError, LiveValue, Map, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
 pub(crate) const MAP_WORDS: usize = 10;
@@ -15,38 +15,6 @@ const TEXELS_MAX: usize = 1 << 22;
 /// Words of each layer that has maps of its own, behind those.
 const OWN_WORDS: usize = 9;
 
-/// Value of a live number of a material: a factor, a colour or a direction, as a program writes it into a place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LiveValue {
-    /// Number of the material.
-    pub material: u32,
-    /// Quantity.
-    pub slot: MapSlot,
-    /// Number of the layer from the top.
-    pub layer: u32,
-    /// One number and anything, RGB, or a vector.
-    pub value: [f32; 3],
-}
-
-impl LiveValue {
-    /// The texel that gives a place this value.
-    fn texel(&self) -> [f32; 3] {
-        let [x, y, z] = self.value;
-        match self.slot {
-            MapSlot::Normal | MapSlot::Bumps | MapSlot::Lean | MapSlot::FlakeNormal => {
-                [x, y, z].map(|component| 0.5 + 0.5 * component)
-            }
-            MapSlot::Tangent => {
-                let length_sq = (x * x + y * y).max(f32::MIN_POSITIVE);
-                [0.5 + 0.5 * (x * x - y * y) / length_sq, 0.5 + x * y / length_sq, 0.0]
-            }
-            MapSlot::Roughness => [x.max(0.0).sqrt(); 3],
-            MapSlot::Absorption | MapSlot::Albedo | MapSlot::BaseColor => [x, y, z],
-            _ => [x; 3],
-        }
-    }
-}
-
 impl Scene {
     /// The texel of a live number: of its value, or of the number of the file where a place does not have that by itself.
     fn live_texel(&self, material: usize, live: &LiveEntry) -> Option<[f32; 3]> {
@@ -54,7 +22,7 @@ impl Scene {
             (value.material as usize, value.slot, value.layer) == (material, live.slot, live.layer)
         };
         if let Some(value) = self.live.iter().find(is_own) {
-            return Some(value.texel());
+            return Some(texel_of(value));
         }
         let is_color = matches!(live.slot, MapSlot::BaseColor | MapSlot::Metallic);
         let value = |c: usize| live.default[c.min(live.default.len() - 1)] as f32;
@@ -279,6 +247,23 @@ impl Scene {
             .replace("$below", below)
             .replace("$patina", patina);
         functions + &layers
+    }
+}
+
+/// The texel that gives a place this value.
+fn texel_of(live: &LiveValue) -> [f32; 3] {
+    let [x, y, z] = live.value;
+    match live.slot {
+        MapSlot::Normal | MapSlot::Bumps | MapSlot::Lean | MapSlot::FlakeNormal => {
+            [x, y, z].map(|component| 0.5 + 0.5 * component)
+        }
+        MapSlot::Tangent => {
+            let length_sq = (x * x + y * y).max(f32::MIN_POSITIVE);
+            [0.5 + 0.5 * (x * x - y * y) / length_sq, 0.5 + x * y / length_sq, 0.0]
+        }
+        MapSlot::Roughness => [x.max(0.0).sqrt(); 3],
+        MapSlot::Absorption | MapSlot::Albedo | MapSlot::BaseColor => [x, y, z],
+        _ => [x; 3],
     }
 }
 

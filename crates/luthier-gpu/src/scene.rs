@@ -4,16 +4,28 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use luthier_lut::TableKind;
-use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest};
+use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest, MapSlot};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
 use crate::floor::Grounded;
-use crate::maps::LiveValue;
 use luthier_export::{Map, Package};
 
 use crate::GpuError;
 use crate::surroundings::Surroundings;
+
+/// Value of a live number of a material: a factor, a colour or a direction, as a program writes it into a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveValue {
+    /// Number of the material.
+    pub material: u32,
+    /// Quantity.
+    pub slot: MapSlot,
+    /// Number of the layer from the top.
+    pub layer: u32,
+    /// One number and anything, RGB, or a vector.
+    pub value: [f32; 3],
+}
 
 /// A bake on a device, ready to evaluate, to look up and to render.
 #[derive(Debug)]

@@ -64,6 +64,12 @@ impl App {
         Some([Some(subject(self.model, Way::Shader(self.form))), second])
     }
 
+    /// Values of live numbers of the material that is shown.
+    pub(crate) fn live_values(&self) -> Vec<LiveValue> {
+        let entry = self.files.selected();
+        entry.and_then(|entry| self.live.get(&entry.label)).cloned().unwrap_or_default()
+    }
+
     /// Sends the threads new orders where something changed.
     pub(crate) fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
         if let Some(subjects) = self.subjects()

@@ -10,14 +10,6 @@ use crate::app::App;
 /// End of the slider of a factor that nothing bounds.
 const FACTOR_MOST: f64 = 4.0;
 
-impl App {
-    /// Values of live numbers of the material that is shown.
-    pub(crate) fn live_values(&self) -> Vec<LiveValue> {
-        let entry = self.files.selected();
-        entry.and_then(|entry| self.live.get(&entry.label)).cloned().unwrap_or_default()
-    }
-}
-
 /// The sliders, if the material has live numbers.
 pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     let Some(label) = app.files.selected().map(|entry| entry.label.clone()) else { return };
