@@ -116,9 +116,9 @@ mod tests {
     fn read(layers: &str) -> Result<Material, Vec<String>> {
         let text = format!("schema = 1\nname = \"m\"\n{layers}");
         let parsed = parse("m.toml", &text, &|_| Err(std::io::ErrorKind::NotFound.into()));
-        parsed.map(|parsed| parsed.material).map_err(|faults| {
-            faults.iter().filter(|fault| fault.message != "").map(|fault| fault.message.clone()).collect()
-        })
+        parsed
+            .map(|parsed| parsed.material)
+            .map_err(|faults| faults.iter().map(|fault| fault.message.clone()).collect())
     }
 
     /// Ranges of slope parameters become the axes of a family, with the number of the file between; other numbers have none.
