@@ -2,7 +2,7 @@
 
 use luthier_layers::effects::flakes::Flakes;
 use luthier_lut::Image;
-use luthier_manifest::MapSlot;
+use luthier_manifest::{LiveEntry, LiveRange, MapSlot};
 use luthier_material::{FlakeSource, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::stack::Base;
 
@@ -101,6 +101,57 @@ pub fn height_normals(heights: &Image, height: f64) -> Image {
         }
     }
     normals
+}
+
+/// The numbers of a material that a program sets at run time.
+pub fn live_numbers(material: &Material) -> Vec<LiveEntry> {
+    let mut found = Vec::new();
+    for (i, (layer, extras)) in material.stack.layers.iter().zip(&material.layers).enumerate() {
+        let mut add = |slot: MapSlot, factors: Option<[f64; 2]>| {
+            let from = |most: Option<f64>| Some(LiveRange { least: 0.0, most });
+            let slab = match &layer.base {
+                Base::Dielectric { slab, .. } => (vec![slab.thickness_um], slab.absorption_per_um.to_vec()),
+                _ => Default::default(),
+            };
+            let slopes = || factors.map(|[least, most]| LiveRange { least, most: Some(most) });
+            let (default, range, number) = match slot {
+                MapSlot::Normal | MapSlot::Bumps | MapSlot::Lean | MapSlot::FlakeNormal => {
+                    (vec![0.0, 0.0, 1.0], None, Vec::new())
+                }
+                MapSlot::Tangent => (vec![1.0, 0.0], None, Vec::new()),
+                MapSlot::Roughness | MapSlot::Patina => (vec![1.0], from(Some(1.0)), Vec::new()),
+                MapSlot::Thickness => (vec![1.0], from(None), slab.0),
+                MapSlot::Absorption => (vec![1.0; 3], from(None), slab.1),
+                MapSlot::Weight => {
+                    let most = (extras.weight > 0.0).then(|| 1.0 / extras.weight);
+                    (vec![1.0], from(most), vec![extras.weight])
+                }
+                MapSlot::Alpha | MapSlot::AlphaX => (vec![1.0], slopes(), vec![layer.surface.alpha_x]),
+                MapSlot::AlphaY => (vec![1.0], slopes(), vec![layer.surface.alpha_y]),
+                MapSlot::Albedo => match &layer.base {
+                    Base::Diffuse(base) => (base.albedo.to_vec(), from(Some(1.0)), Vec::new()),
+                    _ => return,
+                },
+                MapSlot::BaseColor | MapSlot::Metallic => {
+                    let Some(surface) = extras.metallic else { return };
+                    let is_color = slot == MapSlot::BaseColor;
+                    let default = if is_color { surface.base_color.to_vec() } else { vec![surface.metallic] };
+                    (default, from(Some(1.0)), Vec::new())
+                }
+            };
+            let member = LiveEntry::member_of(slot, i as u32);
+            found.push(LiveEntry { slot, layer: i as u32, member, default, range, number });
+        };
+        let is_live = |slot| extras.live.of(slot).is_some();
+        // Functions that take how metallic a place is take its colour, too.
+        if is_live(MapSlot::Metallic) && !extras.varies(MapSlot::BaseColor) {
+            add(MapSlot::BaseColor, None);
+        }
+        for number in extras.live.numbers() {
+            add(number.slot, number.factors);
+        }
+    }
+    found
 }
 
 /// The maps of a material: layers from the top down, then effects.

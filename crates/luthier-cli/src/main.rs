@@ -6,6 +6,7 @@ mod directions;
 mod grid;
 mod input;
 mod interrupt;
+mod live;
 mod materials;
 #[cfg(feature = "gpu")]
 mod memory_bake;

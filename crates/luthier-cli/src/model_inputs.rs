@@ -15,6 +15,7 @@ use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
 use crate::directions::Angles;
+use crate::live::LiveValue;
 use crate::numbers::{not_negative, number, share, wavelength};
 
 #[derive(Debug, Args)]
@@ -61,6 +62,10 @@ pub(crate) struct ModelInputs {
     seed: Option<u64>,
     #[command(flatten)]
     textures: Textures,
+    /// Value of a number that the file has under `live`, as a program would write it into the place: a factor, or a colour, with the layer counted from 0,
+    /// for models with a shader; may be given several times
+    #[arg(long, value_name = "KEY=X,...", conflicts_with_all = ["furnace", "environment"])]
+    pub(crate) live: Vec<LiveValue>,
 }
 
 /// Values of the textures at the place, for any model.

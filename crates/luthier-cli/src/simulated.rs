@@ -61,16 +61,16 @@ pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
             found.push((format!("layer.{number}.{}", distribution_key(slopes)), Feature::Distribution));
         }
         // Films are refused with their weights.
-        let maps = material.layers[number].maps.named();
-        for map in maps.filter(|map| map.slot != MapSlot::Weight || !material.weighs_film()) {
-            let of_surface = match map.slot {
+        let varied = material.layers[number].varied();
+        for (key, slot) in varied.filter(|(_, slot)| *slot != MapSlot::Weight || !material.weighs_film()) {
+            let of_surface = match slot {
                 MapSlot::Normal => Feature::NormalMap,
                 MapSlot::Roughness => Feature::RoughnessMap,
                 MapSlot::Weight => Feature::Weight,
                 _ => Feature::ThicknessMap,
             };
-            let feature = map.slot.layer_feature(number as u32).unwrap_or(of_surface);
-            found.push((format!("layer.{number}.maps.{}", map.key), feature));
+            let feature = slot.layer_feature(number as u32).unwrap_or(of_surface);
+            found.push((format!("layer.{number}.{key}"), feature));
         }
     }
     let effects = &material.effects;

@@ -9,6 +9,7 @@ use luthier_manifest::{Form, LayerRecord, MaterialEntry};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::live::PageLive;
 use crate::maps::PageMaps;
 use crate::roughness::PageSlopes;
 use crate::sets::{PageSet, PageTable, constants, is_blurred, tables};
@@ -53,6 +54,8 @@ struct PageLook {
     model: &'static str,
     is_blurred: bool,
     slopes: PageSlopes,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<PageLive>,
     bytes: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     table_error: Option<String>,
@@ -160,6 +163,7 @@ impl PageLook {
             model: entry.model.name(),
             is_blurred: is_blurred(entry),
             slopes: PageSlopes::of(entry),
+            live: PageLive::of(entry),
             bytes: bytes(table_bytes(package, entry)),
             table_error: table_error(package, entry).map(|error| format!("{error:.1e}")),
             lobe_error: lobes.map(|error| format!("{:.3}", error.lobe)),

@@ -27,7 +27,7 @@
 //!
 //! Each uses only those above it.
 //!
-//! - `error`, `exhibit`, `markup`, `pack`, `roughness`: exhibits, and texts, numbers and factors of the page.
+//! - `error`, `exhibit`, `live`, `markup`, `pack`, `roughness`: exhibits, and texts, numbers, sliders and factors of the page.
 //! - `maps`, `sets`, `skies`, `section`: textures, shaders, surroundings and cross-sections.
 //! - `data`, `document`: the data of the script, and the page around it.
 
@@ -35,6 +35,7 @@ mod data;
 mod document;
 mod error;
 mod exhibit;
+mod live;
 mod maps;
 mod markup;
 mod pack;

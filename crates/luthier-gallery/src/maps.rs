@@ -54,7 +54,9 @@ impl PageMaps {
 
 /// The maps of single layers that the model of a material shows in the form `baked`, and a page does not.
 pub fn hidden_maps(entry: &MaterialEntry) -> impl Iterator<Item = (u32, MapSlot)> {
-    entry.shown_layer_maps(Form::Baked).filter(|(layer, slot)| place(Some(*layer), *slot).is_none())
+    let is_map = |layer: u32, slot| entry.maps.iter().any(|map| (map.layer, map.slot) == (Some(layer), slot));
+    let shown = entry.shown_layer_maps(Form::Baked).filter(move |(layer, slot)| is_map(*layer, *slot));
+    shown.filter(|(layer, slot)| place(Some(*layer), *slot).is_none())
 }
 
 /// Place of a map in `view.glsl`, if the page shows it: a map of the whole surface, the albedo of the base, or a lean.

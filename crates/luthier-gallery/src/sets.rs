@@ -9,6 +9,7 @@ use luthier_manifest::{
 use luthier_shader::{MaterialSet, emit};
 use serde::Serialize;
 
+use crate::live::PageLive;
 use crate::roughness::{self, PageSlopes};
 use crate::{GalleryError, LIGHT_RADIUS, pack};
 
@@ -54,7 +55,9 @@ pub(crate) struct PageSet {
 struct PageShader {
     glsl: String,
     /// Words that choose the code around the shader.
-    defines: Vec<&'static str>,
+    defines: Vec<String>,
+    /// Layers that have values of their own in a place.
+    layers: usize,
     /// Tables that it reads.
     tables: Vec<String>,
 }
@@ -138,15 +141,30 @@ impl PageShader {
             (" luthier_glitter_normal(", "VIEW_GLITTER"),
             ("vec3 base_color;", "VIEW_COLORS"),
             ("vec3 inner_normal;", "VIEW_LEANS"),
+            ("vec2 alpha_factors;", "VIEW_OWN_ALPHAS"),
+            ("vec2 tangent;", "VIEW_OWN_TANGENTS"),
+            ("vec3 absorption_factors;", "VIEW_OWN_TINTS"),
+            (" luthier_metallic_place(", "VIEW_METALS"),
             (" luthier_lookup_fresnel(", "VIEW_FRESNEL"),
             (" luthier_lookup_fgd(", "VIEW_FGD"),
             (" luthier_lookup_film(", "VIEW_FILM"),
             (" luthier_environment_lobes(", "VIEW_LOBES"),
         ];
-        let defines = defines.into_iter().filter(|(text, _)| glsl.contains(text)).map(|(_, define)| define).collect();
+        let defines = defines.into_iter().filter(|(text, _)| glsl.contains(text)).map(|(_, define)| define.to_owned());
+        let mut defines: Vec<String> = defines.collect();
+        let own = |text: &str| glsl.split("struct LuthierLayerPlace {").nth(1)?.split('}').next()?.find(text);
+        if own("float slab_factor;").is_some() {
+            defines.push("VIEW_OWN_SLABS".to_owned());
+        }
+        let layers =
+            glsl.split("LuthierLayerPlace layers[").nth(1).and_then(|rest| rest.split(']').next()?.parse().ok());
+        let layers = layers.unwrap_or(0);
+        if manifest.materials.iter().any(|entry| PageLive::of(entry).is_some()) {
+            defines.extend(["VIEW_LIVE".to_owned(), format!("VIEW_LIVE_LAYERS {layers}")]);
+        }
         let bindings = luthier_shader::bindings(&set, form).into_iter();
         let tables = bindings.filter(|b| b.resource == "texture_2d<f32>").map(|b| b.name).collect();
-        Ok(Self { glsl: pack::text(&glsl), defines, tables })
+        Ok(Self { glsl: pack::text(&glsl), defines, layers, tables })
     }
 }
 

@@ -43,7 +43,7 @@ pub use luthier_manifest::{LayerValues, PlaceValues};
 pub use luthier_mesh::{Mesh, MeshError, model, soup};
 pub use places::Spot;
 pub use render::{Backdrop, RenderSettings};
-pub use scene::Scene;
+pub use scene::{LiveValue, Scene};
 pub use shape::{Camera, GRID_SIDE, Shape};
 pub use shown::Shown;
 pub use simulate::{Facets, Simulated, Simulation, SimulationSettings};

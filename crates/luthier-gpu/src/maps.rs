@@ -1,10 +1,10 @@
 //! Maps that vary a surface, for the renderer.
 
 use luthier_lut::Image;
-use luthier_manifest::{MapSlot, MaterialEntry};
+use luthier_manifest::{LiveEntry, MapSlot, MaterialEntry};
 
 use crate::context::word;
-use crate::{GpuError, Map, Scene};
+use crate::{GpuError, LiveValue, Map, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
 pub(crate) const MAP_WORDS: usize = 10;
@@ -13,9 +13,22 @@ pub(crate) const MAP_WORDS: usize = 10;
 const TEXELS_MAX: usize = 1 << 22;
 
 /// Words of each layer that has maps of its own, behind those.
-const OWN_WORDS: usize = 8;
+const OWN_WORDS: usize = 9;
 
 impl Scene {
+    /// The texel of a live number: of its value, or of the number of the file where a place does not have that by itself.
+    fn live_texel(&self, material: usize, live: &LiveEntry) -> Option<[f32; 3]> {
+        let is_own = |value: &&LiveValue| {
+            (value.material as usize, value.slot, value.layer) == (material, live.slot, live.layer)
+        };
+        if let Some(value) = self.live.iter().find(is_own) {
+            return Some(texel_of(value));
+        }
+        let is_color = matches!(live.slot, MapSlot::BaseColor | MapSlot::Metallic);
+        let value = |c: usize| live.default[c.min(live.default.len() - 1)] as f32;
+        is_color.then(|| [0, 1, 2].map(value))
+    }
+
     /// The words of a material's maps, then their texels. `first` is the number of the first word.
     pub(crate) fn map_words(&self, material: usize, entry: &MaterialEntry, first: usize) -> Vec<[u32; 4]> {
         let mut headers = self.no_map_words();
@@ -42,9 +55,25 @@ impl Scene {
             let image = shrunk(map);
             let [width, height] = image.size();
             *header = [(behind + texels.len()) as u32, width, height, transform.map_or(0, |_| at)];
-            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
-            let [r, g, b] = factor.map(|factor| factor as f32);
+            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]).map(|factor| factor as f32);
+            // A live number takes the place of that of the file. Of directions, those of the map hold.
+            let is_direction = matches!(map.slot, MapSlot::Normal | MapSlot::Bumps | MapSlot::Tangent | MapSlot::Lean);
+            let live = entry.live.iter().find(|live| (live.slot, Some(live.layer)) == (map.slot, map.layer));
+            let live = live.filter(|_| !is_direction).and_then(|live| self.live_texel(material, live));
+            let [r, g, b] = live.unwrap_or(factor);
             texels.extend(image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
+        }
+        for live in &entry.live {
+            let number = if live.slot.is_of_layer_place(live.layer) {
+                MAP_WORDS + OWN_WORDS * live.layer as usize + own_word(live.slot)
+            } else {
+                slot_word(live.slot)
+            };
+            let header = headers.get_mut(number).filter(|header| header[1] == 0);
+            if let (Some(header), Some([r, g, b])) = (header, self.live_texel(material, live)) {
+                *header = [(behind + texels.len()) as u32, 1, 1, 0];
+                texels.push([r, g, b, 1.0].map(f32::to_bits));
+            }
         }
         // A map of metal alone leaves the base colour to the file, where the albedo of the base is that of a brighter one.
         let metals = self.maps.iter().find(|map| map.material as usize == material && map.slot == MapSlot::Metallic);
@@ -115,6 +144,11 @@ impl Scene {
             (
                 self.interface.fills("LuthierLayerPlace", "slab_factor"),
                 "own.slab_factor = shading_own_factor(material, layer, 5u, uv);",
+            ),
+            (
+                self.interface.fills("LuthierLayerPlace", "absorption_factors"),
+                "let absorption = shading_own(material, layer, 8u);\n    if absorption.y > 0u {\n        \
+                 own.absorption_factors = shading_bilinear(absorption, uv).xyz;\n    }",
             ),
         ];
         let fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
@@ -217,6 +251,23 @@ impl Scene {
     }
 }
 
+/// The texel that gives a place this value.
+fn texel_of(live: &LiveValue) -> [f32; 3] {
+    let [x, y, z] = live.value;
+    match live.slot {
+        MapSlot::Normal | MapSlot::Bumps | MapSlot::Lean | MapSlot::FlakeNormal => {
+            [x, y, z].map(|component| 0.5 + 0.5 * component)
+        }
+        MapSlot::Tangent => {
+            let length_sq = (x * x + y * y).max(f32::MIN_POSITIVE);
+            [0.5 + 0.5 * (x * x - y * y) / length_sq, 0.5 + x * y / length_sq, 0.0]
+        }
+        MapSlot::Roughness => [x.max(0.0).sqrt(); 3],
+        MapSlot::Absorption | MapSlot::Albedo | MapSlot::BaseColor => [x, y, z],
+        _ => [x; 3],
+    }
+}
+
 /// The texels of a map, RGBA, averaged down to at most [`TEXELS_MAX`]. Normals of flakes are never averaged: texels are different flakes.
 fn shrunk(map: &Map) -> Image {
     let mut image = map.picture.image();
@@ -242,6 +293,7 @@ fn slot_word(slot: MapSlot) -> usize {
         | MapSlot::AlphaX
         | MapSlot::AlphaY
         | MapSlot::Tangent
+        | MapSlot::Absorption
         | MapSlot::BaseColor
         | MapSlot::Metallic => usize::MAX,
     }
@@ -257,6 +309,7 @@ fn own_word(slot: MapSlot) -> usize {
         MapSlot::Tangent => 4,
         MapSlot::BaseColor => 6,
         MapSlot::Metallic => 7,
+        MapSlot::Absorption => 8,
         _ => 5,
     }
 }

@@ -11,7 +11,7 @@ const KERNEL: &str = include_str!("wgsl/places.wgsl");
 const PAIR_WORDS: usize = 8;
 
 /// Number of words of a layer.
-const LAYER_WORDS: usize = 2;
+const LAYER_WORDS: usize = 3;
 
 /// A place, and directions to the light and to the eye.
 pub type Spot = (PlaceValues, [f32; 3], [f32; 3]);
@@ -50,12 +50,13 @@ impl Scene {
         .map(|(_, line)| line)
         .collect();
         for layer in 0..layers {
-            let [first, second] = [0, 1].map(|word| PAIR_WORDS + LAYER_WORDS * layer + word);
+            let [first, second, third] = [0, 1, 2].map(|word| PAIR_WORDS + LAYER_WORDS * layer + word);
             let members = [
                 ("normal", input(first, "xyz")),
                 ("slab_factor", input(first, "w")),
                 ("alpha_factors", input(second, "xy")),
                 ("tangent", format!("luthier_tangent({})", input(second, "zw"))),
+                ("absorption_factors", input(third, "xyz")),
             ];
             let members = members.iter().filter(|(member, _)| self.interface.fills("LuthierLayerPlace", member));
             fill.extend(members.map(|(member, value)| format!("place.layers[{layer}].{member} = {value};")));
@@ -92,7 +93,7 @@ fn words(material: u32, (place, wi, wo): &Spot, layers: usize) -> Vec<[f32; 4]> 
     for layer in 0..layers {
         let own = place.layers.get(layer).unwrap_or(&LayerValues::NONE);
         let ([ax, ay], [tx, ty]) = (own.alpha_factors, own.tangent);
-        words.extend([word(own.normal, own.slab_factor), [ax, ay, tx, ty]]);
+        words.extend([word(own.normal, own.slab_factor), [ax, ay, tx, ty], word(own.absorption_factors, 0.0)]);
     }
     words
 }

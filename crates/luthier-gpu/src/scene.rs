@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use luthier_lut::TableKind;
-use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest};
+use luthier_manifest::{Form, FunctionEntry, Interface, LayerRecord, Manifest, MapSlot};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
@@ -14,12 +14,27 @@ use luthier_export::{Map, Package};
 use crate::GpuError;
 use crate::surroundings::Surroundings;
 
+/// Value of a live number of a material: a factor, a colour or a direction, as a program writes it into a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveValue {
+    /// Number of the material.
+    pub material: u32,
+    /// Quantity.
+    pub slot: MapSlot,
+    /// Number of the layer from the top.
+    pub layer: u32,
+    /// One number and anything, RGB, or a vector.
+    pub value: [f32; 3],
+}
+
 /// A bake on a device, ready to evaluate, to look up and to render.
 #[derive(Debug)]
 pub struct Scene {
     pub(crate) context: Context,
     pub(crate) manifest: Manifest,
     pub(crate) maps: Vec<Map>,
+    /// Live numbers whose values are not those of the files.
+    pub(crate) live: Vec<LiveValue>,
     form: Form,
     wgsl: String,
     /// The part of the shader that kernels call and fill.
@@ -59,6 +74,7 @@ impl Scene {
             context,
             manifest: package.manifest.clone(),
             maps: package.maps.clone(),
+            live: Vec::new(),
             form,
             wgsl: wgsl.to_owned(),
             interface,
@@ -90,6 +106,7 @@ impl Scene {
             context: self.context.clone(),
             manifest: package.manifest.clone(),
             maps: package.maps.clone(),
+            live: Vec::new(),
             form: self.form,
             wgsl: self.wgsl.clone(),
             interface: self.interface.clone(),
@@ -113,6 +130,11 @@ impl Scene {
     pub fn with_words(self, words: &[[f32; 4]]) -> Result<Self, GpuError> {
         let group = self.bindings.group(&self.context, words, &Surroundings::black(&self.context)?)?;
         Ok(Self { group, ..self })
+    }
+
+    /// Takes values of live numbers ([`LiveEntry`](luthier_manifest::LiveEntry)) in place of those taken before: pictures show them without a bake.
+    pub fn set_live(&mut self, values: &[LiveValue]) {
+        self.live = values.to_vec();
     }
 
     /// Form of the shader that runs here: `baked` or `full`.

@@ -12,7 +12,7 @@
 //!
 //! - `color`, `distribution`, `error`, `file`, `limits`, `place`, `search`, `shader`, `surface`, `target`, `tiles`: names and numbers.
 //! - `record`, `constants`: layers and whole surfaces to a shader; `reads` says which tables a layer reads.
-//! - `map`, `material`: maps, and materials with all of these; `buffer` writes them down for shaders.
+//! - `map`, `live`, `material`: maps, numbers that a program sets, and materials with all of these; `buffer` writes them down for shaders.
 //! - `choice`, `manifest`, `lock`: how a scene chose, the whole bake, and its decisions that stay.
 
 mod buffer;
@@ -23,6 +23,7 @@ mod distribution;
 mod error;
 mod file;
 mod limits;
+mod live;
 mod lock;
 mod manifest;
 mod map;
@@ -49,6 +50,7 @@ pub use constants::{
 pub use error::ManifestError;
 pub use file::FileEntry;
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
+pub use live::{LiveEntry, LiveRange};
 pub use lock::{Decision, Lock};
 pub use luthier_model::{
     DiffusePart, DiffuseTerm, Feature, Form, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,

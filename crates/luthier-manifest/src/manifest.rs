@@ -311,6 +311,7 @@ mod tests {
                     ..MaterialConstants::default()
                 },
                 layers: vec![layer],
+                live: Vec::new(),
                 maps: vec![
                     MapEntry {
                         slot: MapSlot::FlakeNormal,

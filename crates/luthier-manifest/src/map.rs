@@ -16,6 +16,8 @@ luthier_lut::named! {
         Roughness = "roughness",
         /// Factor on the thickness of the slab below the layer.
         Thickness = "thickness",
+        /// Factor on what the slab below the layer absorbs, RGB.
+        Absorption = "absorption",
         /// Factor on the weight of the first layer, a coat.
         Weight = "weight",
         /// Order in which patina develops; dark places come first.
@@ -81,6 +83,8 @@ impl MapSlot {
             Self::BaseColor | Self::Metallic => Some(Feature::MetallicMap),
             Self::Lean => Some(Feature::LeanMap),
             Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
+            Self::Absorption if layer > 0 => Some(Feature::InnerAbsorptionMap),
+            Self::Absorption => Some(Feature::AbsorptionMap),
             Self::Normal | Self::Roughness | Self::Weight | Self::Patina | Self::FlakeNormal => None,
         }
     }

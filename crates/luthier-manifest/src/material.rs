@@ -7,7 +7,8 @@ use luthier_model::{
 use serde::{Deserialize, Serialize};
 
 use crate::color::ColorMode;
-use crate::constants::{MaterialConstants, SideRecord};
+use crate::constants::{MaterialConstants, SideRecord, VaryingFactor};
+use crate::live::{LiveEntry, LiveRange};
 use crate::map::{MapEntry, MapSlot};
 use crate::record::{LayerKind, LayerRecord};
 
@@ -43,6 +44,9 @@ pub struct MaterialEntry {
     pub layers: Vec<LayerRecord>,
     /// Textures that vary the surface from place to place.
     pub maps: Vec<MapEntry>,
+    /// Numbers that a program sets, of those that the model shows.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub live: Vec<LiveEntry>,
 }
 
 impl MaterialEntry {
@@ -50,7 +54,7 @@ impl MaterialEntry {
     pub fn varies(&self) -> bool {
         let MaterialConstants { flakes, glitter, .. } = &self.constants;
         let has_effect = flakes.is_some() || self.constants.bare().is_some() || glitter.is_some();
-        has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
+        has_effect || !self.maps.is_empty() || !self.live.is_empty() || self.layers.iter().any(LayerRecord::varies)
     }
 
     /// Masking and reflectance of the first interface, by which the model goes.
@@ -134,18 +138,21 @@ impl MaterialEntry {
         let SideRecord { lobes, without_film } = coat.side?;
         let kept = if without_film { 1 } else { 2 };
         let layers = std::iter::once(&coat.bare).chain(self.layers.iter().skip(kept)).cloned().collect();
-        let maps = self.maps.iter().filter_map(|map| {
-            let layer = match (map.slot, map.layer) {
-                (MapSlot::Normal | MapSlot::Roughness, layer) => layer,
-                (MapSlot::FlakeNormal | MapSlot::Weight, _) | (_, None) => return None,
-                (MapSlot::Bumps, Some(layer)) if !self.tilts_lobes(layer) => return None,
-                (_, layer) if without_film => layer,
-                (_, Some(layer)) => Some(layer.checked_sub(1)?),
-            };
-            Some(MapEntry { layer, ..map.clone() })
+        let below = |slot: MapSlot, layer: Option<u32>| match (slot, layer) {
+            (MapSlot::Normal | MapSlot::Roughness, layer) => Some(layer),
+            (MapSlot::FlakeNormal | MapSlot::Weight, _) | (_, None) => None,
+            (MapSlot::Bumps, Some(layer)) if !self.tilts_lobes(layer) => None,
+            (_, layer) if without_film => Some(layer),
+            (_, Some(layer)) => Some(Some(layer.checked_sub(1)?)),
+        };
+        let maps =
+            self.maps.iter().filter_map(|map| Some(MapEntry { layer: below(map.slot, map.layer)?, ..map.clone() }));
+        let live = self.live.iter().filter_map(|live| {
+            let layer = below(live.slot, Some(live.layer))??;
+            Some(LiveEntry { layer, member: LiveEntry::member_of(live.slot, layer), ..live.clone() })
         });
         let constants = MaterialConstants { lobes, ..MaterialConstants::default() };
-        Some(Self { layers, maps: maps.collect(), constants, ..self.clone() })
+        Some(Self { layers, maps: maps.collect(), live: live.collect(), constants, ..self.clone() })
     }
 
     /// Whether its shader shows the weight of a coat as it shows an amount of patina, and not by a [`Self::side`].
@@ -179,24 +186,73 @@ impl MaterialEntry {
         (self.constants.bare().is_none() || has_side) && ends.contains(&Some(layer as usize))
     }
 
-    /// Maps of single layers that the model shows, in order: number of the layer, and quantity. `LuthierPlace` has their values; the value of
+    /// Maps and live numbers of single layers that the model shows, in order: number of the layer, and quantity. `LuthierPlace` has their values; the value of
     /// an albedo map is its `base_color`.
     pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
+        let maps = self.maps.iter().filter_map(|map| Some((map.layer?, map.slot)));
+        let live = self.live.iter().map(|live| (live.layer, live.slot));
+        maps.chain(live).filter(move |&(layer, slot)| self.shows_of_layer(layer, slot, form) == Some(true))
+    }
+
+    /// Whether the model shows a quantity of a single layer that varies; `None` for quantities of the whole surface.
+    fn shows_of_layer(&self, layer: u32, slot: MapSlot, form: Form) -> Option<bool> {
+        let feature = slot.layer_feature(layer)?;
         let reads_all = self.model.facts().reach == Reach::All;
-        self.maps.iter().filter_map(move |map| {
-            let layer = map.layer?;
-            let feature = map.slot.layer_feature(layer)?;
-            // Models of the first interface may have the base, which is the last layer.
-            let has_base = self.model.honours(Feature::Base, form) || self.constants.diffuse_term == DiffuseTerm::Added;
-            let is_base = map.slot == MapSlot::Albedo && has_base;
-            let is_read = match map.slot {
-                MapSlot::Bumps if self.model.is_fitted() => self.tilts_lobes(layer),
-                _ if self.model.is_fitted() && matches!(feature, Feature::LayerAlpha | Feature::MetallicMap) => {
-                    self.has_axis_of(layer)
-                }
-                _ => layer == 0 || reads_all || is_base,
+        // Models of the first interface may have the base, which is the last layer.
+        let has_base = self.model.honours(Feature::Base, form) || self.constants.diffuse_term == DiffuseTerm::Added;
+        let is_base = slot == MapSlot::Albedo && has_base;
+        let is_read = match slot {
+            MapSlot::Bumps if self.model.is_fitted() => self.tilts_lobes(layer),
+            _ if self.model.is_fitted()
+                && matches!(feature, Feature::LayerAlpha | Feature::Tangents | Feature::MetallicMap) =>
+            {
+                self.has_axis_of(layer)
+            }
+            MapSlot::Absorption if self.model.is_fitted() => layer == 0 && self.tints_lobes(),
+            _ => layer == 0 || reads_all || is_base,
+        };
+        Some(is_read && self.model.honours(feature, form))
+    }
+
+    /// Keeps the live numbers that the model shows in some form, and bounds them by the rows that have them.
+    #[must_use]
+    pub fn with_live(mut self, live: Vec<LiveEntry>) -> Self {
+        let varying = self.constants.lobes.filter(|_| self.model.is_fitted()).and_then(|lobes| lobes.varying);
+        let shows = |live: &LiveEntry| {
+            let shown = Form::ALL.map(|form| self.shows_of_layer(live.layer, live.slot, form));
+            let of_surface = match live.slot {
+                MapSlot::Thickness => Feature::ThicknessMap,
+                MapSlot::Roughness => Feature::RoughnessMap,
+                MapSlot::Weight => Feature::Weight,
+                _ => Feature::NormalMap,
             };
-            (is_read && self.model.honours(feature, form)).then_some((layer, map.slot))
+            // Rows are over one factor alone, but those of a family have roughnesses in their axes, and thicknesses in closed form.
+            let has_rows = match live.slot {
+                MapSlot::Thickness => self.tints_lobes(),
+                MapSlot::Roughness => varying.is_some_and(|varying| {
+                    matches!(varying.factor, VaryingFactor::AlphaFactor | VaryingFactor::Family)
+                }),
+                _ => true,
+            } || !self.model.is_fitted();
+            let is_honoured = Form::ALL.into_iter().any(|form| self.model.honours(of_surface, form));
+            if shown == [None; 2] { is_honoured && has_rows } else { shown.contains(&Some(true)) }
+        };
+        let over_slab = varying.is_some_and(|varying| varying.factor == VaryingFactor::SlabFactor);
+        let kept = live.into_iter().filter(shows).map(|live| match (live.slot, live.range) {
+            (MapSlot::Thickness | MapSlot::Absorption, Some(range)) if over_slab && live.layer == 0 => {
+                LiveEntry { range: Some(LiveRange { most: Some(1.0), ..range }), ..live }
+            }
+            _ => live,
+        });
+        self.live = kept.collect();
+        self
+    }
+
+    /// Whether rows of lobes know what the first slab absorbs at a place: they are over its thickness, or have it in closed form.
+    fn tints_lobes(&self) -> bool {
+        let varying = self.constants.lobes.and_then(|lobes| lobes.varying);
+        varying.is_some_and(|varying| {
+            varying.factor == VaryingFactor::SlabFactor || varying.family.is_some_and(|family| family.is_metallic)
         })
     }
 

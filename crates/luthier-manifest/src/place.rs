@@ -40,11 +40,19 @@ pub struct LayerValues {
     pub tangent: [f32; 2],
     /// Factor on the thickness of the slab below it.
     pub slab_factor: f32,
+    /// Factors on what that slab absorbs, RGB.
+    pub absorption_factors: [f32; 3],
 }
 
 impl LayerValues {
     /// A layer without textures.
-    pub const NONE: Self = Self { normal: UP, alpha_factors: [1.0; 2], tangent: [1.0, 0.5], slab_factor: 1.0 };
+    pub const NONE: Self = Self {
+        normal: UP,
+        alpha_factors: [1.0; 2],
+        tangent: [1.0, 0.5],
+        slab_factor: 1.0,
+        absorption_factors: [1.0; 3],
+    };
 }
 
 impl PlaceValues {

@@ -120,10 +120,12 @@ fn unknown_key(
 
 /// A table in words; those of maps have names of the schema alone.
 fn this(table: &Table) -> String {
-    match table.name.strip_suffix("-maps") {
-        Some("metallic") => "the `maps` of a metallic-roughness layer".to_owned(),
-        Some(kind) => format!("the `maps` of a {kind} layer"),
-        None => format!("this {}", table.name),
+    match table.name.split_once('-') {
+        Some((kind, key @ ("maps" | "live"))) => {
+            let kind = if kind == "metallic" { "metallic-roughness" } else { kind };
+            format!("the `{key}` of a {kind} layer")
+        }
+        _ => format!("this {}", table.name),
     }
 }
 

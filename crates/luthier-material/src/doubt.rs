@@ -213,10 +213,14 @@ fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, bake: &BakeSettings, at: &A
 
 fn slab(ior: &Ior, slab: &Slab, is_last: bool, bake: &BakeSettings, at: &At<'_>, sink: &mut Sink<'_>) {
     let absorbs = slab.absorption_per_um.iter().any(|&a| a > 0.0);
-    if at.has("maps.thickness") && (is_last || slab.optical_depth() == [0.0; 3]) {
-        let hint = "leave it out, or give `absorption_per_um`, `thickness_um` and a layer below".to_owned();
-        let message = "the thickness of a slab that absorbs nothing is of no consequence, nor is this map of it";
-        sink.warn(at.span("maps.thickness"), message, Some(hint));
+    for (map, message) in [
+        ("maps.thickness", "the thickness of a slab that absorbs nothing is of no consequence, nor is this map of it"),
+        ("maps.absorption", "this slab absorbs nothing, whatever the texels that multiply it"),
+    ] {
+        if at.has(map) && (is_last || slab.optical_depth() == [0.0; 3]) {
+            let hint = "leave it out, or give `absorption_per_um`, `thickness_um` and a layer below".to_owned();
+            sink.warn(at.span(map), message, Some(hint));
+        }
     }
     if is_last {
         if slab.thickness_um > 0.0 {

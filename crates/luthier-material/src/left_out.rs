@@ -78,18 +78,22 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 asked.push((feature, format!("layer.{number}.{name}")));
             }
         }
-        for map in material.layers[number].maps.named() {
-            if let Some(feature) = map.slot.layer_feature(number as u32) {
-                asked.push((feature, format!("layer.{number}.maps.{}", map.key)));
+        for (key, slot) in material.layers[number].varied() {
+            if let Some(feature) = slot.layer_feature(number as u32) {
+                asked.push((feature, format!("layer.{number}.{key}")));
             }
         }
     }
-    let maps = material.layers.first().map(|first| &first.maps);
+    let first = material.layers.first();
+    let key_of =
+        |slot| first.and_then(|first| Some(format!("layer.0.{}", first.varied_key(slot)?))).unwrap_or_default();
+    let slots = [MapSlot::Normal, MapSlot::Roughness, MapSlot::Thickness, MapSlot::Absorption];
+    let [normal_key, roughness_key, thickness_key, absorption_key] = slots.map(key_of);
     let effects = &material.effects;
     for (is_asked, feature, key) in [
-        (maps.is_some_and(|maps| maps.normal.is_some()), Feature::NormalMap, "layer.0.maps.normal"),
-        (maps.is_some_and(|maps| maps.roughness.is_some()), Feature::RoughnessMap, "layer.0.maps.roughness"),
-        (maps.is_some_and(|maps| maps.thickness.is_some()), Feature::ThicknessMap, "layer.0.maps.thickness"),
+        (!normal_key.is_empty(), Feature::NormalMap, normal_key.as_str()),
+        (!roughness_key.is_empty(), Feature::RoughnessMap, &roughness_key),
+        (!thickness_key.is_empty(), Feature::ThicknessMap, &thickness_key),
         (effects.flakes.is_some(), Feature::Flakes, "effects.flakes"),
         (effects.patina.is_some(), Feature::Patina, "effects.patina"),
         (material.weight().is_some() && !material.weighs_film(), Feature::Weight, weight_key(material)),
@@ -102,21 +106,22 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
     }
     let found = asked.into_iter().map(|(feature, key)| LeftOut { feature, key, forms: missing(model, feature) });
     let mut found: Vec<LeftOut> = found.filter(|part| !part.forms.is_empty()).collect();
-    if let Some(maps) = maps.filter(|_| model.is_fitted()) {
+    if model.is_fitted() && first.is_some() {
         // Rows are over one factor, over the amount of patina, or over the azimuth. Beside a weight, the layers below the coat have rows of their own.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
-        let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());
         let film = layers.first().and_then(|first| first.films.first()).is_some_and(Film::varies);
         // Flakes lie below the patina alone, and rows do not tell its lobes from those of several layers that are bare.
         let has_flakes_above_lobes = effects.flakes.is_some() && layers.len() > 2;
         let is_under_patina = effects.patina.is_some() && layers.len() > 1;
         let family = material.family();
         // A family has the factors of a roughness map in its axes, and what slabs absorb in closed form.
-        let (roughness, thickness) = if family.is_some() { (false, false) } else { (roughness, thickness) };
+        let [roughness, thickness, absorption] =
+            [&roughness_key, &thickness_key, &absorption_key].map(|key| !key.is_empty() && family.is_none());
+        let slab = thickness || absorption;
         for (number, layer) in material.layers.iter().enumerate() {
-            for map in layer.maps.named() {
+            for (key, slot) in layer.varied() {
                 let has_axis = family.is_some_and(|family| number == 0 || number == family.interface);
-                let lacks = match map.slot {
+                let lacks = match slot {
                     MapSlot::Alpha
                     | MapSlot::AlphaX
                     | MapSlot::AlphaY
@@ -125,18 +130,19 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                     | MapSlot::Metallic => !has_axis,
                     _ => false,
                 };
-                if let Some(feature) = map.slot.layer_feature(number as u32).filter(|_| lacks) {
-                    let key = format!("layer.{number}.maps.{}", map.key);
+                if let Some(feature) = slot.layer_feature(number as u32).filter(|_| lacks) {
+                    let key = format!("layer.{number}.{key}");
                     found.push(LeftOut { feature, key, forms: Form::ALL.to_vec() });
                 }
             }
         }
         for (lacks, feature, key) in [
-            (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
-            (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
-            (film && (is_turned || roughness || thickness), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
+            (roughness && is_turned, Feature::RoughnessMap, roughness_key.as_str()),
+            (thickness && (is_turned || roughness), Feature::ThicknessMap, &thickness_key),
+            (absorption && (is_turned || roughness), Feature::AbsorptionMap, &absorption_key),
+            (film && (is_turned || roughness || slab), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
             (
-                is_under_patina && (is_turned || roughness || thickness || film || has_flakes_above_lobes),
+                is_under_patina && (is_turned || roughness || slab || film || has_flakes_above_lobes),
                 Feature::Patina,
                 "effects.patina",
             ),
@@ -147,8 +153,10 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
         // Lobes of several interfaces are not told apart: the lowest one tilts them.
         let lowest = layers.iter().rposition(|layer| !matches!(layer.base, Base::Diffuse(_))).unwrap_or(0);
-        for number in (1..lowest).filter(|number| material.layers[*number].maps.bumps.is_some()) {
-            let key = format!("layer.{number}.maps.bumps");
+        let bumps_of = |number: usize| {
+            material.layers[number].varied_key(MapSlot::Bumps).map(|key| format!("layer.{number}.{key}"))
+        };
+        for key in (1..lowest).filter_map(bumps_of) {
             if !found.iter().any(|part| part.key == key) {
                 found.push(LeftOut { feature: Feature::Bumps, key, forms: Form::ALL.to_vec() });
             }
@@ -160,8 +168,10 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
 /// The key that gives the first layer a weight.
 fn weight_key(material: &Material) -> &'static str {
     let is_stated = material.layers.first().is_some_and(|first| first.weight < 1.0);
+    let has_map = material.layers.first().is_some_and(|first| first.maps.weight.is_some());
     match (material.weighs_film(), is_stated) {
         (false, true) => "layer.0.weight",
+        (false, false) if !has_map => "layer.0.live.weight",
         (false, false) => "layer.0.maps.weight",
         (true, true) => "layer.0.film.0.weight",
         (true, false) => "layer.0.film.0.maps.weight",

@@ -134,8 +134,8 @@ impl Material {
 
     /// Weight of its first layer, a coat, or of the film on it, if that is below 1 or a map multiplies it.
     pub fn weight(&self) -> Option<f64> {
-        let LayerExtras { weight, maps, .. } = self.layers.first()?;
-        (*weight < 1.0 || maps.weight.is_some()).then_some(*weight)
+        let first = self.layers.first()?;
+        (first.weight < 1.0 || first.varies(MapSlot::Weight)).then_some(first.weight)
     }
 
     /// Whether its weight is that of the film on the first layer.
@@ -175,14 +175,14 @@ impl Material {
         if self.weighs_film() || layers.len() < 2 {
             return self.weighs_film();
         }
-        let first = &self.layers[0].maps;
+        let first = &self.layers[0];
         self.family().is_some()
-            || first.roughness.is_some()
-            || first.thickness.is_some()
+            || first.varies(MapSlot::Roughness)
+            || first.varies_slab()
             || layers[0].films.first().is_some_and(Film::varies)
             || layers.iter().any(Layer::is_anisotropic)
             // Own normals make a frame for each of the two surfaces.
-            || self.layers.iter().any(|layer| layer.maps.albedo.is_some() || layer.maps.bumps.is_some())
+            || self.layers.iter().any(|layer| layer.varies(MapSlot::Albedo) || layer.varies(MapSlot::Bumps))
             // Flakes lie below the coat alone.
             || self.effects.flakes.is_some() && layers.len() > 2
     }
@@ -206,9 +206,13 @@ impl Material {
         (side.effects.flakes, side.effects.patina) = (None, None);
         let first = side.layers.first_mut()?;
         first.weight = 1.0;
-        (first.maps.weight, first.maps.thickness) = (None, None);
+        (first.maps.weight, first.maps.thickness, first.maps.absorption) = (None, None, None);
         (first.maps.normal, first.maps.roughness) = (coat.maps.normal, coat.maps.roughness);
         first.texels.roughness = coat.texels.roughness;
+        for slot in [MapSlot::Weight, MapSlot::Thickness, MapSlot::Absorption] {
+            first.live.remove(slot);
+        }
+        first.live.take_surface(&coat.live);
         Some(side)
     }
 
@@ -219,13 +223,14 @@ impl Material {
     pub fn family(&self) -> Option<SlopeRanges> {
         let layers = &self.stack.layers;
         let interface = layers.iter().rposition(|layer| !matches!(layer.base, Base::Diffuse(_)))?;
-        let has_slopes =
-            |maps: &Maps| [&maps.alpha, &maps.alpha_x, &maps.alpha_y, &maps.tangent].into_iter().any(Option::is_some);
+        let has_slopes = |layer: &LayerExtras| {
+            [MapSlot::Alpha, MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent].iter().any(|slot| layer.varies(*slot))
+        };
         let is_turned = layers.iter().any(Layer::is_anisotropic);
-        let is_asked = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i].maps))
+        let is_asked = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i]))
             || self.layers[interface].metallic.is_some()
-            || is_turned && self.layers[0].maps.roughness.is_some();
-        let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i].maps));
+            || is_turned && self.layers[0].varies(MapSlot::Roughness);
+        let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i]));
         // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
         // A film on this base itself has closed forms.
         let has_color = |(number, layer): (usize, &Layer)| {
@@ -243,17 +248,28 @@ impl Material {
         };
         let is_metallic = self.layers[interface].metallic.is_some();
         let first = &self.layers[0];
-        let has_slab = first.maps.thickness.is_some() && !is_metallic;
+        let has_slab = first.varies_slab() && !is_metallic;
         if !is_asked || is_turned_between || has_film || has_slab || self.effects.patina.is_some() {
             return None;
         }
-        let of_surface = if first.maps.roughness.is_some() { first.texels.roughness.map(|r| r * r) } else { [1.0; 2] };
+        let mut of_surface =
+            if first.maps.roughness.is_some() { first.texels.roughness.map(|r| r * r) } else { [1.0; 2] };
+        if first.live.of(MapSlot::Roughness).is_some() {
+            of_surface[0] = 0.0;
+        }
         let range = |number: usize| {
-            let LayerExtras { maps, texels, .. } = &self.layers[number];
+            let LayerExtras { maps, texels, live, .. } = &self.layers[number];
             let surface = layers[number].surface;
-            let of = |map: &Option<PictureRef>, texels: [f64; 2]| if map.is_some() { texels } else { [1.0; 2] };
-            let (both, along, across) =
-                (of(&maps.alpha, texels.alpha), of(&maps.alpha_x, texels.alpha_x), of(&maps.alpha_y, texels.alpha_y));
+            let of = |map: &Option<PictureRef>, texels: [f64; 2], slot: MapSlot| {
+                let texels = if map.is_some() { texels } else { [1.0; 2] };
+                let factors = live.of(slot).and_then(|number| number.factors).unwrap_or([1.0; 2]);
+                [0, 1].map(|end: usize| texels[end] * factors[end])
+            };
+            let (both, along, across) = (
+                of(&maps.alpha, texels.alpha, MapSlot::Alpha),
+                of(&maps.alpha_x, texels.alpha_x, MapSlot::AlphaX),
+                of(&maps.alpha_y, texels.alpha_y, MapSlot::AlphaY),
+            );
             [0, 1].map(|end: usize| {
                 let mean = 0.5 * (surface.alpha_x * along[end] + surface.alpha_y * across[end]);
                 mean * both[end] * of_surface[end]
@@ -311,6 +327,8 @@ pub struct LayerExtras {
     pub exponents: Option<[f64; 2]>,
     /// Texture slots.
     pub maps: Maps,
+    /// Numbers that a program sets at run time.
+    pub live: Live,
     /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
     /// Smallest and largest texel of the maps of slope parameters.
@@ -323,7 +341,7 @@ impl Default for LayerExtras {
     /// A layer that is nothing but physics, and covers all of the surface.
     fn default() -> Self {
         let (reradiation, film_variation, exponents, metallic, brightening) = (None, None, None, None, None);
-        let (maps, texels) = (Maps::default(), TexelRanges::default());
+        let (maps, live, texels) = (Maps::default(), Live::default(), TexelRanges::default());
         Self {
             weight: 1.0,
             weighs_film: false,
@@ -331,6 +349,7 @@ impl Default for LayerExtras {
             film_variation,
             exponents,
             maps,
+            live,
             metallic,
             texels,
             brightening,
@@ -388,6 +407,8 @@ pub struct Maps {
     pub roughness: Option<PictureRef>,
     /// Multiplies the slab's thickness.
     pub thickness: Option<PictureRef>,
+    /// Multiplies what the slab absorbs.
+    pub absorption: Option<PictureRef>,
     /// Multiplies the layer's weight.
     pub weight: Option<PictureRef>,
     /// Tangent-space normal map of this layer alone.
@@ -427,7 +448,7 @@ impl NamedMap<'_> {
         match self.slot {
             MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean => TexelUse::Normal,
             MapSlot::Tangent => TexelUse::Direction,
-            MapSlot::Albedo | MapSlot::BaseColor => TexelUse::Color,
+            MapSlot::Albedo | MapSlot::BaseColor | MapSlot::Absorption => TexelUse::Color,
             _ => TexelUse::Number,
         }
     }
@@ -440,6 +461,7 @@ impl Maps {
             ("normal", MapSlot::Normal, &self.normal),
             ("roughness", MapSlot::Roughness, &self.roughness),
             ("thickness", MapSlot::Thickness, &self.thickness),
+            ("absorption", MapSlot::Absorption, &self.absorption),
             ("weight", MapSlot::Weight, &self.weight),
             ("bumps", MapSlot::Bumps, &self.bumps),
             ("alpha", MapSlot::Alpha, &self.alpha),
@@ -453,6 +475,115 @@ impl Maps {
         ]
         .into_iter()
         .filter_map(|(key, slot, picture)| Some(NamedMap { key, slot, picture: picture.as_ref()? }))
+    }
+}
+
+/// Numbers of a layer that a program sets at run time, without a bake.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Live(Vec<LiveNumber>);
+
+/// One of these numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveNumber {
+    /// Key below `live`, that of a map of the same quantity.
+    pub key: &'static str,
+    /// The quantity.
+    pub slot: MapSlot,
+    /// Least and greatest factor on the number of the file, of slope parameters.
+    pub factors: Option<[f64; 2]>,
+}
+
+impl Live {
+    /// Numbers, in the order of their keys.
+    pub fn new(numbers: Vec<LiveNumber>) -> Self {
+        Self(numbers)
+    }
+
+    /// The numbers.
+    pub fn numbers(&self) -> &[LiveNumber] {
+        &self.0
+    }
+
+    /// The number of a quantity.
+    pub fn of(&self, slot: MapSlot) -> Option<LiveNumber> {
+        self.0.iter().copied().find(|number| number.slot == slot)
+    }
+
+    /// Takes the number of a quantity away; whether it was there.
+    pub fn remove(&mut self, slot: MapSlot) -> bool {
+        let count = self.0.len();
+        self.0.retain(|number| number.slot != slot);
+        self.0.len() < count
+    }
+
+    /// Takes numbers of quantities of the whole surface from another layer.
+    fn take_surface(&mut self, of: &Self) {
+        let is_whole = |number: &&LiveNumber| matches!(number.slot, MapSlot::Normal | MapSlot::Roughness);
+        self.0.extend(of.0.iter().filter(is_whole));
+    }
+}
+
+impl LayerExtras {
+    /// Whether a map or a program varies a quantity.
+    pub fn varies(&self, slot: MapSlot) -> bool {
+        self.live.of(slot).is_some() || self.maps.named().any(|map| map.slot == slot)
+    }
+
+    /// Takes the map of a quantity away, and the number that a program sets; whether one was there.
+    pub fn take(&mut self, slot: MapSlot) -> bool {
+        let Maps {
+            normal,
+            roughness,
+            thickness,
+            absorption,
+            weight,
+            bumps,
+            alpha,
+            alpha_x,
+            alpha_y,
+            tangent,
+            albedo,
+            base_color,
+            metallic,
+            lean,
+        } = &mut self.maps;
+        let map = match slot {
+            MapSlot::Normal => normal,
+            MapSlot::Roughness => roughness,
+            MapSlot::Thickness => thickness,
+            MapSlot::Absorption => absorption,
+            MapSlot::Weight => weight,
+            MapSlot::Bumps => bumps,
+            MapSlot::Alpha => alpha,
+            MapSlot::AlphaX => alpha_x,
+            MapSlot::AlphaY => alpha_y,
+            MapSlot::Tangent => tangent,
+            MapSlot::Albedo => albedo,
+            MapSlot::BaseColor => base_color,
+            MapSlot::Metallic => metallic,
+            MapSlot::Lean => lean,
+            MapSlot::Patina | MapSlot::FlakeNormal => return false,
+        };
+        let had_map = map.take().is_some();
+        self.live.remove(slot) || had_map
+    }
+
+    /// Whether maps or a program vary the optical depth of the slab.
+    pub fn varies_slab(&self) -> bool {
+        self.varies(MapSlot::Thickness) || self.varies(MapSlot::Absorption)
+    }
+
+    /// The quantities that maps or a program vary, each with its key: `maps.alpha`, `live.alpha`. A key of a map stands for both.
+    pub fn varied(&self) -> impl Iterator<Item = (String, MapSlot)> {
+        let maps = self.maps.named().map(|map| (format!("maps.{}", map.key), map.slot));
+        let has_map = |slot| self.maps.named().any(|map| map.slot == slot);
+        let live = self.live.0.iter().filter(move |number| !has_map(number.slot));
+        maps.chain(live.map(|number| (format!("live.{}", number.key), number.slot)))
+    }
+
+    /// The key of the map of a quantity, or of the number that a program sets.
+    pub fn varied_key(&self, slot: MapSlot) -> Option<String> {
+        self.varied().find_map(|(key, varied)| (varied == slot).then_some(key))
     }
 }
 

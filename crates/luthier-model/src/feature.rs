@@ -46,6 +46,10 @@ luthier_lut::named! {
         Tangents = "the tangent map",
         /// A map of the thickness of a slab below the first.
         InnerThickness = "the thickness map of an inner slab",
+        /// A map of what the first slab absorbs, by channel.
+        AbsorptionMap = "the absorption map",
+        /// Such a map of a slab below the first.
+        InnerAbsorptionMap = "the absorption map of an inner slab",
         /// A map of the albedo of the diffuse base.
         AlbedoMap = "the albedo map",
         /// Maps of base colour and metal of a metallic-roughness surface.

@@ -34,7 +34,8 @@ const FACETS: &[Feature] = &[Films, FilmVariation, DiffuseSlopes, Beckmann, Dist
 /// Axes of a surface.
 const AXES: &[Feature] = &[Anisotropy, Tangents];
 /// Maps of normals, slopes and thicknesses.
-const MAPS: &[Feature] = &[NormalMap, RoughnessMap, ThicknessMap, LayerAlpha, InnerThickness];
+const MAPS: &[Feature] =
+    &[NormalMap, RoughnessMap, ThicknessMap, AbsorptionMap, LayerAlpha, InnerThickness, InnerAbsorptionMap];
 /// Maps of colour.
 const COLOR: &[Feature] = &[AlbedoMap, MetallicMap];
 /// Effects of layers that are there in places.
@@ -262,6 +263,7 @@ const LOBES: Facts = Facts {
                 NormalMap,
                 RoughnessMap,
                 ThicknessMap,
+                AbsorptionMap,
                 Bumps,
                 Tangents,
                 AlbedoMap,

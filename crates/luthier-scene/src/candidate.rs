@@ -76,7 +76,7 @@ impl Candidate {
             (Feature::Weight, material.weight().is_some() && !material.weighs_film()),
             (Feature::FilmWeight, material.weight().is_some() && material.weighs_film()),
         ];
-        let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map.slot)));
+        let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.varied().map(move |(_, slot)| (i, slot)));
         let mut asked: Vec<Feature> = maps.filter_map(|(i, slot)| slot.layer_feature(i)).collect();
         asked.extend(effects.iter().filter(|(_, has)| *has).map(|(effect, _)| *effect));
         let mut found: Vec<Self> = Vec::new();

@@ -1,7 +1,7 @@
 //! Simplified materials: variants with parts left out.
 
-use luthier_manifest::Feature;
-use luthier_material::{Maps, Material};
+use luthier_manifest::{Feature, MapSlot};
+use luthier_material::Material;
 use luthier_optics::stack::{Base, Distribution, FilmThickness, Slab, Surface};
 
 /// A part that a material can do without.
@@ -130,8 +130,8 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 found |= alpha_x != alpha_y;
                 layer.surface = Surface::isotropic(distribution, (alpha_x * alpha_y).sqrt());
             }
-            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
-                (maps.alpha_x, maps.alpha_y, maps.tangent) = (None, None, None);
+            for slot in [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent] {
+                take(material, slot, |_| true);
             }
         }
         Feature::Beckmann => {
@@ -147,54 +147,33 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 surface.distribution = surface.distribution.walked();
             }
         }
-        Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
-            let Some(Maps { normal, roughness, thickness, .. }) =
-                material.layers.first_mut().map(|first| &mut first.maps)
-            else {
-                return false;
-            };
-            let map = match feature {
-                Feature::NormalMap => normal,
-                Feature::RoughnessMap => roughness,
-                _ => thickness,
-            };
-            found = map.take().is_some();
-        }
-        Feature::Bumps | Feature::LayerAlpha | Feature::Tangents | Feature::InnerThickness => {
-            for (i, Maps { thickness, bumps, alpha, alpha_x, alpha_y, tangent, .. }) in
-                material.layers.iter_mut().map(|extras| &mut extras.maps).enumerate()
-            {
-                found |= match feature {
-                    Feature::Bumps => bumps.take().is_some(),
-                    Feature::LayerAlpha => {
-                        [alpha, alpha_x, alpha_y].into_iter().fold(false, |any, map| any | map.take().is_some())
-                    }
-                    Feature::Tangents => tangent.take().is_some(),
-                    _ => i > 0 && thickness.take().is_some(),
-                };
+        Feature::NormalMap => found = take(material, MapSlot::Normal, |number| number == 0),
+        Feature::RoughnessMap => found = take(material, MapSlot::Roughness, |number| number == 0),
+        Feature::ThicknessMap => found = take(material, MapSlot::Thickness, |number| number == 0),
+        Feature::InnerThickness => found = take(material, MapSlot::Thickness, |number| number > 0),
+        Feature::AbsorptionMap => found = take(material, MapSlot::Absorption, |number| number == 0),
+        Feature::InnerAbsorptionMap => found = take(material, MapSlot::Absorption, |number| number > 0),
+        Feature::Bumps => found = take(material, MapSlot::Bumps, |_| true),
+        Feature::LayerAlpha => {
+            for slot in [MapSlot::Alpha, MapSlot::AlphaX, MapSlot::AlphaY] {
+                found |= take(material, slot, |_| true);
             }
         }
-        Feature::AlbedoMap => {
-            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
-                found |= maps.albedo.take().is_some();
-            }
-        }
-        Feature::LeanMap => {
-            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
-                found |= maps.lean.take().is_some();
-            }
-        }
+        Feature::Tangents => found = take(material, MapSlot::Tangent, |_| true),
+        Feature::AlbedoMap => found = take(material, MapSlot::Albedo, |_| true),
+        Feature::LeanMap => found = take(material, MapSlot::Lean, |_| true),
         Feature::MetallicMap => {
-            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
-                found |= maps.base_color.take().is_some() | maps.metallic.take().is_some();
+            for slot in [MapSlot::BaseColor, MapSlot::Metallic] {
+                found |= take(material, slot, |_| true);
             }
         }
         Feature::Flakes => found = effects.flakes.take().is_some(),
         Feature::Patina => found = effects.patina.take().is_some(),
         Feature::Weight | Feature::FilmWeight => {
             if let Some(first) = material.layers.first_mut() {
-                found = first.weight < 1.0 || first.maps.weight.is_some();
-                (first.weight, first.weighs_film, first.maps.weight) = (1.0, false, None);
+                found = first.weight < 1.0 || first.varies(MapSlot::Weight);
+                (first.weight, first.weighs_film) = (1.0, false);
+                first.take(MapSlot::Weight);
             }
         }
         Feature::Glitter => found = effects.glitter.take().is_some(),
@@ -205,6 +184,12 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
         }
     }
     found
+}
+
+/// Takes what varies a quantity of some layers, by number, away; whether there was any.
+fn take(material: &mut Material, slot: MapSlot, is_of: impl Fn(usize) -> bool) -> bool {
+    let layers = material.layers.iter_mut().enumerate().filter(|(number, _)| is_of(*number));
+    layers.fold(false, |found, (_, extras)| extras.take(slot) | found)
 }
 
 /// Every set of parts that can be left out together, with the remaining material. A set has at most one layer; the whole material comes first.

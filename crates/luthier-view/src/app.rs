@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{Align2, Area, ColorImage, Context, Frame, Id, Rect, RichText, Theme, Ui, ViewportCommand};
-use luthier_gpu::{Gpu, RenderSettings, Shape};
+use luthier_gpu::{Gpu, LiveValue, RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 
@@ -66,6 +66,9 @@ pub(crate) struct App {
     bake_problem: Option<String>,
     pub(crate) ready: Option<(u64, Ready, Option<Ready>)>,
     pub(crate) paint_order: Option<(u64, u64, u32, View)>,
+    /// Values of live numbers that are not those of the file, by the label of the file, and those of the last order.
+    pub(crate) live: BTreeMap<String, Vec<LiveValue>>,
+    pub(crate) painted_live: Arc<[LiveValue]>,
     painted: u64,
     finished: bool,
     paint_problem: Option<String>,
@@ -126,6 +129,8 @@ impl App {
             bake_problem: None,
             ready: None,
             paint_order: None,
+            live: BTreeMap::new(),
+            painted_live: Arc::from([]),
             painted: 0,
             finished: false,
             paint_problem: None,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use eframe::egui::{Rect, Theme, Ui};
-use luthier_gpu::Backdrop;
+use luthier_gpu::{Backdrop, LiveValue};
 use luthier_manifest::ShadingModel;
 
 use crate::app::App;
@@ -64,6 +64,12 @@ impl App {
         Some([Some(subject(self.model, Way::Shader(self.form))), second])
     }
 
+    /// Values of live numbers of the material that is shown.
+    pub(crate) fn live_values(&self) -> Vec<LiveValue> {
+        let entry = self.files.selected();
+        entry.and_then(|entry| self.live.get(&entry.label)).cloned().unwrap_or_default()
+    }
+
     /// Sends the threads new orders where something changed.
     pub(crate) fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
         if let Some(subjects) = self.subjects()
@@ -93,12 +99,16 @@ impl App {
             moving,
         };
         let paths = self.comparison.paths;
-        if !self.paint_order.is_some_and(|(_, of, for_paths, last)| (of, for_paths, last) == (*baked, paths, view)) {
+        let live = self.live_values();
+        let is_ordered = |(_, of, for_paths, last)| (of, for_paths, last) == (*baked, paths, view);
+        if !self.paint_order.is_some_and(is_ordered) || *self.painted_live != *live {
+            let live: Arc<[LiveValue]> = Arc::from(live);
+            self.painted_live = Arc::clone(&live);
             let version = self.paint_order.map_or(1, |(last, ..)| last + 1);
             self.paint_order = Some((version, *baked, paths, view));
             let environment = Arc::clone(self.surroundings.environment(self.look.surroundings));
             let (side, other) = (side.clone(), other.clone());
-            self.painter.orders.put(PaintOrder { version, side, other, paths, environment, view });
+            self.painter.orders.put(PaintOrder { version, side, other, paths, environment, live, view });
         }
     }
 

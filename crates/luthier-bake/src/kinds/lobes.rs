@@ -11,8 +11,8 @@ use luthier_lut::{
     measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, Budget, Candidate, CandidateForm, Decision, FamilyRecord, LobesError, LobesRecord, MeasuredError,
-    PaintedRecord, Search, SlopesRecord, VaryingFactor, VaryingRecord,
+    AxesRecord, Budget, Candidate, CandidateForm, Decision, FamilyRecord, LobesError, LobesRecord, MapSlot,
+    MeasuredError, PaintedRecord, Search, SlopesRecord, VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
 use luthier_optics::Rgb;
@@ -74,16 +74,16 @@ impl Kind for Table {
 
 /// The factor that a texture varies and that rows are over, or the slope parameters and colours of single layers. A material has at most one of these.
 fn varying(material: &Material) -> Option<Varying> {
-    let maps = &material.layers.first()?.maps;
+    let first = material.layers.first()?;
     let family = material
         .family()
         .and_then(|ranges| Family::new(&shown(&material.stack), ranges.coat, ranges.base, ranges.is_metallic));
     if let Some(family) = family {
         return Some(Varying::Family(family));
     }
-    let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
+    let slab = first.varies_slab().then_some(Varying::Slab);
     let scaled =
-        maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack));
+        first.varies(MapSlot::Roughness).then_some(Varying::Alpha).or(slab).or_else(|| Varying::film(&material.stack));
     let is_covered = material.is_bare_in_places() && !material.has_side();
     let covers = is_covered.then_some(match &material.effects.patina {
         &Some(Patina { diffuse_albedo, base_alpha, tarnish, .. }) => Cover { diffuse_albedo, base_alpha, tarnish },

@@ -159,6 +159,49 @@ vec4 view_bilinear(int map, vec2 uv) {
     return mix(above, below, weight.y);
 }
 
+#ifdef VIEW_LIVE
+// Numbers of the sliders. Of the whole surface: factors on slab, weight and slopes; albedo of a base, which counts where w is 1, and is a factor on the
+// texels of its map where w is 2; base colour and metal, which count where w is not below 0; nothing. Of each layer: factors on both slope parameters
+// and on the slab, and the turn of its tangent in degrees; factors on what the slab absorbs.
+uniform highp vec4 view_live[4 + 2 * VIEW_LIVE_LAYERS];
+
+LuthierPlace view_lively(LuthierPlace given, uint material) {
+    LuthierPlace place = given;
+    place.slab_factor *= view_live[0].x;
+#ifdef VIEW_WEIGHTS
+    place.weight_factor *= view_live[0].y;
+#endif
+    place.alpha_factor *= view_live[0].z;
+#ifdef VIEW_COLORS
+    if (view_live[1].w > 0.5) {
+        place.base_color = view_live[1].w > 1.5 ? view_live[1].rgb * place.base_color : view_live[1].rgb;
+    }
+#endif
+    for (int i = 0; i < VIEW_LIVE_LAYERS; i++) {
+#ifdef VIEW_OWN_ALPHAS
+        place.layers[i].alpha_factors *= view_live[4 + 2 * i].xy;
+#endif
+#ifdef VIEW_OWN_SLABS
+        place.layers[i].slab_factor *= view_live[4 + 2 * i].z;
+#endif
+#ifdef VIEW_OWN_TANGENTS
+        float turn = radians(view_live[4 + 2 * i].w);
+        place.layers[i].tangent = vec2(cos(turn), sin(turn));
+#endif
+#ifdef VIEW_OWN_TINTS
+        place.layers[i].absorption_factors *= view_live[5 + 2 * i].rgb;
+#endif
+    }
+#ifdef VIEW_METALS
+    // After the weight: the colour below a coat may depend on it.
+    if (view_live[2].w >= 0.0) {
+        place = luthier_metallic_place(place, material, view_live[2].rgb, view_live[2].w);
+    }
+#endif
+    return place;
+}
+#endif
+
 #define ViewSurface LuthierPlace
 LuthierPlace view_surface(uint material, vec2 uv, float distance) {
     LuthierPlace place = luthier_place();
@@ -211,6 +254,9 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
     if (view_slots[5].y > 0) {
         place.base_color = view_bilinear(5, uv).xyz;
     }
+#endif
+#ifdef VIEW_LIVE
+    place = view_lively(place, material);
 #endif
     return place;
 }

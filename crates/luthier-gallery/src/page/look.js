@@ -13,8 +13,26 @@ const look = {
   height: Math.asin(toward(LIGHT.direction)[1]),
 };
 
-/** A material by one of its looks, under the light of the page, as the painter takes it. `slopes` is a factor on all slope parameters. */
-function pictureOf(material, choice, { camera, way, given = look, slopes = 1 }) {
+/** Numbers that the page sets: those of the file, and in their places those of sliders. See `view_live` of the shader. */
+function liveNumbers(material, { look: number, form }, values) {
+  const { set, live } = data.materials[material].looks[number];
+  const numbers = [1, 1, 1, 0, 1, 1, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0];
+  for (let i = 0; i < data.sets[set][form].layers; i++) numbers.push(1, 1, 1, 0, 1, 1, 1, 0);
+  if (!live) return numbers;
+  for (const [place, value] of live.set) numbers[place] = value;
+  // A map of the albedo has the number of the file in its texels.
+  const { maps } = data.materials[material];
+  const isMapped = numbers[7] > 0 && maps && maps.slots.includes(5);
+  if (isMapped) numbers[7] = 2;
+  live.sliders.forEach(({ value, places }, i) => {
+    const moved = values && values[i] !== undefined ? values[i] : value;
+    for (const place of places) numbers[place] = isMapped && place >= 4 && place < 7 ? moved / Math.max(value, 1e-6) : moved;
+  });
+  return numbers;
+}
+
+/** A material by one of its looks, under the light of the page, as the painter takes it. `slopes` is a factor on all slope parameters, and `live` are numbers of the sliders of the look. */
+function pictureOf(material, choice, { camera, way, given = look, slopes = 1, live }) {
   const { set, number, is_blurred: isBlurred } = data.materials[material].looks[choice.look];
   const level = Math.cos(given.height);
   const direction = [Math.sin(given.azimuth) * level, Math.sin(given.height), Math.cos(given.azimuth) * level];
@@ -29,6 +47,7 @@ function pictureOf(material, choice, { camera, way, given = look, slopes = 1 }) 
     skyTurn: given.skyTurn,
     showsSky: given.showsSky,
     slopes,
+    live: liveNumbers(material, choice, live),
     camera,
     light: { direction, irradiance: given.hasLight ? LIGHT.irradiance : [0, 0, 0] },
   };

@@ -105,9 +105,9 @@ try {
 }
 
 /** For scripts: pixels of a picture of a material by name, RGBA from the top left, as the page shows it. */
-globalThis.luthierPicture = async (name, { size = 128, samples = 4, look: number = 0, form = "baked", way, slopes, directions = 64 } = {}) => {
+globalThis.luthierPicture = async (name, { size = 128, samples = 4, look: number = 0, form = "baked", way, slopes, live, directions = 64 } = {}) => {
   const material = data.materials.findIndex(item => item.name === name);
-  const picture = pictureOf(material, { look: number, form }, { camera: camera(0, 0), way, slopes });
+  const picture = pictureOf(material, { look: number, form }, { camera: camera(0, 0), way, slopes, live });
   const loaded = await painter.ready(picture);
   const sums = painter.sums(size);
   for (const pass of passes(picture.way, samples, directions, STAGE_TOGETHER)) painter.pass(sums, picture, loaded, pass);

@@ -249,6 +249,7 @@ class Painter {
     gl.uniform3iv(at("view_headers"), surroundings.maps.headers.flat());
     gl.uniform2iv(at("view_chains"), surroundings.chains);
     gl.uniform1f(at("view_slopes"), picture.slopes);
+    if (at("view_live") !== null) gl.uniform4fv(at("view_live"), picture.live);
     gl.uniform3iv(at("view_slots"), textures.slots);
     gl.uniform3fv(at("view_turns"), textures.turns);
     gl.uniform1i(at("view_directions"), directions);

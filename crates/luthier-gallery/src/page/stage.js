@@ -19,6 +19,8 @@ const stage = {
   split: 0.5,
   /** Factor on all slope parameters. */
   slopes: 1,
+  /** Numbers of the sliders of live numbers, by the number of a look. */
+  live: {},
   sides: [],
   version: 0,
 
@@ -57,6 +59,7 @@ const stage = {
     }
     find("mode").value = "single";
     find("slopes").value = 0;
+    this.live = {};
     document.getElementById(name).querySelector(".place").append(find("stage"));
     find("stage").hidden = false;
     this.canvas.setAttribute("aria-label", `Picture of ${name}. Arrow keys turn it.`);
@@ -87,6 +90,7 @@ const stage = {
     find("of-gain").hidden = this.mode !== "difference";
     find("fixed").hidden = !isFixed;
     this.offerRoughness();
+    this.offerLive();
     this.compareFacts();
     this.draw().catch(complain);
   },
@@ -101,6 +105,39 @@ const stage = {
     if (fixed) input.value = 0;
     for (const element of [input, find("of-slopes")]) element.title = fixed || "A factor on the slopes of all interfaces, 1 as the material has them";
     this.sayRoughness();
+  },
+
+  /** Sliders of the live numbers of the looks that are shown, each look once. */
+  offerLive() {
+    const box = find("live");
+    const looks = new Set(this.chosen().filter(choice => !choice.isSimulated && choice.facts.live).map(choice => choice.look));
+    const legend = box.querySelector("legend");
+    const labels = [...looks].flatMap(number => {
+      const { model, live } = data.materials[this.material].looks[number];
+      this.live[number] ||= live.sliders.map(({ value }) => value);
+      return live.sliders.map((slider, i) => this.liveSlider(number, slider, i, looks.size > 1 ? `${model}, ` : ""));
+    });
+    box.replaceChildren(legend, ...labels);
+    box.hidden = labels.length === 0;
+  },
+
+  liveSlider(number, { label, member, least, most }, i, before) {
+    const element = document.createElement("label");
+    const input = Object.assign(document.createElement("input"), { type: "range", min: least, max: most, step: "any", title: member });
+    input.value = this.live[number][i];
+    const output = document.createElement("output");
+    const says = () => {
+      output.textContent = Number(input.value).toPrecision(3);
+      input.setAttribute("aria-valuetext", output.textContent);
+    };
+    says();
+    input.addEventListener("input", () => {
+      this.live[number][i] = Number(input.value);
+      says();
+      this.draw(true).catch(complain);
+    });
+    element.append(`${before}${label} `, input, output);
+    return element;
   },
 
   sayRoughness() {
@@ -133,7 +170,7 @@ const stage = {
     const sides = await Promise.all(
       chosen.map(async choice => {
         if (choice.isSimulated) return { fixed: await painter.simulated(this.material), scale: 1 };
-        const picture = pictureOf(this.material, choice, { camera: at, way, given: isFixed ? fixed : look, slopes: this.slopes });
+        const picture = pictureOf(this.material, choice, { camera: at, way, given: isFixed ? fixed : look, slopes: this.slopes, live: this.live[choice.look] });
         return { picture, loaded: await painter.ready(picture), scale: 0 };
       })
     );

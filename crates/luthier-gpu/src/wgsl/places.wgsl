@@ -1,6 +1,6 @@
 // Evaluates luthier_eval_at for pairs of directions, each at a place of its own.
 
-// A pair takes so many words: seven, and two for each layer that has textures.
+// A pair takes so many words: eight, and three for each layer that has textures.
 const KERNEL_WORDS: u32 = $words;
 
 @group(1) @binding(0) var<storage, read> kernel_inputs: array<vec4<f32>>;

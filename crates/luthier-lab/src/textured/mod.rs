@@ -73,7 +73,7 @@ pub(crate) fn run(options: &TexturedOptions) -> Outcome {
 
 /// Whether textures or effects make a material differ from place to place.
 fn varies(material: &Material) -> bool {
-    let has_maps = material.layers.iter().any(|layer| layer.maps.named().next().is_some());
+    let has_maps = material.layers.iter().any(|layer| layer.varied().next().is_some());
     let film = material.stack.layers.first().and_then(|layer| layer.films.first());
     has_maps || material.effects != Effects::default() || film.is_some_and(Film::varies)
 }

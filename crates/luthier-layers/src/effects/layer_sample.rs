@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use luthier_optics::Rgb;
-use luthier_optics::stack::{Base, Layer};
+use luthier_optics::stack::{Base, Layer, Slab};
 
 /// Length below which a texel of tangents has no direction: grey of eight bits is half a step, 0.004, from the middle.
 const NO_DIRECTION: f64 = 0.02;
@@ -20,14 +20,22 @@ pub struct LayerSample {
     pub tangent: DVec2,
     /// Factor on the thickness of the slab below it.
     pub slab_factor: f64,
+    /// Factors on what that slab absorbs, RGB.
+    pub absorption_factors: Rgb,
     /// F0 in place of the interface's own, if that is one of Schlick's.
     pub f0: Option<Rgb>,
 }
 
 impl LayerSample {
     /// The sample of a layer without textures.
-    pub const NONE: Self =
-        Self { normal: DVec3::Z, alpha_factors: [1.0; 2], tangent: DVec2::X, slab_factor: 1.0, f0: None };
+    pub const NONE: Self = Self {
+        normal: DVec3::Z,
+        alpha_factors: [1.0; 2],
+        tangent: DVec2::X,
+        slab_factor: 1.0,
+        absorption_factors: [1.0; 3],
+        f0: None,
+    };
 
     /// The direction of a tangent from a texel of two channels, `2 texel - 1 = (cos 2 theta, sin 2 theta)`. A tangent is a line without a head: with
     /// doubled angles, texels may be averaged across any turn. A texel without a direction turns nothing.
@@ -50,6 +58,11 @@ impl LayerSample {
         self.alpha_factors != [1.0; 2] || self.tangent != DVec2::X || self.f0.is_some()
     }
 
+    /// Scales what a slab absorbs.
+    pub(crate) fn tint(&self, slab: &mut Slab) {
+        (0..3).for_each(|c| slab.absorption_per_um[c] *= self.absorption_factors[c]);
+    }
+
     /// Turns the tangent of a layer, and scales its slab; its slope parameters depend on the model.
     pub(crate) fn apply(&self, layer: &mut Layer) {
         let surface = &mut layer.surface;
@@ -59,6 +72,7 @@ impl LayerSample {
         }
         if let Base::Dielectric { slab, ior } = &mut layer.base {
             slab.thickness_um *= self.slab_factor;
+            self.tint(slab);
             if let (Some(f0), Some(_)) = (self.f0, ior.f0()) {
                 *ior = ior.clone().with_f0(f0);
             }

@@ -426,6 +426,11 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
                 base.albedo = color;
             }
         }
+        // A family has tinted its slabs above. Other rows are over what the first one absorbs.
+        let first = here.layers.first_mut().zip(place.layers.first()).filter(|_| !is_family);
+        if let Some((Layer { base: Base::Dielectric { slab, .. }, .. }, own)) = first {
+            own.tint(slab);
+        }
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
     }
@@ -750,6 +755,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Oracle: the stack of a file with these numbers.
+    #[test]
+    fn tinted_slabs_are_those_of_another_stack() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let factors = [0.3, 2.0, 0.7];
+        let own = LayerSample { absorption_factors: factors, ..LayerSample::NONE };
+        let place = Place { layers: vec![own], ..Place::NONE };
+        let mut tinted = copper();
+        if let Base::Dielectric { slab, .. } = &mut tinted.layers[0].base {
+            (0..3).for_each(|c| slab.absorption_per_um[c] *= factors[c]);
+        }
+        for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::Belcour, ShadingModel::Yamaguchi]
+        {
+            let of = |stack: &Stack, place: &Place| {
+                Shaded::new(model, stack, WAVELENGTHS_NM, color, place).unwrap().eval(wi, wo)
+            };
+            let [found, expected, plain] =
+                [of(&copper(), &place), of(&tinted, &Place::NONE), of(&copper(), &Place::NONE)];
+            assert!((0..3).all(|c| (found[c] / expected[c] - 1.0).abs() < 1e-12), "{model}: {found:?} {expected:?}");
+            assert!((0..3).all(|c| (found[c] / plain[c] - 1.0).abs() > 1e-3), "{model}: {plain:?}");
+        }
+        assert_eq!(lobes_at(&copper(), &place), lobes_at(&tinted, &Place::NONE));
     }
 
     /// Oracle: the model of that wavelength with its textures.

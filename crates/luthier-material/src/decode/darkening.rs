@@ -7,6 +7,7 @@ use luthier_optics::brightening::Brightening;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::Surface;
 
+use super::live;
 use crate::bake_settings::SODIUM_D_NM;
 use crate::diagnostic::Sink;
 use crate::section::Section;
@@ -84,7 +85,7 @@ const NO_BASE: Refusal =
 
 /// Why the base below a coat cannot be brighter.
 fn refusal(coat: &Section<'_>, base: &Section<'_>) -> Option<Refusal> {
-    let has_map = |layer: &Section<'_>, key: &str| layer.section("maps").is_some_and(|maps| maps.has(key));
+    let has_map = live::varies;
     match base.text("type") {
         Some("dielectric") => Some((
             "below this coat lies another dielectric, and `darkening = false` is for a base of a colour",

@@ -34,11 +34,12 @@ pub(super) fn decode(document: &Section<'_>, stack: &Stack, is_fluorescent: bool
     }
 }
 
-/// Where a layer says that it covers a part of the surface: its weight below 1, or a map of it.
+/// Where a layer says that it covers a part of the surface: its weight below 1, a map of it, or one that a program sets.
 pub(super) fn weight_span(layer: &Section<'_>) -> Option<Range<usize>> {
     let is_partial = layer.number("weight").is_some_and(|weight| weight < 1.0);
-    let map = layer.section("maps").filter(|maps| maps.has("weight"));
-    if is_partial { Some(layer.key_span("weight")) } else { map.map(|maps| maps.key_span("weight")) }
+    let mut tables = ["maps", "live"].into_iter().filter_map(|table| layer.section(table));
+    let varied = tables.find(|table| table.has("weight"));
+    if is_partial { Some(layer.key_span("weight")) } else { varied.map(|table| table.key_span("weight")) }
 }
 
 /// Refuses a weight of the first layer beside what no model shows with it.

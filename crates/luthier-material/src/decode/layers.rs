@@ -1,15 +1,16 @@
 //! Decoder of the list of layers.
 
+use luthier_manifest::MapSlot;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
 use super::darkening::Brightened;
 use super::ior::Read;
-use super::{effects, films, ior, maps, reradiation, schlick, surface};
+use super::{effects, films, ior, live, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
-use crate::material::{FilmVariation, LayerExtras, Maps, TexelRanges};
+use crate::material::{FilmVariation, LayerExtras, Live, Maps, TexelRanges};
 use crate::section::Section;
 
 /// The layers of the stack, and the properties of each beyond its physics.
@@ -84,6 +85,7 @@ pub(super) fn decode(
         }
         schlick::check_films(at, &films, layers.len(), sink);
         maps::check(at, layers.len(), sink);
+        live::check(at, layers.len(), &surface, sink);
         let number = layers.len();
         let key = format!("layer.{number}");
         sources.places.add(&key, at);
@@ -101,6 +103,7 @@ pub(super) fn decode(
                 Some(film) => Maps { weight: film.weight_map.clone(), ..maps::decode(at) },
                 None => maps::decode(at),
             },
+            live: live::decode(at, &surface),
             metallic,
             texels: TexelRanges::default(),
             brightening: brightened.map(|below| below.shares),
@@ -116,7 +119,9 @@ pub(super) fn decode(
             sources.places.add(&format!("layer.{}", layers.len()), at);
             // Interface and base of the surface have one normal.
             let maps = Maps { bumps: maps::decode(at).bumps, ..Maps::default() };
-            extras.push(LayerExtras { maps, ..LayerExtras::default() });
+            let bumps = live::decode(at, &surface).of(MapSlot::Bumps);
+            let live = Live::new(bumps.into_iter().collect());
+            extras.push(LayerExtras { maps, live, ..LayerExtras::default() });
             let base = Base::Diffuse(diffuse);
             layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
         }

@@ -1,6 +1,8 @@
 //! Decoder of the maps of a layer.
 
-use super::picture;
+use luthier_manifest::MapSlot;
+
+use super::{live, picture};
 use crate::diagnostic::Sink;
 use crate::material::{LayerExtras, Maps};
 use crate::section::Section;
@@ -12,6 +14,7 @@ pub(super) fn decode(at: &Section<'_>) -> Maps {
         normal: picture::under(&maps, "normal"),
         roughness: picture::under(&maps, "roughness"),
         thickness: picture::under(&maps, "thickness"),
+        absorption: picture::under(&maps, "absorption"),
         weight: picture::under(&maps, "weight"),
         bumps: picture::under(&maps, "bumps"),
         alpha: picture::under(&maps, "alpha"),
@@ -62,7 +65,7 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
 /// Refuses maps of colour and metal that would say too little: a texture of the base colour alone leaves open how metallic a place is.
 fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
     let metallic = at.number("metallic").unwrap_or(0.0);
-    if maps.has("base_color") && !maps.has("metallic") && metallic > 0.0 {
+    if maps.has("base_color") && !live::varies(at, "metallic") && metallic > 0.0 {
         let message = "a map of `base_color` on a metal needs one of `metallic` beside it";
         let hint = "write `metallic = \"white.png\"` under `maps`, a white picture, or `metallic = 0`".to_owned();
         sink.error(maps.value_span("base_color"), message, Some(hint));
@@ -80,16 +83,21 @@ fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
 /// Refuses maps of single layers beside a patina, which decides the same quantities.
 pub(super) fn check_effects(document: &Section<'_>, extras: &[LayerExtras], sink: &mut Sink<'_>) {
     let Some(effects) = document.section("effects") else { return };
-    let maps = extras.iter().enumerate().flat_map(|(i, extra)| extra.maps.named().map(move |map| (i, map.key)));
-    let maps: Vec<(usize, &str)> = maps.collect();
-    let clash = maps.iter().find(|(i, key)| match *key {
+    let varied = extras.iter().enumerate().flat_map(|(i, extra)| extra.varied().map(move |(key, slot)| (i, key, slot)));
+    let varied: Vec<(usize, String, MapSlot)> = varied.collect();
+    let clash = varied.iter().find(|(i, _, slot)| match *slot {
         // A weight beside a patina is refused by itself.
-        "normal" | "roughness" | "weight" => false,
-        "thickness" => *i > 0,
+        MapSlot::Normal | MapSlot::Roughness | MapSlot::Weight => false,
+        MapSlot::Thickness => *i > 0,
         _ => true,
     });
-    if let (true, Some((layer, key))) = (effects.has("patina"), clash) {
-        let message = format!("`patina` beside the map `{key}` of layer {}: no model has both", layer + 1);
-        sink.error(effects.key_span("patina"), message, Some(format!("leave `patina` or `maps.{key}` out")));
+    if let (true, Some((layer, key, _))) = (effects.has("patina"), clash) {
+        let what = match key.split_once('.') {
+            Some(("live", name)) => format!("the live `{name}`"),
+            Some((_, name)) => format!("the map `{name}`"),
+            None => format!("`{key}`"),
+        };
+        let message = format!("`patina` beside {what} of layer {}: no model has both", layer + 1);
+        sink.error(effects.key_span("patina"), message, Some(format!("leave `patina` or `{key}` out")));
     }
 }

@@ -8,6 +8,7 @@ mod effects;
 mod films;
 mod ior;
 mod layers;
+mod live;
 mod maps;
 mod picture;
 mod reradiation;

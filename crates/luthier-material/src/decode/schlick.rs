@@ -7,7 +7,7 @@ use luthier_optics::schlick::index_of_f0;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::darkening::Brightened;
-use super::{effects, films};
+use super::{effects, films, live};
 use crate::bake_settings::SODIUM_D_NM;
 use crate::diagnostic::Sink;
 use crate::grammar::INDEX;
@@ -94,9 +94,8 @@ pub(super) fn metallic_roughness(
 
 /// Base colour and metal of a `metallic-roughness` layer, where maps of the file multiply them.
 pub(super) fn textured(at: &Section<'_>) -> Option<Metallic> {
-    let maps = at.section("maps")?;
-    let has_maps = maps.has("base_color") || maps.has("metallic");
-    has_maps.then(|| Metallic {
+    let is_varied = live::varies(at, "base_color") || live::varies(at, "metallic");
+    is_varied.then(|| Metallic {
         base_color: at.reflectance("base_color").unwrap_or([0.0; 3]),
         metallic: at.number("metallic").unwrap_or(0.0),
     })

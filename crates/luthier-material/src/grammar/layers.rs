@@ -204,6 +204,8 @@ const MAPS_DOC: &str = "Textures that modulate the layer.";
 const NORMAL_MAP: Key = Key::optional("normal", PICTURE, "A tangent-space normal map.");
 const ROUGHNESS_MAP: Key = Key::optional("roughness", PICTURE, "A map that multiplies the roughness.");
 const THICKNESS_MAP: Key = Key::optional("thickness", PICTURE, "A map that multiplies the slab's thickness.");
+const ABSORPTION_MAP: Key =
+    Key::optional("absorption", PICTURE, "A picture whose colours multiply what the slab absorbs.");
 
 const WEIGHT_MAP: Key = Key::optional("weight", PICTURE, "A map that multiplies `weight`, of the first layer.");
 
@@ -231,6 +233,7 @@ static DIELECTRIC_MAPS: Table = Table {
         NORMAL_MAP,
         ROUGHNESS_MAP,
         THICKNESS_MAP,
+        ABSORPTION_MAP,
         WEIGHT_MAP,
         BUMPS,
         ALPHA_MAP,
@@ -270,6 +273,71 @@ static METALLIC_MAPS: Table = Table {
     exactly_one: None,
 };
 
+const LIVE_DOC: &str = "Numbers that a program sets at run time, without a bake; that of the file holds until it does.";
+
+const fn live(name: &'static str, doc: &'static str) -> Key {
+    Key::optional(name, Kind::True, doc)
+}
+
+const fn live_slope(name: &'static str, doc: &'static str) -> Key {
+    Key::optional(name, Kind::List { item: &Kind::Number(UNIT_ABOVE_ZERO), min: 2, max: 2 }, doc)
+}
+
+const LIVE_NORMAL: Key = live("normal", "The normal of the whole surface.");
+const LIVE_ROUGHNESS: Key = live("roughness", "A factor on the slope parameters of all layers, at most 1.");
+const LIVE_BUMPS: Key = live("bumps", "The normal of this layer alone.");
+const LIVE_ALPHA: Key =
+    live_slope("alpha", "The slope parameter of this layer alone: its least and its greatest value.");
+const LIVE_ALPHA_X: Key = live_slope("alpha_x", "The least and the greatest value of alpha_x.");
+const LIVE_ALPHA_Y: Key = live_slope("alpha_y", "The least and the greatest value of alpha_y.");
+const LIVE_TANGENT: Key = live("tangent", "The direction of the tangent of this layer.");
+
+static DIELECTRIC_LIVE: Table = Table {
+    name: "dielectric-live",
+    doc: LIVE_DOC,
+    keys: &[
+        LIVE_NORMAL,
+        LIVE_ROUGHNESS,
+        live("thickness", "The thickness of the slab, as a factor on that of the file."),
+        live("absorption", "What the slab absorbs, as factors on the numbers of the file."),
+        live("weight", "The share of the surface that the first layer covers, as a factor on that of the file."),
+        LIVE_BUMPS,
+        LIVE_ALPHA,
+        LIVE_ALPHA_X,
+        LIVE_ALPHA_Y,
+        LIVE_TANGENT,
+    ],
+    exactly_one: None,
+};
+static CONDUCTOR_LIVE: Table = Table {
+    name: "conductor-live",
+    doc: LIVE_DOC,
+    keys: &[LIVE_NORMAL, LIVE_ROUGHNESS, LIVE_BUMPS, LIVE_ALPHA, LIVE_ALPHA_X, LIVE_ALPHA_Y, LIVE_TANGENT],
+    exactly_one: None,
+};
+static DIFFUSE_LIVE: Table = Table {
+    name: "diffuse-live",
+    doc: LIVE_DOC,
+    keys: &[LIVE_NORMAL, LIVE_BUMPS, live("albedo", "The albedo.")],
+    exactly_one: None,
+};
+static METALLIC_LIVE: Table = Table {
+    name: "metallic-live",
+    doc: LIVE_DOC,
+    keys: &[
+        LIVE_NORMAL,
+        LIVE_ROUGHNESS,
+        LIVE_BUMPS,
+        LIVE_ALPHA,
+        LIVE_ALPHA_X,
+        LIVE_ALPHA_Y,
+        LIVE_TANGENT,
+        live("base_color", "The base colour."),
+        live("metallic", "How metallic the surface is."),
+    ],
+    exactly_one: None,
+};
+
 pub(super) static DIELECTRIC: Table = Table {
     name: "dielectric",
     doc: "A transparent interface and the slab below it, down to the next layer.",
@@ -299,6 +367,7 @@ pub(super) static DIELECTRIC: Table = Table {
         WEIGHT,
         DARKENING,
         Key::optional("maps", Kind::Table(&DIELECTRIC_MAPS), MAPS_DOC),
+        Key::optional("live", Kind::Table(&DIELECTRIC_LIVE), LIVE_DOC),
     ],
     exactly_one: Some(Alternatives { and: Some(&TRANSPARENT), ..SURFACE }),
 };
@@ -323,6 +392,7 @@ pub(super) static CONDUCTOR: Table = Table {
         ABC,
         SGD,
         Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
+        Key::optional("live", Kind::Table(&CONDUCTOR_LIVE), LIVE_DOC),
     ],
     exactly_one: Some(Alternatives { and: Some(&OPAQUE), ..SURFACE }),
 };
@@ -358,6 +428,7 @@ pub(super) static DIFFUSE: Table = Table {
             "Standard deviation of the facets' slope angle in radians; 0 is Lambert.",
         ),
         Key::optional("maps", Kind::Table(&DIFFUSE_MAPS), MAPS_DOC),
+        Key::optional("live", Kind::Table(&DIFFUSE_LIVE), LIVE_DOC),
     ],
     exactly_one: Some(DIFFUSE_REFLECTANCE),
 };
@@ -397,6 +468,7 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
             "Standard deviation of the slope angle of the diffuse base's facets in radians; 0 is Lambert.",
         ),
         Key::optional("maps", Kind::Table(&METALLIC_MAPS), MAPS_DOC),
+        Key::optional("live", Kind::Table(&METALLIC_LIVE), LIVE_DOC),
     ],
     exactly_one: Some(SURFACE),
 };

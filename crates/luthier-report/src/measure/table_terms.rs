@@ -211,7 +211,10 @@ impl Lobes {
             metal: [0.0; 3],
             metallic: 0.0,
             albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
-            depth: entry.layers[0].optical_depth.map(|depth| depth * place.sample.slab_factor),
+            depth: {
+                let (depths, slabs) = (entry.layers[0].optical_depth, slab_factors(place));
+                [0, 1, 2].map(|c: usize| depths[c] * slabs[c])
+            },
         };
         let paint = place.metal.map_or(plain, |mix| plain.mixed(mix));
         self.family = Some((family, slopes, paint));
@@ -223,7 +226,8 @@ impl Lobes {
 struct Here {
     part: Part,
     alpha_factor: f64,
-    slab_factor: f64,
+    /// Factors on the optical depth of the first slab, RGB.
+    slab_factors: Rgb,
     film_factor: f64,
     /// A layer, and the factor on the light that its interface does not reflect.
     passing: Option<(usize, Rgb)>,
@@ -235,7 +239,7 @@ impl Here {
     const NOMINAL: Self = Self {
         part: Part::All,
         alpha_factor: 1.0,
-        slab_factor: 1.0,
+        slab_factors: [1.0; 3],
         film_factor: 1.0,
         passing: None,
         metal: ([0.0; 3], 0.0),
@@ -244,7 +248,8 @@ impl Here {
     /// Fractional number of the tile of lobes, and the factor by which the slopes of its rows are divided.
     fn tile(&self, varying: &VaryingRecord) -> (f64, f64) {
         let last = f64::from(varying.tiles) - 1.0;
-        let [alpha, slab] = [self.alpha_factor, self.slab_factor].map(|factor| 1.0 - factor.clamp(0.0, 1.0).sqrt());
+        let alpha = away(self.alpha_factor);
+        let slab = self.slab_factors.map(away).iter().sum::<f64>() / 3.0;
         let place = match varying.factor {
             // A step before the root of 0.
             VaryingFactor::AlphaFactor => (alpha * (last + 1.0)).min(last),
@@ -262,6 +267,24 @@ impl Here {
         };
         (place, self.alpha_factor.max(varying.least_spread))
     }
+
+    /// Tiles of the energies of each channel, where what the slab absorbs gives each its own.
+    fn tinted_tiles(&self, varying: &VaryingRecord) -> Option<[f64; 3]> {
+        let [r, g, b] = self.slab_factors;
+        let is_tinted = varying.factor == VaryingFactor::SlabFactor && (r != g || g != b);
+        is_tinted.then(|| self.slab_factors.map(|factor| away(factor) * (f64::from(varying.tiles) - 1.0)))
+    }
+}
+
+/// Distance of the root of a factor from 1, along the tiles over it.
+fn away(factor: f64) -> f64 {
+    1.0 - factor.clamp(0.0, 1.0).sqrt()
+}
+
+/// Factors on the optical depth of the first slab at a place, RGB.
+fn slab_factors(place: &Place) -> Rgb {
+    let tint = place.layers.first().map_or([1.0; 3], |own| own.absorption_factors);
+    tint.map(|tint| tint * place.sample.slab_factor)
 }
 
 impl<'a> TableTerms<'a> {
@@ -382,7 +405,7 @@ impl<'a> TableTerms<'a> {
         self.here = Here {
             part,
             alpha_factor: sample.alpha_factor,
-            slab_factor: sample.slab_factor,
+            slab_factors: slab_factors(place),
             film_factor: sample.film_factor,
             passing,
             metal: place.metal.map_or(([0.0; 3], 0.0), |mix| (mix.metal, mix.metallic)),
@@ -538,9 +561,15 @@ impl ShaderTerms for TableTerms<'_> {
             }
             (None, Some(varying)) => {
                 let (place, spread) = self.here.tile(varying);
-                let first = (place as u32).min(varying.tiles.saturating_sub(2));
-                let share = place - f64::from(first);
-                table.row_between(tile + first, share, cos_theta, self.weights).spread(spread)
+                let read = |place: f64| {
+                    let first = (place as u32).min(varying.tiles.saturating_sub(2));
+                    table.row_between(tile + first, place - f64::from(first), cos_theta, self.weights)
+                };
+                let row = match self.here.tinted_tiles(varying).map(|places| places.map(read)) {
+                    Some([r, g, b]) => read(place).with_channels([&r, &g, &b]),
+                    None => read(place),
+                };
+                row.spread(spread)
             }
             (None, None) => table.row(*tile, cos_theta, self.weights),
         };

@@ -219,6 +219,9 @@ pub(crate) fn words(place: &PlaceValues) -> String {
         if own.slab_factor != plain.slab_factor {
             out.push(format!("layers[{i}].slab_factor {:.4}", own.slab_factor));
         }
+        if own.absorption_factors != plain.absorption_factors {
+            out.push(vector(&format!("layers[{i}].absorption_factors"), own.absorption_factors));
+        }
     }
     if out.is_empty() { "no textures".to_owned() } else { out.join(", ") }
 }

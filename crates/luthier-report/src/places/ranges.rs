@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use luthier_layers::effects::flakes::Flakes;
 use luthier_layers::effects::patina::Patina;
 use luthier_lut::{Image, Picture, TableKind};
-use luthier_manifest::{FlakesRecord, Form, LayerValues, MapSlot, MaterialEntry, PlaceValues};
+use luthier_manifest::{FlakesRecord, Form, LayerValues, LiveEntry, LiveRange, MapSlot, MaterialEntry, PlaceValues};
 use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};
 
 use crate::measure::references::shows_cover;
@@ -44,6 +44,7 @@ impl Places {
                 (map.slot, map.layer, [0, 1, 2].map(|c: usize| texels(&map.picture, c).map(|value| factor[c] * value)))
             })
         });
+        let ranges = ranges.chain(entry.live.iter().map(|live| (live.slot, Some(live.layer), live_range(live))));
         let film = entry.layers.first().filter(|layer| layer.varies()).map(|layer| {
             let texels = subject.textures.iter().find(|(kind, _)| *kind == TableKind::Thickness);
             let nominal = layer.film_thickness_max_nm / layer.film_thickness_nm;
@@ -90,8 +91,8 @@ impl Places {
             match slot {
                 MapSlot::Normal => place.normal = normal([drawn[0], drawn[1]]),
                 MapSlot::Roughness => place.alpha_factor *= r * r,
-                MapSlot::Thickness if layer.is_none_or(|layer| layer == 0) => place.slab_factor = r,
-                MapSlot::Weight => place.weight_factor = r,
+                MapSlot::Thickness if layer.is_none_or(|layer| layer == 0) => place.slab_factor *= r,
+                MapSlot::Weight => place.weight_factor *= r,
                 MapSlot::Patina => {
                     let shape = constants.patina.as_ref();
                     place.patina = shape.map(|p| {
@@ -113,6 +114,7 @@ impl Places {
                 | MapSlot::AlphaX
                 | MapSlot::AlphaY
                 | MapSlot::Tangent
+                | MapSlot::Absorption
                 | MapSlot::Thickness => {
                     let own = of_layer(&mut place, layer.unwrap_or(0) as usize);
                     match slot {
@@ -121,6 +123,7 @@ impl Places {
                         MapSlot::AlphaX => own.alpha_factors[0] *= r,
                         MapSlot::AlphaY => own.alpha_factors[1] *= r,
                         MapSlot::Tangent => own.tangent = [r, g],
+                        MapSlot::Absorption => own.absorption_factors = rgb,
                         _ => own.slab_factor = r,
                     }
                 }
@@ -171,6 +174,17 @@ impl Places {
         let passed = 0.96 * 20.0 / 21.0;
         let albedo = self.entry.layers.last().map_or([0.0; 3], |layer| layer.albedo);
         albedo.map(|albedo| (albedo * passed / (1.0 - albedo * (1.0 - passed))) as f32)
+    }
+}
+
+/// Range of texels that stand for a live number: of slopes and factors its range, up to twice the number of the file where nothing bounds it, of normals
+/// leans of a tenth, of tangents all.
+fn live_range(live: &LiveEntry) -> [[f64; 2]; 3] {
+    match (live.slot, live.range) {
+        (MapSlot::Tangent, _) => [[0.0, 1.0]; 3],
+        (MapSlot::Roughness, _) => [[0.2, 1.0]; 3],
+        (_, Some(LiveRange { least, most })) => [[least, most.unwrap_or(2.0)]; 3],
+        (_, None) => [[0.45, 0.55], [0.45, 0.55], [1.0, 1.0]],
     }
 }
 

@@ -91,6 +91,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             texel => LayerSample::tangent_of(texel),
         },
         slab_factor: own.slab_factor.into(),
+        absorption_factors: own.absorption_factors.map(f64::from),
         f0: None,
     });
     let mut place = Place {

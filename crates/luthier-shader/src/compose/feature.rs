@@ -199,6 +199,8 @@ luthier_lut::named! {
         LobesTinted = "lobes_tinted",
         /// Lobes of a family have other tails than GGX.
         LobesTails = "lobes_tails",
+        /// Maps of what the first slab absorbs give each channel a tile of rows over its thickness.
+        LobesTints = "lobes_tints",
         /// Flakes, or own normals of interfaces, tilt lobes.
         LobesTilted = "lobes_tilted",
         /// A material of `lobes` has normals of single layers.
@@ -223,6 +225,8 @@ luthier_lut::named! {
         OwnAlphas = "own_alphas",
         /// A map of a layer has thicknesses.
         OwnSlabs = "own_slabs",
+        /// A map of a layer has colours that its slab absorbs.
+        OwnTints = "own_tints",
         /// Maps of a layer have base colours and metal.
         OwnF0 = "own_f0",
         /// A film lies on the base of such a material.

@@ -187,6 +187,10 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
             MapSlot::Bumps => &[Feature::Layered, Feature::OwnNormals, Feature::LobesBumps],
             MapSlot::Tangent => &[Feature::Layered, Feature::Tangents],
             MapSlot::Thickness => &[Feature::Layered, Feature::OwnSlabs],
+            MapSlot::Absorption if material.model.is_fitted() && family(material).is_none() => {
+                &[Feature::Layered, Feature::OwnTints, Feature::LobesTints]
+            }
+            MapSlot::Absorption => &[Feature::Layered, Feature::OwnTints],
             _ => &[Feature::Layered, Feature::OwnAlphas],
         });
     }
@@ -368,7 +372,8 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             names.insert(Feature::Conductor);
         }
         let turns = [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent];
-        let is_turned = material.maps.iter().any(|map| turns.contains(&map.slot));
+        let mut varied = material.maps.iter().map(|map| map.slot).chain(material.live.iter().map(|live| live.slot));
+        let is_turned = varied.any(|slot| turns.contains(&slot));
         let is_anisotropic = !facts.is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned);
         if is_anisotropic {
             names.insert(Feature::Anisotropic);

@@ -223,6 +223,15 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             let material = || mapped(of(model, &[coat(), diffuse(0.0)]));
             moved(&Shader::new(material(), form).at(member, value), &Shader::new(material(), form))
         }
+        Feature::AbsorptionMap | Feature::InnerAbsorptionMap => {
+            let layer = u32::from(feature == Feature::InnerAbsorptionMap);
+            let shader = || {
+                let material = of(model, &[coat(), coat(), diffuse(0.0)]);
+                Shader::new(with_map(material, MapSlot::Absorption, layer), form)
+            };
+            let tint = vector(&[0.2, 3.0, 1.0]);
+            moved(&shader().at_layer(layer as usize, "absorption_factors", tint), &shader())
+        }
         Feature::Bumps | Feature::LayerAlpha | Feature::Tangents | Feature::InnerThickness => {
             let brushed = || LayerRecord { alpha_xy: [0.1, 0.9], rotation: 0.5, ..rough(conductor(), 0.3) };
             let (layers, slot, layer, member, value) = match feature {

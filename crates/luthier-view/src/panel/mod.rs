@@ -2,6 +2,7 @@
 
 mod compared;
 mod cross_section;
+mod live;
 
 use eframe::egui::{
     Align, Align2, Button, CollapsingHeader, ComboBox, Context, Grid, Label, Layout, RichText, ScrollArea, Slider,
@@ -33,6 +34,7 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
         if let Some(material) = app.material() {
             folded(ui, "cross-section", "cross-section", |ui| cross_section::show(ui, &material.cross_section()));
         }
+        live::show(app, ui);
         layers(app, ui);
         light(app, ui);
         ui.add_space(8.0);

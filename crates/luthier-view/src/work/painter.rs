@@ -5,7 +5,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
 use eframe::egui;
-use luthier_gpu::{Backdrop, Environment, Gpu, GpuError, Package, RenderSettings, Scene, Shape};
+use luthier_gpu::{Backdrop, Environment, Gpu, GpuError, LiveValue, Package, RenderSettings, Scene, Shape};
 use luthier_lut::Image;
 use luthier_manifest::Form;
 
@@ -33,6 +33,8 @@ pub(crate) struct PaintOrder {
     /// Paths of each pixel of a simulated picture.
     pub(crate) paths: u32,
     pub(crate) environment: Arc<Environment>,
+    /// Values of live numbers.
+    pub(crate) live: Arc<[LiveValue]>,
     pub(crate) view: View,
 }
 
@@ -140,7 +142,7 @@ impl Worker {
 
     /// Renders the stages of the material, each followed by the same stage of the other side. Then gathers paths.
     fn paint(&mut self, order: &PaintOrder, made: &mut Made) -> Result<(), GpuError> {
-        self.prepare(0, &order.side)?;
+        self.prepare(0, &order.side, &order.live)?;
         let view = &order.view;
         let crop = Crop::of(view.size, if order.other.is_some() { COMPARED_SIDE_MAX } else { SIDE_MAX });
         let goal = Goal {
@@ -168,7 +170,9 @@ impl Worker {
                     // Some paths of each pixel before the long last stage.
                     Way::Simulation if !is_last => self.gather(order, &crop, FEW_PATHS, made),
                     Way::Simulation => Ok(true),
-                    Way::Shader(_) => self.prepare(1, other).and_then(|()| self.render(order, &crop, &stage, 1, made)),
+                    Way::Shader(_) => {
+                        self.prepare(1, other, &order.live).and_then(|()| self.render(order, &crop, &stage, 1, made))
+                    }
                 };
                 if !made.unless_refused(is_in_time) {
                     return Ok(());
@@ -215,7 +219,7 @@ impl Worker {
     /// Simulates one path of each pixel of a small picture, unless the picture at hand is of this order. Returns whether there was time.
     fn draft(&mut self, order: &PaintOrder, crop: &Crop, made: &mut Made) -> Result<bool, GpuError> {
         let Some(other) = &order.other else { return Ok(true) };
-        self.prepare(1, other)?;
+        self.prepare(1, other, &order.live)?;
         if self.gathering.serves(&other.package, &order.view, crop.side) {
             self.simulated(order, crop, made);
             return Ok(true);
@@ -295,7 +299,7 @@ impl Worker {
     }
 
     /// Makes the scene of a side: reuses the present one if possible, else gives it other materials, else compiles.
-    fn prepare(&mut self, side: usize, ready: &Ready) -> Result<(), GpuError> {
+    fn prepare(&mut self, side: usize, ready: &Ready, live: &[LiveValue]) -> Result<(), GpuError> {
         let form = match ready.way {
             Way::Shader(form) => form,
             // The simulation reads the material buffer, which every form binds.
@@ -303,7 +307,7 @@ impl Worker {
                 Form::ALL.into_iter().find(|form| ready.package.wgsl(*form).is_ok()).unwrap_or(Form::Baked)
             }
         };
-        let scene = match self.scenes[side].take() {
+        let mut scene = match self.scenes[side].take() {
             Some((package, scene)) if scene.form() == form => {
                 let rebound =
                     if Arc::ptr_eq(&package, &ready.package) { Some(scene) } else { scene.rebound(&ready.package)? };
@@ -311,6 +315,7 @@ impl Worker {
             }
             _ => self.gpu.scene(&ready.package, form)?,
         };
+        scene.set_live(live);
         self.scenes[side] = Some((Arc::clone(&ready.package), scene));
         Ok(())
     }

@@ -109,7 +109,7 @@ impl Easel {
         self.version += 1;
         let (version, environment) = (self.version, Arc::clone(&self.settings.environment));
         let (side, other) = (side.clone(), other.cloned());
-        self.painter.orders.put(PaintOrder { version, side, other, paths, environment, view });
+        self.painter.orders.put(PaintOrder { version, side, other, paths, environment, live: Arc::from([]), view });
         let (begin, mut seen) = (Instant::now(), Vec::new());
         loop {
             if let Some(painted) = self.painter.painted.take().filter(|painted| painted.version == version) {

@@ -1,6 +1,6 @@
 //! Entries of the manifest: materials and tables.
 
-use luthier_bake::BakedMaterial;
+use luthier_bake::{BakedMaterial, live_numbers};
 use luthier_export::{Map, input, sha256};
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
 use luthier_manifest::{FileEntry, MaterialEntry, TableEntry};
@@ -37,7 +37,7 @@ pub(super) fn material_entries(
             maps.push(Map { material: number, slot: map.slot, layer: map.layer, picture, png });
             own.push(entry);
         }
-        entries.push(MaterialEntry {
+        let entry = MaterialEntry {
             name: material.name.clone(),
             source: material.source.clone(),
             source_hash: source_hash(material)?,
@@ -48,7 +48,9 @@ pub(super) fn material_entries(
             constants: baked.constants.clone(),
             layers: baked.records.clone(),
             maps: own,
-        });
+            live: Vec::new(),
+        };
+        entries.push(entry.with_live(live_numbers(material)));
     }
     Ok((entries, maps))
 }

@@ -79,6 +79,7 @@ impl Subject {
                         "alpha_factors": own.alpha_factors,
                         "tangent": own.tangent.to_array(),
                         "slab_factor": own.slab_factor,
+                        "absorption_factors": own.absorption_factors,
                     })
                 });
                 head["place"]["layers"] = layers.collect();
@@ -176,7 +177,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         (model, bins_nm) = (Box::new(reradiated), Some(bins));
     }
     let mut place = place(&material, inputs, &shown)?;
-    add_layers(&mut place, &material, inputs, &maps)?;
+    add_layers(&mut place, &material, model.info().shading(), inputs, &maps)?;
     if inputs.has_weight_factor() && material.weight().is_none() {
         let file = &material.source;
         let text = format!("{file} has no coat or film with a weight below 1 or in a map: leave --weight-factor out");
@@ -196,7 +197,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         place.sample.normal = *normal;
     }
     let surface = picked.map(|(surface, _)| surface);
-    let has_effects = shown != luthier_material::Effects::default() || !maps.is_empty();
+    let has_effects = shown != luthier_material::Effects::default() || !maps.is_empty() || !inputs.live.is_empty();
     Ok(Subject {
         model: ModelInputs::textured(place.sample, model),
         material,

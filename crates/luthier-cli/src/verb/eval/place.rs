@@ -10,12 +10,13 @@ use luthier_layers::models::lobes::Mix;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::twins::shaded::{Growth, Place};
 use luthier_lut::{Image, Picture};
-use luthier_manifest::MapSlot;
+use luthier_manifest::{MapSlot, ShadingModel};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Base;
 use luthier_terminal::{Failure, Outcome};
 
+use crate::live;
 use crate::model_inputs::{LayerMap, ModelInputs};
 
 /// The place; `shows` are the effects that count.
@@ -79,11 +80,18 @@ pub(crate) fn weight(material: &Material, inputs: &ModelInputs) -> Outcome<Optio
         }
         None => 1.0,
     };
-    Ok(Some((weight * texel * inputs.weight_factor()).clamp(0.0, 1.0)))
+    let factor = inputs.weight_factor() * live::weight_factor(&inputs.live);
+    Ok(Some((weight * texel * factor).clamp(0.0, 1.0)))
 }
 
 /// Gives the place the values of layer textures: those of `maps`, which include the albedo of the base.
-pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelInputs, maps: &[LayerMap]) -> Outcome {
+pub(crate) fn add_layers(
+    place: &mut Place,
+    material: &Material,
+    model: Option<ShadingModel>,
+    inputs: &ModelInputs,
+    maps: &[LayerMap],
+) -> Outcome {
     let uv = inputs.uv().unwrap_or(DVec2::ZERO);
     let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
     let mut layers = vec![LayerSample::NONE; count];
@@ -109,6 +117,7 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
             MapSlot::AlphaY => own.alpha_factors[1] *= texel(0),
             MapSlot::Tangent => own.tangent = LayerSample::tangent_of([texel(0), texel(1)]),
             MapSlot::Thickness => own.slab_factor = texel(0),
+            MapSlot::Absorption => own.absorption_factors = [0, 1, 2].map(texel),
             MapSlot::Albedo => {
                 let Base::Diffuse(diffuse) = &material.stack.layers[map.layer].base else { continue };
                 let here = [0, 1, 2].map(|c: usize| diffuse.albedo[c] * texel(c));
@@ -125,6 +134,8 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
             MapSlot::Normal | MapSlot::Roughness | MapSlot::Weight | MapSlot::Patina | MapSlot::FlakeNormal => {}
         }
     }
+    place.layers = layers;
+    live::set(place, &mut metallic, material, model, &inputs.live)?;
     if let Some((layer, color, metal)) = metallic {
         let mix = match material.brightening() {
             Some(below) => {
@@ -134,11 +145,13 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
             None => Mix { metal: color, matt: color, metallic: metal },
         };
         let (f0, albedo) = luthier_optics::schlick::metallic_and_matt(mix.metal, mix.matt, metal);
-        layers[layer].f0 = Some(f0);
+        if place.layers.len() <= layer {
+            place.layers.resize(layer + 1, LayerSample::NONE);
+        }
+        place.layers[layer].f0 = Some(f0);
         place.metal = Some(mix);
         place.base_color = place.base_color.or(Some(albedo));
     }
-    place.layers = layers;
     Ok(())
 }
 

@@ -15,6 +15,8 @@ mod inputs;
 mod ior;
 #[cfg(feature = "gpu")]
 mod layer_maps;
+#[cfg(feature = "gpu")]
+mod live;
 mod models;
 #[cfg(feature = "gpu")]
 mod parts;

@@ -4,7 +4,7 @@ use super::{Sample, sample};
 
 const FILM: &str = "layer.0.film.0.thickness_nm";
 
-pub(super) static SAMPLES: [Sample; 24] = [
+pub(super) static SAMPLES: [Sample; 25] = [
     sample(
         "noise.seed",
         FILM,
@@ -40,6 +40,12 @@ pub(super) static SAMPLES: [Sample; 24] = [
         "layer.0.maps.thickness",
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.002, 0.012, 0.03], maps = { @ } }, { type = 'diffuse', albedo = 0.8 }]\nbake = { model = 'elek' }",
         &["absent|", "'thickness.png'|thickness = 'thickness.png'", "'patina.png'|thickness = 'patina.png'"],
+    ),
+    sample(
+        "dielectric-maps.absorption",
+        "layer.0.maps.absorption",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 100, absorption_per_um = [0.02, 0.03, 0.03], maps = { @ } }, { type = 'diffuse', albedo = 0.8 }]\nbake = { model = 'elek' }",
+        &["absent|", "'paint.png'|absorption = 'paint.png'", "'patina.png'|absorption = 'patina.png'"],
     ),
     sample(
         "dielectric-maps.weight",

@@ -9,7 +9,7 @@ pub(crate) struct Unseen {
 }
 
 /// All of them.
-pub(crate) static UNSEEN: [Unseen; 7] = [
+pub(crate) static UNSEEN: [Unseen; 8] = [
     Unseen {
         why: "names and texts, which no shader reads",
         keys: &[
@@ -34,6 +34,10 @@ pub(crate) static UNSEEN: [Unseen; 7] = [
             "conductor.maps",
             "diffuse.maps",
             "metallic-roughness.maps",
+            "dielectric.live",
+            "conductor.live",
+            "diffuse.live",
+            "metallic-roughness.live",
             "effects.flakes",
             "effects.patina",
             "effects.glitter",
@@ -52,6 +56,10 @@ pub(crate) static UNSEEN: [Unseen; 7] = [
     Unseen {
         why: "the type says which keys the table has",
         keys: &["dielectric.type", "thin-film.type", "conductor.type", "diffuse.type", "metallic-roughness.type"],
+    },
+    Unseen {
+        why: "a number that a program sets: a picture shows that of the file",
+        keys: &["dielectric-live.*", "conductor-live.*", "diffuse-live.*", "metallic-live.*"],
     },
     Unseen { why: "a limit, within which tables look alike", keys: &["material.budget", "budget.*"] },
     Unseen { why: "it adds tables that the shader does not read", keys: &["bake.tables"] },

@@ -45,6 +45,9 @@ struct LuthierPreparedLobes {
     wo: vec3<f32>,
     /// Tile of its rows, and the cosine at which they are read.
     row: vec2<f32>,
+    //? lobes_tints
+    /// Tiles from that to those of the energies of each channel.
+    tints: vec3<f32>,
     /// 1 + Lambda of the eye.
     masking: f32,
     /// Cosine and sine of the azimuth of the frame of the lobes: the plane of the eye, or axes.
@@ -264,12 +267,32 @@ fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(dot(azimuth, across), azimuth.x * across.y - azimuth.y * across.x);
 }
 
+//? lobes_tints
+/// A part of a row whose RGB are energies, read for each channel at a tile of its own; A is that of the row.
+fn luthier_lookup_tinted(row: vec2<f32>, tints: vec3<f32>, part: f32) -> vec4<f32> {
+    var read = luthier_lookup_lobes(row.x, row.y, part);
+    if dot(tints, tints) > 0.0 {
+        read.x = luthier_lookup_lobes(row.x + tints.x, row.y, part).x;
+        read.y = luthier_lookup_lobes(row.x + tints.y, row.y, part).y;
+        read.z = luthier_lookup_lobes(row.x + tints.z, row.y, part).z;
+    }
+    return read;
+}
+
 //? lobes_base
 /// A material whose rows have the light of its diffuse base apart, with the colour that this base has at a place.
 fn luthier_over_base(given: LuthierPreparedLobes, $place_parameter material: u32, painted_word: vec4<f32>) -> LuthierPreparedLobes {
     var prepared = given;
-    let of_internal = luthier_lookup_lobes(given.row.x, given.row.y, LUTHIER_LOBES_INTERNAL);
-    let of_base = luthier_lookup_lobes(given.row.x, given.row.y, LUTHIER_LOBES_BASE);
+    //? lobes_tints
+    {
+        let of_internal = luthier_lookup_tinted(given.row, given.tints, LUTHIER_LOBES_INTERNAL);
+        let of_base = luthier_lookup_tinted(given.row, given.tints, LUTHIER_LOBES_BASE);
+    }
+    //? else
+    {
+        let of_internal = luthier_lookup_lobes(given.row.x, given.row.y, LUTHIER_LOBES_INTERNAL);
+        let of_base = luthier_lookup_lobes(given.row.x, given.row.y, LUTHIER_LOBES_BASE);
+    }
     if painted_word.w < -1.5 {
         // Over a factor the shape of the remainder, that of the light of a Lambertian base, changes with it.
         let falloff = vec2<f32>(of_base.a, of_internal.a);
@@ -315,13 +338,26 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     {
         // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
         let over = luthier_materials[header + $word_phong_diffuse];
+        //? lobes_tints
+        {
+            // Each channel has a factor of its own on what the slab absorbs. Shapes are those of their mean.
+            let slabs = 1.0 - sqrt(saturate(place.slab_factor * luthier_own_place(place, 0u).absorption_factors));
+            let slab = dot(slabs, vec3<f32>(1.0 / 3.0));
+            let tints = (slabs - slab) * over.y;
+        }
         //? lobes_film
         {
             // Or at equal distances of the factor on the film, from the greatest to the least.
             let sheet = luthier_materials[header + $word_glitter_tilt];
+            //? lobes_tints
+            let roots = vec2<f32>(1.0 - sqrt(saturate(place.alpha_factor)), slab);
+            //? else
             let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
             let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < 0.0));
         }
+        //? else
+        //? lobes_tints
+        let away = vec2<f32>(1.0 - sqrt(saturate(place.alpha_factor)), slab);
         //? else
         let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
         //? lobes_patina
@@ -422,6 +458,12 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? else
     let cos_theta = wo.z;
     prepared.row = vec2<f32>(tile, cos_theta);
+    //? lobes_tints
+    {
+        prepared.tints = tints;
+        let wide = luthier_lookup_tinted(prepared.row, tints, 0.0);
+    }
+    //? else
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
     prepared.wide = wide.rgb;
     //? lobes_base
@@ -437,6 +479,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     }
     //? lobes_family
     {
+        //? lobes_tints
+        prepared.albedo = luthier_lookup_tinted(prepared.row, tints, LUTHIER_LOBES_ALBEDO).rgb + prepared.painted;
+        //? else
         prepared.albedo = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).rgb + prepared.painted;
         //? two_lobes
         prepared.shares = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).yw;
@@ -477,6 +522,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         if lobes < 0.5 {
             return prepared;
         }
+        //? lobes_tints
+        let first = luthier_lookup_tinted(prepared.row, tints, 1.0);
+        //? else
         let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
         prepared.first_strength = first.rgb;
         //? two_lobes
@@ -534,6 +582,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         if lobes < 1.5 {
             return prepared;
         }
+        //? lobes_tints
+        let second = luthier_lookup_tinted(prepared.row, tints, 2.0);
+        //? else
         let second = luthier_lookup_lobes(tile, cos_theta, 2.0);
         prepared.second_strength = second.rgb;
         let second_numbers = vec3<f32>(sharpness.zw, decays.y);
@@ -695,6 +746,9 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
 fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
     //? lobes_family
     var albedo = prepared.albedo;
+    //? else
+    //? lobes_tints
+    var albedo = luthier_lookup_tinted(prepared.row, prepared.tints, LUTHIER_LOBES_ALBEDO).rgb;
     //? else
     //? lobes_tilted
     var albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;

@@ -286,6 +286,19 @@ impl Lobe {
 const SHARPNESS_MIN: f64 = 1e-4;
 
 impl Row {
+    /// The row with the energies of each channel from a row of its own; shapes stay.
+    #[must_use]
+    pub fn with_channels(mut self, own: [&Self; 3]) -> Self {
+        for (c, own) in own.into_iter().enumerate() {
+            (self.albedo_dir[c], self.wide[c]) = (own.albedo_dir[c], own.wide[c]);
+            self.lobes.iter_mut().zip(&own.lobes).for_each(|(lobe, own)| lobe.strength[c] = own.strength[c]);
+            if let (Some(base), Some(own)) = (&mut self.base, own.base) {
+                (base.energy[c], base.internal[c]) = (own.energy[c], own.internal[c]);
+            }
+        }
+        self
+    }
+
     /// Number of parts of the light of a diffuse base.
     pub const BASE_PARTS: usize = 2;
 

@@ -14,6 +14,9 @@
         //? own_slabs
         /// Factor on the thickness of the slab below it.
         slab_factor: f32,
+        //? own_tints
+        /// Factors on what that slab absorbs, RGB.
+        absorption_factors: vec3<f32>,
         //? own_f0
         /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
         passing: vec3<f32>,
@@ -26,6 +29,7 @@
         own.alpha_factors = vec2<f32>(1.0);
         own.tangent = vec2<f32>(1.0, 0.0);
         own.slab_factor = 1.0;
+        own.absorption_factors = vec3<f32>(1.0);
         own.passing = vec3<f32>(1.0);
         return own;
     }
@@ -102,7 +106,7 @@ fn luthier_place() -> LuthierPlace {
     return place;
 }
 
-//? layered, lobes_family|lobes_bumps
+//? layered, lobes_family|lobes_bumps|lobes_tints
 /// Values of textures of a layer, counted from the top.
 fn luthier_own_place(place: LuthierPlace, index: u32) -> LuthierLayerPlace {
     var here = place;
@@ -140,6 +144,8 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     layer.normal = own.normal;
     //? own_slabs
     layer.optical_depth_log2 *= own.slab_factor;
+    //? own_tints
+    layer.optical_depth_log2 *= own.absorption_factors;
     //? own_f0
     layer.passing = own.passing;
     //? film_f0

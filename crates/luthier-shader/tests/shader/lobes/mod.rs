@@ -11,14 +11,15 @@ use luthier_layers::formulas::oren_nayar;
 use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
-    AxesRecord, FlakesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry,
-    PaintedRecord, PatinaRecord, VaryingFactor, VaryingRecord, material_buffer,
+    AxesRecord, FlakesRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MapSlot, MaterialConstants,
+    MaterialEntry, PaintedRecord, PatinaRecord, VaryingFactor, VaryingRecord, material_buffer,
 };
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Diffuse, Distribution};
 use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, emit};
 
 use crate::arithmetic::directions;
+use crate::features::with_map;
 use crate::machine::{Machine, Value, vector};
 use crate::scenes::{sets, tables};
 
@@ -152,12 +153,16 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         }
     }
     let film = Some([1.2, 0.2]);
-    for (factor, member, first, factors) in [
-        (VaryingFactor::AlphaFactor, 0, 1, None),
-        (VaryingFactor::SlabFactor, 1, 0, None),
-        (VaryingFactor::FilmFactor, 2, 1, film),
+    for (factor, member, first, factors, tint) in [
+        (VaryingFactor::AlphaFactor, 0, 1, None, None),
+        (VaryingFactor::SlabFactor, 1, 0, None, None),
+        (VaryingFactor::SlabFactor, 1, 0, None, Some([0.81, 0.25, 0.49])),
+        (VaryingFactor::FilmFactor, 2, 1, film, None),
     ] {
         let mut material = set("lobes-place")[0].clone();
+        if tint.is_some() {
+            material = with_map(material, MapSlot::Absorption, 0);
+        }
         material.layers[0].tiles[TableKind::Lobes] = Some(first);
         let record = material.constants.lobes.as_mut().unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
@@ -178,25 +183,38 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         ] {
             let mut place = neutral.clone();
             place.members_mut()[1 + member] = Value::F(scale as f32);
+            if let Some(tint) = tint {
+                let layers = place.members_mut().last_mut().unwrap();
+                layers.members_mut()[0].members_mut()[0] = vector(&tint.map(|factor: f64| factor as f32));
+            }
             let (over, spread) = match member {
                 0 => (over_alpha, f64::max(scale, 0.1)),
                 1 => (over_slab, 1.0),
                 _ => (over_film, 1.0),
             };
-            let tile = f64::from(first) + over;
-            let low = (tile as u32).min(3);
+            // Each channel has a tile of its own, and shapes are those of their mean.
+            let own_tiles = tint.map(|tint| tint.map(|tint: f64| 3.0 * (1.0 - (tint * scale).sqrt())));
+            let tile = f64::from(first) + own_tiles.map_or(over, |tiles| tiles.iter().sum::<f64>() / 3.0);
             for (wi, wo) in directions(60) {
                 let [light, eye] = [wi, wo].map(DVec3::from);
                 if light.z <= 0.0 || eye.z <= 0.0 {
                     continue;
                 }
-                let part = |part: u32| {
-                    let read =
-                        |tile| bilinear(&image, layout.position(tile, [eye.z, f64::from(part)]), WeightBits::Exact);
-                    let (a, b, t) = (read(low), read(low + 1), tile - f64::from(low));
-                    [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]))
+                let row_at = |tile: f64| {
+                    let low = (tile as u32).min(3);
+                    let part = |part: u32| {
+                        let read =
+                            |tile| bilinear(&image, layout.position(tile, [eye.z, f64::from(part)]), WeightBits::Exact);
+                        let (a, b, t) = (read(low), read(low + 1), tile - f64::from(low));
+                        [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]))
+                    };
+                    Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false)
                 };
-                let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false).spread(spread);
+                let mut row = row_at(tile).spread(spread);
+                for (c, own) in own_tiles.into_iter().flatten().map(row_at).enumerate() {
+                    row.wide[c] = own.wide[c];
+                    row.lobes.iter_mut().zip(&own.lobes).for_each(|(lobe, own)| lobe.strength[c] = own.strength[c]);
+                }
                 let expected = Below::new(frame, row, eye).eval(light);
                 let arguments = vec![place.clone(), Value::U(0), vector(&wo.map(|w| w as f32))];
                 let prepared = machine.call("luthier_prepare_lobes", arguments);

@@ -315,6 +315,8 @@
                 var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
                 //? place
                 depth *= place.slab_factor;
+                //? own_tints
+                depth *= own_coat.absorption_factors;
                 light *= exp(-of_lengths.x * depth);
                 sent_back *= exp(-of_lengths.y * depth);
                 once *= exp(-of_lengths.z * depth);
