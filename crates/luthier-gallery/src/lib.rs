@@ -19,6 +19,10 @@
 //! `lobes` is a fit for one roughness. Its shaders stay without places, and the slider is disabled and says why. Fits over `alpha_factor`, which a material with a roughness map has, follow
 //! down from 1. As with maps, the slopes of a base under patina stay where `base_alpha` states them, and `belcour` and `yamaguchi` keep the light that layers return to a diffuse base.
 //!
+//! # Live numbers
+//!
+//! The large picture has a slider for each live number of the manifest, normals left out. They decide members of the `LuthierPlace` of all pixels, beside those of maps.
+//!
 //! # Simplifications
 //!
 //! Maps of single layers ([`hidden_maps`]), but for the albedo of a base, and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
