@@ -6,7 +6,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::interface::Interface;
-use luthier_optics::schlick::schlick;
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -36,9 +36,9 @@ pub struct MonochromeLayer {
     pub films: Vec<FilmLayer>,
     /// Material below the interface.
     pub below: MonochromeBelow,
-    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. The interface then has no films, and the index below is
-    /// not lower than the index above.
-    pub f0: Option<f64>,
+    /// Reflectance at normal incidence and edge tint, if Schlick's formula takes the place of Fresnel's. The interface then has no films, and the index
+    /// below is not lower than the index above.
+    pub f0: Option<F82>,
 }
 
 /// Material below an interface, at one wavelength.
@@ -131,7 +131,7 @@ impl MonochromeLayer {
         };
         let films = layer.films.iter().map(|film| film.at(wavelength_nm)).collect();
         let f0 = match &layer.base {
-            Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f0().map(|f0| f0[channel]),
+            Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f82(channel),
             Base::Diffuse(_) => None,
         };
         Self { surface: layer.surface, above, films, below, f0 }
@@ -140,7 +140,7 @@ impl MonochromeLayer {
     /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
         match self.f0 {
-            Some(f0) => schlick(f0, cos_theta_i),
+            Some(curve) => curve.eval(cos_theta_i),
             None => self.polarised(cos_theta_i).map_or(0.0, |powers| powers.unpolarised()),
         }
     }

@@ -24,7 +24,7 @@ struct LuthierLayer {
     rotation: vec2<f32>,
     /// Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     ior_n: vec3<f32>,
-    /// Imaginary part of it; -1 of an interface of Schlick's.
+    /// Imaginary part of it; of an interface of Schlick's -1 less the weight of its edge tint.
     ior_k: vec3<f32>,
     /// Real part of the index of the film; 0 without a film.
     film_ior_n: vec3<f32>,
@@ -84,6 +84,9 @@ struct LuthierLayer {
     tarnish: vec3<f32>,
     /// Factor on what its interface does not reflect, RGB.
     passing: vec3<f32>,
+    //? own_edge
+    /// Weight of the correction of its reflectance by an edge tint, RGB.
+    edge: vec3<f32>,
     /// Normal of its interface at a place, unit, in the frame of the place.
     normal: vec3<f32>,
 }
@@ -179,6 +182,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);
     layer.passing = vec3<f32>(1.0);
+    layer.edge = vec3<f32>(0.0);
     layer.normal = vec3<f32>(0.0, 0.0, 1.0);
     return layer;
 }

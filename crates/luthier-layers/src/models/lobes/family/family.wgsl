@@ -23,6 +23,16 @@
         }
     }
 
+    //? lobes_metallic, own_edge
+    /// What an edge tint takes from the F0 of a metal for light that a coat keeps, over what it keeps at 82 degrees: by slope parameters of coat and base, and a
+    /// cosine of the view.
+    fn luthier_family_trapped_dip(held: vec2<f32>, cos_theta: f32) -> f32 {
+        let spread = dot(held, held);
+        let away = 1.0 - cos_theta;
+        let flat_views = away * away * away * (1.0 - held.y) * held.x / (held.x + 0.1);
+        return 0.15 * (spread / (spread + 0.006) + flat_views);
+    }
+
     /// About the share of light that crosses a coat of a slope parameter as seen at a cosine, over which rows have energies.
     fn luthier_family_crossing(alpha: f32, cos_theta: f32) -> f32 {
         let cos_sq = cos_theta * cos_theta;
@@ -240,6 +250,23 @@
                 metallic = place.metal.w;
                 diffuse = place.matt / (LUTHIER_PLASTIC_PASSED + place.matt * (1.0 - LUTHIER_PLASTIC_PASSED));
             }
+            //? own_edge
+            {
+                // Light of one visit below a coat, or of several facets without one, sees an F0 that is less by what rows say; light that a coat keeps is flat.
+                var once_metal = metal;
+                var more_metal = metal;
+                //? own_f0
+                if metallic > 0.0 {
+                    once_metal = max(metal - place.metal_edge * of_wide.z, vec3<f32>(0.0));
+                    let trapped_dip = luthier_family_trapped_dip(held, wo.z);
+                    more_metal = max(metal - place.metal_edge * select(trapped_dip, of_wide.z, base_layer == 0u), vec3<f32>(0.0));
+                }
+            }
+            //? else
+            {
+                let once_metal = metal;
+                let more_metal = metal;
+            }
             var passed = vec3<f32>(of_base.x);
             var sent_back = vec3<f32>(of_internal.x);
             //? lobes_tinted
@@ -248,19 +275,21 @@
                 sent_back *= exp(-of_internal.z * depth);
             }
             wide = mix(of_wide.y + passed * diffuse / (1.0 - sent_back * diffuse), vec3<f32>(of_wide.x), metallic);
-            once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, metal), metallic);
+            once = mix(vec3<f32>(of_base.y), luthier_family_once(of_once.rgb, once_metal), metallic);
             //? lobes_tinted
             {
                 once *= exp(-of_albedo.y * depth);
                 // Trapped light passes the slab again before each visit.
                 let again = exp(-of_albedo.z * depth);
-                more = mix(of_internal.y * again * again, luthier_family_more(of_more.rgb, metal * again), metallic);
+                more = mix(of_internal.y * again * again, luthier_family_more(of_more.rgb, more_metal * again), metallic);
             }
             //? else
-            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, metal), metallic);
+            more = mix(vec3<f32>(of_internal.y), luthier_family_more(of_more.rgb, more_metal), metallic);
             facet = vec3<f32>(1.0 - crossing * of_albedo.x);
             if base_layer == 0u {
                 facet = of_albedo.x + of_albedo.y * mix(vec3<f32>(0.04), metal, metallic);
+                //? own_edge
+                facet -= of_albedo.z * metallic * place.metal_edge;
             }
         }
         //? !lobes_metallic|~lobes_metallic

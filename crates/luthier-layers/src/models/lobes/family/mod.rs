@@ -109,6 +109,8 @@ pub struct Family {
     pub interface: usize,
     /// Whether the base is metallic in places, whose colours are in closed form. Else energies are those of the channels.
     pub is_metallic: bool,
+    /// Whether that metal has an edge tint, for which rows have two numbers more.
+    pub is_tinted: bool,
 }
 
 impl Family {
@@ -125,7 +127,13 @@ impl Family {
         let [own, base] =
             if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
         let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-        Some(Self { coat, base, interface, is_metallic })
+        Some(Self { coat, base, interface, is_metallic, is_tinted: false })
+    }
+
+    /// The family with an edge tint of the metal, if its base is metallic in places.
+    #[must_use]
+    pub fn tinted(self, is_tinted: bool) -> Self {
+        Self { is_tinted: is_tinted && self.is_metallic, ..self }
     }
 
     /// Whether interfaces lie above the base.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::schlick::metallic_and_matt;
+use luthier_optics::schlick::{F82, F82_COS_THETA, metallic_and_matt, metallic_and_tinted, schlick};
 use luthier_optics::stack::{Base, Stack};
 
 use super::{Family, base_interface};
@@ -15,6 +15,8 @@ use crate::models::lobes::{BaseLight, Frame, Lobe, Row};
 pub struct Paint {
     /// F0 of the metal, RGB.
     pub metal: Rgb,
+    /// Edge tint of the metal, RGB; 1 without.
+    pub tint: Rgb,
     /// Share of the metal in the base, 0 to 1.
     pub metallic: f64,
     /// Albedo of the diffuse base, RGB.
@@ -28,10 +30,20 @@ pub struct Paint {
 pub struct Mix {
     /// F0 of the metal, RGB.
     pub metal: Rgb,
+    /// Edge tint of the metal, RGB; 1 without.
+    pub tint: Rgb,
     /// Colour that the dielectric shows, RGB.
     pub matt: Rgb,
     /// Share of the metal.
     pub metallic: f64,
+}
+
+impl Mix {
+    /// Curves of the reflectance of the interface of this base as one surface, and albedo of the diffuse base below it: as models other than `lobes` have it.
+    pub fn surface(&self) -> ([F82; 3], Rgb) {
+        let curves = [0, 1, 2].map(|c: usize| F82 { f0: self.metal[c], tint: self.tint[c] });
+        metallic_and_tinted(curves, self.matt, self.metallic)
+    }
 }
 
 impl Paint {
@@ -45,15 +57,20 @@ impl Paint {
             Some(Base::Dielectric { slab, .. }) => slab.optical_depth(),
             _ => [0.0; 3],
         };
-        Self { metal: [0.0; 3], metallic: 0.0, albedo, depth }
+        Self { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo, depth }
     }
 
     /// These colours with a base of a `metallic-roughness` surface: a metal of an F0, and a dielectric whose diffuse base shows a colour, which is its
     /// share.
     #[must_use]
-    pub fn mixed(self, Mix { metal, matt, metallic }: Mix) -> Self {
+    pub fn mixed(self, Mix { metal, tint, matt, metallic }: Mix) -> Self {
         let (_, albedo) = metallic_and_matt(metal, matt, 0.0);
-        Self { metal, metallic, albedo, ..self }
+        Self { metal, tint, metallic, albedo, ..self }
+    }
+
+    /// Curves of the reflectance of the metal.
+    fn curves(&self) -> [F82; 3] {
+        [0, 1, 2].map(|c: usize| F82 { f0: self.metal[c], tint: self.tint[c] })
     }
 
     /// A stack with the metal of these colours as its base.
@@ -63,7 +80,7 @@ impl Paint {
         let Some(number) = base_interface(stack) else { return metal };
         metal.layers.truncate(number + 1);
         if let Base::Conductor { ior } | Base::Dielectric { ior, .. } = &metal.layers[number].base {
-            metal.layers[number].base = Base::Conductor { ior: ior.clone().with_f0(self.metal) };
+            metal.layers[number].base = Base::Conductor { ior: ior.clone().with_f82(self.curves()) };
         }
         metal
     }
@@ -84,8 +101,7 @@ impl Paint {
         if let (true, Base::Conductor { ior } | Base::Dielectric { ior, .. }) =
             (family.is_metallic, &mut painted.layers[family.interface].base)
         {
-            let f0 = [0, 1, 2].map(|c: usize| PLASTIC_F0 + self.metallic * (self.metal[c] - PLASTIC_F0));
-            *ior = ior.clone().with_f0(f0);
+            *ior = ior.clone().with_f82(self.curves().map(|metal| metal.in_dielectric(self.metallic)));
         }
         painted
     }
@@ -126,7 +142,7 @@ impl Family {
         let more = base.more(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
-                self.mixed(row, &base, paint, c)
+                self.mixed(row, (alphas, cos_theta), paint, c)
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
@@ -149,22 +165,50 @@ impl Family {
 
     /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
     /// light that the base reflected once, and more often.
-    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, c: usize) -> [f64; 4] {
+    fn mixed(self, row: &Row, (alphas, cos_theta): ([f64; 2], f64), paint: &Paint, c: usize) -> [f64; 4] {
         let (metal, metallic) = (paint.metal[c], paint.metallic);
+        let base = row.base.unwrap_or_default();
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
         let ([light, once, length], [sent_back, more, around]) = (base.energy, base.internal);
         let diffuse = light * passed(length) * paint.albedo[c] / (1.0 - sent_back * passed(around) * paint.albedo[c]);
         let [first, second, third] = row.albedo_dir;
-        let entering = if self.is_coated() { first } else { 1.0 - (first + second * mix(metal, PLASTIC_F0)) };
+        let entering = if self.is_coated() {
+            first
+        } else {
+            let kept = metallic * edge(metal, paint.tint[c]) * third;
+            1.0 - (first + second * mix(metal, PLASTIC_F0) - kept)
+        };
+        let at = |dip: f64| dimmed(metal, paint.tint[c], dip);
+        // Light that a coat keeps meets the metal flatly.
+        let flat = at(if self.is_coated() { trapped_dip(alphas, cos_theta) } else { row.wide[2] });
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
         let wide = mix(row.wide[0], row.wide[1] + diffuse);
-        let once = mix(chain(of_once, metal), once) * passed(second);
+        let once = mix(chain(of_once, at(row.wide[2])), once) * passed(second);
         // Trapped light passes the slab again before each visit: it is as dark as over a darker base.
         let again = passed(third);
-        let trapped = mix(trapped(of_more, metal * again), more * again * again);
+        let trapped = mix(trapped(of_more, flat * again), more * again * again);
         [entering, wide, once, trapped]
     }
+}
+
+/// What an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
+fn edge(f0: f64, tint: f64) -> f64 {
+    schlick(f0, F82_COS_THETA) * (1.0 - tint)
+}
+
+/// The F0 without an edge tint that stands for one with it, where facets see this dip.
+pub(super) fn dimmed(f0: f64, tint: f64, dip: f64) -> f64 {
+    (f0 - edge(f0, tint) * dip).max(0.0)
+}
+
+/// The dip of light of more visits below a coat, by slope parameters of coat and base and the cosine of the view. Wherever it comes from, such light meets the
+/// metal beyond the critical angle: the dip is .14 within .03, but for flat views through a rough coat (up to .22) and mirrors below a smooth one (.09).
+fn trapped_dip([coat, base]: [f64; 2], cos_theta: f64) -> f64 {
+    let spread = coat * coat + base * base;
+    let away = 1.0 - cos_theta;
+    let flat = away * away * away * (1.0 - base) * coat / (coat + 0.1);
+    0.15 * (spread / (spread + 0.006) + flat)
 }
 
 /// Least share above the horizon by which an energy is divided.
