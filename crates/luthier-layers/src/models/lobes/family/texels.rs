@@ -123,7 +123,7 @@ mod tests {
                 albedo_dir: [1.0, 2.0, 3.0],
                 lobes: vec![lobe(some(4.0), 0.3, 0.5), lobe([6.0, 7.0, 8.0], 0.0, 0.75)],
                 wide: if is_metallic { [9.0, 0.0, 0.0] } else { [9.0, 10.0, 11.0] },
-                base: Some(BaseLight { energy: some(12.0), internal: some(15.0), falloff: [0.25, 0.125] }),
+                base: Some(BaseLight { energy: some(12.0), internal: some(15.0), falloff: [0.25, 0.125], met: None }),
             };
             let parts = family.to_parts(&row);
             assert_eq!(parts.len(), family.parts(true, true));
