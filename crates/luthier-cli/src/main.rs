@@ -6,7 +6,6 @@ mod directions;
 mod grid;
 mod input;
 mod interrupt;
-mod live;
 mod materials;
 #[cfg(feature = "gpu")]
 mod memory_bake;

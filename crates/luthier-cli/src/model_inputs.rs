@@ -15,7 +15,6 @@ use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
 use crate::directions::Angles;
-use crate::live::LiveValue;
 use crate::numbers::{not_negative, number, share, wavelength};
 
 #[derive(Debug, Args)]
@@ -336,6 +335,28 @@ impl FromStr for BaseColor {
     }
 }
 
+/// A live number, and the value that it gets.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LiveValue {
+    pub(crate) layer: usize,
+    pub(crate) name: String,
+    pub(crate) values: Vec<f64>,
+}
+
+impl FromStr for LiveValue {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once('=').and_then(|(key, values)| {
+            let (layer, name) = key.trim().strip_prefix("layer.")?.split_once('.')?;
+            let values: Option<Vec<f64>> = values.split(',').map(|value| number(value.trim()).ok()).collect();
+            Some(Self { layer: layer.parse().ok()?, name: name.to_owned(), values: values? })
+        });
+        let expected = "expected a key and numbers, such as layer.1.base_color=0.8,0.3,0.1";
+        parsed.filter(|live| live.values.len() <= 3).ok_or_else(|| expected.to_owned())
+    }
+}
+
 /// True where the shader of a model shows a feature in no form.
 fn lacks(shader: ShadingModel, feature: Feature) -> bool {
     !Form::ALL.iter().any(|&form| shader.honours(feature, form))
@@ -343,4 +364,18 @@ fn lacks(shader: ShadingModel, feature: Feature) -> bool {
 
 fn takes_base_color(model: ShadingModel) -> bool {
     model.facts().family != Family::Coefficients
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_those_of_layers() {
+        let live: LiveValue = "layer.1.base_color=0.8, 0.3,0.1".parse().unwrap();
+        assert_eq!((live.layer, live.name.as_str(), live.values.as_slice()), (1, "base_color", &[0.8, 0.3, 0.1][..]));
+        for wrong in ["base_color=1", "layer.x.alpha=1", "layer.0.alpha", "layer.0.alpha=", "layer.0.alpha=1,1,1,1"] {
+            assert!(wrong.parse::<LiveValue>().is_err(), "{wrong}");
+        }
+    }
 }

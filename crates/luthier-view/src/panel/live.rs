@@ -91,7 +91,7 @@ fn labels(live: &LiveEntry) -> Vec<String> {
     parts.iter().map(|part| format!("{layer} · {name}{part}{factor}")).collect()
 }
 
-/// What a slider multiplies, and where a program writes its value.
+/// Number that a slider multiplies, and where a program writes its value.
 fn hint(live: &LiveEntry) -> String {
     let number: Vec<String> = live.number.iter().map(|number| format!("{number:.4}")).collect();
     match number.is_empty() {
@@ -104,7 +104,7 @@ fn hint(live: &LiveEntry) -> String {
 mod tests {
     use super::*;
 
-    /// What sliders show of a value is what they make of it again.
+    /// Sliders make again of a value what they show.
     #[test]
     fn sliders_have_the_values() {
         for (slot, default, range) in [

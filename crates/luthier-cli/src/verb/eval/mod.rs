@@ -1,6 +1,7 @@
 //! `eval`: a reflectance model of a material, in f64.
 
 mod function;
+mod live;
 mod place;
 mod polarised;
 mod shipped;

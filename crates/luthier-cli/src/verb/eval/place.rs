@@ -16,7 +16,7 @@ use luthier_optics::Rgb;
 use luthier_optics::stack::Base;
 use luthier_terminal::{Failure, Outcome};
 
-use crate::live;
+use super::live;
 use crate::model_inputs::{LayerMap, ModelInputs};
 
 /// The place; `shows` are the effects that count.

@@ -1,7 +1,5 @@
 //! Live numbers of a material on the command line: `--live layer.1.base_color=0.8,0.3,0.1`.
 
-use std::str::FromStr;
-
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::twins::shaded::Place;
@@ -10,29 +8,7 @@ use luthier_material::{Material, left_out};
 use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
-use crate::numbers::number;
-
-/// A live number, and the value that it gets.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LiveValue {
-    layer: usize,
-    name: String,
-    values: Vec<f64>,
-}
-
-impl FromStr for LiveValue {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parsed = text.split_once('=').and_then(|(key, values)| {
-            let (layer, name) = key.trim().strip_prefix("layer.")?.split_once('.')?;
-            let values: Option<Vec<f64>> = values.split(',').map(|value| number(value.trim()).ok()).collect();
-            Some(Self { layer: layer.parse().ok()?, name: name.to_owned(), values: values? })
-        });
-        let expected = "expected a key and numbers, such as layer.1.base_color=0.8,0.3,0.1";
-        parsed.filter(|live| live.values.len() <= 3).ok_or_else(|| expected.to_owned())
-    }
-}
+use crate::model_inputs::LiveValue;
 
 /// A layer with its edge tint, and its base colour and metal at a place.
 pub(crate) type Metallic = Option<(usize, Rgb, Rgb, f64)>;
@@ -122,18 +98,4 @@ fn unit(values: &[f64]) -> DVec3 {
 
 fn usage<T>(text: String) -> Outcome<T> {
     Err(Failure::Usage(anyhow::anyhow!("--live: {text}")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn keys_are_those_of_layers() {
-        let live: LiveValue = "layer.1.base_color=0.8, 0.3,0.1".parse().unwrap();
-        assert_eq!((live.layer, live.name.as_str(), live.values.as_slice()), (1, "base_color", &[0.8, 0.3, 0.1][..]));
-        for wrong in ["base_color=1", "layer.x.alpha=1", "layer.0.alpha", "layer.0.alpha=", "layer.0.alpha=1,1,1,1"] {
-            assert!(wrong.parse::<LiveValue>().is_err(), "{wrong}");
-        }
-    }
 }
