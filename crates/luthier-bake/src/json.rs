@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 pub(crate) fn ior(ior: &Ior) -> Value {
     let samples: Value = ior.samples().iter().map(|s| json!([s.wavelength_nm, s.n, s.k])).collect();
     match ior.f0() {
+        Some(f0) if ior.f82_tint() != [1.0; 3] => json!({"samples": samples, "f0": f0, "f82_tint": ior.f82_tint()}),
         Some(f0) => json!({"samples": samples, "f0": f0}),
         None => samples,
     }

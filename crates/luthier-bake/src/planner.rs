@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::graph::{Graph, Key};
 use crate::kinds::{self, Site};
 use crate::plan::{Plan, PlannedLayers};
-use crate::records::{Parts, records};
+use crate::records::{Parts, records, tint};
 use crate::relief::ImageReader;
 use crate::settings::{Ask, Asked, Settings};
 use crate::{BakeError, limits};
@@ -149,6 +149,9 @@ impl Part {
     ) -> Result<Vec<LayerRecord>, BakeError> {
         let (color, model) = (material.color(), material.model());
         let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
+        for (record, extras) in records.iter_mut().zip(extras) {
+            record.metal_f82_tint = extras.metallic.and_then(|metal| tint(metal.f82_tint));
+        }
         // Other models show the base's colour under white light, as an albedo.
         if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {
             last.reradiation = extras.last().and_then(|extras| extras.reradiation);

@@ -6,6 +6,7 @@ use luthier_manifest::ModelPart;
 use luthier_manifest::{LayerKind, LayerRecord, LowerReflectance, Masking, PathParts, Reflectance, ReflectanceCurve};
 use luthier_material::Material;
 use luthier_model::INDEX_MAX;
+use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
@@ -65,6 +66,11 @@ impl Parts {
     }
 }
 
+/// An edge tint, if it is one.
+pub(crate) fn tint(tint: Rgb) -> Option<Rgb> {
+    (tint != [1.0; 3]).then_some(tint)
+}
+
 /// The records of a stack, without tiles.
 pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) -> Vec<LayerRecord> {
     let nodes = Color::ThreeWavelengths(wavelengths_nm).nodes();
@@ -99,6 +105,7 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
             if let Some(interface) = Interface::of(stack, i) {
                 // Films interfere by the index of the F0, which stands in the record like any other.
                 record.f0 = interface.below.f0().filter(|_| interface.films.is_empty());
+                record.f82_tint = record.f0.and(tint(interface.below.f82_tint()));
                 if i > 0 {
                     record.lower_reflectance = parts.lower_reflectance;
                     record.lower_cosine = parts.path.lower_cosine;

@@ -7,6 +7,7 @@ use luthier_model::{
     DiffusePart, InternalReflection, LowerAlpha, LowerCosine, LowerFacets, LowerReflectance, Masking, Reflectance,
     ReflectanceCurve,
 };
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -90,6 +91,12 @@ pub struct LayerRecord {
     /// directions only. Beside a film it is that without metal of a base whose maps give each place an F0: the film tile is over its root.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub f0: Option<[f64; 3]>,
+    /// Edge tint of such an interface, RGB: its reflectance at 81.8 degrees over that of Schlick's formula (F82). Absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub f82_tint: Option<[f64; 3]>,
+    /// Edge tint of the metal that a `metallic-roughness` interface with maps is at some places, RGB. Absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub metal_f82_tint: Option<[f64; 3]>,
     /// Real part of the film's relative index; 0 without a film.
     pub film_ior_n: [f64; 3],
     /// Imaginary part.
@@ -156,6 +163,12 @@ impl LayerRecord {
         refracted_cosine(self.critical_cot_sq, cos_theta)
     }
 
+    /// Weights of the correction of Schlick's formula by an edge tint, RGB; 0 without one.
+    fn edge_weights(&self) -> [f64; 3] {
+        let (f0, tint) = (self.f0.unwrap_or_default(), self.f82_tint.unwrap_or([1.0; 3]));
+        [0, 1, 2].map(|c: usize| F82 { f0: f0[c], tint: tint[c] }.dip())
+    }
+
     /// The words of the material buffer, in the order that the shader unpacks them. Tiles are numbers, -1 for none, where
     /// [`luthier_lut::KindFacts::slot`] says.
     ///
@@ -164,9 +177,9 @@ impl LayerRecord {
     /// | 0 | falloff, peak, 1 / eta, 1 - 1 / eta^2 |
     /// | 1 | Fresnel tile, distribution tile, FGD tile, phase tile |
     /// | 2 | optical depth RGB over ln 2, thickness tile |
-    /// | 3 | albedo RGB over pi, distribution (0 beckmann, 1 ggx, 2 blinn, 3 abc, 4 sgd) |
+    /// | 3 | albedo RGB over pi, of a `metallic-roughness` interface with maps 1 less the edge tint of its metal RGB; distribution (0 beckmann, 1 ggx, 2 blinn, 3 abc, 4 sgd) |
     /// | 4 | ior_n RGB, of an interface of Schlick's f0 RGB; film thickness nm |
-    /// | 5 | ior_k RGB, of an interface of Schlick's -1; film thickness max nm |
+    /// | 5 | ior_k RGB, of an interface of Schlick's -1 less the weight of its edge tint; film thickness max nm |
     /// | 6 | film_ior_n RGB, film tile; of a curve f0 RGB |
     /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
     /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
@@ -178,6 +191,8 @@ impl LayerRecord {
     ///
     /// An interface with its diffuse base beside it ([`DiffusePart::Beside`]) has the words of one that neither bends, absorbs nor reflects
     /// inward: its eta is 1, its optical depth 0 and its internal reflection none.
+    ///
+    /// The weight of an edge tint t is `(1 - t) F(1/7) / (1/7 (6/7)^6)`, F being Schlick's formula: cos (1 - cos)^6 times the weight is taken off.
     ///
     /// A fluorescent base has the rows of its re-radiation matrix over pi in words 4, 5 and 6, red, green and blue, and 1 in x of word 8.
     ///
@@ -227,9 +242,12 @@ impl LayerRecord {
             vec4([sharpness * unit, sharpness * 0.25 * FRAC_1_PI, reciprocal(eta)], grazing_cos_sq),
             [0.0; 4],
             vec4(optical_depth.map(|depth| depth * LOG2_E), 0.0),
-            vec4(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
+            vec4(self.metal_f82_tint.map_or(self.albedo.map(|albedo| albedo * FRAC_1_PI), dark), distribution),
             vec4(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm),
-            vec4(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm),
+            vec4(
+                self.f0.map_or(self.ior_k, |_| self.edge_weights().map(|weight| -1.0 - weight)),
+                self.film_thickness_max_nm,
+            ),
             vec4(first, 0.0),
             vec4(second, self.critical_cot_sq),
             vec4(third, 0.0),
@@ -251,6 +269,11 @@ impl LayerRecord {
         }
         words
     }
+}
+
+/// What tints keep.
+fn dark(tint: [f64; 3]) -> [f64; 3] {
+    tint.map(|tint| 1.0 - tint)
 }
 
 /// 1 / value, and 0 for values that are not positive.
@@ -289,6 +312,8 @@ mod tests {
             ior_n: [10.0, 11.0, 12.0],
             ior_k: [13.0, 14.0, 15.0],
             f0: None,
+            f82_tint: None,
+            metal_f82_tint: None,
             film_ior_n: [16.0, 17.0, 18.0],
             film_ior_k: [19.0, 20.0, 21.0],
             film_thickness_waves: [22.0, 23.0, 24.0],
@@ -368,6 +393,12 @@ mod tests {
         assert_eq!((sgd[3][3], sgd[0][0], sgd[9]), (4.0, 1.0, [8.0, 0.5, 1.0, 0.0]));
         let schlick = LayerRecord { f0: Some([0.25, 0.5, 0.75]), ..numbered(LayerKind::Conductor) };
         assert_eq!(schlick.words()[4..6], [[0.25, 0.5, 0.75, 25.0], [-1.0, -1.0, -1.0, 26.0]]);
+        // By hand at an F0 of 1: (1 - t) / (1/7 (6/7)^6) = 17.651385 (1 - t).
+        let tinted = LayerRecord { f0: Some([1.0; 3]), f82_tint: Some([1.0, 0.5, 0.0]), ..schlick.clone() };
+        let [r, g, b, _] = tinted.words()[5];
+        assert!(r == -1.0 && (g + 9.825_692).abs() < 1e-5 && (b + 18.651_385).abs() < 1e-5, "{r} {g} {b}");
+        let mixed = LayerRecord { metal_f82_tint: Some([1.0, 0.75, 0.5]), ..schlick.clone() };
+        assert_eq!(mixed.words()[3][..3], [0.0, 0.25, 0.5]);
     }
 
     /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3, no internal reflection 128, the inner cosine 512, Phong's

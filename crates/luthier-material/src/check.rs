@@ -141,7 +141,7 @@ fn layers_of(table: &'static Table) -> impl Iterator<Item = &'static Table> {
 
 /// Other words for some keys, from neighbouring tools and papers.
 fn synonym(table: &'static Table, name: &str) -> Option<&'static str> {
-    const SYNONYMS: [(&str, &str); 28] = [
+    const SYNONYMS: [(&str, &str); 31] = [
         ("color", "albedo"),
         ("colour", "albedo"),
         ("reflectance", "albedo"),
@@ -164,6 +164,9 @@ fn synonym(table: &'static Table, name: &str) -> Option<&'static str> {
         ("specular_roughness", "roughness"),
         ("metalness", "metallic"),
         ("metallicness", "metallic"),
+        ("edge_color", "f82_tint"),
+        ("edge_tint", "f82_tint"),
+        ("specular_color", "f82_tint"),
         ("eta", "ior"),
         ("kappa", "k"),
         ("m", "alpha"),

@@ -275,7 +275,8 @@ impl Material {
                 mean * both[end] * of_surface[end]
             })
         };
-        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic })
+        let is_tinted = self.layers[interface].metallic.is_some_and(|metallic| metallic.f82_tint != [1.0; 3]);
+        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted })
     }
 
     /// The re-radiation of its base, if that is fluorescent.
@@ -387,6 +388,8 @@ pub struct SlopeRanges {
     pub base: [f64; 2],
     /// Whether the base is metallic in places.
     pub is_metallic: bool,
+    /// Whether that metal has an edge tint.
+    pub is_tinted: bool,
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.
@@ -396,6 +399,8 @@ pub struct Metallic {
     pub base_color: Rgb,
     /// 0 is a dielectric, 1 a metal.
     pub metallic: f64,
+    /// Edge tint of the metal, RGB; 1 is none.
+    pub f82_tint: Rgb,
 }
 
 /// Pictures that modulate a layer.

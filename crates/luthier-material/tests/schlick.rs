@@ -172,3 +172,68 @@ fn darkening_is_of_a_coat_above_a_colour() {
         assert!(errors.len() == 1 && errors[0].hint.is_some() && told.contains(part), "{body}: {told}");
     }
 }
+
+/// OpenPBR 1.1, metal, typed from its page with the numbers of the cosine 1/7, of metals by both types, and of a mixture by its share.
+#[test]
+fn metals_have_an_edge_tint() {
+    const TINT: [f64; 3] = [0.6, 0.8, 1.0];
+    let schlick = |f0: f64, mu: f64| f0 + (1.0 - f0) * libm::pow(1.0 - mu, 5.0);
+    let tinted = |f0: f64, tint: f64, mu: f64| {
+        let depth = schlick(f0, 1.0 / 7.0) * (1.0 - tint) * 7.0 / libm::pow(6.0 / 7.0, 6.0);
+        schlick(f0, mu) - depth * mu * libm::pow(1.0 - mu, 6.0)
+    };
+    for head in [
+        format!("type = \"conductor\"\nf0 = {COPPER}"),
+        format!("type = \"metallic-roughness\"\nbase_color = {COPPER}\nmetallic = 1"),
+    ] {
+        let metal = stack(&format!("[[layer]]\n{head}\nf82_tint = [0.6, 0.8, 1.0]\nsmooth = true\n"));
+        assert_eq!(metal.layers.len(), 1);
+        for mu in [0.0, 0.05, 1.0 / 7.0, 0.5, 1.0] {
+            let found = reflectance(&metal, 0, mu);
+            [0.955, 0.638, 0.538]
+                .iter()
+                .zip(TINT)
+                .zip(found)
+                .for_each(|((f0, tint), found)| close(found, tinted(*f0, tint, mu)));
+        }
+    }
+    let mixed = stack(&format!(
+        "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = {COPPER}\nmetallic = 0.25\nf82_tint = [0.6, 0.8, 1.0]\nsmooth = true\n"
+    ));
+    let Base::Diffuse(base) = &mixed.layers[1].base else { panic!("{mixed:?}") };
+    for (i, (color, tint)) in [0.955, 0.638, 0.538].into_iter().zip(TINT).enumerate() {
+        let at = |mu: f64| 0.25 * tinted(color, tint, mu) + 0.75 * schlick(0.04, mu);
+        close(reflectance(&mixed, 0, 0.2)[i], at(0.2));
+        // Simpson's rule has the light that the interface passes; the base shows the colour through it.
+        let steps = 2000;
+        let weight = |i: u32| if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+        let mean = (0..=steps).map(|i| {
+            let mu = f64::from(i) / f64::from(steps);
+            weight(i) * 2.0 * mu * at(mu) / f64::from(3 * steps)
+        });
+        let (r, t) = (base.albedo[i], 1.0 - mean.sum::<f64>());
+        assert!((r * t / (1.0 - r * (1.0 - t)) - 0.75 * color).abs() < 1e-9, "{r} {t}");
+    }
+}
+
+#[test]
+fn edge_tints_of_other_interfaces_are_refused() {
+    let errors = |body: &str| {
+        let text = format!("schema = 1\nname = \"x\"\n{body}");
+        let errors = parse("x.toml", &text, &|_| Err(std::io::Error::other("none"))).unwrap_err();
+        errors.iter().map(|error| error.render(&text)).collect::<Vec<_>>().join("\n")
+    };
+    let of_index = errors("[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nf82_tint = 0.5\nsmooth = true\n");
+    assert!(of_index.contains("x.toml:6") && of_index.contains("`f82_tint` is for a metal with an `f0`"), "{of_index}");
+    let glass = errors("[[layer]]\ntype = \"dielectric\"\nior = 1.5\nf82_tint = 0.5\nsmooth = true\n");
+    assert!(glass.contains("an edge tint is for metals"), "{glass}");
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.4\nthickness_nm = 300\n";
+    for metal in ["type = \"conductor\"\nf0 = 0.5", "type = \"metallic-roughness\"\nbase_color = 0.5\nmetallic = 1"] {
+        let below_film = errors(&format!("{film}[[layer]]\n{metal}\nf82_tint = 0.5\nsmooth = true\n"));
+        assert!(below_film.contains("an edge tint below a film"), "{below_film}");
+    }
+    let bright = errors("[[layer]]\ntype = \"conductor\"\nf0 = 0.5\nf82_tint = 1.2\nsmooth = true\n");
+    assert!(bright.contains("f82_tint"), "{bright}");
+    let none = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.5\nf82_tint = 0.5\nsmooth = true\n";
+    assert!(parsed(none).warnings[0].message.contains("of no consequence"));
+}

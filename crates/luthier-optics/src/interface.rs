@@ -6,7 +6,7 @@ use crate::Rgb;
 use crate::color::{Color, WavelengthNode};
 use crate::fresnel::{FilmLayer, coated};
 use crate::ior::Ior;
-use crate::schlick::{Lazanyi, index_below_film, schlick};
+use crate::schlick::{F82, Lazanyi, index_below_film};
 use crate::stack::{Base, Film, Stack};
 
 /// The optics of one interface: the medium above, films, the medium below. No micro-surface.
@@ -25,7 +25,7 @@ pub struct Interface {
     pub above: Ior,
     /// Films from the top down, at their nominal thickness.
     pub films: Vec<Film>,
-    /// Medium below. Where it has an F0 ([`Ior::with_f0`]), the interface reflects by Schlick's formula, and under films as if the medium had the index of
+    /// Medium below. Where it has an F0 ([`Ior::with_f0`]), the interface reflects by Schlick's formula with its edge tint, and under films as if the medium had the index of
     /// that F0 ([`index_below_film`]).
     pub below: Ior,
 }
@@ -55,7 +55,7 @@ impl Interface {
         let f0 = self.below.f0().map(|f0| f0[channel]);
         let index = f0.filter(|_| !self.films.is_empty()).map(|f0| Complex64::new(index_below_film(above, f0), 0.0));
         Monochrome {
-            f0: f0.filter(|_| index.is_none()),
+            f0: self.below.f82(channel).filter(|_| index.is_none()),
             above: Complex64::new(above, 0.0),
             films: self.films.iter().map(|film| film.at(wavelength_nm)).collect(),
             below: index.unwrap_or_else(|| self.below.at(wavelength_nm)),
@@ -99,13 +99,11 @@ impl Interface {
     pub fn at_nodes(&self, nodes: &[WavelengthNode]) -> Sampled {
         let single = [WavelengthNode { wavelength_nm: 550.0, weight: [1.0; 3] }];
         let nodes = if self.is_achromatic() { &single } else { nodes };
-        let nodes = match self.below.f0() {
+        let nodes = if self.below.is_grey_f0() {
+            nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect()
+        } else {
             // Each channel by itself.
-            Some([r, g, b]) if r != g || g != b => nodes
-                .iter()
-                .flat_map(|n| (0..3).map(|c| (channel_of(n.weight, c), self.at(n.wavelength_nm, c))))
-                .collect(),
-            _ => nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect(),
+            nodes.iter().flat_map(|n| (0..3).map(|c| (channel_of(n.weight, c), self.at(n.wavelength_nm, c)))).collect()
         };
         Sampled { nodes }
     }
@@ -128,22 +126,23 @@ pub struct Monochrome {
     pub films: Vec<FilmLayer>,
     /// Index below.
     pub below: Complex64,
-    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. There are no films then.
-    pub f0: Option<f64>,
+    /// Reflectance at normal incidence and edge tint, if Schlick's formula takes the place of Fresnel's. There are no films then.
+    pub f0: Option<F82>,
 }
 
 impl Monochrome {
-    /// Unpolarised reflectance: Fresnel's formulas, with the films by Airy's; or `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994).
+    /// Unpolarised reflectance: Fresnel's formulas, with the films by Airy's; or `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994), with an edge tint
+    /// ([`F82`]).
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
-        if let Some(f0) = self.f0 {
-            return schlick(f0, cos_theta_i);
+        if let Some(curve) = self.f0 {
+            return curve.eval(cos_theta_i);
         }
         coated(self.above, &self.films, self.below, cos_theta_i).unpolarised()
     }
 }
 
 /// An interface as stores keep it. The form has no place for an F0: an F0 is the imaginary part of the index above, and an imaginary part of
-/// -1 below marks it.
+/// the edge tint less 2 below marks it, -1 without a tint.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Stored {
@@ -155,8 +154,8 @@ struct Stored {
 #[cfg(feature = "serde")]
 impl From<Monochrome> for Stored {
     fn from(Monochrome { mut above, films, mut below, f0 }: Monochrome) -> Self {
-        if let Some(f0) = f0 {
-            (above.im, below.im) = (f0, -1.0);
+        if let Some(F82 { f0, tint }) = f0 {
+            (above.im, below.im) = (f0, tint - 2.0);
         }
         Self { above, films, below }
     }
@@ -165,7 +164,7 @@ impl From<Monochrome> for Stored {
 #[cfg(feature = "serde")]
 impl From<Stored> for Monochrome {
     fn from(Stored { mut above, films, mut below }: Stored) -> Self {
-        let f0 = (below.im == -1.0).then_some(above.im);
+        let f0 = (below.im < 0.0).then_some(F82 { f0: above.im, tint: 2.0 + below.im });
         if f0.is_some() {
             (above.im, below.im) = (0.0, 0.0);
         }
@@ -299,9 +298,11 @@ mod tests {
     #[cfg(feature = "serde")]
     #[test]
     fn stores_keep_an_f0() {
-        let with = schlick_on(Ior::vacuum(), Ior::constant(1.5, 0.0).unwrap()).at(550.0, 1);
+        let with = schlick_on(Ior::vacuum(), Ior::constant(1.5, 0.0).unwrap());
+        let tinted = Interface { below: with.below.clone().with_f82_tint([0.7, 0.123_456_789, 0.0]), ..with.clone() };
+        let [with, tinted, black] = [with.at(550.0, 1), tinted.at(550.0, 1), tinted.at(550.0, 2)];
         let without = Interface { above: Ior::vacuum(), films: Vec::new(), below: Ior::constant(0.2, 3.0).unwrap() };
-        for one in [with, without.at(550.0, 1)] {
+        for one in [with, tinted, black, without.at(550.0, 1)] {
             assert_eq!(Monochrome::from(Stored::from(one.clone())), one);
         }
     }

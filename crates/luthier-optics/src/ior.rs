@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use thiserror::Error;
 
 use crate::Rgb;
+use crate::schlick::F82;
 
 /// One sample of a complex index `n + i k` (`k >= 0` absorbs; phase convention e^{+i beta}).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,8 +46,8 @@ pub enum IorError {
 /// The built-in data were resampled by straight lines, too; a monotone cubic would move the normal-incidence
 /// reflectance of the built-in metals by at most 0.004.
 ///
-/// An index may carry an F0 ([`Ior::with_f0`]). The interface to its medium then reflects by Schlick's formula, and the index bends
-/// directions only.
+/// An index may carry an F0 ([`Ior::with_f0`]), and an edge tint with it ([`Ior::with_f82_tint`]). The interface to its medium then reflects by Schlick's
+/// formula, and the index bends directions only.
 ///
 /// ```
 /// use luthier_optics::ior::{Ior, IorSample};
@@ -63,6 +64,7 @@ pub enum IorError {
 pub struct Ior {
     samples: Vec<IorSample>,
     f0: Option<Rgb>,
+    f82_tint: Rgb,
     // Not stored: models make stacks with such indices from others, and nothing keeps them.
     #[cfg_attr(feature = "serde", serde(skip))]
     in_air: bool,
@@ -71,7 +73,12 @@ pub struct Ior {
 impl Ior {
     /// Vacuum, and air for our purposes.
     pub fn vacuum() -> Self {
-        Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }], f0: None, in_air: false }
+        Self {
+            samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }],
+            f0: None,
+            f82_tint: [1.0; 3],
+            in_air: false,
+        }
     }
 
     /// An index that is equal at every wavelength.
@@ -101,7 +108,7 @@ impl Ior {
                 return Err(IorError::NotPhysical { wavelength_nm: s.wavelength_nm, n: s.n, k: s.k });
             }
         }
-        Ok(Self { samples, f0: None, in_air: false })
+        Ok(Self { samples, f0: None, f82_tint: [1.0; 3], in_air: false })
     }
 
     /// The index of a medium whose interface reflects `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994), by colour channel (linear Rec.709,
@@ -109,6 +116,14 @@ impl Ior {
     #[must_use]
     pub fn with_f0(self, f0: Rgb) -> Self {
         Self { f0: Some(f0), ..self }
+    }
+
+    /// The index of a medium whose interface, if it reflects by an F0, has this share of Schlick's reflectance at 81.8 degrees ([`crate::schlick::F82`]), by
+    /// colour channel, each in 0..=1; 1 is Schlick's formula.
+    #[must_use]
+    pub fn with_f82_tint(self, f82_tint: Rgb) -> Self {
+        // Stores keep 2 less the tint, which is exact of such numbers.
+        Self { f82_tint: f82_tint.map(|tint| 2.0 - (2.0 - tint)), ..self }
     }
 
     /// The index of a medium whose interface reflects as if air lay above it; directions are bent by the medium that does. See
@@ -128,7 +143,33 @@ impl Ior {
         self.f0
     }
 
-    /// An index of other samples in strictly ascending wavelength, with the F0 of this one.
+    /// The share of Schlick's reflectance at 81.8 degrees by colour channel, of an interface with an F0; 1 of any other.
+    pub fn f82_tint(&self) -> Rgb {
+        self.f82_tint
+    }
+
+    /// The index of a medium whose interface reflects by curves of an F0 and an edge tint.
+    #[must_use]
+    pub fn with_f82(self, curves: [F82; 3]) -> Self {
+        self.with_f0(curves.map(|curve| curve.f0)).with_f82_tint(curves.map(|curve| curve.tint))
+    }
+
+    /// The curve of one colour channel, where the interface reflects by an F0.
+    pub fn f82(&self, channel: usize) -> Option<F82> {
+        self.f0.map(|f0| F82 { f0: f0[channel], tint: self.f82_tint[channel] })
+    }
+
+    /// The curves of all colour channels, where the interface reflects by an F0.
+    pub fn f82_rgb(&self) -> Option<[F82; 3]> {
+        Some([self.f82(0)?, self.f82(1)?, self.f82(2)?])
+    }
+
+    /// Whether all colour channels reflect by the F0 alike, or there is none.
+    pub fn is_grey_f0(&self) -> bool {
+        self.f82(0) == self.f82(1) && self.f82(1) == self.f82(2)
+    }
+
+    /// An index of other samples in strictly ascending wavelength, with the F0 and the edge tint of this one.
     ///
     /// # Errors
     /// See [`IorError`].

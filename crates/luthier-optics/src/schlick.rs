@@ -62,14 +62,20 @@ pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
 
 /// [`metallic_roughness`] with a base colour of its own for the metal, and another for the dielectric.
 pub fn metallic_and_matt(metal: Rgb, matt: Rgb, metallic: f64) -> (Rgb, Rgb) {
-    let f0 = metal.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
+    let (curves, albedo) = metallic_and_tinted(metal.map(|f0| F82 { f0, tint: 1.0 }), matt, metallic);
+    (curves.map(|curve| curve.f0), albedo)
+}
+
+/// [`metallic_and_matt`] with a metal that has an edge tint: the interface is [`F82::in_dielectric`], and passes `t` of less what that reflects on average.
+pub fn metallic_and_tinted(metal: [F82; 3], matt: Rgb, metallic: f64) -> ([F82; 3], Rgb) {
+    let curves = metal.map(|metal| metal.in_dielectric(metallic));
     let albedo = [0, 1, 2].map(|i: usize| {
         let seen = matt[i] * (1.0 - metallic);
-        let passed = 1.0 - schlick_average(f0[i]);
+        let passed = 1.0 - curves[i].average();
         let sum = passed + seen * (1.0 - passed);
         if sum > 0.0 { seen / sum } else { 0.0 }
     });
-    (f0, albedo)
+    (curves, albedo)
 }
 
 /// F0 of the dielectric of a `metallic-roughness` surface.
@@ -185,11 +191,41 @@ impl F82 {
 
     /// The reflectance, not below 0.
     pub fn eval(&self, cos_theta: f64) -> f64 {
-        let there = schlick(self.f0, F82_COS_THETA);
-        let [dip, deepest] = [cos_theta, F82_COS_THETA].map(|cos| cos * (1.0 - cos) * fifth(1.0 - cos));
-        let weight = there * (1.0 - self.tint) / deepest;
-        (schlick(self.f0, cos_theta) - weight * dip).max(0.0)
+        if self.tint == 1.0 {
+            return schlick(self.f0, cos_theta).max(0.0);
+        }
+        (schlick(self.f0, cos_theta) - self.dip() * edge_dip(cos_theta)).max(0.0)
     }
+
+    /// Weight of the correction `cos (1 - cos)^6`: 0 is Schlick, and 17.7 the most.
+    pub fn dip(&self) -> f64 {
+        schlick(self.f0, F82_COS_THETA) * (1.0 - self.tint) / edge_dip(F82_COS_THETA)
+    }
+
+    /// Cosine-weighted mean over the hemisphere; the integral of the correction is `2 B(3, 7) = 1/126`.
+    pub fn average(&self) -> f64 {
+        schlick_average(self.f0) - self.dip() / 126.0
+    }
+
+    /// The curve of F0 whose correction has a weight.
+    pub fn of_dip(f0: f64, dip: f64) -> Self {
+        let there = schlick(f0, F82_COS_THETA);
+        Self { f0, tint: if there > 0.0 { 1.0 - dip * edge_dip(F82_COS_THETA) / there } else { 1.0 } }
+    }
+
+    /// The mean of this curve, with the share `metallic`, and that of a dielectric of F0 0.04 without a tint: a `metallic-roughness` interface. Both are linear
+    /// in F0 and in the weight of the correction, so that the mean is such a curve, too, where none is held to 0.
+    #[must_use]
+    pub fn in_dielectric(&self, metallic: f64) -> Self {
+        let f0 = DIELECTRIC_F0 + metallic * (self.f0 - DIELECTRIC_F0);
+        if self.tint == 1.0 { Self { f0, tint: 1.0 } } else { Self::of_dip(f0, metallic * self.dip()) }
+    }
+}
+
+/// `cos (1 - cos)^6`, the shape of the correction by an edge tint.
+pub fn edge_dip(cos_theta: f64) -> f64 {
+    let away = 1.0 - cos_theta;
+    cos_theta * away * fifth(away)
 }
 
 fn correction(exponent: f64, cos_theta: f64) -> f64 {
@@ -285,6 +321,51 @@ mod tests {
     fn an_f0_has_an_index() {
         assert!((index_of_f0(0.04) - 1.5).abs() < 1e-15);
         assert_eq!(index_of_f0(0.0), 1.0);
+    }
+
+    /// OpenPBR 1.1, metal, typed from the page with its numbers: `F0 + (1 - F0)(1 - mu)^5 - mu (1 - mu)^6 (F_schlick(1/7) (1 - t)) / ((1/7) (6/7)^6)`.
+    /// Along the normal the reflectance is F0, at 81.8 degrees the tint times Schlick's, at the horizon 1; it is never out of 0..=1.
+    #[test]
+    fn f82_is_the_specifications() {
+        let sixth = |x: f64| x * x * x * x * x * x;
+        for f0 in [0.0, 0.04, 0.5, 0.955, 1.0] {
+            for tint in [0.0, 0.25, 0.6, 1.0] {
+                let curve = F82 { f0, tint };
+                let at_edge = f0 + (1.0 - f0) * fifth(6.0 / 7.0);
+                for i in 0..=1000 {
+                    let mu = f64::from(i) / 1000.0;
+                    let expected = f0 + (1.0 - f0) * fifth(1.0 - mu)
+                        - mu * sixth(1.0 - mu) * at_edge * (1.0 - tint) / ((1.0 / 7.0) * sixth(6.0 / 7.0));
+                    let found = curve.eval(mu);
+                    // Dark tints of dark metals are below 0 next to the edge.
+                    assert!((found - expected.max(0.0)).abs() < 1e-14, "{f0} {tint} {mu}: {found} {expected}");
+                    assert!((0.0..=1.0 + 1e-15).contains(&found), "{f0} {tint} {mu}: {found}");
+                }
+                assert!((curve.eval(1.0) - f0).abs() < 1e-15 && (curve.eval(0.0) - 1.0).abs() < 1e-15);
+                assert!((curve.eval(F82_COS_THETA) - tint * at_edge).abs() < 1e-14);
+                let again = F82::of_dip(f0, curve.dip());
+                assert!((again.tint - tint).abs() < 1e-12);
+            }
+        }
+    }
+
+    /// A mix by area reflects the mean at every angle; Simpson's rule has its average.
+    #[test]
+    fn a_mix_with_a_tinted_metal_is_the_mean() {
+        let metal = F82 { f0: 0.7, tint: 0.3 };
+        for metallic in [0.0, 0.25, 0.5, 1.0] {
+            let mixed = metal.in_dielectric(metallic);
+            let n = 2000;
+            let mut sum = 0.0;
+            for i in 0..=n {
+                let mu = f64::from(i) / f64::from(n);
+                let expected = metallic * metal.eval(mu) + (1.0 - metallic) * schlick(0.04, mu);
+                assert!((mixed.eval(mu) - expected).abs() < 1e-14, "{metallic} {mu}");
+                let weight = if i == 0 || i == n { 1.0 } else { [2.0, 4.0][usize::from(i % 2 == 1)] };
+                sum += weight * 2.0 * mu * expected / (3.0 * f64::from(n));
+            }
+            assert!((mixed.average() - sum).abs() < 1e-12, "{metallic}: {} {sum}", mixed.average());
+        }
     }
 
     #[test]

@@ -75,9 +75,12 @@ impl Kind for Table {
 /// The factor that a texture varies and that rows are over, or the slope parameters and colours of single layers. A material has at most one of these.
 fn varying(material: &Material) -> Option<Varying> {
     let first = material.layers.first()?;
-    let family = material
-        .family()
-        .and_then(|ranges| Family::new(&shown(&material.stack), ranges.coat, ranges.base, ranges.is_metallic));
+    let family = material.family().and_then(|ranges| {
+        Some(
+            Family::new(&shown(&material.stack), ranges.coat, ranges.base, ranges.is_metallic)?
+                .tinted(ranges.is_tinted),
+        )
+    });
     if let Some(family) = family {
         return Some(Varying::Family(family));
     }
@@ -382,6 +385,7 @@ fn family_record(family: Family) -> FamilyRecord {
         base: axis(family.base),
         interface: family.interface as u32,
         is_metallic: family.is_metallic,
+        is_tinted: family.is_tinted,
     }
 }
 
@@ -488,8 +492,11 @@ fn numbers(varying: Varying) -> Value {
     match varying {
         Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
         Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }) => json!([diffuse_albedo, base_alpha, tarnish]),
-        Varying::Family(Family { coat, base, interface, is_metallic }) => {
+        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted }) => {
             let axis = |SlopeAxis { least, most, nodes }| json!([least, most, nodes]);
+            if is_tinted {
+                return json!([axis(coat), axis(base), interface, is_metallic, "edge tint"]);
+            }
             json!([axis(coat), axis(base), interface, is_metallic])
         }
     }

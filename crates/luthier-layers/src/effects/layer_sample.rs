@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use luthier_optics::Rgb;
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::{Base, Layer, Slab};
 
 /// Length below which a texel of tangents has no direction: grey of eight bits is half a step, 0.004, from the middle.
@@ -22,8 +23,8 @@ pub struct LayerSample {
     pub slab_factor: f64,
     /// Factors on what that slab absorbs, RGB.
     pub absorption_factors: Rgb,
-    /// F0 in place of the interface's own, if that is one of Schlick's.
-    pub f0: Option<Rgb>,
+    /// F0 and edge tint by channel in place of the interface's own, if that is one of Schlick's.
+    pub f0: Option<[F82; 3]>,
 }
 
 impl LayerSample {
@@ -73,8 +74,8 @@ impl LayerSample {
         if let Base::Dielectric { slab, ior } = &mut layer.base {
             slab.thickness_um *= self.slab_factor;
             self.tint(slab);
-            if let (Some(f0), Some(_)) = (self.f0, ior.f0()) {
-                *ior = ior.clone().with_f0(f0);
+            if let (Some(curves), Some(_)) = (self.f0, ior.f0()) {
+                *ior = ior.clone().with_f82(curves);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Lossless surfaces, for a white furnace. Roughness, indices of dielectrics, films and their thicknesses stay.
 
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
 
@@ -57,7 +58,7 @@ fn without_absorption(layer: &mut MonochromeLayer) {
         MonochromeBelow::Conductor { .. } => {
             layer.below = MIRROR;
             // A mirror under films is one by its index.
-            layer.f0 = layer.bare_f0().map(|_| 1.0);
+            layer.f0 = layer.bare_f0().map(|_| F82 { f0: 1.0, tint: 1.0 });
         }
         MonochromeBelow::Diffuse { albedo, .. } => *albedo = 1.0,
     }

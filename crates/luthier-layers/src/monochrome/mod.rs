@@ -6,7 +6,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::interface::Interface;
-use luthier_optics::schlick::{index_below_film, schlick};
+use luthier_optics::schlick::{F82, index_below_film};
 use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -36,9 +36,9 @@ pub struct MonochromeLayer {
     pub films: Vec<FilmLayer>,
     /// Material below the interface.
     pub below: MonochromeBelow,
-    /// Reflectance at normal incidence, if Schlick's formula takes the place of Fresnel's. The index below is not lower than the index above then, and bends
+    /// Reflectance at normal incidence and edge tint, if Schlick's formula takes the place of Fresnel's. The index below is not lower than the index above then, and bends
     /// directions only: films interfere by the index of the F0 ([`MonochromeLayer::index_below`]).
-    pub f0: Option<f64>,
+    pub f0: Option<F82>,
 }
 
 /// Material below an interface, at one wavelength.
@@ -131,7 +131,7 @@ impl MonochromeLayer {
         };
         let films = layer.films.iter().map(|film| film.at(wavelength_nm)).collect();
         let f0 = match &layer.base {
-            Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f0().map(|f0| f0[channel]),
+            Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f82(channel),
             Base::Diffuse(_) => None,
         };
         Self { surface: layer.surface, above, films, below, f0 }
@@ -140,7 +140,7 @@ impl MonochromeLayer {
     /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
         match self.bare_f0() {
-            Some(f0) => schlick(f0, cos_theta_i),
+            Some(curve) => curve.eval(cos_theta_i),
             None => self.polarised(cos_theta_i).map_or(0.0, |powers| powers.unpolarised()),
         }
     }
@@ -155,8 +155,8 @@ impl MonochromeLayer {
         Some(coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i))
     }
 
-    /// The F0, if the interface reflects by Schlick's formula: it has one, and no films.
-    pub fn bare_f0(&self) -> Option<f64> {
+    /// F0 and edge tint, if the interface reflects by Schlick's formula: it has them, and no films.
+    pub fn bare_f0(&self) -> Option<F82> {
         self.f0.filter(|_| self.films.is_empty())
     }
 
@@ -168,7 +168,7 @@ impl MonochromeLayer {
             MonochromeBelow::Diffuse { .. } => return None,
         };
         let under_films = self.f0.filter(|_| !self.films.is_empty());
-        Some(under_films.map_or(below, |f0| Complex64::new(index_below_film(self.above, f0), 0.0)))
+        Some(under_films.map_or(below, |curve| Complex64::new(index_below_film(self.above, curve.f0), 0.0)))
     }
 
     /// `2 cos(2 Phi)` of the first film for the sum of the cosines in it (Granier and Heidrich 2003, eq. 3 and 19); 0 without a film.

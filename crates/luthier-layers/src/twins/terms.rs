@@ -6,6 +6,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
+use luthier_optics::schlick::{F82, edge_dip};
 use luthier_optics::stack::{Base, Stack};
 
 use crate::layers::Layers;
@@ -68,7 +69,8 @@ impl Exact {
     }
 
     /// The terms with the tables and the record of a nominal stack, as in shaders. The record has the veil of a diffuse base for layers of nominal
-    /// thickness and slope. Tables have energies for the nominal F0. For another F0, the light that is not reflected is scaled by a constant factor.
+    /// thickness and slope. Tables have energies for the nominal F0. For another F0, the light that is not reflected is scaled by a constant factor;
+    /// what an edge tint keeps is taken off as at a level facet.
     #[must_use]
     pub(crate) fn veiled_by(mut self, nominal: &Stack) -> Self {
         let is_other = self.stack != *nominal;
@@ -114,14 +116,14 @@ impl Exact {
         (&self.stack, &self.color, &self.varying)
     }
 
-    /// F0 of a Schlick interface here and in the nominal stack, whose energies are in tables.
-    fn f0(&self, layer: usize) -> Option<[Rgb; 2]> {
+    /// Curves of a Schlick interface here and in the nominal stack, whose energies are in tables.
+    fn f0(&self, layer: usize) -> Option<[[F82; 3]; 2]> {
         let nominal = &self.nominal.as_ref()?.stack;
         let [here, nominal] = [Interface::of(&self.stack, layer)?, Interface::of(nominal, layer)?];
         if !here.films.is_empty() {
             return None;
         }
-        Some([here.below.f0()?, nominal.below.f0()?])
+        Some([here.below.f82_rgb()?, nominal.below.f82_rgb()?])
     }
 
     /// The stack whose energies are in tables: this one, with the F0 of the nominal stack.
@@ -131,7 +133,7 @@ impl Exact {
             if let (Base::Dielectric { ior, .. } | Base::Conductor { ior }, Some([_, nominal])) =
                 (&mut layer.base, self.f0(number))
             {
-                *ior = ior.clone().with_f0(nominal);
+                *ior = ior.clone().with_f82(nominal);
             }
         }
         stack
@@ -161,7 +163,15 @@ impl Energy<3> for Exact {
             Energies::Facets(prepared) => {
                 let given = self.facets(prepared).0.fgd(layer, cos_theta_i, alpha);
                 let Some([here, nominal]) = self.f0(layer) else { return given };
-                [0, 1, 2].map(|c: usize| 1.0 - (1.0 - here[c]) / (1.0 - nominal[c]).max(1e-6) * (1.0 - given[c]))
+                [0, 1, 2].map(|c: usize| {
+                    let passing = (1.0 - here[c].f0) / (1.0 - nominal[c].f0).max(1e-6);
+                    // An edge tint is taken off as at a level facet.
+                    let dip = (here[c].dip() - passing * nominal[c].dip()) * edge_dip(cos_theta_i);
+                    if dip == 0.0 {
+                        return 1.0 - passing * (1.0 - given[c]);
+                    }
+                    (1.0 - passing * (1.0 - given[c]) - dip).max(0.0)
+                })
             }
             Energies::Level(_) => self.fresnel(layer, cos_theta_i),
         }

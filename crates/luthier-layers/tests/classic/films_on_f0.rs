@@ -6,6 +6,7 @@ use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::model;
 use luthier_optics::fresnel::FilmLayer;
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
 
@@ -15,7 +16,7 @@ use crate::stacks::{dielectric, ggx, lambert};
 /// A film over an F0, which bends light by `ior`, on a base.
 fn filmed(surface: Surface, film: (f64, f64, f64), (ior, f0): (f64, f64), base: MonochromeBelow) -> Monochrome {
     let mut stack = Monochrome::bare(&[(surface, dielectric(ior, 0.0)), (Surface::smooth(), base)]);
-    stack.layers[0].f0 = Some(f0);
+    stack.layers[0].f0 = Some(F82 { f0, tint: 1.0 });
     stack.layers[0].films = vec![FilmLayer { ior: Complex64::new(film.0, film.1), waves: film.2 }];
     stack
 }
@@ -74,7 +75,7 @@ fn films_on_an_f0_keep_the_light() {
             }
         }
         let mut metal = Monochrome::bare(&[(surface, MonochromeBelow::Conductor { ior: Complex64::ONE })]);
-        metal.layers[0].f0 = Some(1.0);
+        metal.layers[0].f0 = Some(F82 { f0: 1.0, tint: 1.0 });
         metal.layers[0].films = vec![FilmLayer { ior: Complex64::new(1.5, 0.0), waves: 0.8 }];
         let found = mc(&metal, 40.0);
         assert!(found.mean > 0.99 && found.mean <= 1.0 + 1e-9, "{found:?}");

@@ -10,6 +10,7 @@ use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::references::closed_form::ClosedForm;
 use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::registry::model;
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
 
@@ -26,13 +27,13 @@ fn schlick(f0: f64, cos: f64) -> f64 {
 /// The index of a conductor is no matter beside an F0.
 fn metal(alpha: f64, f0: f64) -> Monochrome {
     let mut stack = Monochrome::bare(&[(ggx(alpha), MonochromeBelow::Conductor { ior: Complex64::new(1.0, 0.0) })]);
-    stack.layers[0].f0 = Some(f0);
+    stack.layers[0].f0 = Some(F82 { f0, tint: 1.0 });
     stack
 }
 
 fn coat(surface: Surface, ior: f64, f0: f64, base: MonochromeBelow) -> Monochrome {
     let mut stack = Monochrome::bare(&[(surface, dielectric(ior, 0.0)), (Surface::smooth(), base)]);
-    stack.layers[0].f0 = Some(f0);
+    stack.layers[0].f0 = Some(F82 { f0, tint: 1.0 });
     stack
 }
 
@@ -50,6 +51,56 @@ fn one_facet_reflects_the_formula() {
             }
         }
     }
+}
+
+/// The edge tint of OpenPBR 1.1, typed from its page: `F0 + (1 - F0)(1 - mu)^5 - mu (1 - mu)^6 (F_schlick(1/7) (1 - t)) / ((1/7) (6/7)^6)`.
+fn tinted(f0: f64, tint: f64, mu: f64) -> f64 {
+    let depth = schlick(f0, 1.0 / 7.0) * (1.0 - tint) / ((1.0 / 7.0) * (6.0 / 7.0_f64).powi(6));
+    schlick(f0, mu) - depth * mu * (1.0 - mu).powi(6)
+}
+
+fn edged(alpha: f64, f0: f64, tint: f64) -> Monochrome {
+    let mut stack = metal(alpha, f0);
+    stack.layers[0].f0 = Some(F82 { f0, tint });
+    stack
+}
+
+/// At the normal a facet reflects F0, at 81.8 degrees the tint times Schlick's, between them the formula; smooth, the albedo is the formula.
+#[test]
+fn an_edge_tint_is_the_specifications() {
+    for (f0, tint) in [(0.9, 0.4), (0.5, 0.0), (1.0, 0.7)] {
+        for name in ["microfacet", "elek", "weidlich-wilkie", "weidlich-wilkie-corrected"] {
+            let model = model(name).unwrap();
+            let edge = (1.0_f64 / 7.0).acos().to_degrees();
+            for (wi, wo) in [(at(0.0), at(0.0)), (at(10.0), at(50.0)), (at(edge), at(-edge)), (at(89.0), at(-89.0))] {
+                let cos_theta_d = (wi + wo).normalize().dot(wo);
+                let ratio = model.eval(&edged(0.3, f0, tint), wi, wo) / model.eval(&metal(0.3, 1.0), wi, wo);
+                let expected = tinted(f0, tint, cos_theta_d);
+                assert!((ratio - expected).abs() < 1e-12, "{name} {f0} {tint}: {ratio} {expected}");
+            }
+        }
+        for theta in [0.0, 60.0, 82.0, 88.0] {
+            let expected = tinted(f0, tint, at(theta).z);
+            let stack = edged(0.0, f0, tint);
+            let mc = LayeredMc { seed: 5, ..LayeredMc::new(InterfaceMode::SmithWalk) }.albedo(&stack, at(theta), 2000);
+            assert!((mc.mean - expected).abs() < 1e-9, "{f0} {tint} {theta}: {} {expected}", mc.mean);
+        }
+    }
+}
+
+/// Oracle: a midpoint rule over light of all directions at once has the light that a smooth tinted metal sends back, with the integrals of the formula by hand:
+/// `F0 + (1 - F0)/21 - a/126`.
+#[test]
+fn a_smooth_tinted_metal_in_a_furnace() {
+    let (f0, tint) = (0.8, 0.25);
+    let steps = 20_000;
+    let mut sum = 0.0;
+    for i in 0..steps {
+        let mu = (f64::from(i) + 0.5) / f64::from(steps);
+        sum += 2.0 * mu * edged(0.0, f0, tint).layers[0].reflectance(mu) / f64::from(steps);
+    }
+    let depth = schlick(f0, 1.0 / 7.0) * (1.0 - tint) * 7.0_f64.powi(7) / 6.0_f64.powi(6);
+    assert!((sum - (f0 + (1.0 - f0) / 21.0 - depth / 126.0)).abs() < 1e-8, "{sum}");
 }
 
 /// Every approximation of Fresnel's formulas is Schlick's where there is no index.

@@ -159,6 +159,9 @@ pub struct FamilyRecord {
     pub interface: u32,
     /// Whether the base is metallic in places, whose colours are in closed form. Else rows have energies of the channels.
     pub is_metallic: bool,
+    /// Whether that metal has an edge tint, for which rows have two numbers more.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_tinted: bool,
 }
 
 /// Nodes over a range of slope parameters, at equal steps of the root.

@@ -206,7 +206,11 @@ impl Material {
     /// The index of a medium: F0, or n and k, at the sodium line if they vary, with the name of the data set.
     fn index(&self, key: &str, ior: &Ior) -> Vec<PartNumber> {
         if let Some(f0) = ior.f0() {
-            return vec![PartNumber { name: "F0", value: rgb(f0) }];
+            let mut numbers = vec![PartNumber { name: "F0", value: rgb(f0) }];
+            if ior.f82_tint() != [1.0; 3] {
+                numbers.push(PartNumber { name: "edge tint", value: rgb(ior.f82_tint()) });
+            }
+            return numbers;
         }
         let mut numbers = Vec::new();
         let index = ior.at(SODIUM_D_NM);
@@ -265,6 +269,9 @@ fn beyond(extras: &LayerExtras) -> Vec<PartNumber> {
     if let Some(metallic) = extras.metallic {
         numbers.push(PartNumber { name: "base colour", value: rgb(metallic.base_color) });
         numbers.push(PartNumber { name: "metallic", value: short(metallic.metallic) });
+        if metallic.f82_tint != [1.0; 3] {
+            numbers.push(PartNumber { name: "edge tint", value: rgb(metallic.f82_tint) });
+        }
     }
     if let Some([outer, inner]) = extras.exponents {
         numbers.push(PartNumber { name: "exponents", value: format!("{}, {}", short(outer), short(inner)) });

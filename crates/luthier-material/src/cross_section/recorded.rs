@@ -74,7 +74,10 @@ fn film(layer: usize, record: &LayerRecord, outline: Vec<[f64; 2]>) -> Part {
 
 fn medium(layer: usize, record: &LayerRecord, is_last: bool, surface: &Surface, outline: Vec<[f64; 2]>) -> Part {
     let below = match record.f0 {
-        Some(f0) => vec![number_of("F0", rgb(f0))],
+        Some(f0) => {
+            let tint = record.f82_tint.or(record.metal_f82_tint).map(|tint| number_of("edge tint", rgb(tint)));
+            [number_of("F0", rgb(f0))].into_iter().chain(tint).collect()
+        }
         None => indices(record, record.ior_n, record.ior_k),
     };
     let (kind, label, mut numbers, color, height) = match record.kind {

@@ -44,11 +44,6 @@ impl Brightened {
     pub(super) fn metal(&self, color: Rgb) -> Rgb {
         self.shares.metal(color, self.weight)
     }
-
-    /// F0 and albedo of a `metallic-roughness` surface of a base colour.
-    pub(super) fn metallic_roughness(&self, base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
-        self.shares.metallic_roughness(base_color, metallic, self.weight)
-    }
 }
 
 /// Where a layer says that it does not darken the base below it. Layers of other types lack the key.

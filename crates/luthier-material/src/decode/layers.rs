@@ -65,7 +65,10 @@ pub(super) fn decode(
                 Base::Dielectric { ior, slab: slab(at) }
             }
             "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, brightened, sink) },
-            "conductor" => Base::Conductor { ior: index(at, read, sink, sources) },
+            "conductor" => {
+                schlick::check_tint_of_index(at, sink);
+                Base::Conductor { ior: index(at, read, sink, sources) }
+            }
             "metallic-roughness" => {
                 let (interface, diffuse) = schlick::metallic_roughness(at, above, brightened, sink);
                 below = diffuse;

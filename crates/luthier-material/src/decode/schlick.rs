@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::f0_table::printed_f0;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::schlick::index_of_f0;
+use luthier_optics::schlick::{F82, index_of_f0, metallic_and_tinted};
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::darkening::Brightened;
@@ -18,7 +18,21 @@ use crate::suggest::short;
 /// The opaque medium of a conductor with an `f0`, which is brighter below a coat that does not darken it.
 pub(super) fn conductor(at: &Section<'_>, brightened: Option<Brightened>, sink: &mut Sink<'_>) -> Ior {
     let f0 = f0(at, sink);
-    Ior::vacuum().with_f0(brightened.map_or(f0, |below| below.metal(f0)))
+    Ior::vacuum().with_f0(brightened.map_or(f0, |below| below.metal(f0))).with_f82_tint(f82_tint(at))
+}
+
+/// The edge tint of a metal; 1 is none.
+fn f82_tint(at: &Section<'_>) -> Rgb {
+    at.reflectance("f82_tint").unwrap_or([1.0; 3])
+}
+
+/// Reports an edge tint beside an index, which has its own reflectance at every angle.
+pub(super) fn check_tint_of_index(at: &Section<'_>, sink: &mut Sink<'_>) {
+    if at.has("f82_tint") {
+        let message = "an `ior` has its own reflectance at the edge: `f82_tint` is for a metal with an `f0`";
+        let hint = "leave it out, or give the metal an `f0` in place of its `ior`".to_owned();
+        sink.error(at.key_span("f82_tint"), message, Some(hint));
+    }
 }
 
 /// The medium of a dielectric with an `f0`: of the index that the file gives beside it, or else of the one whose reflectance against the
@@ -61,6 +75,8 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
 ///
+/// An edge tint is of the metal alone, so that a mixture has its share of it.
+///
 /// Below a coat that does not darken it the base colour is brighter, one for the metal and another for the rest.
 pub(super) fn metallic_roughness(
     at: &Section<'_>,
@@ -81,13 +97,21 @@ pub(super) fn metallic_roughness(
             );
         }
         let f0 = brightened.map_or(color, |below| below.metal(color));
-        return (Base::Conductor { ior: Ior::vacuum().with_f0(f0) }, None);
+        return (Base::Conductor { ior: Ior::vacuum().with_f0(f0).with_f82_tint(f82_tint(at)) }, None);
     }
-    let (f0, albedo) = match brightened {
-        Some(below) => below.metallic_roughness(color, metallic),
-        None => luthier_optics::schlick::metallic_roughness(color, metallic),
-    };
-    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f0(f0);
+    if at.has("f82_tint") && metallic == 0.0 && textured(at).is_none() {
+        let hint = "leave it out, or give a `metallic` above 0".to_owned();
+        sink.warn(
+            at.key_span("f82_tint"),
+            "an edge tint is of a metal: without one it is of no consequence",
+            Some(hint),
+        );
+    }
+    let (metal, matt) = brightened.map_or((color, color), |below| (below.metal(color), below.matt(color)));
+    let tint = f82_tint(at);
+    let metal = [0, 1, 2].map(|c: usize| F82 { f0: metal[c], tint: tint[c] });
+    let (curves, albedo) = metallic_and_tinted(metal, matt, metallic);
+    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f82(curves);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
 }
@@ -98,6 +122,7 @@ pub(super) fn textured(at: &Section<'_>) -> Option<Metallic> {
     is_varied.then(|| Metallic {
         base_color: at.reflectance("base_color").unwrap_or([0.0; 3]),
         metallic: at.number("metallic").unwrap_or(0.0),
+        f82_tint: f82_tint(at),
     })
 }
 
@@ -130,8 +155,14 @@ pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Reports films on a surface whose texels give it another F0 at each place, but for one even film on the first layer, a base.
+/// Reports films on a metal with an edge tint, which they know nothing of, and on a surface whose texels give it another F0 at each place, but for one even
+/// film on the first layer, a base.
 pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number: usize, sink: &mut Sink<'_>) {
+    if at.has("f82_tint") && !at.has("ior") && !films.is_empty() {
+        let message =
+            "an edge tint below a film: films interfere by the F0 of a metal, whose tint is of its bare reflectance";
+        sink.error(at.key_span("f82_tint"), message, Some("leave it out, or leave the film out".to_owned()));
+    }
     if textured(at).is_none() {
         return;
     }

@@ -106,6 +106,14 @@ const F0: Key = Key::optional(
     F0_DOC,
 );
 
+const F82_TINT: Key = Key::with_default(
+    "f82_tint",
+    UNIT_RGB,
+    "1",
+    "Edge tint of the metal: its reflectance at 82 degrees from the normal over that of Schlick's formula there, a number or one for each of R, G, B \
+     (linear Rec.709).",
+);
+
 const TYPE_DOC: &str = "What the layer is.";
 const ROUGHNESS: Key =
     Key::optional("roughness", Kind::Number(UNIT), "Artist's roughness, 0 to 1: alpha is its square.");
@@ -379,6 +387,7 @@ pub(super) static CONDUCTOR: Table = Table {
         Key::required("type", Kind::Choice(&["conductor"]), TYPE_DOC),
         Key::optional("ior", IOR, IOR_DOC),
         F0,
+        F82_TINT,
         ROUGHNESS,
         ALPHA,
         SLOPE,
@@ -449,6 +458,7 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
             "0",
             "0 is a dielectric of F0 0.04 over a diffuse base, 1 a metal; in between F0 and diffuse colour are mixed.",
         ),
+        F82_TINT,
         ROUGHNESS,
         ALPHA,
         SLOPE,

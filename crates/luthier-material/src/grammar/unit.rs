@@ -28,9 +28,10 @@ const NAMES: [(&str, &str, &str); 14] = [
 ];
 
 /// Keys of pure numbers.
-const PURES: [&str; 37] = [
+const PURES: [&str; 38] = [
     "offset",
     "f0",
+    "f82_tint",
     "roughness",
     "alpha",
     "alpha_x",

@@ -151,6 +151,9 @@ impl File<'_> {
         if maps.is_some_and(|maps| maps.contains_key("base_color") || maps.contains_key("metallic")) {
             return Err(("maps", "a layer with maps of its base colour or metal has no other numbers"));
         }
+        if table.contains_key("f82_tint") {
+            return Err(("f82_tint", "a layer with an edge tint is a metal to a share, and has no other numbers"));
+        }
         // Both have the normal of the layer.
         let bumps = maps.and_then(|maps| maps.get("bumps")).and_then(Item::as_value).cloned();
         table.remove("metallic");

@@ -16,6 +16,7 @@ use luthier_manifest::reads;
 use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
+use luthier_optics::schlick::edge_dip;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -209,6 +210,7 @@ impl Lobes {
         self.frame.stretch = family.stretch(slopes);
         let plain = Paint {
             metal: [0.0; 3],
+            tint: [1.0; 3],
             metallic: 0.0,
             albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
             depth: {
@@ -229,8 +231,8 @@ struct Here {
     /// Factors on the optical depth of the first slab, RGB.
     slab_factors: Rgb,
     film_factor: f64,
-    /// A layer, and the factor on the light that its interface does not reflect.
-    passing: Option<(usize, Rgb)>,
+    /// A layer, the factor on the light that its interface does not reflect, and the weight of its edge tint.
+    passing: Option<(usize, [Rgb; 2])>,
     /// F0 of the metal below a film on the first layer, and its share.
     metal: (Rgb, f64),
 }
@@ -398,7 +400,8 @@ impl<'a> TableTerms<'a> {
     fn place(&mut self, entry: &MaterialEntry, place: &Place, part: Part) {
         let passing = entry.layers.iter().enumerate().find_map(|(layer, record)| {
             let (own, nominal) = (place.layers.get(layer)?.f0?, record.f0?);
-            Some((layer, [0, 1, 2].map(|c: usize| (1.0 - own[c]) / (1.0 - nominal[c]).max(1e-6))))
+            let passing = [0, 1, 2].map(|c: usize| (1.0 - own[c].f0) / (1.0 - nominal[c]).max(1e-6));
+            Some((layer, [passing, own.map(|own| own.dip())]))
         });
         self.lobes.iter_mut().for_each(|lobes| lobes.place(entry, place));
         let sample = &place.sample;
@@ -417,9 +420,12 @@ impl<'a> TableTerms<'a> {
     }
 
     /// Reflectance of an interface at this place, from its reflectance in the tables.
-    fn passed(&self, layer: usize, reflected: Rgb) -> Rgb {
-        let passing = self.here.passing.filter(|(at, _)| *at == layer).map_or([1.0; 3], |(_, passing)| passing);
-        [0, 1, 2].map(|c: usize| 1.0 - passing[c] * (1.0 - reflected[c]))
+    fn passed(&self, layer: usize, cos_theta: f64, reflected: Rgb) -> Rgb {
+        let here = self.here.passing.filter(|(at, _)| *at == layer);
+        let [passing, dip] = here.map_or([[1.0; 3], [0.0; 3]], |(_, here)| here);
+        let kept = dip.map(|dip| dip * edge_dip(cos_theta));
+        let reflected = [0, 1, 2].map(|c: usize| 1.0 - passing[c] * (1.0 - reflected[c]));
+        if kept == [0.0; 3] { reflected } else { [0, 1, 2].map(|c: usize| (reflected[c] - kept[c]).max(0.0)) }
     }
 
     /// Thickness of the film of a layer at this place, over the greatest thickness.
@@ -492,7 +498,7 @@ impl Terms for TableTerms<'_> {
         } else {
             [f64::NAN; 4]
         };
-        self.passed(layer, [r, g, b])
+        self.passed(layer, cos_theta_d, [r, g, b])
     }
 
     /// A read, if the layer has a tile; else the closed form.
@@ -518,7 +524,7 @@ impl Energy<3> for TableTerms<'_> {
         match self.read_at(TableKind::Fgd, layer) {
             Some((table, angle, tile)) => {
                 let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_i), alpha], self.weights);
-                self.passed(layer, [r, g, b])
+                self.passed(layer, cos_theta_i, [r, g, b])
             }
             _ => [f64::NAN; 3],
         }

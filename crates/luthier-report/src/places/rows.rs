@@ -10,7 +10,6 @@ use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{BrighteningRecord, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::brightening::Brightening;
-use luthier_optics::schlick::metallic_and_matt;
 
 use crate::error::ReportError;
 use crate::measure::directions::wide;
@@ -116,20 +115,21 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
     };
     if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
         let (color, metallic) = (color.map(f64::from), metallic.into());
+        let tint = entry.layers[interface].metal_f82_tint.unwrap_or([1.0; 3]);
         let mix = match entry.constants.brightening {
             Some(BrighteningRecord { diffuse, metal, .. }) => {
                 let coat = entry.constants.coat.as_ref();
                 let weight = coat.map_or(1.0, |coat| (coat.weight * f64::from(values.weight_factor)).clamp(0.0, 1.0));
                 let shares = Brightening { diffuse, metal };
-                Mix { metal: shares.metal(color, weight), matt: shares.matt(color, weight), metallic }
+                Mix { metal: shares.metal(color, weight), tint, matt: shares.matt(color, weight), metallic }
             }
-            None => Mix { metal: color, matt: color, metallic },
+            None => Mix { metal: color, tint, matt: color, metallic },
         };
-        let (f0, albedo) = metallic_and_matt(mix.metal, mix.matt, metallic);
+        let (curves, albedo) = mix.surface();
         place.metal = Some(mix);
         place.base_color = Some(albedo);
         place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);
-        place.layers[interface].f0 = Some(f0);
+        place.layers[interface].f0 = Some(curves);
     }
     place
 }

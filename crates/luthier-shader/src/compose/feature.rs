@@ -19,6 +19,8 @@ luthier_lut::named! {
         Film = "film",
         /// An interface has an F0 in place of an index.
         Schlick = "schlick",
+        /// An interface with an F0 has an edge tint.
+        EdgeTint = "edge_tint",
         /// Light is totally reflected at an interface.
         TotalReflection = "total_reflection",
         /// The shader refracts directions.
@@ -231,6 +233,8 @@ luthier_lut::named! {
         OwnF0 = "own_f0",
         /// A film lies on the base of such a material.
         FilmF0 = "film_f0",
+        /// Such a metal has an edge tint.
+        OwnEdge = "own_edge",
         /// Such base colours are brighter below a coat that does not darken them.
         Brightened = "brightened",
         /// A map of a layer has tangents.

@@ -202,6 +202,9 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
         own.insert(Feature::LobesBase);
     }
     own.extend(of_family(material));
+    if own.contains(&Feature::OwnF0) && material.layers.iter().any(|layer| layer.metal_f82_tint.is_some()) {
+        own.insert(Feature::OwnEdge);
+    }
     if material.constants.brightening.is_some() {
         own.insert(Feature::Brightened);
     }
@@ -352,6 +355,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
             None if layer.film_ior_n[0] > 0.0 => Feature::Film,
             None => Feature::Bare,
         });
+        if layer.f82_tint.is_some() {
+            names.insert(Feature::EdgeTint);
+        }
         if layer.critical_cot_sq > 0.0 {
             names.insert(Feature::TotalReflection);
         }

@@ -24,7 +24,7 @@ struct LuthierLayer {
     rotation: vec2<f32>,
     /// Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     ior_n: vec3<f32>,
-    /// Imaginary part of it; -1 of an interface of Schlick's.
+    /// Imaginary part of it; of an interface of Schlick's -1 less the weight of its edge tint.
     ior_k: vec3<f32>,
     /// Real part of the index of the film; 0 without a film.
     film_ior_n: vec3<f32>,
@@ -87,6 +87,9 @@ struct LuthierLayer {
     //? film_f0
     /// Roots of the F0 of the metal below the film at a place, RGB, and the share of the metal.
     film_roots: vec4<f32>,
+    //? own_edge
+    /// Weight of the correction of its reflectance by an edge tint, RGB.
+    edge: vec3<f32>,
     /// Normal of its interface at a place, unit, in the frame of the place.
     normal: vec3<f32>,
 }
@@ -184,6 +187,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.passing = vec3<f32>(1.0);
     //? film_f0
     layer.film_roots = vec4<f32>(0.0);
+    layer.edge = vec3<f32>(0.0);
     layer.normal = vec3<f32>(0.0, 0.0, 1.0);
     return layer;
 }

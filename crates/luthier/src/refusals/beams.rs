@@ -46,6 +46,17 @@ pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnost
         let hint = format!("write `alpha = {:.6}`, which is the exponent {outer}", (2.0 / (outer + 2.0)).sqrt());
         errors.push(error(material, EXPONENTS, message, &hint));
     }
+    if let Base::Dielectric { ior, .. } = &first.base
+        && ior.f82_tint() != [1.0; 3]
+    {
+        let message = "`granier-heidrich` shows no edge tint of an interface that lets light through".to_owned();
+        errors.push(error(
+            material,
+            "layer.0.f82_tint",
+            message,
+            "leave it out, write `metallic = 1`, or name another model",
+        ));
+    }
     let weight = format!("{TABLE}.diffuse_weight");
     let has_base = material.stack.layers.last().is_some_and(|last| matches!(last.base, Base::Diffuse(_)));
     if !has_base && material.places.has(&weight) {

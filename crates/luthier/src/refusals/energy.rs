@@ -18,7 +18,6 @@ use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
-use luthier_optics::schlick::metallic_and_matt;
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::parts::parts_of;
@@ -182,7 +181,7 @@ fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
     // Where a coat has its greatest weight, no texel makes it less.
     let patina = material.weight().filter(|_| !material.weighs_film() || model.is_path()).map(Growth::of_coat);
     let side = material.weighs_film().then_some(Side::Film);
-    let Some((number, Metallic { base_color, metallic })) = textured else {
+    let Some((number, Metallic { base_color, metallic, f82_tint: tint })) = textured else {
         return vec![Place { patina, side, ..Place::NONE }];
     };
     let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
@@ -190,13 +189,13 @@ fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
         let mix = match material.brightening() {
             Some(below) => {
                 let weight = material.weight().unwrap_or(1.0);
-                Mix { metal: below.metal(base_color, weight), matt: below.matt(base_color, weight), metallic }
+                Mix { metal: below.metal(base_color, weight), tint, matt: below.matt(base_color, weight), metallic }
             }
-            None => Mix { metal: base_color, matt: base_color, metallic },
+            None => Mix { metal: base_color, tint, matt: base_color, metallic },
         };
-        let (f0, albedo) = metallic_and_matt(mix.metal, mix.matt, metallic);
+        let (curves, albedo) = mix.surface();
         let mut layers = vec![LayerSample::NONE; number + 1];
-        layers[number].f0 = Some(f0);
+        layers[number].f0 = Some(curves);
         Place { patina, side, base_color: Some(albedo), layers, metal: Some(mix), ..Place::NONE }
     });
     places.collect()
@@ -206,17 +205,17 @@ fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
 fn at(stack: &Stack, place: &Place) -> Stack {
     let mut here = stack.clone();
     let metal = place.layers.last().and_then(|sample| sample.f0).filter(|_| place.base_color == Some([0.0; 3]));
-    if let Some(f0) = metal {
+    if let Some(curves) = metal {
         // Metal is opaque, as in a file without maps.
         here.layers.truncate(place.layers.len());
         if let Some(layer) = here.layers.last_mut() {
-            layer.base = Base::Conductor { ior: Ior::vacuum().with_f0(f0) };
+            layer.base = Base::Conductor { ior: Ior::vacuum().with_f82(curves) };
         }
         return here;
     }
     for (layer, sample) in here.layers.iter_mut().zip(&place.layers) {
-        if let (Base::Dielectric { ior, .. }, Some(f0)) = (&mut layer.base, sample.f0) {
-            *ior = ior.clone().with_f0(f0);
+        if let (Base::Dielectric { ior, .. }, Some(curves)) = (&mut layer.base, sample.f0) {
+            *ior = ior.clone().with_f82(curves);
         }
     }
     if let (Some(Base::Diffuse(base)), Some(color)) = (here.layers.last_mut().map(|l| &mut l.base), place.base_color) {

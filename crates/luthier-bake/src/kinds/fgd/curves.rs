@@ -110,7 +110,7 @@ fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<Wavelengt
 /// F0 gets one per channel. The index of other bare interfaces varies little: their mean by luminance serves all
 /// channels.
 pub(super) fn crossed_curves(interface: &Interface, color: &Color) -> Weighted {
-    if interface.below.f0().is_some_and(|[r, g, b]| r != g || g != b) {
+    if !interface.below.is_grey_f0() {
         return Weighted::new(interface.at_nodes(&sparse(interface, color, CROSSED_SPECTRUM_TOLERANCE)));
     }
     if interface.films.is_empty() {

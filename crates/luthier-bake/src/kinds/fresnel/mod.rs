@@ -139,6 +139,9 @@ impl FresnelJob {
         let over = if curve.critical_cot_sq > 0.0 { ", over the cosine of the refracted direction" } else { "" };
         TileData {
             model: match self.interface.below.f0() {
+                Some(_) if self.interface.below.f82_tint() != [1.0; 3] => {
+                    "Schlick 1994, from F0 by channel, with an edge tint; bare interface".to_owned()
+                }
                 Some(_) if self.interface.films.is_empty() => {
                     "Schlick 1994, from F0 by channel; bare interface".to_owned()
                 }

@@ -10,8 +10,8 @@ use luthier_terminal::{Failure, Outcome};
 
 use crate::model_inputs::LiveValue;
 
-/// Base colour and metal of a place.
-pub(crate) type Metallic = Option<(usize, Rgb, f64)>;
+/// A layer with its edge tint, and its base colour and metal at a place.
+pub(crate) type Metallic = Option<(usize, Rgb, Rgb, f64)>;
 
 /// Gives a place the values of live numbers, and base colour and metal those of a layer that has them live.
 ///
@@ -27,7 +27,7 @@ pub(crate) fn set(
     let known = luthier_bake::live_numbers(material);
     for live in known.iter().filter(|live| matches!(live.slot, MapSlot::BaseColor | MapSlot::Metallic)) {
         let surface = material.layers[live.layer as usize].metallic;
-        *metallic = metallic.or(surface.map(|s| (live.layer as usize, s.base_color, s.metallic)));
+        *metallic = metallic.or(surface.map(|s| (live.layer as usize, s.f82_tint, s.base_color, s.metallic)));
     }
     for LiveValue { layer, name, values } in given {
         let key = format!("layer.{layer}.{name}");
@@ -75,8 +75,10 @@ pub(crate) fn set(
                 own.tangent = DVec2::new(values[0], values[1]).try_normalize().unwrap_or(DVec2::X);
             }
             (MapSlot::Albedo, _) => place.base_color = Some(rgb()),
-            (MapSlot::BaseColor, _) => *metallic = metallic.map(|(layer, _, metal)| (layer, rgb(), metal)),
-            (MapSlot::Metallic, _) => *metallic = metallic.map(|(layer, color, _)| (layer, color, values[0])),
+            (MapSlot::BaseColor, _) => *metallic = metallic.map(|(layer, tint, _, metal)| (layer, tint, rgb(), metal)),
+            (MapSlot::Metallic, _) => {
+                *metallic = metallic.map(|(layer, tint, color, _)| (layer, tint, color, values[0]))
+            }
             // A weight is that of the whole place: see `weight_factor`.
             _ => {}
         }

@@ -95,7 +95,7 @@ pub(crate) fn add_layers(
     let uv = inputs.uv().unwrap_or(DVec2::ZERO);
     let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
     let mut layers = vec![LayerSample::NONE; count];
-    let mut metallic: Option<(usize, Rgb, f64)> = None;
+    let mut metallic: Option<(usize, Rgb, Rgb, f64)> = None;
     for map in maps {
         let own = &mut layers[map.layer];
         let image = picture(material, &map.picture, map.texels)?.image();
@@ -125,7 +125,8 @@ pub(crate) fn add_layers(
             }
             MapSlot::BaseColor | MapSlot::Metallic => {
                 let Some(surface) = material.layers[map.layer].metallic else { continue };
-                let (_, color, metal) = metallic.get_or_insert((map.layer, surface.base_color, surface.metallic));
+                let (_, _, color, metal) =
+                    metallic.get_or_insert((map.layer, surface.f82_tint, surface.base_color, surface.metallic));
                 match map.slot {
                     MapSlot::BaseColor => (0..3).for_each(|c| color[c] *= texel(c)),
                     _ => *metal *= texel(0),
@@ -136,19 +137,19 @@ pub(crate) fn add_layers(
     }
     place.layers = layers;
     live::set(place, &mut metallic, material, model, &inputs.live)?;
-    if let Some((layer, color, metal)) = metallic {
+    if let Some((layer, tint, color, metal)) = metallic {
         let mix = match material.brightening() {
             Some(below) => {
                 let weight = weight(material, inputs)?.unwrap_or(1.0);
-                Mix { metal: below.metal(color, weight), matt: below.matt(color, weight), metallic: metal }
+                Mix { metal: below.metal(color, weight), tint, matt: below.matt(color, weight), metallic: metal }
             }
-            None => Mix { metal: color, matt: color, metallic: metal },
+            None => Mix { metal: color, tint, matt: color, metallic: metal },
         };
-        let (f0, albedo) = luthier_optics::schlick::metallic_and_matt(mix.metal, mix.matt, metal);
+        let (curves, albedo) = mix.surface();
         if place.layers.len() <= layer {
             place.layers.resize(layer + 1, LayerSample::NONE);
         }
-        place.layers[layer].f0 = Some(f0);
+        place.layers[layer].f0 = Some(curves);
         place.metal = Some(mix);
         place.base_color = place.base_color.or(Some(albedo));
     }

@@ -82,7 +82,7 @@ fn simulation_slab(first: u32, number: u32, cos_theta: f32) -> vec3<f32> {
 fn simulation_ways(first: u32, count: u32) -> u32 {
     for (var i = 0u; i < count; i++) {
         let layer = simulation_layer(first, i, 0u);
-        if layer.kind == SIMULATION_DIELECTRIC && layer.k.x != -1.0 && any(layer.n != layer.n.xxx) {
+        if layer.kind == SIMULATION_DIELECTRIC && layer.k.x >= 0.0 && any(layer.n != layer.n.xxx) {
             return 3u;
         }
     }
@@ -96,11 +96,14 @@ fn simulation_way(ways: u32, number: u32) -> SimulationWay {
     return SimulationWay(vec3<f32>(vec3<u32>(number) == vec3<u32>(0u, 1u, 2u)), number);
 }
 
-// Reflectance for light from above: Fresnel's formulas for a complex index (Born and Wolf, sec. 14.2), or Schlick's.
+// Reflectance for light from above: Fresnel's formulas for a complex index (Born and Wolf, sec. 14.2), or Schlick's with its
+// edge tint.
 fn simulation_reflectance(layer: SimulationLayer, cos_theta: f32) -> vec3<f32> {
-    if layer.k.x == -1.0 {
+    if layer.k.x < 0.0 {
         let c = 1.0 - cos_theta;
-        return layer.n + (1.0 - layer.n) * (c * c * c * c * c);
+        let fifth = c * c * c * c * c;
+        // The weight of an edge tint is what is below -1.
+        return max(layer.n + (1.0 - layer.n) * fifth + (1.0 + layer.k) * (cos_theta * c * fifth), vec3<f32>(0.0));
     }
     let sin_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
     let square = (layer.n - 1.0) * (layer.n + 1.0) - layer.k * layer.k + cos_theta * cos_theta;

@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 39] = [
+pub(super) static SAMPLES: [Sample; 40] = [
     sample(
         "material.exterior",
         "exterior",
@@ -48,6 +48,12 @@ pub(super) static SAMPLES: [Sample; 39] = [
         "layer.0.f0",
         "layer = [{ type = 'dielectric', f0 = @, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]\nbake = { model = 'elek' }",
         &["0.02", "0.08", "0.17"],
+    ),
+    sample(
+        "conductor.f82_tint",
+        "layer.0.f82_tint",
+        "layer = [{ type = 'conductor', f0 = [0.955, 0.638, 0.538], f82_tint = @, roughness = 0.4 }]",
+        &["1", "[0.6, 0.8, 1]", "0.1"],
     ),
     sample(
         "dielectric.roughness",

@@ -244,7 +244,13 @@ impl GranierHeidrich {
         };
         let exponents = self.exponents_of(layer.surface.alpha_isotropic());
         let inner_normal = self.inner_normal;
-        Some(Film { eta: ior / layer.above, f0: layer.bare_f0(), waves_inside, inner_normal, exponents })
+        Some(Film {
+            eta: ior / layer.above,
+            f0: layer.bare_f0().map(|curve| curve.f0),
+            waves_inside,
+            inner_normal,
+            exponents,
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
 use num_complex::Complex64;
 
@@ -102,9 +103,12 @@ fn layer_in_all_colors(layer: &MonochromeLayer) -> Option<Layer> {
 }
 
 /// An index for all wavelengths, with an F0 if the interface has one; `None` if it is infinite or not a number.
-fn constant(ior: Complex64, f0: Option<f64>) -> Option<Ior> {
+fn constant(ior: Complex64, f0: Option<F82>) -> Option<Ior> {
     let constant = Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok()?;
-    Some(if let Some(f0) = f0 { constant.with_f0([f0; 3]) } else { constant })
+    Some(match f0 {
+        Some(F82 { f0, tint }) => constant.with_f0([f0; 3]).with_f82_tint([tint; 3]),
+        None => constant,
+    })
 }
 
 #[cfg(test)]
@@ -123,7 +127,7 @@ mod tests {
             (surface, MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) }),
         ]);
         stack.layers[0].films.push(film);
-        stack.layers[1].f0 = Some(0.7);
+        stack.layers[1].f0 = Some(F82 { f0: 0.7, tint: 0.5 });
         let colored = in_all_colors(&stack).unwrap();
         for (nm, channel) in [(WAVELENGTH_NM, 0), (WAVELENGTH_NM, 2)] {
             assert_eq!(Monochrome::new(&colored, nm, channel), stack);

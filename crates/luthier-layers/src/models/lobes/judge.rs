@@ -172,6 +172,9 @@ const COLORS: [(Rgb, bool); VIEWS] = [
     ([0.2, 0.6, 0.9], false),
 ];
 
+/// Edge tint in which families with one are judged; none that fits see.
+const TINT: Rgb = [0.3, 0.6, 0.9];
+
 /// Slope parameters half way between nodes, and the stack with these in other colours, for a view of a judge by number. Anisotropic interfaces keep the ratio of
 /// theirs; views have different azimuths to them.
 fn in_colors(family: Family, stack: &Stack, number: usize) -> ([Slopes; 2], Paint, Stack) {
@@ -194,7 +197,9 @@ fn in_colors(family: Family, stack: &Stack, number: usize) -> ([Slopes; 2], Pain
         return (slopes, Paint::of(&here), here);
     }
     let (color, is_metal) = COLORS[number % VIEWS];
-    let paint = Paint::of(&here).mixed(Mix { metal: color, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
+    let tint = if family.is_tinted { TINT } else { [1.0; 3] };
+    let paint =
+        Paint::of(&here).mixed(Mix { metal: color, tint, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
     let here = if is_metal { paint.metal_of(&here) } else { paint.plastic_of(&here) };
     (slopes, paint, here)
 }

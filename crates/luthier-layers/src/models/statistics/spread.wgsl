@@ -31,6 +31,13 @@ fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
         let given = luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb;
         //? own_f0
         // What another F0 does not reflect is in proportion: exact of one bounce, and where all is reflected.
+        //? own_edge
+        {
+            // An edge tint is taken off as at a level facet.
+            let cubed = (1.0 - cos_theta) * (1.0 - cos_theta) * (1.0 - cos_theta);
+            return saturate(1.0 - layer.passing * (1.0 - given) - layer.edge * (cos_theta * cubed * cubed));
+        }
+        //? else
         return saturate(1.0 - layer.passing * (1.0 - given));
         //? else
         return saturate(given);

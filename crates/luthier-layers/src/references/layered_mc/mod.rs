@@ -192,7 +192,7 @@ pub(crate) fn mixed_seed(seed: u64, stack: &Monochrome, wi: DVec3, wo: DVec3) ->
             MonochromeBelow::Diffuse { albedo, sigma } => [albedo, sigma].into_iter().for_each(&mut add),
         }
         layer.films.iter().for_each(|film| add(film.waves));
-        layer.f0.into_iter().for_each(&mut add);
+        layer.f0.into_iter().for_each(|curve| add(curve.f0));
     }
     hash
 }

@@ -1,7 +1,7 @@
 //! Fresnel split of light at one facet or at a smooth interface: reflected and transmitted shares, from both sides.
 
 use luthier_optics::fresnel::{FilmLayer, coated, transmitted};
-use luthier_optics::schlick::schlick;
+use luthier_optics::schlick::F82;
 use num_complex::Complex64;
 
 use crate::monochrome::{MonochromeBelow, MonochromeLayer};
@@ -65,8 +65,8 @@ enum Kind {
     Dielectric,
     /// Bare, opaque: complex index relative to the medium above.
     Conductor(Complex64),
-    /// Bare, by Schlick's formula with this F0.
-    Schlick { f0: f64, opaque: bool },
+    /// Bare, by Schlick's formula with this F0 and edge tint.
+    Schlick { curve: F82, opaque: bool },
     /// Films, or a trace of absorption in the medium below. The index below is that by which the interface reflects, which an F0 under films may decide.
     Coated { films: Vec<FilmLayer>, below: Complex64, opaque: bool, absorbing: bool },
 }
@@ -74,8 +74,8 @@ enum Kind {
 impl Optics {
     /// The interface at the top of a layer, which is not diffuse: a diffuse base has none, and counts as nothing.
     pub(crate) fn of(layer: &MonochromeLayer) -> Self {
-        if let Some(f0) = layer.bare_f0() {
-            return Self::of_schlick(layer, f0);
+        if let Some(curve) = layer.bare_f0() {
+            return Self::of_schlick(layer, curve);
         }
         if let (Some(_), Some(index)) = (layer.f0, layer.index_below()) {
             return Self::of_coated_schlick(layer, index);
@@ -90,11 +90,11 @@ impl Optics {
     }
 
     /// An interface that reflects by Schlick's formula. Light from below is reflected as much as light from above along the refracted ray.
-    fn of_schlick(layer: &MonochromeLayer, f0: f64) -> Self {
+    fn of_schlick(layer: &MonochromeLayer, curve: F82) -> Self {
         let above = layer.above;
         match bending(layer) {
-            Some(below) => Self::between(above, below, Kind::Schlick { f0, opaque: false }),
-            None => Self::between(above, above, Kind::Schlick { f0, opaque: true }),
+            Some(below) => Self::between(above, below, Kind::Schlick { curve, opaque: false }),
+            None => Self::between(above, above, Kind::Schlick { curve, opaque: true }),
         }
     }
 
@@ -198,22 +198,22 @@ impl Optics {
                 Split { reflectance, transmittance: 1.0 - reflectance, cos_theta: cos, cos_theta_t: cos_t }
             }
             Kind::Conductor(ior) => Split::opaque(conductor(*ior, cos, cos_sq), cos),
-            Kind::Schlick { f0, opaque } => self.split_schlick(side, cos, *f0, *opaque),
+            Kind::Schlick { curve, opaque } => self.split_schlick(side, cos, *curve, *opaque),
             Kind::Coated { .. } => self.split_coated(side, cos),
         }
     }
 
     #[inline(never)]
-    fn split_schlick(&self, side: Side, cos: f64, f0: f64, opaque: bool) -> Split {
+    fn split_schlick(&self, side: Side, cos: f64, curve: F82, opaque: bool) -> Split {
         if opaque {
-            return Split::opaque(schlick(f0, cos), cos);
+            return Split::opaque(curve.eval(cos), cos);
         }
         let eta_it = self.eta_it(side);
         let cos_t = (1.0 - (1.0 - cos * cos) * (eta_it * eta_it)).clamp(0.0, 1.0).sqrt();
         if cos_t <= 0.0 || cos == 0.0 {
             return Split::opaque(1.0, cos);
         }
-        let reflectance = schlick(f0, if side == Side::Above { cos } else { cos_t });
+        let reflectance = curve.eval(if side == Side::Above { cos } else { cos_t });
         Split { reflectance, transmittance: 1.0 - reflectance, cos_theta: cos, cos_theta_t: cos_t }
     }
 

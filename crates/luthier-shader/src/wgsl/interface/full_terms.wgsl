@@ -3,8 +3,14 @@ fn $fresnel_computed(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     //? schlick
     //? bare|film
     if layer.ior_k.x < 0.0 {
+        //? edge_tint
+        return luthier_edge_tinted(layer, cos_theta_d);
+        //? else
         return luthier_schlick(layer.ior_n, cos_theta_d);
     }
+    //? else
+    //? edge_tint
+    return luthier_edge_tinted(layer, cos_theta_d);
     //? else
     return luthier_schlick(layer.ior_n, cos_theta_d);
     //? bare|film

@@ -20,6 +20,9 @@
         //? own_f0
         /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
         passing: vec3<f32>,
+        //? own_edge
+        /// Weight of the correction of its reflectance by an edge tint, RGB. See `luthier_metallic_place`.
+        edge: vec3<f32>,
     }
 
     /// A layer without textures.
@@ -31,6 +34,7 @@
         own.slab_factor = 1.0;
         own.absorption_factors = vec3<f32>(1.0);
         own.passing = vec3<f32>(1.0);
+        own.edge = vec3<f32>(0.0);
         return own;
     }
 
@@ -69,6 +73,9 @@ struct LuthierPlace {
     //? lobes_metallic, own_f0
     /// F0 of the metal of a `metallic-roughness` base, and its share, see `luthier_metallic_place`; a share below 0 leaves the base of the material.
     metal: vec4<f32>,
+    //? lobes_metallic, own_edge
+    /// What the edge tint of that metal keeps at 82 degrees, RGB.
+    metal_edge: vec3<f32>,
     //? lobes_metallic, own_f0
     /// Colour that the base shows where it is no metal, RGB.
     matt: vec3<f32>,
@@ -102,6 +109,7 @@ fn luthier_place() -> LuthierPlace {
     place.weight_factor = 1.0;
     place.base_color = vec3<f32>(-1.0);
     place.metal = vec4<f32>(-1.0);
+    place.metal_edge = vec3<f32>(0.0);
     $each_layer
     return place;
 }
@@ -152,6 +160,8 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     if index == 0u && place.metal.w >= 0.0 {
         layer.film_roots = vec4<f32>(sqrt(max(place.metal.rgb, vec3<f32>(0.0))), place.metal.w);
     }
+    //? own_edge
+    layer.edge = own.edge;
     //? own_alphas
     {
         let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));
@@ -314,6 +324,14 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
     }
     let f0 = 0.04 + metallic * (metal - 0.04);
     let shown = matt * (1.0 - metallic);
+    //? own_edge
+    {
+        // Schlick's formula has (6/7)^5 = 0.46266436 at a cosine of 1/7, where the tint is that of the metal.
+        let edge = (metal + (1.0 - metal) * 0.46266436) * luthier_materials[first + $word_base].xyz;
+        // The correction cos (1 - cos)^6 is 1 / 17.651385 there, and 1/126 on average.
+        let passed = (1.0 - f0) * (20.0 / 21.0) + metallic * edge * (17.651385 / 126.0);
+    }
+    //? else
     let passed = (1.0 - f0) * (20.0 / 21.0);
     var next = place;
     next.base_color = shown / max(passed + shown * (1.0 - passed), vec3<f32>(1e-20));
@@ -321,9 +339,13 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
     {
         next.metal = vec4<f32>(metal, metallic);
         next.matt = matt;
+        //? own_edge
+        next.metal_edge = edge;
     }
     if index < $layers {
         next.layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));
+        //? own_edge
+        next.layers[index].edge = metallic * 17.651385 * edge;
     }
     return next;
 }

@@ -13,6 +13,7 @@ use luthier_manifest::{
 };
 use luthier_optics::Rgb;
 use luthier_optics::microfacet;
+use luthier_optics::schlick::{F82, edge_dip};
 use luthier_shader::{Form, MaterialSet, Target, emit};
 
 use super::{set, tables_with};
@@ -80,19 +81,20 @@ pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Fa
         SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
     });
     let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-    Family { coat, base, interface, is_metallic }
+    Family { coat, base, interface, is_metallic, is_tinted: false }
 }
 
 /// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
 pub(super) fn material(family: Family) -> MaterialEntry {
     let given = set("lobes").swap_remove(0);
-    let Family { coat, base, interface, is_metallic } = family;
+    let Family { coat, base, interface, is_metallic, is_tinted } = family;
     let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
     let record = FamilyRecord {
         coat: (interface > 0).then(|| axis(coat)),
         base: axis(base),
         interface: interface as u32,
         is_metallic,
+        is_tinted,
     };
     let first = LayerRecord {
         alpha: ALPHAS[0],
@@ -106,6 +108,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         alpha: ALPHAS[1],
         alpha_xy: [ALPHAS[1]; 2],
         f0: Some(F0),
+        metal_f82_tint: is_tinted.then_some(TINT),
         ior_n: F0,
         ior_k: [-1.0; 3],
         tiles: if interface == 0 { first.tiles } else { Tiles::default() },
@@ -181,6 +184,8 @@ fn filmed(mut given: MaterialEntry) -> MaterialEntry {
 
 /// What the film of the tests reflects.
 const UNDER_FILM: Rgb = [0.3, 0.15, 0.55];
+/// Edge tint of a metal.
+const TINT: [f64; 3] = [0.2, 0.6, 0.9];
 
 /// Slope parameters along tangent and bitangent, over their mean, and the angles of the tangents of coat and base.
 const BRUSHED: [f64; 2] = [1.6, 0.4];
@@ -223,6 +228,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(1, true, [2, 1]), &surface[1..], vec![material(family(1, false, NODES))]),
         (family(0, true, [1, 3]), &surface[1..], vec![]),
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(1, true, NODES))]),
+        (family(1, true, NODES).tinted(true), &surface[1..], vec![]),
+        (family(0, true, [1, 3]).tinted(true), &surface[1..], vec![material(family(1, true, NODES))]),
         // From here on slope parameters differ along tangents.
         (family(1, true, NODES), &surface[1..], vec![]),
         (family(1, false, NODES), &surface[..], vec![plain.clone(), material(family(1, false, NODES))]),
@@ -318,7 +325,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 layers.iter_mut().for_each(|own| own.members_mut()[member] = vector.clone());
             }
             let wide = color.map(f64::from);
-            let mix = Mix { metal: wide, matt: wide, metallic: metal.into() };
+            let tint = if family.is_tinted { TINT } else { [1.0; 3] };
+            let mix = Mix { metal: wide, tint, matt: wide, metallic: metal.into() };
             if family.is_metallic {
                 let arguments = vec![place, Value::U(0), vector(&color), Value::F(metal)];
                 place = machine.call("luthier_metallic_place", arguments);
@@ -343,15 +351,18 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 frame.stretch = family.stretch(slopes);
             }
             let row = row(&layout, &image, family, alphas, eye.z);
-            let plain = Paint { metal: [0.0; 3], metallic: 0.0, albedo: wide, depth };
+            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo: wide, depth };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
             let film = is_filmed.then(|| FilmLight::new(&row, |_| [UNDER_FILM; 2]));
             let here = family.row_in(&row, alphas, (&frame, eye.z), &paint, film.as_ref());
             let below = Below::new(frame, here, eye).widened(eye, variance);
             let facets = if !has_facets { 0.0 } else { facets(light, eye, alphas[1].clamp(0.001, 1.0)) };
             let expected = below.eval(light);
-            let f0 = |c: usize| if is_filmed { UNDER_FILM[c] } else { 0.04 + mix.metallic * (wide[c] - 0.04) };
-            let expected = [0, 1, 2].map(|c: usize| expected[c] + f0(c) * facets);
+            let cos_theta_d = eye.dot((light + eye).normalize());
+            let expected = [0, 1, 2].map(|c: usize| {
+                let kept = mix.metallic * F82 { f0: wide[c], tint: tint[c] }.dip() * edge_dip(cos_theta_d);
+                expected[c] + (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0) * facets
+            });
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
             let prepared = machine.call("luthier_prepare_lobes", arguments);
             let found =

@@ -37,6 +37,16 @@
         }
     }
 
+    //? lobes_metallic, own_edge
+    /// What an edge tint takes from the F0 of a metal for light that a coat keeps, over what it keeps at 82 degrees: by slope parameters of coat and base, and a
+    /// cosine of the view.
+    fn luthier_family_trapped_dip(held: vec2<f32>, cos_theta: f32) -> f32 {
+        let spread = dot(held, held);
+        let away = 1.0 - cos_theta;
+        let flat_views = away * away * away * (1.0 - held.y) * held.x / (held.x + 0.1);
+        return 0.15 * (spread / (spread + 0.006) + flat_views);
+    }
+
     /// About the share of light that crosses a coat of a slope parameter as seen at a cosine, over which rows have energies.
     fn luthier_family_crossing(alpha: f32, cos_theta: f32) -> f32 {
         let cos_sq = cos_theta * cos_theta;
@@ -280,10 +290,19 @@
             var sent_back = vec3<f32>(of_rest.y);
             //? lobes_tinted|film_f0
             let of_lengths = luthier_family_part(prepared.row, beside, 5.0);
+            //? own_edge
+            {
+                // Light of one visit below a coat, or of several facets without one, sees an F0 that is less by what rows say; light that a coat keeps is flat.
+                let of_edge = luthier_family_part(prepared.row, beside, 6.0);
+                let of_one = luthier_family_once(of_once.xy, vec4<f32>(max(metal - place.metal_edge * of_edge.x, vec3<f32>(0.0)), 0.04));
+            }
+            //? else
             let of_one = luthier_family_once(of_once.xy, vec4<f32>(metal, 0.04));
             once = mix(vec3<f32>(of_one.w), of_one.rgb, metallic);
             var several = vec3<f32>(of_once.x);
             var seen_metal = metal;
+            //? own_edge
+            metal = max(metal - place.metal_edge * select(luthier_family_trapped_dip(held, wo.z), of_edge.x, base_layer == 0u), vec3<f32>(0.0));
             //? film_f0
             {
                 let all = of_facet.x + of_once.y;
@@ -332,6 +351,8 @@
                 // Several facets of the dielectric, and one of either.
                 once = (1.0 - metallic) * several;
                 facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), seen_metal, metallic);
+                //? own_edge
+                facet -= of_edge.y * metallic * place.metal_edge;
                 //? film_f0
                 if is_filmed {
                     facet = all * mix(seen_plastic, seen_metal, metallic);

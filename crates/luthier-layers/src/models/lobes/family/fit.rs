@@ -5,8 +5,8 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::{Distribution, Stack};
 
 use super::Family;
-use super::paint::trapped;
-use super::trace::{DEPTH, Energies, Node, Rest, SHADES, WHITE};
+use super::paint::{chain, dimmed, trapped};
+use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
@@ -121,7 +121,8 @@ impl Family {
                     [facets[0] - SHADES[0] * slope(facets), rest.facing[0], rest.facing[1]]
                 };
                 let energy = [over(light), length(&rest.base_once, 0), 0.0];
-                (albedo, [over(white), 0.0, 0.0], energy, [sent_back[0], around, 0.0])
+                let wide = [over(white), self.dip(energies[view], &rest.reflected), rest.first_dip];
+                (albedo, wide, energy, [sent_back[0], around, 0.0])
             } else {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
@@ -144,6 +145,26 @@ impl Family {
             [rest.plastic, slope(rest.first_facet), 0.0]
         };
         [once, [more.clear[1], more.between[1], more.clear[2]]]
+    }
+}
+
+impl Family {
+    /// About the mean of `cos (1 - cos)^6 / (1 - (1 - cos)^5)`, over the numerator at 81.8 degrees, at the facets of a tinted metal: that much an edge tint takes
+    /// from the F0. It is that of light of one visit below a coat, and of several facets without one; 0 without a tint.
+    fn dip(self, energies: [Rgb; 2], light: &[Energies; 2]) -> f64 {
+        if !self.is_tinted {
+            return 0.0;
+        }
+        let lobe = usize::from(!self.is_coated());
+        let (energies, tinted, f0) = (energies[lobe], light[lobe].tinted[lobe], BETWEEN[lobe]);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let dip = 0.5 * (low + high);
+            let f0 = dimmed(f0, HALF_TINT, dip);
+            let found = if self.is_coated() { chain(energies, f0) } else { trapped(energies, f0) };
+            *if found < tinted { &mut high } else { &mut low } = dip;
+        }
+        0.5 * (low + high)
     }
 }
 

@@ -16,6 +16,7 @@
 //! | 4 | light of a white diffuse base that sends nothing back, share of it that is sent back to the base; a and b of the remainder |
 //! | 5, below a slab that absorbs | lengths of the light of the diffuse base, of that sent back to it, of light of one visit, and of more |
 //! | 5, under a film on the base | 0, 0, mean and standard deviation of the cosine at which facets are seen |
+//! | 6, of a metal with an edge tint | what it takes from the F0 of light of one visit below a coat, or of several facets without one; and from one facet without a coat |
 //!
 //! Between its energies light of one visit is `q c / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The dielectric reflects once as a metal of its F0 does. The light of the diffuse
@@ -126,6 +127,8 @@ pub struct Family {
     pub interface: usize,
     /// Whether the base is metallic in places, whose colours are in closed form. Else energies are those of the channels.
     pub is_metallic: bool,
+    /// Whether that metal has an edge tint, for which rows have two numbers more.
+    pub is_tinted: bool,
 }
 
 impl Family {
@@ -142,7 +145,13 @@ impl Family {
         let [own, base] =
             if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
         let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-        Some(Self { coat, base, interface, is_metallic })
+        Some(Self { coat, base, interface, is_metallic, is_tinted: false })
+    }
+
+    /// The family with an edge tint of the metal, if its base is metallic in places.
+    #[must_use]
+    pub fn tinted(self, is_tinted: bool) -> Self {
+        Self { is_tinted: is_tinted && self.is_metallic, ..self }
     }
 
     /// Whether interfaces lie above the base.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::schlick::metallic_and_matt;
+use luthier_optics::schlick::{F82, F82_COS_THETA, metallic_and_matt, metallic_and_tinted, schlick};
 use luthier_optics::stack::{Base, Stack};
 
 use super::film::{FilmLight, PLASTIC_F0};
@@ -16,6 +16,8 @@ use crate::models::lobes::{BaseLight, Frame, Lobe, Row};
 pub struct Paint {
     /// F0 of the metal, RGB.
     pub metal: Rgb,
+    /// Edge tint of the metal, RGB; 1 without.
+    pub tint: Rgb,
     /// Share of the metal in the base, 0 to 1.
     pub metallic: f64,
     /// Albedo of the diffuse base, RGB.
@@ -29,10 +31,20 @@ pub struct Paint {
 pub struct Mix {
     /// F0 of the metal, RGB.
     pub metal: Rgb,
+    /// Edge tint of the metal, RGB; 1 without.
+    pub tint: Rgb,
     /// Colour that the dielectric shows, RGB.
     pub matt: Rgb,
     /// Share of the metal.
     pub metallic: f64,
+}
+
+impl Mix {
+    /// Curves of the reflectance of the interface of this base as one surface, and albedo of the diffuse base below it: as models other than `lobes` have it.
+    pub fn surface(&self) -> ([F82; 3], Rgb) {
+        let curves = [0, 1, 2].map(|c: usize| F82 { f0: self.metal[c], tint: self.tint[c] });
+        metallic_and_tinted(curves, self.matt, self.metallic)
+    }
 }
 
 impl Paint {
@@ -46,15 +58,20 @@ impl Paint {
             Some(Base::Dielectric { slab, .. }) => slab.optical_depth(),
             _ => [0.0; 3],
         };
-        Self { metal: [0.0; 3], metallic: 0.0, albedo, depth }
+        Self { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo, depth }
     }
 
     /// These colours with a base of a `metallic-roughness` surface: a metal of an F0, and a dielectric whose diffuse base shows a colour, which is its
     /// share.
     #[must_use]
-    pub fn mixed(self, Mix { metal, matt, metallic }: Mix) -> Self {
+    pub fn mixed(self, Mix { metal, tint, matt, metallic }: Mix) -> Self {
         let (_, albedo) = metallic_and_matt(metal, matt, 0.0);
-        Self { metal, metallic, albedo, ..self }
+        Self { metal, tint, metallic, albedo, ..self }
+    }
+
+    /// Curves of the reflectance of the metal.
+    fn curves(&self) -> [F82; 3] {
+        [0, 1, 2].map(|c: usize| F82 { f0: self.metal[c], tint: self.tint[c] })
     }
 
     /// A stack with the metal of these colours as its base.
@@ -64,7 +81,7 @@ impl Paint {
         let Some(number) = base_interface(stack) else { return metal };
         metal.layers.truncate(number + 1);
         if let Base::Conductor { ior } | Base::Dielectric { ior, .. } = &metal.layers[number].base {
-            metal.layers[number].base = Base::Conductor { ior: ior.clone().with_f0(self.metal) };
+            metal.layers[number].base = Base::Conductor { ior: ior.clone().with_f82(self.curves()) };
         }
         metal
     }
@@ -85,8 +102,7 @@ impl Paint {
         if let (true, Base::Conductor { ior } | Base::Dielectric { ior, .. }) =
             (family.is_metallic, &mut painted.layers[family.interface].base)
         {
-            let f0 = [0, 1, 2].map(|c: usize| PLASTIC_F0 + self.metallic * (self.metal[c] - PLASTIC_F0));
-            *ior = ior.clone().with_f0(f0);
+            *ior = ior.clone().with_f82(self.curves().map(|metal| metal.in_dielectric(self.metallic)));
         }
         painted
     }
@@ -126,7 +142,8 @@ impl Family {
         let mut met = base.of_one_direction(simulated, paint.albedo);
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
-                let [entering, wide, once, trapped, direct] = self.mixed(row, &base, paint, film, c);
+                let [entering, wide, once, trapped, direct] =
+                    self.mixed(row, &base, (alphas, cos_theta), paint, film, c);
                 met[c] = direct;
                 [entering, wide, once, trapped]
             } else {
@@ -152,9 +169,19 @@ impl Family {
 
     /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
     /// light that the base reflected once, and more often; and light of the diffuse base that came through the coat, and not back from it.
-    fn mixed(self, row: &Row, base: &BaseLight, paint: &Paint, film: Option<&FilmLight>, c: usize) -> [f64; 5] {
-        let metallic = paint.metallic;
-        let metal = film.map_or(paint.metal[c], |film| film.mean[0][c]);
+    fn mixed(
+        self,
+        row: &Row,
+        base: &BaseLight,
+        (alphas, cos_theta): ([f64; 2], f64),
+        paint: &Paint,
+        film: Option<&FilmLight>,
+        c: usize,
+    ) -> [f64; 5] {
+        let (metal, tint, metallic) = (paint.metal[c], paint.tint[c], paint.metallic);
+        // The F0 of the metal where facets see this dip of its edge tint; a film has no tint below it.
+        let at = |dip: f64| film.map_or_else(|| dimmed(metal, tint, dip), |film| film.mean[0][c]);
+        let [white, dip, first_dip] = row.wide;
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
         let ([light, length, _], [sent_back, around, _]) = (base.energy, base.internal);
@@ -163,7 +190,7 @@ impl Family {
         let [several, slope, _] = of_once;
         let (light, sent_back, once, entering) = match film {
             _ if self.is_coated() => {
-                let once = mix(chain(of_once, metal), chain(of_once, PLASTIC_F0)) * passed(once_length);
+                let once = mix(chain(of_once, at(dip)), chain(of_once, PLASTIC_F0)) * passed(once_length);
                 (light, sent_back, once, facet)
             }
             // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
@@ -174,14 +201,38 @@ impl Family {
                 let facet = all * mix(film.seen[0][c], film.seen[1][c]);
                 (leaving * light, 1.0 - staying * (1.0 - sent_back), mix(0.0, filmed), 1.0 - facet)
             }
-            None => (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, PLASTIC_F0))),
+            None => {
+                let kept = metallic * edge(metal, tint) * first_dip;
+                (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, PLASTIC_F0) - kept))
+            }
         };
         let direct = light * passed(length) * paint.albedo[c];
         let diffuse = direct / (1.0 - sent_back * passed(around) * paint.albedo[c]);
         // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric reflects hardly any.
         let again = passed(more_length);
-        [entering, row.wide[0] + mix(0.0, diffuse), once, metallic * trapped(of_more, metal * again), mix(0.0, direct)]
+        // Light that a coat keeps meets the metal flatly.
+        let flat = at(if self.is_coated() { trapped_dip(alphas, cos_theta) } else { dip });
+        [entering, white + mix(0.0, diffuse), once, metallic * trapped(of_more, flat * again), mix(0.0, direct)]
     }
+}
+
+/// What an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
+fn edge(f0: f64, tint: f64) -> f64 {
+    schlick(f0, F82_COS_THETA) * (1.0 - tint)
+}
+
+/// The F0 without an edge tint that stands for one with it, where facets see this dip.
+pub(super) fn dimmed(f0: f64, tint: f64, dip: f64) -> f64 {
+    (f0 - edge(f0, tint) * dip).max(0.0)
+}
+
+/// The dip of light of more visits below a coat, by slope parameters of coat and base and the cosine of the view. Wherever it comes from, such light meets the
+/// metal beyond the critical angle: the dip is .14 within .03, but for flat views through a rough coat (up to .22) and mirrors below a smooth one (.09).
+fn trapped_dip([coat, base]: [f64; 2], cos_theta: f64) -> f64 {
+    let spread = coat * coat + base * base;
+    let away = 1.0 - cos_theta;
+    let flat = away * away * away * (1.0 - base) * coat / (coat + 0.1);
+    0.15 * (spread / (spread + 0.006) + flat)
 }
 
 /// Least share above the horizon by which an energy is divided.
@@ -189,7 +240,7 @@ const SHARE_MIN: f64 = 1e-3;
 
 /// Energy of light of one visit to the base at an F0: `q f / (1 - R f)` through its energies at .8 and 1. Below a coat light meets the base so steeply that
 /// without F0 it reflects nothing.
-fn chain([bright, white, _]: Rgb, f: f64) -> f64 {
+pub(super) fn chain([bright, white, _]: Rgb, f: f64) -> f64 {
     let beyond = (0.8 * (white - bright)).max(BEYOND_MIN);
     let pole = ((0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX);
     f * white * (1.0 - pole) / (1.0 - pole * f)

@@ -116,6 +116,7 @@ mod tests {
         base: SlopeAxis { least: 0.01, most: 1.0, nodes: 8 },
         interface: 1,
         is_metallic: true,
+        is_tinted: false,
     };
 
     /// Oracle: by hand. An isotropic coat of .2 over a base of .1 and .3 whose tangent is turned by a quarter of a circle.

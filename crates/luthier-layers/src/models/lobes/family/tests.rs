@@ -60,7 +60,7 @@ fn colours_in_closed_form_are_those_of_the_simulation() {
             let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), SETTINGS);
             for (color, metallic) in [([0.3, 0.7, 0.95], 1.0), ([0.9, 0.4, 0.1], 0.0)] {
                 let level = family.apply(&stack, alphas);
-                let paint = Paint::of(&level).mixed(Mix { metal: color, matt: color, metallic });
+                let paint = Paint::of(&level).mixed(Mix { metal: color, tint: [1.0; 3], matt: color, metallic });
                 let here = if metallic > 0.0 { paint.metal_of(&level) } else { paint.plastic_of(&level) };
                 let lobes = varied.painted(alphas, &paint).unwrap();
                 for theta in [0.0, 1.0] {
@@ -85,7 +85,7 @@ fn light_that_meets_the_base_is_that_of_the_simulation() {
     let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], true).unwrap();
     let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), SETTINGS);
     let level = family.apply(&stack, alphas);
-    let mix = Mix { metal: [0.8; 3], matt: [0.9, 0.4, 0.1], metallic: 0.0 };
+    let mix = Mix { metal: [0.8; 3], tint: [1.0; 3], matt: [0.9, 0.4, 0.1], metallic: 0.0 };
     let paint = Paint::of(&level).mixed(mix);
     let [lobes, halved] = [0.0, 0.5].map(|metallic| varied.painted(alphas, &Paint { metallic, ..paint }).unwrap());
     let alone = Lobes::with(&paint.plastic_of(&level), &COLOR, SETTINGS);
@@ -96,6 +96,33 @@ fn light_that_meets_the_base_is_that_of_the_simulation() {
         for c in 0..3 {
             assert!((met[c] - expected[c]).abs() < 0.02, "{theta}: {met:?} {expected:?}");
             assert!((half[c] - 0.5 * met[c]).abs() < 1e-3, "{theta}: {half:?} {met:?}");
+        }
+    }
+}
+
+/// Oracle: paths of the stack in one colour with its edge tint. Rows know the effect of a tint from one tint at one F0, without a coat exactly of one facet.
+#[test]
+fn edge_tints_are_those_of_the_simulation() {
+    for is_coated in [true, false] {
+        let stack = plastic(is_coated, [0.0; 3]);
+        for alphas in [[0.02, 0.1], [0.02, 0.3], [0.5, 0.1], [0.3, 0.8]] {
+            let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], true).unwrap().tinted(true);
+            let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), SETTINGS);
+            let level = family.apply(&stack, alphas);
+            for (metal, tint) in [([0.5, 0.7, 0.95], [0.0, 0.5, 0.8]), ([0.95, 0.5, 0.7], [0.0, 0.5, 0.8])] {
+                let paint = Paint::of(&level).mixed(Mix { metal, tint, matt: metal, metallic: 1.0 });
+                let lobes = varied.painted(alphas, &paint).unwrap();
+                for theta in [0.0, 1.0, 1.4] {
+                    let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                    let (found, expected) = (lobes.row(wo).albedo_dir, albedo(&paint.metal_of(&level), wo));
+                    for c in 0..3 {
+                        // A tint of 0 is the farthest from the one that rows know.
+                        let limit = if tint[c] > 0.0 { 0.02 } else { 0.03 };
+                        let apart = (found[c] - expected[c]).abs();
+                        assert!(apart < limit, "{is_coated} {alphas:?} {metal:?} {theta}: {found:?} {expected:?}");
+                    }
+                }
+            }
         }
     }
 }
@@ -126,7 +153,7 @@ fn light_between_nodes_sums_to_the_albedo() {
     let stack = plastic(true, [0.0; 3]);
     let family = Family::new(&stack, [0.1, 0.4], [0.1, 0.5], true).unwrap();
     let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 8000, ..SETTINGS });
-    let mix = Mix { metal: [1.0, 0.8, 0.5], matt: [0.5; 3], metallic: 1.0 };
+    let mix = Mix { metal: [1.0, 0.8, 0.5], tint: [1.0; 3], matt: [0.5; 3], metallic: 1.0 };
     let lobes = varied.painted([0.2, 0.25], &Paint::of(&stack).mixed(mix)).unwrap();
     let side = 300;
     for theta in [0.05, 0.7, 1.2, 1.4] {
@@ -152,7 +179,7 @@ fn a_mix_is_linear_and_bounded() {
     let family = Family::new(&stack, [0.1, 0.1], [0.04, 0.36], true).unwrap();
     let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 4000, ..SETTINGS });
     let at = |color: [f64; 3], metallic: f64, alpha: f64| {
-        let mix = Mix { metal: color, matt: color, metallic };
+        let mix = Mix { metal: color, tint: [1.0; 3], matt: color, metallic };
         varied.painted([0.1, alpha], &Paint::of(&stack).mixed(mix)).unwrap()
     };
     let (wi, wo) = (DVec3::new(0.3, 0.2, 0.93).normalize(), DVec3::new(-0.5, 0.1, 0.8).normalize());
@@ -204,7 +231,7 @@ fn painted_lobes_are_the_stored_rows_down_to_the_horizon() {
     let alphas = [0.001, 0.6];
     let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], true).unwrap();
     let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 4000, ..SETTINGS });
-    let paint = Paint::of(&stack).mixed(Mix { metal: [0.9; 3], matt: [0.9; 3], metallic: 1.0 });
+    let paint = Paint::of(&stack).mixed(Mix { metal: [0.9; 3], tint: [1.0; 3], matt: [0.9; 3], metallic: 1.0 });
     let lobes = varied.painted(alphas, &paint).unwrap();
     let stored = &varied.nodes[0];
     for cos_theta in [0.002, 0.004, 0.008, 0.03, 0.2] {

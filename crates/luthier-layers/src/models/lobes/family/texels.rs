@@ -7,8 +7,10 @@ use crate::models::lobes::{BaseLight, Lobe, Row};
 
 impl Family {
     /// Number of parts of a row: with the lengths of light in a slab that absorbs or cosines of facets below a film, or with the light of a diffuse base apart, to recolour it.
+    /// An edge tint comes after the lengths, whether they count or not.
     pub fn parts(self, is_tinted: bool, has_base: bool) -> usize {
         match (self.is_metallic, is_tinted, has_base) {
+            (true, _, _) if self.is_tinted => 7,
             (true, false, _) => 5,
             (true, true, _) | (false, _, false) => 6,
             (false, _, true) => 8,
@@ -30,14 +32,17 @@ impl Family {
             let [bright, white, _] = first.strength;
             let [facet, once_length, more_length] = row.albedo_dir;
             let ([light, base_length, _], [sent_back, around, _]) = (base.energy, base.internal);
-            return vec![
+            let [white_light, dip, first_dip] = row.wide;
+            let edge = self.is_tinted.then_some([dip, first_dip, 0.0, 0.0]);
+            let parts = [
                 [bright, white, once_wide, first.shift],
                 more,
                 [x, y, z, w],
-                [facet, row.wide[0], first.share, second.share],
+                [facet, white_light, first.share, second.share],
                 [light, sent_back, a, b],
                 [base_length, around, once_length, more_length],
             ];
+            return parts.into_iter().chain(edge).collect();
         }
         vec![
             with(first.strength, first.shift),
@@ -63,6 +68,7 @@ impl Family {
         let (strength, shares, once_wide, albedo_dir, wide, base) = if self.is_metallic {
             let ([facet, wide, first, second], [light, sent_back, a, b]) = (part(3), part(4));
             let [base_length, around, once_length, more_length] = part(5);
+            let [dip, first_dip, ..] = if self.is_tinted { part(6) } else { [0.0; 4] };
             let base = BaseLight {
                 energy: [light, base_length, 0.0],
                 internal: [sent_back, around, 0.0],
@@ -70,7 +76,7 @@ impl Family {
                 ..BaseLight::default()
             };
             let albedo_dir = [facet, once_length, more_length];
-            ([once[0], once[1], 0.0], [first, second], once[2], albedo_dir, [wide, 0.0, 0.0], base)
+            ([once[0], once[1], 0.0], [first, second], once[2], albedo_dir, [wide, dip, first_dip], base)
         } else {
             let [a, b, once_wide, _] = part(5);
             let base = BaseLight { energy: rgb(6), internal: rgb(7), falloff: [a, b], ..BaseLight::default() };
@@ -107,8 +113,8 @@ mod tests {
     #[test]
     fn parts_are_the_row() {
         let axis = SlopeAxis { least: 0.1, most: 0.4, nodes: 3 };
-        for is_metallic in [true, false] {
-            let family = Family { coat: axis, base: axis, interface: 1, is_metallic };
+        for (is_metallic, is_tinted) in [(true, false), (true, true), (false, false)] {
+            let family = Family { coat: axis, base: axis, interface: 1, is_metallic, is_tinted };
             // Numbers that a metallic row has not are 0.
             let some = |k: f64| [k, k + 1.0, if is_metallic { 0.0 } else { k + 2.0 }];
             let lobe = |strength, shift, k: f64| Lobe {
@@ -122,7 +128,7 @@ mod tests {
             let row = Row {
                 albedo_dir: [1.0, 2.0, 3.0],
                 lobes: vec![lobe(some(4.0), 0.3, 0.5), lobe([6.0, 7.0, 8.0], 0.0, 0.75)],
-                wide: if is_metallic { [9.0, 0.0, 0.0] } else { [9.0, 10.0, 11.0] },
+                wide: if is_metallic && !is_tinted { [9.0, 0.0, 0.0] } else { [9.0, 10.0, 11.0] },
                 base: Some(BaseLight { energy: some(12.0), internal: some(15.0), falloff: [0.25, 0.125], met: None }),
             };
             let parts = family.to_parts(&row);

@@ -2,6 +2,7 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::schlick::F82;
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::Family;
@@ -22,6 +23,9 @@ const SODIUM_D_NM: f64 = 589.3;
 
 /// Optical depth of the slab at which lengths of paths are measured.
 pub(super) const DEPTH: f64 = 0.5;
+
+/// Weights of light that is at no F0 between others.
+const NONE: [[f64; 2]; 2] = [[0.0; 2]; 2];
 
 /// Light of a node.
 pub(super) struct Node {
@@ -53,6 +57,8 @@ pub(super) struct Rest {
     pub(super) first_facet: Rgb,
     /// Under a film on the base, mean and standard deviation of the cosine at which facets are seen; else 0.
     pub(super) facing: [f64; 2],
+    /// What the edge tint 0 keeps of that light at an F0 of 1.
+    pub(super) first_dip: f64,
 }
 
 /// Energies by channel: without a slab, and below one of [`DEPTH`].
@@ -62,11 +68,14 @@ pub(super) struct Energies {
     pub(super) dimmed: Rgb,
     /// Without a slab, at each F0 of [`BETWEEN`].
     pub(super) between: [f64; 2],
+    /// There with the edge tint [`HALF_TINT`].
+    pub(super) tinted: [f64; 2],
 }
 
 impl Energies {
-    fn add(&mut self, weight: Rgb, dimmed: f64, between: [f64; 2]) {
+    fn add(&mut self, weight: Rgb, dimmed: f64, [between, tinted]: [[f64; 2]; 2]) {
         (0..2).for_each(|i| self.between[i] += between[i]);
+        (0..2).for_each(|i| self.tinted[i] += tinted[i]);
         for (c, weight) in weight.into_iter().enumerate() {
             self.clear[c] += weight;
             self.dimmed[c] += weight * dimmed;
@@ -74,16 +83,28 @@ impl Energies {
     }
 }
 
-/// Weights of a path at each F0 of [`BETWEEN`]. Its reflectances are `f + (1 - f) s` with Schlick's s of each facet; those of equal facets are known from
-/// two weights.
-fn between([_, half, whole]: Rgb, facets: u32) -> [f64; 2] {
+/// Weights of a path at each F0 of [`BETWEEN`], and with [`HALF_TINT`] there. Its reflectances are `f + (1 - f) s` with Schlick's s of each facet; those of
+/// equal facets are known from two weights, and so is the cosine at them.
+fn between([_, half, whole]: Rgb, facets: u32, is_tinted: bool) -> [[f64; 2]; 2] {
     if half <= 0.0 || whole <= 0.0 || facets == 0 {
-        return [whole; 2];
+        return [[whole; 2]; 2];
     }
     let mean = libm::pow(half / whole, 1.0 / f64::from(facets));
     let steep = ((mean - SHADES[1]) / (1.0 - SHADES[1])).clamp(0.0, 1.0);
-    BETWEEN.map(|f| whole * libm::pow(f + (1.0 - f) * steep, f64::from(facets)))
+    let between = BETWEEN.map(|f| whole * libm::pow(f + (1.0 - f) * steep, f64::from(facets)));
+    if !is_tinted {
+        return [between; 2];
+    }
+    let cos_theta = 1.0 - libm::pow(steep, 0.2);
+    let tinted = BETWEEN.map(|f0| {
+        let curve = F82 { f0, tint: HALF_TINT };
+        whole * libm::pow(curve.eval(cos_theta), f64::from(facets))
+    });
+    [between, tinted]
 }
+
+/// An edge tint at which its effect is measured.
+pub(super) const HALF_TINT: f64 = 0.5;
 
 /// The stack whose base is a metal of all shades.
 fn of_metal(family: Family, stack: &Stack) -> Stack {
@@ -94,6 +115,15 @@ fn of_metal(family: Family, stack: &Stack) -> Stack {
     {
         *base = Base::Conductor { ior: ior.clone().with_f0(SHADES) };
         films.clear();
+    }
+    metal
+}
+
+/// The stack over a metal of F0 1 with an edge tint.
+fn of_mirror(stack: &Stack, tint: f64) -> Stack {
+    let mut metal = stack.clone();
+    if let Some(Base::Conductor { ior }) = metal.layers.last_mut().map(|layer| &mut layer.base) {
+        *ior = ior.clone().with_f0([1.0; 3]).with_f82_tint([tint; 3]);
     }
     metal
 }
@@ -142,6 +172,10 @@ impl Node {
         let (paths, paths_below) =
             (ColorPaths::new(&here, color).rejecting(), below.map(|below| ColorPaths::new(&below, color).rejecting()));
         let first = FirstInterface::of(&here, color);
+        let [untinted, tinted] = [1.0, 0.0].map(|tint| {
+            let metal = family.is_tinted.then(|| of_mirror(&here, tint));
+            metal.and_then(|metal| FirstInterface::of(&metal, color))
+        });
         let has_base = stack.layers.len() > family.interface + 1;
         let (mut once, mut more, mut wide, mut rest) = (vec![], vec![], vec![], vec![]);
         for row in 0..axis.size() {
@@ -154,9 +188,9 @@ impl Node {
             let share = |path: &JointPath| path.weight.map(|w| w / settings.paths as f64);
             let mut add_base = |path: &JointPath, energies: &mut Rest| {
                 let (weight, dimmed) = (share(path), libm::exp(-DEPTH * path.length));
-                energies.base.add(weight, dimmed, [0.0; 2]);
+                energies.base.add(weight, dimmed, NONE);
                 if path.base_visits == 1 {
-                    energies.base_once.add(weight, dimmed, [0.0; 2]);
+                    energies.base_once.add(weight, dimmed, NONE);
                 }
                 of_rest.add(&[], [path.wi, wo], weight, path.base_visits);
             };
@@ -179,7 +213,7 @@ impl Node {
                     _ if path.is_first_facet => return,
                     _ if path.base_visits > 0 => return add_base(&path, &mut energies),
                     0 if family.is_coated() => {
-                        energies.facets.add(weight, 1.0, [0.0; 2]);
+                        energies.facets.add(weight, 1.0, NONE);
                         of_facets.push((path.wi, weight));
                         return;
                     }
@@ -187,7 +221,11 @@ impl Node {
                     // Without a coat the second lobe has what several facets of the metal reflect, and the first that of any other base.
                     _ => family.is_metallic,
                 };
-                energies.reflected[usize::from(more)].add(weight, dimmed, between(weight, path.facets));
+                energies.reflected[usize::from(more)].add(
+                    weight,
+                    dimmed,
+                    between(weight, path.facets, family.is_tinted),
+                );
                 let tally = if more { &mut of_more } else { &mut of_once };
                 let cells = if more { &cells[1..] } else { &cells[..1] };
                 tally.add(cells, [path.wi, wo], weight, 0);
@@ -200,6 +238,8 @@ impl Node {
             if is_filmed(stack, family) {
                 energies.facing = first.as_ref().map_or([0.0; 2], |first| first.facing(wo));
             }
+            let [whole, left] = [&untinted, &tinted].map(|of| of.as_ref().map_or(0.0, |first| first.energy(wo)[0]));
+            energies.first_dip = whole - left;
             once.push(of_once);
             more.push(of_more);
             wide.push(of_rest);

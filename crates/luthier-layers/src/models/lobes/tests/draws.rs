@@ -35,8 +35,9 @@ fn draws_at_places_of_a_family_follow_their_density() {
         ([0.3.into(), brushed], [0.9, 0.8, 0.7], 1.0),
     ] {
         let level = family.apply(&whole, slopes);
-        let lobes =
-            varied.painted(slopes, &Paint::of(&level).mixed(Mix { metal: shade, matt: shade, metallic })).unwrap();
+        let lobes = varied
+            .painted(slopes, &Paint::of(&level).mixed(Mix { metal: shade, tint: [1.0; 3], matt: shade, metallic }))
+            .unwrap();
         for theta in [0.1, 0.8, 1.3] {
             let (sin, cos) = libm::sincos(theta);
             let prepared = lobes.prepare(DVec3::new(0.8 * sin, 0.6 * sin, cos)).unwrap();
