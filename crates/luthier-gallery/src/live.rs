@@ -126,7 +126,7 @@ mod tests {
         places.sort_unstable();
         assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
         // Bumps have none, and the slope parameter of an isotropic layer has two.
-        assert_eq!((page.sliders.len(), places.len()), (17, 18));
+        assert_eq!((page.sliders.len(), places.len()), (18, 19));
         assert!(PageLive::of(&MaterialEntry::default()).is_none());
     }
 }

@@ -91,14 +91,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.######.##########."),
-            (ShadingModel::WeidlichWilkie, "#####b####################."),
-            (ShadingModel::Belcour, "#####bf#..###.#.###....#..."),
-            (ShadingModel::Yamaguchi, "#####bf##.###.#####....#..."),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#.....#..#"),
-            (ShadingModel::Phong, "###.##....##...........#..."),
-            (ShadingModel::Microfacet, "....#b######..##.##....#.#."),
-            (ShadingModel::Lobes, "################.#######..."),
+            (ShadingModel::Elek, "#####b##.######.############."),
+            (ShadingModel::WeidlichWilkie, "#####b######################."),
+            (ShadingModel::Belcour, "#####bf#..###.#.#####....#..."),
+            (ShadingModel::Yamaguchi, "#####bf##.###.#######....#..."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##..#....#.....#..#"),
+            (ShadingModel::Phong, "###.##....##.............#..."),
+            (ShadingModel::Microfacet, "....#b######..##...##....#.#."),
+            (ShadingModel::Lobes, "################.#.#######..."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

@@ -270,11 +270,12 @@ fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
 //? lobes_tints
 /// A part of a row whose RGB are energies, read for each channel at a tile of its own; A is that of the row.
 fn luthier_lookup_tinted(row: vec2<f32>, tints: vec3<f32>, part: f32) -> vec4<f32> {
-    var read = luthier_lookup_lobes(row.x, row.y, part);
+    let read = luthier_lookup_lobes(row.x, row.y, part);
     if dot(tints, tints) > 0.0 {
-        read.x = luthier_lookup_lobes(row.x + tints.x, row.y, part).x;
-        read.y = luthier_lookup_lobes(row.x + tints.y, row.y, part).y;
-        read.z = luthier_lookup_lobes(row.x + tints.z, row.y, part).z;
+        let red = luthier_lookup_lobes(row.x + tints.x, row.y, part).x;
+        let green = luthier_lookup_lobes(row.x + tints.y, row.y, part).y;
+        let blue = luthier_lookup_lobes(row.x + tints.z, row.y, part).z;
+        return vec4<f32>(red, green, blue, read.w);
     }
     return read;
 }

@@ -193,7 +193,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     }
     //? absorption|film
     //? weight_film
-    if index == 0u || index == luthier_layer_count(material) && luthier_weighs_film(material) {
+    if index == 0u || (index == luthier_layer_count(material) && luthier_weighs_film(material)) {
         layer.optical_depth_log2 *= place.slab_factor;
         layer.film_thickness_waves *= place.film_factor;
         layer.film_thickness_nm *= place.film_factor;

@@ -78,10 +78,13 @@
     }
 
     /// Shares above the horizon of both lobes of a family in the plane of the eye, as estimates: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
-    /// to light above the horizon, in that plane, and their radius; `slope` that of the middle of the first lobe.
-    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
-        let near = (disc.y - abs(disc.x - vec2<f32>(slope, 0.0))) * sharpness.xz;
-        let far = max(2.0 * disc.y * sqrt(sharpness.xz * sharpness.yw) - near, near);
+    /// to light above the horizon, in that plane, their radius, and 1 over it; `slope` that of the middle of the first lobe.
+    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+        let away = abs(disc.x - vec2<f32>(slope, 0.0));
+        let mean = sqrt(sharpness.xz * sharpness.yw);
+        let out = min(away * disc.z, vec2<f32>(1.0));
+        let near = disc.y * (mean - (mean - sharpness.xz) * out * (2.0 - out)) - away * sharpness.xz;
+        let far = max(2.0 * disc.y * mean - near, near);
         //? lobes_tails
         {
             let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
@@ -412,8 +415,9 @@
         var first_shape = luthier_family_shape(shift, sharp.xy, decay, sin_theta);
         var second_shape = luthier_family_shape(0.0, sharp.zw, decay, sin_theta);
         // Rows have shares over their estimates: between rows the share is that of the shape there.
-        let radius = 1.0 / max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
-        let left_over = luthier_family_leaving(shift * sin_theta, sharp, decay, vec2<f32>(sin_theta * radius, radius));
+        let over_radius = max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
+        let radius = 1.0 / over_radius;
+        let left_over = luthier_family_leaving(shift * sin_theta, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
         prepared.shares = min(leaving * left_over, vec2<f32>(1.0));
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {

@@ -20,7 +20,7 @@ pub(super) const PLASTIC_F0: f64 = 0.04;
 const MEANS: [(f64, f64); 2] =
     [(0.355_051_025_721_682, 0.363_917_236_512_047), (0.844_948_974_278_318, 0.636_082_763_487_953)];
 
-/// What a film reflects at a place, as a row of a family sees it.
+/// Reflectances of a film at a place, as a row of a family sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmLight {
     /// In the mean over the facets that the eye sees, of the metal and of the dielectric.

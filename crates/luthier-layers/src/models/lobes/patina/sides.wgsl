@@ -191,7 +191,7 @@
             {
                 // No draws for a side that turns away from the eye, as long as the other has some.
                 let is_bare = prepared.cover <= 0.0 || !prepared.coated_open;
-                let is_whole = prepared.cover >= 1.0 || !prepared.bare_open && prepared.cover > 0.0;
+                let is_whole = prepared.cover >= 1.0 || (!prepared.bare_open && prepared.cover > 0.0);
                 return select(select(chance, 0.0, is_bare), 1.0, is_whole);
             }
             //? else
