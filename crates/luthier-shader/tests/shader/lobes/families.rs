@@ -78,7 +78,7 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
 /// The layout of rows of a family beside rows of two lobes with the light of a base.
 fn plain_layout() -> AtlasLayout {
     let layout = crate::scenes::tables().into_iter().find(|table| table.kind == TableKind::Lobes).unwrap().layout;
-    let y = layout.y.clone().map(|y| Axis { min: -2.0, size: 10, ..y });
+    let y = layout.y.clone().map(|y| Axis { min: -2.0, max: 7.0, size: 10, ..y });
     AtlasLayout { y, ..layout }
 }
 
@@ -326,7 +326,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let layers = members[member("layers").unwrap()].members_mut();
             let interfaces = if family.is_coated() { vec![(0, own[0]), (1, own[1])] } else { vec![(0, own[1])] };
             for &(number, factor) in &interfaces {
-                layers[number].members_mut()[own_member("alpha_factors").unwrap()] = vector(&[factor * factor, 1.0]);
+                let factors = if is_brushed { [factor * factor, 1.0] } else { [factor; 2] };
+                layers[number].members_mut()[own_member("alpha_factors").unwrap()] = vector(&factors);
             }
             let turn = 6.0 * share(0.53);
             if let Some(member) = own_member("tangent") {
