@@ -80,8 +80,12 @@
     /// Shares above the horizon of both lobes of a family in the plane of the eye, as estimates: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
     /// to light above the horizon, in that plane, and their radius; `slope` that of the middle of the first lobe.
     fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
-        let near = (disc.y - abs(disc.x - vec2<f32>(slope, 0.0))) * sharpness.xz;
-        let far = max(2.0 * disc.y * sqrt(sharpness.xz * sharpness.yw) - near, near);
+        let mean = sqrt(sharpness.xz * sharpness.yw);
+        let away = abs(disc.x - vec2<f32>(slope, 0.0));
+        // The nearer the middle of a lobe is to the edge of the disc, the more its width along the way counts.
+        let out = min(away / disc.y, vec2<f32>(1.0));
+        let near = disc.y * (mean - (mean - sharpness.xz) * out * (2.0 - out)) - away * sharpness.xz;
+        let far = max(2.0 * disc.y * mean - near, near);
         //? lobes_tails
         {
             let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
