@@ -59,6 +59,7 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
             4 => [1.2 - 0.2 * c, 0.8, 0.9 + 0.2 * k, 0.7 + 0.1 * k],
             5 if !is_metallic => [0.94 - 0.02 * k, 0.9, 0.8 + 0.02 * c, 0.8],
             5 => [if is_coated { 0.94 - 0.02 * k } else { 0.01 + 0.02 * k }, 0.02 * c, 0.8 + 0.1 * k, 0.9 - 0.1 * c],
+            6 if !is_metallic => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.8],
             6 => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.2 + 0.1 * k],
             7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 0.0],
             // Lengths, or the cosines at which facets are seen.
@@ -383,7 +384,9 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 // A film reflects more than an F0 of 0.04, of facets whose light far from the mirror direction has few digits.
                 let floor = if is_filmed { 0.1 } else { 0.03 };
                 let error = (f64::from(found[c]) - expected[c]).abs() / expected[c].abs().max(floor);
-                assert!(error < 3e-4, "{family:?} {k} {wi:?} {wo:?}: {found:?} {expected:?}");
+                // Widths of brushed lobes differ by up to 160 times: their matrices are nearly singular in single precision.
+                let limit = if is_brushed { 1e-3 } else { 3e-4 };
+                assert!(error < limit, "{family:?} {k} {wi:?} {wo:?}: {found:?} {expected:?}");
                 let error = (f64::from(stated[c]) - below.row().albedo_dir[c]).abs();
                 assert!(error < 2e-5, "{family:?} {k} {wo:?}: {stated:?} {:?}", below.row().albedo_dir);
                 assert!(stated[c] <= 1.000_01 || !family.is_metallic, "{stated:?}");
