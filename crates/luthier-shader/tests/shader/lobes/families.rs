@@ -36,12 +36,12 @@ const ALBEDO: Rgb = [0.7, 0.4, 0.2];
 const DEPTH: Rgb = [0.1, 0.3, 0.6];
 
 /// Rows whose every part changes with the view and with the tile. Without a coat, the first lobe has no light of the metal, as in bakes.
-fn rows(is_coated: bool) -> (AtlasLayout, Image) {
-    rows_of(FIRST + NODES[0] * NODES[1], |_| is_coated)
+fn rows(family: Family) -> (AtlasLayout, Image) {
+    rows_of(FIRST + NODES[0] * NODES[1], family.is_metallic, |_| family.is_coated())
 }
 
 /// Rows as [`rows`] has them, with or without a coat by the number of the tile.
-pub(super) fn rows_of(tiles: u32, is_coated: impl Fn(u32) -> bool) -> (AtlasLayout, Image) {
+pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> bool) -> (AtlasLayout, Image) {
     let of_set = tables_with(&AtlasLayout { tiles, ..plain_layout() });
     let layout = of_set.into_iter().find(|table| table.kind == TableKind::Lobes).unwrap().layout;
     let [width, height] = layout.size();
@@ -51,26 +51,35 @@ pub(super) fn rows_of(tiles: u32, is_coated: impl Fn(u32) -> bool) -> (AtlasLayo
         let (k, y) = (f64::from(tile) / 7.0, layout.origin(tile)[1]);
         let is_coated = is_coated(tile);
         let part: [f64; 4] = match x / layout.row_size() {
-            0 => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
-            1 => [0.5 + 0.2 * c, 0.1 * k, 1.4, 0.3 + 0.2 * c],
-            2 => [0.02 * c, 0.05, 0.3 * k, 0.2 + 0.1 * c],
-            3 if !is_coated => [0.0, 0.0, 0.0, 0.3 - 0.2 * c],
-            7 if !is_coated => [0.01 + 0.02 * k, 0.5, 0.0, 0.2],
-            3 => [0.01, 0.2 + 0.1 * c, 0.3 + 0.1 * k, 0.3 - 0.2 * c],
-            4 => [0.02 + 0.02 * k, 0.15, 0.25, -0.1 * k],
-            5 => [0.9 + 0.2 * k, 1.2 - 0.2 * c, 0.8, 0.7 + 0.1 * k],
-            6 => [1.0 + 3.0 * k, 0.9 - 0.3 * c, 12.0 - 4.0 * k, 0.8],
-            _ => [0.94 - 0.02 * k, 2.5, 3.0 + k, 0.1 * k],
+            // Light of several facets of the dielectric, and the slope of one facet, or energies of one visit.
+            2 if is_metallic && !is_coated => [0.02 + 0.02 * k, 0.5, 0.2, 0.3 - 0.2 * c],
+            2 if is_metallic => [0.2 + 0.1 * c, 0.3 + 0.1 * k, 0.25, 0.3 - 0.2 * c],
+            2 => [0.2, 0.2 + 0.1 * c, 0.3 + 0.1 * k, 0.3 - 0.2 * c],
+            3 => [0.02 + 0.02 * k, 0.15, 0.25, 0.3 + 0.2 * c],
+            4 => [1.2 - 0.2 * c, 0.8, 0.9 + 0.2 * k, 0.7 + 0.1 * k],
+            5 if !is_metallic => [0.94 - 0.02 * k, 0.9, 0.8 + 0.02 * c, 0.8],
+            5 => [if is_coated { 0.94 - 0.02 * k } else { 0.01 + 0.02 * k }, 0.02 * c, 0.8 + 0.1 * k, 0.9 - 0.1 * c],
+            6 if !is_metallic => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.8],
+            6 => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.2 + 0.1 * k],
+            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 0.0],
+            // Lengths, or the cosines at which facets are seen.
+            7 => [1.4, 0.5 + 0.2 * c, if is_coated { 2.5 } else { 0.7 }, if is_coated { 3.0 + k } else { 0.1 * k }],
+            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 0.0],
+            // What an edge tint takes.
+            8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.0, 0.0],
+            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 0.0],
+            // Those of other materials, before the first.
+            _ => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
         };
         image.texel_mut(x, y).copy_from_slice(&part.map(|value| value as f32));
     }
     (layout, image)
 }
 
-/// The layout of rows of two lobes with the light of a base.
+/// The layout of rows of a family beside rows of two lobes with the light of a base.
 fn plain_layout() -> AtlasLayout {
     let layout = crate::scenes::tables().into_iter().find(|table| table.kind == TableKind::Lobes).unwrap().layout;
-    let y = layout.y.clone().map(|y| Axis { min: -2.0, size: 8, ..y });
+    let y = layout.y.clone().map(|y| Axis { min: -2.0, max: 7.0, size: 10, ..y });
     AtlasLayout { y, ..layout }
 }
 
@@ -184,6 +193,7 @@ fn filmed(mut given: MaterialEntry) -> MaterialEntry {
 
 /// What the film of the tests reflects.
 const UNDER_FILM: Rgb = [0.3, 0.15, 0.55];
+
 /// Edge tint of a metal.
 const TINT: [f64; 3] = [0.2, 0.6, 0.9];
 
@@ -204,7 +214,7 @@ fn row(layout: &AtlasLayout, image: &Image, family: Family, alphas: [f64; 2], co
         let [low, high] = [i, i + 1].map(|i| mix(read(i, j), read(i, j + 1), base.fract()));
         mix(low, high, coat.fract())
     };
-    Row::of_parts(&(-2..6).map(part).collect::<Vec<_>>(), true)
+    family.of_parts(&(0..8).map(part).collect::<Vec<_>>(), 1.0)
 }
 
 /// Light of facets that reflect all of it, once.
@@ -241,7 +251,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
     .into_iter()
     .enumerate()
     {
-        let (is_brushed, is_filmed) = ((7..10).contains(&number), number >= 10);
+        let (is_brushed, is_filmed) = ((9..12).contains(&number), number >= 12);
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
             (_, true) => filmed(material(family)),
@@ -251,7 +261,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         for (number, material) in materials.iter_mut().enumerate() {
             material.name = format!("m{number}");
         }
-        let (layout, image) = rows(family.is_coated());
+        let (layout, image) = rows(family);
         let tables = tables_with(&layout);
         let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
@@ -317,7 +327,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let layers = members[member("layers").unwrap()].members_mut();
             let interfaces = if family.is_coated() { vec![(0, own[0]), (1, own[1])] } else { vec![(0, own[1])] };
             for &(number, factor) in &interfaces {
-                layers[number].members_mut()[own_member("alpha_factors").unwrap()] = vector(&[factor * factor, 1.0]);
+                let factors = if is_brushed { [factor * factor, 1.0] } else { [factor; 2] };
+                layers[number].members_mut()[own_member("alpha_factors").unwrap()] = vector(&factors);
             }
             let turn = 6.0 * share(0.53);
             if let Some(member) = own_member("tangent") {
@@ -361,7 +372,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let cos_theta_d = eye.dot((light + eye).normalize());
             let expected = [0, 1, 2].map(|c: usize| {
                 let kept = mix.metallic * F82 { f0: wide[c], tint: tint[c] }.dip() * edge_dip(cos_theta_d);
-                expected[c] + (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0) * facets
+                let plain = (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0);
+                expected[c] + facets * if is_filmed { UNDER_FILM[c] } else { plain }
             });
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
             let prepared = machine.call("luthier_prepare_lobes", arguments);
@@ -372,7 +384,9 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 // A film reflects more than an F0 of 0.04, of facets whose light far from the mirror direction has few digits.
                 let floor = if is_filmed { 0.1 } else { 0.03 };
                 let error = (f64::from(found[c]) - expected[c]).abs() / expected[c].abs().max(floor);
-                assert!(error < 3e-4, "{family:?} {k} {wi:?} {wo:?}: {found:?} {expected:?}");
+                // Widths of brushed lobes differ by up to 160 times: their matrices are nearly singular in single precision.
+                let limit = if is_brushed { 1e-3 } else { 3e-4 };
+                assert!(error < limit, "{family:?} {k} {wi:?} {wo:?}: {found:?} {expected:?}");
                 let error = (f64::from(stated[c]) - below.row().albedo_dir[c]).abs();
                 assert!(error < 2e-5, "{family:?} {k} {wo:?}: {stated:?} {:?}", below.row().albedo_dir);
                 assert!(stated[c] <= 1.000_01 || !family.is_metallic, "{stated:?}");
@@ -387,7 +401,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
 #[test]
 fn directions_of_a_family_are_drawn_as_their_density_says() {
     let family = family(1, true, NODES);
-    let (layout, image) = rows(true);
+    let (layout, image) = rows(family);
     let materials = [material(family)];
     let functions = [FunctionGroup::Sample, FunctionGroup::Albedo].into_iter().collect();
     let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables_with(&layout)) };

@@ -143,25 +143,23 @@ fn of_families(is_metallic: bool, nodes: [u32; 2]) -> MaterialEntry {
 /// Oracle: the material without the weight, and the layers below its coat as a material, each by a shader of its own.
 #[test]
 fn light_of_sides_is_that_of_two_materials() {
-    let [both, one] = [NODES, [1, 3]].map(|nodes| {
-        let whole = FIRST + nodes[0] * nodes[1];
-        (nodes, rows_of(whole + nodes[1], |tile| tile < whole))
-    });
+    let [both, one] = [NODES, [1, 3]];
     let plain = || super::rows();
-    let family = |is_metallic, (nodes, rows): &([u32; 2], (AtlasLayout, Image))| {
-        (of_families(is_metallic, *nodes), rows.clone())
+    let family = |is_metallic, nodes: [u32; 2]| {
+        let whole = FIRST + nodes[0] * nodes[1];
+        (of_families(is_metallic, nodes), rows_of(whole + nodes[1], is_metallic, |tile| tile < whole))
     };
     let scene = |name| (set(name).swap_remove(0), plain());
     let own = |(material, rows): (MaterialEntry, (AtlasLayout, Image))| (bumpy(material), rows);
     let cases = [
-        family(true, &both),
-        family(true, &one),
-        family(false, &both),
+        family(true, both),
+        family(true, one),
+        family(false, both),
         scene("lobes-sides"),
         scene("lobes-sides-base"),
         scene("lobes-sides-film"),
-        own(family(true, &both)),
-        own(family(false, &one)),
+        own(family(true, both)),
+        own(family(false, one)),
         own(scene("lobes-sides")),
         own(scene("lobes-sides-base")),
         own(scene("lobes-sides-film")),
@@ -234,7 +232,7 @@ fn light_of_sides_is_that_of_two_materials() {
 #[test]
 fn directions_of_sides_are_drawn_as_their_density_says() {
     let whole = FIRST + NODES[0] * NODES[1];
-    let family = (of_families(true, NODES), rows_of(whole + NODES[1], |tile| tile < whole));
+    let family = (of_families(true, NODES), rows_of(whole + NODES[1], true, |tile| tile < whole));
     let paint = (set("lobes-sides-base").swap_remove(0), super::rows());
     let bumps = [&family, &paint].map(|(material, rows)| (bumpy(material.clone()), rows.clone()));
     for (material, rows) in [family, paint].into_iter().chain(bumps) {

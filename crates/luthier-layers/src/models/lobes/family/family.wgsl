@@ -82,6 +82,7 @@
     fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
         let away = abs(disc.x - vec2<f32>(slope, 0.0));
         let mean = sqrt(sharpness.xz * sharpness.yw);
+        // The nearer the middle of a lobe is to the edge of the disc, the more its width along the way counts.
         let out = min(away * disc.z, vec2<f32>(1.0));
         let near = disc.y * (mean - (mean - sharpness.xz) * out * (2.0 - out)) - away * sharpness.xz;
         let far = max(2.0 * disc.y * mean - near, near);
