@@ -30,7 +30,7 @@ struct LuthierLayer {
     float distribution;
     // Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     vec3 ior_n;
-    // Imaginary part of it; -1 of an interface of Schlick's.
+    // Imaginary part of it; of an interface of Schlick's -1 less the weight of its edge tint.
     vec3 ior_k;
     // Index above over index below, for the refracted directions.
     float inverse_eta;

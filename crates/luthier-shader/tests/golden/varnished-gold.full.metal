@@ -42,7 +42,7 @@ struct LuthierLayer {
     char _pad5[12];
     // Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     metal::float3 ior_n;
-    // Imaginary part of it; -1 of an interface of Schlick's.
+    // Imaginary part of it; of an interface of Schlick's -1 less the weight of its edge tint.
     metal::packed_float3 ior_k;
     // Index above over index below, for the refracted directions.
     float inverse_eta;

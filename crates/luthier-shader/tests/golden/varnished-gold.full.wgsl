@@ -46,7 +46,7 @@ struct LuthierLayer {
     distribution: f32,
     /// Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
     ior_n: vec3<f32>,
-    /// Imaginary part of it; -1 of an interface of Schlick's.
+    /// Imaginary part of it; of an interface of Schlick's -1 less the weight of its edge tint.
     ior_k: vec3<f32>,
     /// Index above over index below, for the refracted directions.
     inverse_eta: f32,
