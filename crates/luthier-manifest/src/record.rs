@@ -271,7 +271,7 @@ impl LayerRecord {
     }
 }
 
-/// What tints keep.
+/// Reflectances that tints keep.
 fn dark(tint: [f64; 3]) -> [f64; 3] {
     tint.map(|tint| 1.0 - tint)
 }

@@ -74,7 +74,7 @@ struct LuthierPlace {
     /// F0 of the metal of a `metallic-roughness` base, and its share, see `luthier_metallic_place`; a share below 0 leaves the base of the material.
     metal: vec4<f32>,
     //? lobes_metallic, own_edge
-    /// What the edge tint of that metal keeps at 82 degrees, RGB.
+    /// Reflectance that the edge tint of that metal keeps at 82 degrees, RGB.
     metal_edge: vec3<f32>,
     //? lobes_metallic, own_f0
     /// Colour that the base shows where it is no metal, RGB.

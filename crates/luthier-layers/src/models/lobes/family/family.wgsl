@@ -38,7 +38,7 @@
     }
 
     //? lobes_metallic, own_edge
-    /// What an edge tint takes from the F0 of a metal for light that a coat keeps, over what it keeps at 82 degrees: by slope parameters of coat and base, and a
+    /// Amount that an edge tint takes from the F0 of a metal for light that a coat keeps, over what it keeps at 82 degrees: by slope parameters of coat and base, and a
     /// cosine of the view.
     fn luthier_family_trapped_dip(held: vec2<f32>, cos_theta: f32) -> f32 {
         let spread = dot(held, held);

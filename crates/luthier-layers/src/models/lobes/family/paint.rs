@@ -216,7 +216,7 @@ impl Family {
     }
 }
 
-/// What an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
+/// Reflectance that an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
 fn edge(f0: f64, tint: f64) -> f64 {
     schlick(f0, F82_COS_THETA) * (1.0 - tint)
 }

@@ -57,7 +57,7 @@ pub(super) struct Rest {
     pub(super) first_facet: Rgb,
     /// Under a film on the base, mean and standard deviation of the cosine at which facets are seen; else 0.
     pub(super) facing: [f64; 2],
-    /// What the edge tint 0 keeps of that light at an F0 of 1.
+    /// Energy that the edge tint 0 keeps of that light at an F0 of 1.
     pub(super) first_dip: f64,
 }
 
