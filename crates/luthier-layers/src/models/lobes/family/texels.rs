@@ -17,7 +17,7 @@ impl Family {
         }
     }
 
-    /// A row as parts, all that it may have; see the table of [this module's parent](super).
+    /// A row as parts, all that it may have; their numbers are in docs/manifest.md, Families of lobes.
     pub fn to_parts(self, row: &Row) -> Vec<[f64; 4]> {
         let lobe = |lobe: usize| row.lobes.get(lobe).copied().unwrap_or(DARK);
         let [first, second] = [lobe(0), lobe(1)];
