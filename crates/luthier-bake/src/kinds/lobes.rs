@@ -545,7 +545,11 @@ impl Parts {
     /// The row of parts, those that a tile has.
     fn read(self, parts: &[[f64; 4]]) -> Row {
         match self {
-            Self::Lobes(_, has_base) => Row::of_parts(parts, has_base),
+            Self::Lobes(most, has_base) => {
+                // Families have more parts.
+                let own = Row::parts(most) + if has_base { Row::BASE_PARTS } else { 0 };
+                Row::of_parts(&parts[..own.min(parts.len())], has_base)
+            }
             Self::Family(family, tail) => family.of_parts(parts, tail),
         }
     }

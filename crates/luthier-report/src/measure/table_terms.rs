@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, FilmLight, Frame, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+    Axes, Below, Critical, Family, FilmLight, Frame, LOBES, Paint, Painted, Row, Slopes, ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -53,12 +53,18 @@ impl Table<'_> {
 
     /// A sampled row of lobes.
     pub(crate) fn row(&self, tile: u32, cos_theta: f64, weights: Weights) -> Row {
-        Row::of_parts(&self.parts(tile, cos_theta, weights), self.has_base())
+        self.row_of(&self.parts(tile, cos_theta, weights))
     }
 
     /// A row of lobes between two tiles.
     fn row_between(&self, tile: u32, share: f64, cos_theta: f64, weights: Weights) -> Row {
-        Row::of_parts(&self.parts_between(tile, share, cos_theta, weights), self.has_base())
+        self.row_of(&self.parts_between(tile, share, cos_theta, weights))
+    }
+
+    /// The row of parts that is no family's: those have more parts.
+    fn row_of(&self, parts: &[[f64; 4]]) -> Row {
+        let own = Row::parts(LOBES) + if self.has_base() { Row::BASE_PARTS } else { 0 };
+        Row::of_parts(&parts[..own.min(parts.len())], self.has_base())
     }
 
     /// A row of a family, whose lobes have a tail, between two tiles.
