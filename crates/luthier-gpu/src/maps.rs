@@ -104,7 +104,9 @@ impl Scene {
 
     /// Number of layers that have a place of their own in the shader.
     pub(crate) fn layer_places(&self) -> usize {
-        let shown = self.manifest.materials.iter().flat_map(|entry| entry.shown_layer_maps(self.form()));
+        // Materials whose models lack this form are not in its shader.
+        let shaded = self.manifest.materials.iter().filter(|entry| entry.model.has(self.form()));
+        let shown = shaded.flat_map(|entry| entry.shown_layer_maps(self.form()));
         let shown = shown.filter(|(layer, slot)| slot.is_of_layer_place(*layer));
         shown.map(|(layer, _)| layer as usize + 1).max().unwrap_or(0)
     }
