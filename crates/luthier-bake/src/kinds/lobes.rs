@@ -669,3 +669,21 @@ impl Job for LobesJob {
         Artefact::new(TileData { model, truth, size: atlas.texels.size(), bytes: atlas.bytes, error })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tile of a set with families has more parts than a row of one lobe and a base.
+    #[test]
+    fn rows_beside_families_are_read_from_their_own_parts() {
+        let row = Row { albedo_dir: [0.9; 3], lobes: vec![], wide: [0.5; 3], base: None };
+        for (most, has_base) in [(1, true), (2, false)] {
+            let layout = Parts::Lobes(most, has_base);
+            let own = layout.of(row.clone());
+            let more = [own.clone(), vec![[7.0; 4]; 2]].concat();
+            assert_eq!(layout.read(&more), layout.read(&own));
+            assert_eq!((layout.read(&more).wide, layout.read(&more).albedo_dir), (row.wide, row.albedo_dir));
+        }
+    }
+}
