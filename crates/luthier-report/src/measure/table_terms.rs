@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, FilmLight, Frame, LOBES, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+    Axes, Below, Critical, Family, FilmLight, Frame, Paint, Painted, Row, Slopes, ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -16,7 +16,7 @@ use luthier_manifest::reads;
 use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
-use luthier_optics::schlick::edge_dip;
+use luthier_optics::schlick::{DIELECTRIC_F0, edge_dip};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -53,18 +53,12 @@ impl Table<'_> {
 
     /// A sampled row of lobes.
     pub(crate) fn row(&self, tile: u32, cos_theta: f64, weights: Weights) -> Row {
-        self.row_of(&self.parts(tile, cos_theta, weights))
+        Row::of_parts(&self.parts(tile, cos_theta, weights), self.has_base())
     }
 
     /// A row of lobes between two tiles.
     fn row_between(&self, tile: u32, share: f64, cos_theta: f64, weights: Weights) -> Row {
-        self.row_of(&self.parts_between(tile, share, cos_theta, weights))
-    }
-
-    /// The row of parts that is no family's: those have more parts.
-    fn row_of(&self, parts: &[[f64; 4]]) -> Row {
-        let own = Row::parts(LOBES) + if self.has_base() { Row::BASE_PARTS } else { 0 };
-        Row::of_parts(&parts[..own.min(parts.len())], self.has_base())
+        Row::of_parts(&self.parts_between(tile, share, cos_theta, weights), self.has_base())
     }
 
     /// A row of a family, whose lobes have a tail, between two tiles.
@@ -445,7 +439,7 @@ impl<'a> TableTerms<'a> {
     fn film_ends(&self, layer: usize, cos_theta: f64) -> Option<[Rgb; 2]> {
         let (table, _, tile) = self.read_at(TableKind::Film, layer)?;
         let at = |root: f64| table.read(tile, [cos_theta, root], self.weights);
-        let [r, g, b, _] = at(libm::sqrt(PLASTIC_F0));
+        let [r, g, b, _] = at(libm::sqrt(DIELECTRIC_F0));
         let metal = [0, 1, 2].map(|c: usize| at(libm::sqrt(self.here.metal.0[c].max(0.0)))[c]);
         self.records[layer].has_film_over_f0().then_some([metal, [r, g, b]])
     }
@@ -474,9 +468,6 @@ impl<'a> TableTerms<'a> {
         tile.and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
     }
 }
-
-/// F0 of a `metallic-roughness` surface without metal.
-const PLASTIC_F0: f64 = 0.04;
 
 /// The veil of the layers above a diffuse base, as the record gives it to shaders of the statistical models.
 pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {

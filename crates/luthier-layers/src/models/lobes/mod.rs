@@ -83,8 +83,9 @@ pub(crate) const ROOM: Room = Room {
     kernels: Kernels {
         eval: concat!(
             include_str!("family/family.wgsl"),
-            include_str!("tilt.wgsl"),
+            include_str!("prepare/tilt.wgsl"),
             include_str!("patina/sides.wgsl"),
+            include_str!("prepare/rows.wgsl"),
             include_str!("eval.wgsl")
         ),
         parts: include_str!("parts.wgsl"),

@@ -2,6 +2,7 @@
 
 use luthier_optics::Rgb;
 
+use super::LOBES;
 use super::shape::{Shape, TAIL_MIN};
 use crate::least_squares::solve;
 
@@ -355,9 +356,10 @@ impl Row {
         [0, 1].map(|lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| 1.0 / lobe.tail.max(TAIL_MIN)))
     }
 
-    /// The row of parts. With `has_base`, the first two belong to a diffuse base.
+    /// The row of parts. With `has_base`, the first two belong to a diffuse base. Parts beyond those of [`LOBES`] lobes are of families beside it.
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
+        let parts = &parts[..parts.len().min(Self::parts(LOBES))];
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
         let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff, met: None };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
@@ -548,7 +550,12 @@ mod tests {
                 let row = Row { albedo_dir: [4.0, 5.0, 6.0], lobes: lobes.clone(), wide: [0.1, 0.2, 0.3], base };
                 let (parts, of_base) = (row.to_parts(), base.map_or(0, |_| Row::BASE_PARTS));
                 let count = Row::parts(row.lobes.len()) + of_base;
-                assert_eq!((parts.len(), Row::of_parts(&parts, base.is_some())), (count, row));
+                assert_eq!((parts.len(), &Row::of_parts(&parts, base.is_some())), (count, &row));
+                // Beside a family rows of two lobes have parts that are not theirs.
+                if row.lobes.len() == LOBES {
+                    let beside = [parts, vec![[7.0; 4]; 2]].concat();
+                    assert_eq!(Row::of_parts(&beside, base.is_some()), row);
+                }
             }
         }
     }

@@ -215,40 +215,31 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
         {
             let coated_wi = luthier_local(prepared.coated_normal, wi);
             let bare_wi = luthier_local(prepared.bare_normal, wi);
-            if chance > 0.0 && prepared.coated_open && coated_wi.z > 0.0 {
-                density = chance * luthier_density_lobes(prepared.coated, coated_wi);
-            }
-            if chance < 1.0 && prepared.bare_open && bare_wi.z > 0.0 {
-                var bare = bare_wi.z / LUTHIER_PI;
-                //? lobes_side_rows
-                //? lobes_side_bases
-                if !prepared.is_base {
-                    bare = luthier_density_lobes(prepared.bare, bare_wi);
-                }
-                //? else
-                bare = luthier_density_lobes(prepared.bare, bare_wi);
-                density += (1.0 - chance) * bare;
-            }
-            return density;
+            let is_coated = chance > 0.0 && prepared.coated_open && coated_wi.z > 0.0;
+            let is_bare = chance < 1.0 && prepared.bare_open && bare_wi.z > 0.0;
         }
         //? else
         {
-            if chance > 0.0 {
-                density = chance * luthier_density_lobes(prepared.coated, wi);
-            }
-            if chance < 1.0 {
-                var bare = wi.z / LUTHIER_PI;
-                //? lobes_side_rows
-                //? lobes_side_bases
-                if !prepared.is_base {
-                    bare = luthier_density_lobes(prepared.bare, wi);
-                }
-                //? else
-                bare = luthier_density_lobes(prepared.bare, wi);
-                density += (1.0 - chance) * bare;
-            }
-            return density;
+            let coated_wi = wi;
+            let bare_wi = wi;
+            let is_coated = chance > 0.0;
+            let is_bare = chance < 1.0;
         }
+        if is_coated {
+            density = chance * luthier_density_lobes(prepared.coated, coated_wi);
+        }
+        if is_bare {
+            var bare = bare_wi.z / LUTHIER_PI;
+            //? lobes_side_rows
+            //? lobes_side_bases
+            if !prepared.is_base {
+                bare = luthier_density_lobes(prepared.bare, bare_wi);
+            }
+            //? else
+            bare = luthier_density_lobes(prepared.bare, bare_wi);
+            density += (1.0 - chance) * bare;
+        }
+        return density;
     }
 
     //? lobes_side_frames

@@ -8,13 +8,11 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::ior::Ior;
+use luthier_optics::schlick::{DIELECTRIC_F0, schlick_average};
 use luthier_optics::stack::Stack;
 
 use super::{Family, Paint};
 use crate::models::lobes::Row;
-
-/// F0 of a `metallic-roughness` surface without metal.
-pub(super) const PLASTIC_F0: f64 = 0.04;
 
 /// Gauss's nodes and weights for means over the hemisphere, `2 mu` being the density of the cosine.
 const MEANS: [(f64, f64); 2] =
@@ -55,7 +53,7 @@ impl FilmLight {
             let [without, with] = [0, 1].map(|i: usize| 1.0 - one[i] - several[i]);
             with.max(0.0) / without.max(ENTERING_MIN)
         };
-        let mean = [PLASTIC_F0, self.mean[1][c]].map(|f0| all * (f0 + (1.0 - f0) / 21.0));
+        let mean = [DIELECTRIC_F0, self.mean[1][c]].map(|f0| all * schlick_average(f0));
         let staying = ratio(mean);
         [ratio([plain, all * self.seen[1][c]]) * staying, staying]
     }
@@ -67,7 +65,7 @@ const ENTERING_MIN: f64 = 0.02;
 /// The film on the base of a family, with its exact reflectance.
 #[derive(Debug, Clone)]
 pub(in crate::models::lobes) struct Filmed {
-    /// Of the metal of a place, and of the dielectric.
+    /// Its reflectance over the metal of a place, and over the dielectric.
     sampled: [Sampled; 2],
 }
 
@@ -79,7 +77,7 @@ impl Filmed {
         }
         let interface = Interface::of(stack, 0)?;
         let over = |f0: Rgb| Interface { below: Ior::vacuum().with_f0(f0), ..interface.clone() }.sampled(color);
-        Some(Self { sampled: [over(paint.metal), over([PLASTIC_F0; 3])] })
+        Some(Self { sampled: [over(paint.metal), over([DIELECTRIC_F0; 3])] })
     }
 
     /// Reflectances at a cosine, of the metal and of the dielectric.

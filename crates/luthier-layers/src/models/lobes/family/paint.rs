@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::schlick::{F82, F82_COS_THETA, metallic_and_matt, metallic_and_tinted, schlick};
+use luthier_optics::schlick::{DIELECTRIC_F0, F82, F82_COS_THETA, metallic_and_matt, metallic_and_tinted, schlick};
 use luthier_optics::stack::{Base, Stack};
 
-use super::film::{FilmLight, PLASTIC_F0};
+use super::film::FilmLight;
 use super::{Family, base_interface};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
@@ -190,20 +190,20 @@ impl Family {
         let [several, slope, _] = of_once;
         let (light, sent_back, once, entering) = match film {
             _ if self.is_coated() => {
-                let once = mix(chain(of_once, at(dip)), chain(of_once, PLASTIC_F0)) * passed(once_length);
+                let once = mix(chain(of_once, at(dip)), chain(of_once, DIELECTRIC_F0)) * passed(once_length);
                 (light, sent_back, once, facet)
             }
             // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
             Some(film) => {
-                let filmed = (several + trapped(of_more, film.mean[1][c]) - trapped(of_more, PLASTIC_F0)).max(0.0);
+                let filmed = (several + trapped(of_more, film.mean[1][c]) - trapped(of_more, DIELECTRIC_F0)).max(0.0);
                 let all = facet + slope;
-                let [leaving, staying] = film.passed(c, all, facet + slope * PLASTIC_F0, [several, filmed]);
+                let [leaving, staying] = film.passed(c, all, facet + slope * DIELECTRIC_F0, [several, filmed]);
                 let facet = all * mix(film.seen[0][c], film.seen[1][c]);
                 (leaving * light, 1.0 - staying * (1.0 - sent_back), mix(0.0, filmed), 1.0 - facet)
             }
             None => {
                 let kept = metallic * edge(metal, tint) * first_dip;
-                (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, PLASTIC_F0) - kept))
+                (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, DIELECTRIC_F0) - kept))
             }
         };
         let direct = light * passed(length) * paint.albedo[c];
