@@ -23,7 +23,7 @@ const NAMING: [(&str, &str); 20] = [
     ("layers/src/models/phong/mod.rs", "is the model"),
     ("layers/src/models/weidlich_wilkie/mod.rs", "is the model"),
     ("layers/src/models/yamaguchi/mod.rs", "is the model"),
-    ("layers/src/twins/shaded.rs", "has Elek's mean of slope parameters, and rows of lobes at a place"),
+    ("layers/src/twins/shaded/mod.rs", "has Elek's mean of slope parameters, and rows of lobes at a place"),
     ("material/src/default_model.rs", "says what keeps a material from the best model"),
     ("material/src/doubt.rs", "says what two models do with a smooth layer below a rough one"),
     ("report/src/models/colored.rs", "takes one facet for the first bounce"),
