@@ -159,8 +159,8 @@ pub struct FamilyRecord {
     pub interface: u32,
     /// Whether the base is metallic in places, whose colours are in closed form. Else rows have energies of the channels.
     pub is_metallic: bool,
-    /// Whether that metal has an edge tint, for which rows have two numbers more.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    /// Whether that metal has an edge tint, for which rows have two numbers more. Families of bakes from before have other rows, and lack it: they are
+    /// refused.
     pub is_tinted: bool,
 }
 
@@ -627,5 +627,14 @@ mod tests {
             words(LobesRecord { axes, ..lobes })[9]
         };
         assert_eq!([true, false].map(around), [[0.0, 0.6, 0.8, 7.0], [0.0, 0.6, 0.8, 3.5]]);
+    }
+
+    /// Rows of a family from before edge tints have other parts, so that reading them would go unseen.
+    #[test]
+    fn families_of_earlier_rows_are_refused() {
+        let earlier = r#"{"base": {"least": 0.1, "most": 0.4, "nodes": 3}, "interface": 1, "is_metallic": true"#;
+        let read = |end: &str| serde_json::from_str::<FamilyRecord>(&format!("{earlier}{end}}}"));
+        assert!(read("").unwrap_err().to_string().contains("is_tinted"));
+        assert!(!read(", \"is_tinted\": false").unwrap().is_tinted);
     }
 }
