@@ -159,9 +159,10 @@ impl Part {
                 last.albedo = rows.map(|row| row.iter().sum::<f64>().max(0.0));
             }
         }
-        // Maps give each place an F0 below the film: its tile is over that F0.
+        // Maps give each place an F0, or a film on the base of a family has another thickness there: it reflects by a series in the F0.
+        let family = material.family().filter(|family| family.is_filmed && model.is_fitted());
         for (i, (record, extras)) in records.iter_mut().zip(extras).enumerate() {
-            if extras.metallic.is_some() {
+            if extras.metallic.is_some() || family.is_some_and(|family| family.interface == i) {
                 record.f0 = Interface::of(stack, i).and_then(|interface| interface.below.f0());
             }
         }

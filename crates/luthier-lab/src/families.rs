@@ -281,7 +281,7 @@ fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::f
          | group | nodes of the coat | of the base | rows | bytes | seconds of one core |\n|---|--:|--:|--:|--:|--:|"
     )?;
     for Results { group, family, seconds, .. } in results {
-        let parts = family.parts(*group == Group::Tinted, false);
+        let parts = family.parts(*group == Group::Tinted, false, false);
         let bytes = family.nodes() * (options.rows as usize + 2) * parts * 8;
         writeln!(
             out,
@@ -330,5 +330,5 @@ number `metallic = 0.5` in a file means. Both are meanings of the same parameter
 Anisotropic interfaces read the rows of the mean of their two slope parameters, and their lobes are stretched in closed form: neither anisotropy nor its direction is an axis. The group has bases with slope parameters up to
 a ratio of nine. Its tables are those of the first group.
 
-Not in families: films that vary. Files with such maps take another model. A coat with a weight lies over a family of its own.
+Not in families: films that vary on a base without an F0. Files with such maps take another model. A coat with a weight lies over a family of its own.
 ";

@@ -62,7 +62,7 @@ pub use map::{MapEntry, MapSlot};
 pub use material::MaterialEntry;
 pub use place::{LayerValues, PlaceValues};
 pub use reads::reads;
-pub use record::{FILM_ROOT_MIN, LAYER_WORDS, LayerKind, LayerRecord};
+pub use record::{LAYER_WORDS, LayerKind, LayerRecord};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use shader::{Check, FunctionEntry, FunctionGroup, Functions, Interface, StructureEntry};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};

@@ -10,8 +10,14 @@ use crate::record::{LayerKind, LayerRecord};
 pub fn reads(model: ShadingModel, kind: TableKind, layers: &[LayerRecord], number: usize) -> bool {
     let facts = model.facts();
     let is_interface = layers.get(number).is_some_and(|layer| layer.kind != LayerKind::Diffuse);
-    let is_reached = is_interface && (number == 0 || facts.reach == Reach::All);
-    is_reached && facts.tables.iter().any(|table| table.kind == kind && is_met(table.when, layers, number))
+    let is_reached = number == 0 || facts.reach == Reach::All;
+    let mut read = facts.tables.iter().filter(|table| table.kind == kind);
+    is_interface && read.any(|table| (is_reached || is_beyond(table.when)) && is_met(table.when, layers, number))
+}
+
+/// Whether a condition is of interfaces that a model does not reach by itself: rows of lobes take the film of the lowest.
+fn is_beyond(when: ReadWhen) -> bool {
+    matches!(when, ReadWhen::OverF0 | ReadWhen::VaryingOverF0)
 }
 
 /// Whether the condition of a table holds for an interface, by its number.
@@ -24,9 +30,11 @@ fn is_met(when: ReadWhen, layers: &[LayerRecord], number: usize) -> bool {
         ReadWhen::Always => true,
         ReadWhen::Tabled => is_tabled,
         ReadWhen::Steady => is_tabled && !has_film_tile,
-        ReadWhen::Varying => is_tabled && has_film_tile,
+        ReadWhen::Varying => is_tabled && layer.varies() && !layer.has_film_over_f0(),
         ReadWhen::FirstVarying => layer.varies() && number == 0,
         ReadWhen::Filmed => has_film,
+        ReadWhen::OverF0 => layer.has_film_over_f0(),
+        ReadWhen::VaryingOverF0 => layer.has_film_over_f0() && layer.varies() && number > 0,
         ReadWhen::BareConductor => !has_film && layer.kind == LayerKind::Conductor,
         ReadWhen::DenserCoat => {
             let is_below = layers.get(number + 1).is_some_and(|below| below.kind != LayerKind::Diffuse);
@@ -66,6 +74,11 @@ mod tests {
         assert_eq!(read_by(ShadingModel::Microfacet, &[film], 0), "distribution thickness");
     }
 
+    /// A base under a film that varies over the F0 of a place.
+    fn over_f0() -> LayerRecord {
+        LayerRecord { f0: Some([0.5; 3]), ..varying() }
+    }
+
     fn read_by(model: ShadingModel, layers: &[LayerRecord], number: usize) -> String {
         let kinds = TableKind::ALL.into_iter().filter(|&kind| reads(model, kind, layers, number));
         kinds.map(TableKind::name).collect::<Vec<_>>().join(" ")
@@ -88,6 +101,8 @@ mod tests {
             (&[Lobes], vec![coat(), metal()], ["fresnel distribution lobes", ""]),
             (&[Lobes], vec![varying(), diffuse()], ["distribution thickness film lobes", ""]),
             (&[Lobes], vec![diffuse()], ["", ""]),
+            (&[Lobes], vec![over_f0(), diffuse()], ["distribution phase thickness lobes", ""]),
+            (&[Lobes], vec![coat(), over_f0()], ["fresnel distribution lobes", "phase thickness"]),
             (statistical, vec![coat(), metal()], ["fgd escape", "fgd"]),
             (statistical, vec![down(), metal()], ["fgd", "fgd"]),
             (statistical, vec![layer(LayerKind::Dielectric, 1.0), metal()], ["fgd", "fgd"]),

@@ -27,10 +27,6 @@ pub const LAYER_WORDS: usize = {
     words
 };
 
-/// Root of the least F0 for which film tiles over roots of F0 state their error: below .0016 the film lies between equal media, and is black or white at grazing
-/// angles.
-pub const FILM_ROOT_MIN: f64 = 0.04;
-
 /// Kind of a layer, to the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -88,7 +84,8 @@ pub struct LayerRecord {
     /// Imaginary part.
     pub ior_k: [f64; 3],
     /// Reflectance at normal incidence, RGB, of an interface that reflects by Schlick's formula, f0 + (1 - f0)(1 - cos)^5. Its index bends
-    /// directions only. Beside a film it is that without metal of a base whose maps give each place an F0: the film tile is over its root.
+    /// directions only. Beside a film it is that of a conductor, or that without metal of a base whose maps give each place an F0: the film then
+    /// reflects by a series that reads the phase row ([`luthier_optics::film_over_f0`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub f0: Option<[f64; 3]>,
     /// Edge tint of such an interface, RGB: its reflectance at 81.8 degrees over that of Schlick's formula (F82). Absent without one.
@@ -153,7 +150,7 @@ impl LayerRecord {
         self.film_thickness_max_nm > self.film_thickness_nm
     }
 
-    /// Whether a film lies on a base whose maps give each place an F0. The film tile is over the root of this F0 then, in place of the thickness.
+    /// Whether a film reflects by a series in the F0 of the place below it. Its phase row has means over the channels then.
     pub fn has_film_over_f0(&self) -> bool {
         self.f0.is_some() && self.film_ior_n[0] > 0.0
     }

@@ -110,6 +110,8 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         // Rows are over one factor, over the amount of patina, or over the azimuth. Beside a weight, the layers below the coat have rows of their own.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
         let film = layers.first().and_then(|first| first.films.first()).is_some_and(Film::varies);
+        let film_below = material.film_of_lobes().filter(|number| layers[*number].films[0].varies() && *number > 0);
+        let film_below_key = film_below.map(|number| format!("layer.{number}.film.0.thickness_nm")).unwrap_or_default();
         // Flakes lie below the patina alone, and rows do not tell its lobes from those of several layers that are bare.
         let has_flakes_above_lobes = effects.flakes.is_some() && layers.len() > 2;
         let is_under_patina = effects.patina.is_some() && layers.len() > 1;
@@ -140,7 +142,12 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             (roughness && is_turned, Feature::RoughnessMap, roughness_key.as_str()),
             (thickness && (is_turned || roughness), Feature::ThicknessMap, &thickness_key),
             (absorption && (is_turned || roughness), Feature::AbsorptionMap, &absorption_key),
-            (film && (is_turned || roughness || slab), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
+            (
+                film && family.is_none() && (is_turned || roughness || slab),
+                Feature::FilmVariation,
+                "layer.0.film.0.thickness_nm",
+            ),
+            (film_below.is_some() && family.is_none(), Feature::FilmVariation, &film_below_key),
             (
                 is_under_patina && (is_turned || roughness || slab || film || has_flakes_above_lobes),
                 Feature::Patina,

@@ -143,10 +143,19 @@ impl Material {
         self.layers.first().is_some_and(|first| first.weighs_film)
     }
 
-    /// Whether a film lies on a base whose maps give each place an F0: only `lobes` shows it.
-    pub fn has_film_over_maps(&self) -> bool {
-        let layers = self.layers.iter().zip(&self.stack.layers);
-        layers.into_iter().any(|(extras, layer)| extras.metallic.is_some() && !layer.films.is_empty())
+    /// Number of a layer whose film only `lobes` shows: a film on a base whose maps give each place an F0, or one that varies below the first layer.
+    pub fn film_of_lobes(&self) -> Option<usize> {
+        let mut layers = self.layers.iter().zip(&self.stack.layers).enumerate();
+        let found = layers.find(|(number, (extras, layer))| {
+            let varies = layer.films.first().is_some_and(Film::varies);
+            !layer.films.is_empty() && extras.metallic.is_some() || varies && *number > 0
+        });
+        found.map(|(number, _)| number)
+    }
+
+    /// Whether the film on its base has closed forms in the F0 there and in its thickness, see [`Self::family`].
+    pub fn has_closed_film(&self) -> bool {
+        self.family().is_some_and(|family| family.is_filmed)
     }
 
     /// Its stack where a weight leaves it bare: without its first layer, or without the film on that.
@@ -227,8 +236,14 @@ impl Material {
             [MapSlot::Alpha, MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent].iter().any(|slot| layer.varies(*slot))
         };
         let is_turned = layers.iter().any(Layer::is_anisotropic);
+        // A metal of an F0 below a film that varies has the closed forms of one whose F0 varies.
+        let base = &layers[interface];
+        let varies = base.films.first().is_some_and(Film::varies);
+        let is_metal = matches!(&base.base, Base::Conductor { ior } if ior.f0().is_some());
+        let is_metallic = self.layers[interface].metallic.is_some() || varies && is_metal;
         let is_asked = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i]))
             || self.layers[interface].metallic.is_some()
+            || varies && interface > 0
             || is_turned && self.layers[0].varies(MapSlot::Roughness);
         let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i]));
         // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
@@ -238,15 +253,13 @@ impl Material {
                 Base::Dielectric { slab, .. } => number > 0 && slab.optical_depth() != [0.0; 3],
                 Base::Conductor { .. } | Base::Diffuse(_) => false,
             };
-            let films = if number == 0 && interface == 0 { 1 } else { 0 };
-            is_tinted || layer.films.len() > films || layer.films.iter().any(Film::varies)
+            is_tinted || layer.films.len() > usize::from(number == interface)
         };
-        let has_film = if self.layers[interface].metallic.is_some() {
-            layers.iter().enumerate().any(has_color)
+        let has_film = if is_metallic {
+            layers.iter().enumerate().any(has_color) || !base.films.iter().all(Film::is_clear)
         } else {
-            layers[0].films.first().is_some_and(Film::varies)
+            layers.iter().any(|layer| layer.films.first().is_some_and(Film::varies))
         };
-        let is_metallic = self.layers[interface].metallic.is_some();
         let first = &self.layers[0];
         let has_slab = first.varies_slab() && !is_metallic;
         if !is_asked || is_turned_between || has_film || has_slab || self.effects.patina.is_some() {
@@ -276,7 +289,8 @@ impl Material {
             })
         };
         let is_tinted = self.layers[interface].metallic.is_some_and(|metallic| metallic.f82_tint != [1.0; 3]);
-        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted })
+        let is_filmed = is_metallic && !base.films.is_empty();
+        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted, is_filmed })
     }
 
     /// The re-radiation of its base, if that is fluorescent.
@@ -390,6 +404,8 @@ pub struct SlopeRanges {
     pub is_metallic: bool,
     /// Whether that metal has an edge tint.
     pub is_tinted: bool,
+    /// Whether a film lies on such a base.
+    pub is_filmed: bool,
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.

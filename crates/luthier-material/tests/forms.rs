@@ -195,7 +195,8 @@ fn maps_of_the_whole_surface_belong_to_the_first_layer() {
     material(&format!("{film}{coat}{metal}"));
     let found = errors(&format!("{coat}{film}{metal}"));
     assert!(
-        found.contains("only the film of the first layer may vary") && found.contains("`thickness_nm = 20`"),
+        found.contains("a film below the first layer varies in thickness on metals with an F0 alone")
+            && found.contains("`thickness_nm = 20`"),
         "{found}"
     );
 }

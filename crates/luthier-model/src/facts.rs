@@ -113,6 +113,10 @@ pub enum ReadWhen {
     FirstVarying,
     /// Interfaces with a film.
     Filmed,
+    /// Interfaces whose film lies over an F0 of the place, first or not.
+    OverF0,
+    /// Such interfaces below the first, if the film varies.
+    VaryingOverF0,
     /// Conductors without a film.
     BareConductor,
     /// Coats with a tabulated reflectance that are denser than the medium above, over another interface: part of the light from below is totally

@@ -279,6 +279,8 @@ const LOBES: Facts = Facts {
         read(TableKind::Film, ReadWhen::Varying),
         read(TableKind::Thickness, ReadWhen::FirstVarying),
         read(TableKind::Distribution, ReadWhen::Always),
+        read(TableKind::Phase, ReadWhen::OverF0),
+        read(TableKind::Thickness, ReadWhen::VaryingOverF0),
         read(TableKind::Lobes, ReadWhen::Always),
     ],
     parts: &[],

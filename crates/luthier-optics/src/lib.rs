@@ -35,6 +35,7 @@ pub mod diffuse_albedo;
 pub mod dispersion;
 pub mod f0_table;
 pub mod film_color;
+pub mod film_over_f0;
 pub mod fresnel;
 pub mod index_file;
 pub mod interface;

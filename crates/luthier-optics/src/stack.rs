@@ -140,10 +140,18 @@ pub struct Film {
     pub thickness: FilmThickness,
 }
 
+/// Extinction coefficient that counts as none: data sets of clear glass and water reach it in the visible.
+const CLEAR: f64 = 1e-6;
+
 impl Film {
     /// The film at a wavelength, at its nominal thickness.
     pub fn at(&self, wavelength_nm: f64) -> FilmLayer {
         FilmLayer { ior: self.ior.at(wavelength_nm), waves: self.thickness.nominal_nm() / wavelength_nm }
+    }
+
+    /// Whether it absorbs no light.
+    pub fn is_clear(&self) -> bool {
+        self.ior.samples().iter().all(|sample| sample.k <= CLEAR)
     }
 
     /// Whether its thickness varies over the surface.

@@ -143,18 +143,29 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
     let fitted: Vec<&Material> = materials.iter().filter(|material| material.model().is_fitted()).collect();
     let sides: Vec<Material> = fitted.iter().filter_map(|material| side(material)).collect();
     let ends = fitted.into_iter().chain(&sides).map(|material| match varying(material) {
-        Some(Varying::Family(family)) => {
-            [0, family.parts(has_lengths(material, family), base_below(&material.stack).is_some()) as i32 - 1]
-        }
+        Some(Varying::Family(family)) => [
+            0,
+            family.parts(
+                has_lengths(material, family),
+                base_below(&material.stack).is_some(),
+                is_filmed(material, family),
+            ) as i32
+                - 1,
+        ],
         _ => [if has_base(material) { -(Row::BASE_PARTS as i32) } else { 0 }, Row::parts(lobes) as i32 - 1],
     });
     ends.reduce(|[first, last], [from, to]| [first.min(from), last.max(to)])
         .unwrap_or([0, Row::parts(lobes) as i32 - 1])
 }
 
+/// Whether a film lies on the base of a family that is metallic in places.
+fn is_filmed(material: &Material, family: Family) -> bool {
+    family.is_metallic && !material.stack.layers[family.interface].films.is_empty()
+}
+
 /// Whether rows of a family have lengths of light in a slab, or cosines at which the facets below a film are seen.
 fn has_lengths(material: &Material, family: Family) -> bool {
-    let is_under_film = !family.is_coated() && !material.stack.layers[0].films.is_empty();
+    let is_under_film = !family.is_coated() && is_filmed(material, family);
     is_under_film || Paint::of(&material.stack).depth != [0.0; 3]
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use luthier_material::Material;
+use luthier_model::Family;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -57,7 +58,7 @@ impl Kind for Table {
 /// the thickness alone.
 fn default_format(materials: &[Material]) -> TexelFormat {
     let reads_slopes =
-        (materials.iter()).any(|m| m.model().reads_some(TableKind::Phase) || m.bake.asks_for(TableKind::Thickness));
+        (materials.iter()).any(|m| m.model().facts().family == Family::Beams || m.bake.asks_for(TableKind::Thickness));
     if reads_slopes { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
 }
 

@@ -114,7 +114,9 @@ pub(super) fn decode(
         check_weight(at, number, sections.len() - 1 - i, sink);
         if number > 0 {
             only_the_first_has_exponents(at, sink);
-            only_the_first_film_varies(&films, sink);
+            if !schlick::carries_films_that_vary(at) {
+                only_the_first_film_varies(&films, sink);
+            }
         }
         extras.push(extra);
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
@@ -196,10 +198,10 @@ fn only_the_first_has_exponents(at: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Reports a film that varies below the first layer: a place of a surface has one factor on a film's thickness.
+/// Reports a film that varies below the first layer on a medium without an F0, where no rows are over its thickness.
 fn only_the_first_film_varies(films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
     if let Some(film) = films.first().filter(|film| film.variation.is_some()) {
-        let message = "only the film of the first layer may vary in thickness: shaders read no map of another";
+        let message = "a film below the first layer varies in thickness on metals with an F0 alone: a `conductor` with `f0`, or `metallic-roughness`";
         sink.error(film.thickness_span.clone(), message, film.evened());
     }
 }

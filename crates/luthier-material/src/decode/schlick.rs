@@ -155,36 +155,37 @@ pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     }
 }
 
-/// Reports films on a metal with an edge tint, which they know nothing of, and on a surface whose texels give it another F0 at each place, but for one even
-/// film on the first layer, a base.
+/// Whether a film that varies may lie below the first layer on this one: its F0 decides the reflectance of the film.
+pub(super) fn carries_films_that_vary(at: &Section<'_>) -> bool {
+    match at.text("type") {
+        Some("conductor") => at.has("f0"),
+        Some("metallic-roughness") => textured(at).is_some() || at.number("metallic").is_some_and(|share| share >= 1.0),
+        _ => false,
+    }
+}
+
+/// Reports films on a metal with an edge tint, which they know nothing of; and a second film, or one that absorbs, on a surface whose texels give it another F0
+/// at each place, or that varies below the first layer.
 pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number: usize, sink: &mut Sink<'_>) {
     if at.has("f82_tint") && !at.has("ior") && !films.is_empty() {
         let message =
             "an edge tint below a film: films interfere by the F0 of a metal, whose tint is of its bare reflectance";
         sink.error(at.key_span("f82_tint"), message, Some("leave it out, or leave the film out".to_owned()));
     }
-    if textured(at).is_none() {
+    let varies = number > 0 && films.iter().any(|film| film.variation.is_some());
+    if textured(at).is_none() && !(varies && carries_films_that_vary(at)) {
         return;
     }
+    let base = match textured(at) {
+        Some(_) => "a surface whose maps give each place another F0, by which it interferes",
+        None => "an F0 below the first layer, where films vary",
+    };
     for (i, film) in films.iter().enumerate() {
-        let (span, message, hint) = if number > 0 {
-            (
-                film.span.clone(),
-                "a film below a coat on a surface whose maps give each place another F0, by which it interferes",
-                "leave the coat or the film out, or leave out the maps of `base_color` and `metallic`",
-            )
-        } else if i > 0 {
-            (
-                film.span.clone(),
-                "a second film on a surface whose maps give each place another F0, by which films interfere",
-                "leave one film, or leave out the maps of `base_color` and `metallic`",
-            )
-        } else if film.film.varies() {
-            (
-                film.thickness_span.clone(),
-                "a film that varies on a surface whose maps give each place another F0, by which it interferes",
-                "write one number, or leave out the maps of `base_color` and `metallic`",
-            )
+        let (span, message, hint) = if i > 0 {
+            (film.span.clone(), format!("a second film on {base}"), "leave one film")
+        } else if !film.film.is_clear() {
+            let message = format!("a film that absorbs on {base}: its closed forms are those of clear films");
+            (film.at.value_span("ior"), message, "give it a real index")
         } else {
             continue;
         };

@@ -13,8 +13,11 @@ use luthier_layers::terms::Terms;
 use luthier_layers::twins::shaded::{Part, Place};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
 use luthier_manifest::reads;
-use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord};
+use luthier_manifest::{
+    LayerKind, LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord,
+};
 use luthier_optics::Rgb;
+use luthier_optics::film_over_f0::{FilmOverF0, WAVES_MAX};
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::schlick::{DIELECTRIC_F0, edge_dip};
 use luthier_optics::stack::Distribution;
@@ -208,10 +211,13 @@ impl Lobes {
             }
         });
         self.frame.stretch = family.stretch(slopes);
+        // A base of nothing but metal has the F0 of the file.
+        let (metal, metallic) = metal_of(entry);
         let plain = Paint {
-            metal: [0.0; 3],
+            metal,
             tint: [1.0; 3],
-            metallic: 0.0,
+            metallic,
+            film_factor: place.sample.film_factor,
             albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
             depth: {
                 let (depths, slabs) = (entry.layers[0].optical_depth, slab_factors(place));
@@ -233,7 +239,7 @@ struct Here {
     film_factor: f64,
     /// A layer, the factor on the light that its interface does not reflect, and the weight of its edge tint.
     passing: Option<(usize, [Rgb; 2])>,
-    /// F0 of the metal below a film on the first layer, and its share.
+    /// F0 of the metal below a film, and its share.
     metal: (Rgb, f64),
 }
 
@@ -281,6 +287,12 @@ impl Here {
 /// Distance of the root of a factor from 1, along the tiles over it.
 fn away(factor: f64) -> f64 {
     1.0 - factor.clamp(0.0, 1.0).sqrt()
+}
+
+/// F0 of the metal of a base of nothing but metal, and its share: none of another base.
+fn metal_of(entry: &MaterialEntry) -> (Rgb, f64) {
+    let f0 = entry.layers.last().filter(|base| base.kind == LayerKind::Conductor).and_then(|base| base.f0);
+    f0.map_or(([0.0; 3], 0.0), |f0| (f0, 1.0))
 }
 
 /// Factors on the optical depth of the first slab at a place, RGB.
@@ -339,7 +351,7 @@ impl<'a> TableTerms<'a> {
                 .and_then(|record| Some(Lobes::new(record, entry.layers.first()?.tiles[TableKind::Lobes]?))),
             records,
             weights,
-            here: Here::NOMINAL,
+            here: Here { metal: metal_of(entry), ..Here::NOMINAL },
             bare: None,
         };
         terms.lobes.iter_mut().for_each(|lobes| lobes.place(entry, &Place::NONE));
@@ -411,7 +423,7 @@ impl<'a> TableTerms<'a> {
             slab_factors: slab_factors(place),
             film_factor: sample.film_factor,
             passing,
-            metal: place.metal.map_or(([0.0; 3], 0.0), |mix| (mix.metal, mix.metallic)),
+            metal: place.metal.map_or_else(|| metal_of(entry), |mix| (mix.metal, mix.metallic)),
         };
     }
 
@@ -435,13 +447,20 @@ impl<'a> TableTerms<'a> {
         factor * record.film_thickness_nm / record.film_thickness_max_nm
     }
 
-    /// Reflectances at a cosine of a film on the first layer, over the metal of this place and over the dielectric; `None` of any other layer.
-    fn film_ends(&self, layer: usize, cos_theta: f64) -> Option<[Rgb; 2]> {
-        let (table, _, tile) = self.read_at(TableKind::Film, layer)?;
-        let at = |root: f64| table.read(tile, [cos_theta, root], self.weights);
-        let [r, g, b, _] = at(libm::sqrt(DIELECTRIC_F0));
-        let metal = [0, 1, 2].map(|c: usize| at(libm::sqrt(self.here.metal.0[c].max(0.0)))[c]);
-        self.records[layer].has_film_over_f0().then_some([metal, [r, g, b]])
+    /// Reflectances of a film over an F0, over the metal of this place and over the dielectric: at a cosine, in the mean over squared sines of a standard deviation.
+    /// `None` of any other layer.
+    fn film_ends(&self, layer: usize, cos_theta: f64, spread: f64) -> Option<[Rgb; 2]> {
+        let record = self.records.get(layer).filter(|record| record.has_film_over_f0())?;
+        let (table, _, tile) = self.read_at(TableKind::Phase, layer)?;
+        let factor = 2.0 * self.here.film_factor;
+        let waves = [0, 1, 2].map(|c: usize| factor * record.film_ior_n[c] * record.film_thickness_waves[c]);
+        let film = FilmOverF0 { ior: record.film_ior_n[1], waves };
+        let interference = |waves: f64| {
+            let [r, g, b, _] = table.read(tile, [(waves / WAVES_MAX).min(1.0), 0.0], self.weights);
+            [r, g, b]
+        };
+        let over = |f0: Rgb| film.reflectance(f0, cos_theta.clamp(0.0, 1.0), spread, interference);
+        Some([over(self.here.metal.0), over([DIELECTRIC_F0; 3])])
     }
 
     /// The tile that a layer reads; `None` if the table does not have it.
@@ -485,7 +504,7 @@ fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
-        if let Some([metal, plastic]) = self.film_ends(layer, cos_theta_d) {
+        if let Some([metal, plastic]) = self.film_ends(layer, cos_theta_d, 0.0) {
             return [0, 1, 2].map(|c: usize| plastic[c] + self.here.metal.1 * (metal[c] - plastic[c]));
         }
         let [r, g, b, _] = if let Some((table, _, tile)) = self.read_at(TableKind::Film, layer) {
@@ -557,9 +576,11 @@ impl ShaderTerms for TableTerms<'_> {
                     table.family_row((*family, *tail), (first, base.1), cos_theta, self.weights)
                 };
                 let row = if coat.1 > 0.0 { of(coat.0).between(&of(coat.0 + 1), coat.1) } else { of(coat.0) };
-                let film = self
-                    .film_ends(0, 1.0)
-                    .map(|_| FilmLight::new(&row, |cos_theta| self.film_ends(0, cos_theta).unwrap_or_default()));
+                let ends = |cos_theta, spread| self.film_ends(family.interface, cos_theta, spread);
+                let film = ends(1.0, 0.0).map(|_| {
+                    let ior = self.records[family.interface].film_ior_n[1];
+                    FilmLight::new(*family, &row, ior, |cos_theta, spread| ends(cos_theta, spread).unwrap_or_default())
+                });
                 family.row_in(&row, alphas, (frame, wo.z), paint, film.as_ref())
             }
             (None, Some(varying)) => {

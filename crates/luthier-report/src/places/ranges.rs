@@ -45,7 +45,10 @@ impl Places {
             })
         });
         let ranges = ranges.chain(entry.live.iter().map(|live| (live.slot, Some(live.layer), live_range(live))));
-        let film = entry.layers.first().filter(|layer| layer.varies()).map(|layer| {
+        let first = entry.layers.first().filter(|layer| layer.varies());
+        // Below the first layer films vary over an F0 alone.
+        let mut below = entry.layers.iter().filter(|layer| layer.varies() && layer.has_film_over_f0());
+        let film = first.or_else(|| below.next()).map(|layer| {
             let texels = subject.textures.iter().find(|(kind, _)| *kind == TableKind::Thickness);
             let nominal = layer.film_thickness_max_nm / layer.film_thickness_nm;
             texels.map_or([[2.0 - nominal, nominal], [0.0; 2], [0.0; 2]], |(_, image)| {

@@ -540,7 +540,7 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
         (Feature::LobesTails, material.constants.lobes.is_some_and(|lobes| lobes.inverse_tails[0] > 1.0)),
-        (Feature::FilmF0, material.layers.first().is_some_and(LayerRecord::has_film_over_f0)),
+        (Feature::FilmF0, material.layers.iter().any(LayerRecord::has_film_over_f0)),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }

@@ -91,7 +91,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (features.has(Feature::Closed) && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
         (!features.has(Feature::Full), include_str!("../wgsl/interface/baked_terms.wgsl")),
         (true, include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
-        (features.has(Feature::OwnF0), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
+        (is_textured(&features), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
         (true, include_str!("../wgsl/interface/slopes.wgsl")),
         (true, masking.as_str()),
         (true, include_str!("../wgsl/interface/smith.wgsl")),
@@ -181,6 +181,11 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     parts.filter_map(|part| part.split_once(')')).fold(first, |out, (_, after)| out + "luthier_diffuse(layer)" + after)
 }
 
+/// Whether reflectances of layers are those of a place: maps give it another F0, or a film another thickness over an F0.
+fn is_textured(features: &Features) -> bool {
+    features.has(Feature::OwnF0) || features.has(Feature::FilmF0)
+}
+
 /// The text with names for the functions that give the reflectance of a layer. A single one is `luthier_fresnel_term` itself; several get names of
 /// their own, and `luthier_fresnel_term` chooses among them.
 fn reflectances(text: &str, features: &Features) -> String {
@@ -192,10 +197,10 @@ fn reflectances(text: &str, features: &Features) -> String {
         }
         false => text.to_owned(),
     };
-    let chosen = if features.has(Feature::OwnF0) { "luthier_fresnel_given" } else { "luthier_fresnel_term" };
+    let chosen = if is_textured(features) { "luthier_fresnel_given" } else { "luthier_fresnel_term" };
     let text = text.replace("$fresnel_chosen", chosen);
     ["read", "computed", "fitted"].iter().fold(text, |text, how| {
-        let name = match (is_one, features.has(Feature::OwnF0)) {
+        let name = match (is_one, is_textured(features)) {
             (true, false) => "luthier_fresnel_term".to_owned(),
             (true, true) => "luthier_fresnel_given".to_owned(),
             (false, _) => format!("luthier_fresnel_{how}"),

@@ -186,7 +186,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.tarnish = vec3<f32>(1.0);
     layer.passing = vec3<f32>(1.0);
     //? film_f0
-    layer.film_roots = vec4<f32>(0.0);
+    layer.film_roots = vec4<f32>(sqrt(max(real_part.xyz, vec3<f32>(0.0))), select(0.0, 1.0, layer.kind == LUTHIER_CONDUCTOR));
     layer.edge = vec3<f32>(0.0);
     layer.normal = vec3<f32>(0.0, 0.0, 1.0);
     return layer;

@@ -25,8 +25,8 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let model = asked.unwrap_or_else(|| material.model());
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
-    if material.has_film_over_maps() && !model.is_fitted() {
-        doubts.push(film_over_maps(material, model));
+    if let Some(layer) = material.film_of_lobes().filter(|_| !model.is_fitted()) {
+        doubts.push(film_of_lobes(material, model, layer));
     }
     if asked.is_none() {
         doubts.extend(material.unfit_for_lobes().iter().map(|part| instead(material, part)));
@@ -60,13 +60,17 @@ fn too_deep(material: &Material) -> Diagnostic {
 }
 
 /// An error for a film over maps of the F0 in a model that has one reflectance for all places.
-fn film_over_maps(material: &Material, model: ShadingModel) -> Diagnostic {
-    let message = format!(
-        "`{}` shows no film on a surface whose maps give each place another F0: only `lobes` does",
-        model.name()
-    );
-    let hint = "leave the film out, or leave out the maps of `base_color` and `metallic`".to_owned();
-    material.diagnostic(Severity::Error, "layer.0.film.0.type", message, Some(hint))
+fn film_of_lobes(material: &Material, model: ShadingModel, layer: usize) -> Diagnostic {
+    let (film, hint) = if material.layers[layer].metallic.is_some() {
+        (
+            "film on a surface whose maps give each place another F0",
+            "leave the film out, or leave out the maps of `base_color` and `metallic`",
+        )
+    } else {
+        ("film that varies below the first layer", "write one number for its thickness")
+    };
+    let message = format!("`{}` shows no {film}: only `lobes` does", model.name());
+    material.diagnostic(Severity::Error, &format!("layer.{layer}.film.0.type"), message, Some(hint.to_owned()))
 }
 
 /// A warning where the default model is not `lobes`, with the reason.

@@ -80,11 +80,11 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         let key = format!("layer.{layer}.{}", distribution_key(distribution));
         material.diagnostic(Severity::Error, &key, message, Some(hint))
     });
-    let of_film = material.has_film_over_maps().then(|| {
-        let message =
-            "a scene compares models, and one alone shows a film on a surface whose maps give each place another F0";
+    let of_film = material.film_of_lobes().map(|layer| {
+        let message = "a scene compares models, and one alone shows a film that varies below the first layer, or on a surface whose maps give each place another F0";
         let hint = "leave the film out, or bake the material by itself".to_owned();
-        material.diagnostic(Severity::Error, "layer.0.film.0.type", message.to_owned(), Some(hint))
+        let key = format!("layer.{layer}.film.0.type");
+        material.diagnostic(Severity::Error, &key, message.to_owned(), Some(hint))
     });
     let beams = beams::keys(material).map(str::to_owned);
     parts.chain(beams).map(|place| chosen_part(material, &place)).chain(of_slopes).chain(of_film).collect()

@@ -9,7 +9,7 @@ use crate::candidates::{Found, cost, row_form};
 use crate::plan::Plan;
 use crate::settings::axis;
 
-const SIZES: [u32; 8] = [16, 32, 64, 128, 192, 256, 384, 512];
+const SIZES: [u32; 10] = [16, 32, 64, 128, 192, 256, 384, 512, 768, 1024];
 const FORMATS: [TexelFormat; 2] = [TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
 
 /// Cost of the cosines of three phases, each reduced to one cycle first.
@@ -23,12 +23,15 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     let formats = plan.settings.allowed(&FORMATS);
     let shapes: Vec<(u32, TexelFormat)> =
         SIZES.iter().flat_map(|&size| formats.iter().map(move |&format| (size, format))).collect();
-    let mut candidates = vec![Candidate {
+    // Means over channels have no closed form.
+    let is_closed = jobs.iter().all(|job| job.color.is_none());
+    let closed = is_closed.then(|| Candidate {
         form: CandidateForm::ClosedForm,
         bytes: 0,
         cost: CLOSED_FORM,
         error: MeasuredError::default(),
-    }];
+    });
+    let mut candidates: Vec<Candidate> = closed.into_iter().collect();
     candidates.par_extend(shapes.into_par_iter().map(|(size, format)| {
         let axis = axis("s", "", [0.0, 1.0], size, Mapping::Linear);
         let errors = jobs.iter().map(|job| error(job, &axis, format));

@@ -5,13 +5,14 @@ use std::f64::consts::FRAC_2_PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::Stack;
+use luthier_optics::stack::{FilmThickness, Stack};
 
 use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
 use super::{
-    Axes, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis, patina, shown,
+    Axes, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis, base_below,
+    patina, shown,
 };
 use crate::references::layered_mc::ColorPaths;
 
@@ -175,6 +176,16 @@ const COLORS: [(Rgb, bool); VIEWS] = [
 /// Edge tint in which families with one are judged; none that fits see.
 const TINT: Rgb = [0.3, 0.6, 0.9];
 
+/// Gives the film on the base of a family, if that varies, another thickness at each view, and returns its factor.
+fn thicken(stack: &mut Stack, family: Family, number: usize) -> f64 {
+    let Some(film) = stack.layers[family.interface].films.first_mut().filter(|film| film.varies()) else { return 1.0 };
+    let FilmThickness { min_nm, max_nm } = film.thickness;
+    let nominal = film.thickness.nominal_nm();
+    let nm = min_nm + (max_nm - min_nm) * (number % VIEWS) as f64 / (VIEWS - 1) as f64;
+    film.thickness = FilmThickness { min_nm: nm, max_nm: nm };
+    nm / nominal
+}
+
 /// Slope parameters half way between nodes, and the stack with these in other colours, for a view of a judge by number. Anisotropic interfaces keep the ratio of
 /// theirs; views have different azimuths to them.
 fn in_colors(family: Family, stack: &Stack, number: usize) -> ([Slopes; 2], Paint, Stack) {
@@ -192,14 +203,16 @@ fn in_colors(family: Family, stack: &Stack, number: usize) -> ([Slopes; 2], Pain
         }
         own[i].scaled(slopes[i] / own[i].mean()).turned([cos * c - sin * s, sin * c + cos * s])
     });
-    let here = family.apply(stack, slopes);
+    let mut here = family.apply(stack, slopes);
     if !family.is_metallic {
         return (slopes, Paint::of(&here), here);
     }
     let (color, is_metal) = COLORS[number % VIEWS];
+    let is_metal = is_metal || base_below(stack).is_none();
     let tint = if family.is_tinted { TINT } else { [1.0; 3] };
-    let paint =
-        Paint::of(&here).mixed(Mix { metal: color, tint, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
+    let film_factor = thicken(&mut here, family, number);
+    let paint = Paint { film_factor, ..Paint::of(&here) };
+    let paint = paint.mixed(Mix { metal: color, tint, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
     let here = if is_metal { paint.metal_of(&here) } else { paint.plastic_of(&here) };
     (slopes, paint, here)
 }

@@ -164,18 +164,18 @@ impl FirstInterface {
         sum
     }
 
-    /// Mean and standard deviation of the cosine at which single facets that send light to `wo` are seen, if all reflect alike.
-    fn facing(&self, wo: DVec3) -> [f64; 2] {
+    /// Squared sine at which single facets that send light to `wo` are seen, and its standard deviation, if all reflect alike; see [`family::facing`].
+    fn facing(&self, wo: DVec3, late: f64) -> [f64; 2] {
         let intervals = self.intervals();
-        let [mut all, mut first, mut second] = [0.0; 3];
-        for (i, weight) in self.weights(wo).into_iter().enumerate() {
-            let cos = cos_theta(i, intervals);
-            all += weight;
-            first += weight * cos;
-            second += weight * cos * cos;
+        let met = self.weights(wo).into_iter().enumerate().map(|(i, weight)| {
+            let cos_theta = cos_theta(i, intervals);
+            ((1.0 - cos_theta) * (1.0 + cos_theta), weight)
+        });
+        let met: Vec<(f64, f64)> = met.collect();
+        if met.iter().all(|(_, weight)| *weight == 0.0) {
+            return [(1.0 - wo.z) * (1.0 + wo.z), 0.0];
         }
-        let mean = if all > 0.0 { first / all } else { wo.z };
-        [mean, if all > 0.0 { (second / all - mean * mean).max(0.0).sqrt() } else { 0.0 }]
+        family::facing(&met, late)
     }
 
     /// Energy of single facets that reflect all light, by the cosines between intervals.

@@ -299,12 +299,12 @@ impl Varied {
         for (place, row) in lobes.rows.iter_mut().enumerate() {
             // Rows of the horizon are traced just above it.
             let cos_theta = if place == 0 { 0.0 } else { axis.cos_theta(place as f64) };
-            let film = filmed.as_ref().map(|film| FilmLight::new(row, |cos_theta| film.reflected(cos_theta)));
+            let film = filmed.as_ref().map(|film| film.light(family, row));
             *row = family.painted(row, held, (&frame, cos_theta), paint, film.as_ref());
         }
         lobes.frame.stretch = family.stretch(slopes);
         lobes.first = FirstInterface::of(&paint.on(&family.apply(&over.stack, slopes), family), &over.color);
-        if let (Some(film), Some(first)) = (filmed, &mut lobes.first) {
+        if let (Some(film), Some(first)) = (filmed.filter(|_| !family.is_coated()), &mut lobes.first) {
             first.reflectance = film.mixed(paint.metallic);
         }
         Some(lobes)

@@ -9,7 +9,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
+use luthier_optics::stack::{Base, Distribution, Film, FilmThickness, Layer, Stack, Surface};
 
 use crate::effects::layer_sample::LayerSample;
 use crate::effects::textured::TextureSample;
@@ -71,7 +71,7 @@ impl Place {
             let bare = Self { sample, ..coated.clone() };
             return Some((weight, coated, bare));
         }
-        let sample = TextureSample { slab_factor: 1.0, film_factor: 1.0, ..self.sample };
+        let sample = TextureSample { slab_factor: 1.0, ..self.sample };
         let under = Under { flake_normal: DVec3::Z, ..self.under };
         let layers = self.layers.iter().skip(1).copied().collect();
         let bare = Self { sample, under, layers, ..coated.clone() };
@@ -431,8 +431,12 @@ fn at(stack: &Stack, model: ShadingModel, place: &Place, patina: Option<Growth>)
         if let Some((Layer { base: Base::Dielectric { slab, .. }, .. }, own)) = first {
             own.tint(slab);
         }
-        let here = Varying::Slab.apply(&here, factors.slab_factor);
-        return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
+        let mut here = Varying::Slab.apply(&here, factors.slab_factor);
+        for film in here.layers.iter_mut().filter_map(|layer| layer.films.first_mut()).filter(|film| film.varies()) {
+            let nm = factors.film_factor * film.thickness.nominal_nm();
+            film.thickness = FilmThickness { min_nm: nm, max_nm: nm };
+        }
+        return here;
     }
     // The material buffer has Phong's coefficients for the nominal stack.
     let shows_place = model.facts().family != Family::Coefficients;

@@ -1,7 +1,6 @@
 //! Scan of film tiles against the interfaces that read them, at thicknesses of their films.
 
 use luthier_lut::incident_cosine;
-use luthier_manifest::FILM_ROOT_MIN;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::FilmThickness;
 use rayon::prelude::*;
@@ -15,7 +14,7 @@ use crate::measure::table_terms::Weights;
 const POINTS: u32 = 96;
 
 /// Compares a film tile with the reflectance of every interface that reads it. The thickness of the top film runs from the thinnest of the material
-/// to the end of the axis; the root of the F0 below it along the whole axis.
+/// to the end of the axis.
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let (x, y) = (&table.entry.layout.x, table.entry.layout.y.as_ref()?);
     let mut scan = Scan::default();
@@ -24,19 +23,14 @@ pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subje
         let (record, interface) = (&entry.layers[layer], Interface::of(&subject.stacks[material], layer)?);
         let thickness = interface.films.first()?.thickness;
         let color = color(entry);
-        let over_f0 = record.has_film_over_f0();
-        let least = y.encode(if over_f0 { FILM_ROOT_MIN } else { thickness.min_nm / thickness.max_nm });
+        let least = y.encode(thickness.min_nm / thickness.max_nm);
         let points: Vec<_> = (0..POINTS)
             .into_par_iter()
             .flat_map_iter(|j| {
                 let fraction = y.decode(least + (1.0 - least) * coordinate(j, POINTS));
                 let mut here = interface.clone();
-                if over_f0 {
-                    here.below = here.below.with_f0([fraction * fraction; 3]);
-                } else {
-                    let nm = fraction * thickness.max_nm;
-                    here.films[0].thickness = FilmThickness { min_nm: nm, max_nm: nm };
-                }
+                let nm = fraction * thickness.max_nm;
+                here.films[0].thickness = FilmThickness { min_nm: nm, max_nm: nm };
                 let here = here.sampled(&color);
                 (0..POINTS).map(move |i| {
                     let cos_theta = x.decode(coordinate(i, POINTS));

@@ -156,7 +156,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     layer.optical_depth_log2 *= own.absorption_factors;
     //? own_f0
     layer.passing = own.passing;
-    //? film_f0
+    //? film_f0, own_f0
     if index == 0u && place.metal.w >= 0.0 {
         layer.film_roots = vec4<f32>(sqrt(max(place.metal.rgb, vec3<f32>(0.0))), place.metal.w);
     }
@@ -191,7 +191,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
         layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
     }
-    //? absorption|film
+    //? absorption|film|film_f0
     //? weight_film
     if index == 0u || (index == luthier_layer_count(material) && luthier_weighs_film(material)) {
         layer.optical_depth_log2 *= place.slab_factor;
@@ -227,8 +227,8 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
 /// A place as it is for the layers that a coat leaves bare, or for a first layer that its film leaves bare: `coats` is the number of layers that are not there.
 fn luthier_place_below_coat(place: LuthierPlace, coats: u32) -> LuthierPlace {
     var next = place;
-    next.film_factor = 1.0;
     if coats == 0u {
+        next.film_factor = 1.0;
         return next;
     }
     next.slab_factor = 1.0;
@@ -353,7 +353,15 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
 //? thickness
 /// A place with the film of a material as thick as its table says there. Repeats in uv.
 fn luthier_film_place(place: LuthierPlace, material: u32, uv: vec2<f32>) -> LuthierPlace {
-    let layer = luthier_layer(material, 0u);
+    var layer = luthier_layer(material, 0u);
+    //? film_f0
+    {
+        // Or that of the base below a coat.
+        let count = luthier_layer_count(material);
+        for (var index = 1u; index < count && layer.thickness_tile < 0.0; index += 1u) {
+            layer = luthier_layer(material, index);
+        }
+    }
     if layer.thickness_tile < 0.0 {
         return place;
     }

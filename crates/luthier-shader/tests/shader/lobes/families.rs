@@ -12,6 +12,7 @@ use luthier_manifest::{
     MaterialEntry, PaintedRecord, SlopesRecord, Tiles, VaryingFactor, VaryingRecord, material_buffer,
 };
 use luthier_optics::Rgb;
+use luthier_optics::film_over_f0::FilmOverF0;
 use luthier_optics::microfacet;
 use luthier_optics::schlick::{F82, edge_dip};
 use luthier_shader::{Form, MaterialSet, Target, emit};
@@ -62,11 +63,11 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
             6 if !is_metallic => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.8],
             6 => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.2 + 0.1 * k],
             7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 0.0],
-            // Lengths, or the cosines at which facets are seen.
-            7 => [1.4, 0.5 + 0.2 * c, if is_coated { 2.5 } else { 0.7 }, if is_coated { 3.0 + k } else { 0.1 * k }],
+            // Lengths, or the squared sines at which facets are seen.
+            7 => [1.4, 0.5 + 0.2 * c, if is_coated { 2.5 } else { 0.5 }, if is_coated { 3.0 + k } else { 0.1 * k }],
             8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 0.0],
-            // What an edge tint takes.
-            8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.0, 0.0],
+            // What an edge tint takes, or the squared sines at which light meets a film below a coat.
+            8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.2, 0.4],
             9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 0.0],
             // Those of other materials, before the first.
             _ => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
@@ -183,16 +184,28 @@ fn brushed(mut given: MaterialEntry) -> MaterialEntry {
     given
 }
 
-/// A material whose base has a film, which reflects [`UNDER_FILM`] at all angles over every F0.
-fn filmed(mut given: MaterialEntry) -> MaterialEntry {
-    let first = &mut given.layers[0];
-    (first.film_ior_n, first.film_thickness_nm, first.film_thickness_max_nm) = ([1.5; 3], 400.0, 400.0);
-    first.tiles = first.tiles.with([(TableKind::Film, Some(0)), (TableKind::Fresnel, None)]);
+/// A material whose base has a film, below a coat or not.
+fn filmed(mut given: MaterialEntry, family: Family) -> MaterialEntry {
+    let base = &mut given.layers[family.interface];
+    (base.film_ior_n, base.film_thickness_waves) = ([FILM_IOR; 3], FILM_WAVES);
+    (base.film_thickness_nm, base.film_thickness_max_nm) = (400.0, 500.0);
+    base.tiles[TableKind::Phase] = Some(0);
+    if !family.is_coated() {
+        base.tiles[TableKind::Fresnel] = None;
+    }
     given
 }
 
-/// What the film of the tests reflects.
-const UNDER_FILM: Rgb = [0.3, 0.15, 0.55];
+/// The film of the tests: its index, its thickness in waves, and the interference of every echo of it.
+const FILM_IOR: f64 = 0.9;
+const FILM_WAVES: Rgb = [0.5, 0.7, 0.9];
+const ECHOES: Rgb = [0.6, -0.4, 1.1];
+
+/// Reflectance of the film over an F0 where it is this many times as thick.
+fn of_film(f0: Rgb, factor: f64, cos_theta: f64, spread: f64) -> Rgb {
+    let film = FilmOverF0 { ior: FILM_IOR, waves: FILM_WAVES.map(|waves| 2.0 * FILM_IOR * waves * factor) };
+    film.reflectance(f0, cos_theta, spread, |_| ECHOES)
+}
 
 /// Edge tint of a metal.
 const TINT: [f64; 3] = [0.2, 0.6, 0.9];
@@ -247,6 +260,13 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         // And here a film lies on the base.
         (family(0, true, [1, 3]), &surface[1..], vec![]),
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(0, true, [1, 3]))]),
+        // Or on one below a coat.
+        (family(1, true, NODES), &surface[1..], vec![]),
+        (
+            family(1, true, NODES),
+            &surface[1..],
+            vec![plain.clone(), filmed(material(family(0, true, [1, 3])), family(0, true, [1, 3]))],
+        ),
     ]
     .into_iter()
     .enumerate()
@@ -254,7 +274,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let (is_brushed, is_filmed) = ((9..12).contains(&number), number >= 12);
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
-            (_, true) => filmed(material(family)),
+            (_, true) => filmed(material(family), family),
             _ => material(family),
         };
         let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
@@ -271,16 +291,15 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         if has_facets {
             reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
         }
-        let film = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Film).unwrap();
-        let [width, height] = film.layout.size();
-        let mut under_film = Image::zeros(width, height, 4);
-        let texel = [UNDER_FILM[0], UNDER_FILM[1], UNDER_FILM[2], 0.0].map(|x| x as f32);
-        under_film.data = texel.repeat((width * height) as usize);
+        let row = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Phase).unwrap();
+        let [width, height] = row.layout.size();
+        let mut echoes = Image::zeros(width, height, 4);
+        echoes.data = [ECHOES[0], ECHOES[1], ECHOES[2], 0.0].map(|x| x as f32).repeat((width * height) as usize);
         let textures = [
             ("luthier_fresnel", reflected.clone()),
             ("luthier_distribution", reflected),
             ("luthier_lobes", image.clone()),
-            ("luthier_film", under_film.clone()),
+            ("luthier_phase", echoes),
         ];
         let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
         let machine = Machine::new(&text, &material_buffer(&materials), textures);
@@ -320,6 +339,10 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let members = place.members_mut();
             members[member("alpha_factor").unwrap()] = Value::F(factor);
             members[member("slab_factor").unwrap()] = Value::F(slab);
+            let thickness = 0.6 + 0.7 * share(0.19);
+            if is_filmed {
+                members[member("film_factor").unwrap()] = Value::F(thickness);
+            }
             if let Some(number) = member("slope_variance") {
                 variance = f64::from(0.02 * share(0.13));
                 members[number] = Value::F(variance as f32);
@@ -362,9 +385,14 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 frame.stretch = family.stretch(slopes);
             }
             let row = row(&layout, &image, family, alphas, eye.z);
-            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo: wide, depth };
+            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo: wide, depth, film_factor: 1.0 };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
-            let film = is_filmed.then(|| FilmLight::new(&row, |_| [UNDER_FILM; 2]));
+            let film_factor = f64::from(thickness);
+            let film = is_filmed.then(|| {
+                FilmLight::new(family, &row, FILM_IOR, |cos_theta, spread| {
+                    [paint.metal, [0.04; 3]].map(|f0| of_film(f0, film_factor, cos_theta, spread))
+                })
+            });
             let here = family.row_in(&row, alphas, (&frame, eye.z), &paint, film.as_ref());
             let below = Below::new(frame, here, eye).widened(eye, variance);
             let facets = if !has_facets { 0.0 } else { facets(light, eye, alphas[1].clamp(0.001, 1.0)) };
@@ -373,7 +401,9 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let expected = [0, 1, 2].map(|c: usize| {
                 let kept = mix.metallic * F82 { f0: wide[c], tint: tint[c] }.dip() * edge_dip(cos_theta_d);
                 let plain = (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0);
-                expected[c] + facets * if is_filmed { UNDER_FILM[c] } else { plain }
+                let of_film = |f0: Rgb| of_film(f0, film_factor, cos_theta_d.min(1.0), 0.0)[c];
+                let filmed = || mix.metallic * of_film(wide) + (1.0 - mix.metallic) * of_film([0.04; 3]);
+                expected[c] + facets * if is_filmed { filmed() } else { plain }
             });
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
             let prepared = machine.call("luthier_prepare_lobes", arguments);

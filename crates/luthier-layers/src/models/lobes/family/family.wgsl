@@ -25,8 +25,42 @@
 
     //? film_f0
     {
-        /// Cosines at which the mean of a reflectance over all directions is taken, by Gauss.
+        /// Cosines at which the mean of a reflectance over all directions is taken, by Gauss, and standard deviations of the squared sines that they stand for.
         const LUTHIER_MEAN_COSINES: vec2<f32> = vec2<f32>(0.3550510, 0.8449490);
+        const LUTHIER_MEAN_SPREADS: vec2<f32> = vec2<f32>(0.105054, 0.183621);
+
+        /// Light at two angles, and the fifth powers of what their cosines lack.
+        struct LuthierEnds {
+            near: LuthierEchoes,
+            far: LuthierEchoes,
+            powers: vec2<f32>,
+        }
+
+        /// Light whose squared sines have a mean and a standard deviation: at two of them, half the variance apart, whose echoes fade by the other half.
+        fn luthier_film_ends(sheet: LuthierSheet, square: f32, spread: f32) -> LuthierEnds {
+            let faded = 0.7071068 * spread;
+            let apart = min(faded, 0.9 * (1.0 - square));
+            let cosines = sqrt(clamp(1.0 - square + vec2<f32>(apart, -apart), vec2<f32>(0.0025), vec2<f32>(1.0)));
+            let away = 1.0 - cosines;
+            let powers = away * away * (away * away) * away;
+            return LuthierEnds(luthier_echoes(sheet, cosines.x, faded), luthier_echoes(sheet, cosines.y, faded), powers);
+        }
+
+        /// Reflectance of a film over F0 of these roots, RGB, in the mean of such light.
+        fn luthier_film_seen(sheet: LuthierSheet, ends: LuthierEnds, roots: vec3<f32>) -> vec3<f32> {
+            return 0.5 * (luthier_film_over(sheet, ends.near, roots) + luthier_film_over(sheet, ends.far, roots));
+        }
+
+        /// F0 of an interface that reflects as much of light at one angle as a film over F0 of these roots.
+        fn luthier_film_equal(sheet: LuthierSheet, echoes: LuthierEchoes, roots: vec3<f32>, power: f32) -> vec3<f32> {
+            return saturate((luthier_film_over(sheet, echoes, roots) - power) / (1.0 - power));
+        }
+
+        /// F0 of an interface that reflects as much of such light.
+        fn luthier_film_f0(sheet: LuthierSheet, ends: LuthierEnds, roots: vec3<f32>) -> vec3<f32> {
+            let near = luthier_film_equal(sheet, ends.near, roots, ends.powers.x);
+            return 0.5 * (near + luthier_film_equal(sheet, ends.far, roots, ends.powers.y));
+        }
 
         /// F0 of an interface that reflects as much of diffuse light as a film does, of its reflectances at these cosines.
         fn luthier_film_mean(flat: vec3<f32>, steep: vec3<f32>) -> vec3<f32> {
@@ -279,6 +313,18 @@
             var metal = vec3<f32>(0.0);
             var metallic = 0.0;
             var passed = vec3<f32>(1.0);
+            //? film_f0
+            {
+                // The film of the base, first or below a coat; a base of nothing but metal has the F0 of the file.
+                var base = luthier_layer(material, base_layer);
+                //? place
+                base.film_thickness_waves *= place.film_factor;
+                let sheet = luthier_sheet(base);
+                if base.kind == LUTHIER_CONDUCTOR {
+                    metal = base.ior_n;
+                    metallic = 1.0;
+                }
+            }
             //? own_f0
             if place.metal.w >= 0.0 {
                 metal = place.metal.rgb;
@@ -294,15 +340,19 @@
             var sent_back = vec3<f32>(of_rest.y);
             //? lobes_tinted|film_f0
             let of_lengths = luthier_family_part(prepared.row, beside, 5.0);
+            //? own_edge|film_f0
+            let of_edge = luthier_family_part(prepared.row, beside, 6.0);
             //? own_edge
             {
                 // Light of one visit below a coat, or of several facets without one, sees an F0 that is less by what rows say; light that a coat keeps is flat.
-                let of_edge = luthier_family_part(prepared.row, beside, 6.0);
                 let of_one = luthier_family_once(of_once.xy, vec4<f32>(max(metal - place.metal_edge * of_edge.x, vec3<f32>(0.0)), 0.04));
             }
             //? else
             let of_one = luthier_family_once(of_once.xy, vec4<f32>(metal, 0.04));
             once = mix(vec3<f32>(of_one.w), of_one.rgb, metallic);
+            // F0 of the dielectric for light that a coat keeps: without a film it reflects hardly any.
+            //? film_f0
+            var kept_plastic = vec3<f32>(0.0);
             var several = vec3<f32>(of_once.x);
             var seen_metal = metal;
             //? own_edge
@@ -310,17 +360,19 @@
             //? film_f0
             {
                 let all = of_facet.x + of_once.y;
-                let is_filmed = base_layer == 0u && luthier_is_film_over(prepared.coat);
+                let is_filmed = base_layer == 0u && sheet.row >= 0.0;
                 var seen_plastic = vec3<f32>(0.04);
+                let roots = sqrt(max(metal, vec3<f32>(0.0)));
                 if is_filmed {
-                    // Facets are seen at a cosine in the mean, and as far to both sides of it.
-                    let near = clamp(of_lengths.z - of_lengths.w, 0.0, 1.0);
-                    let far = clamp(of_lengths.z + of_lengths.w, 0.0, 1.0);
-                    seen_plastic = 0.5 * (luthier_film_over_plastic(prepared.coat, near) + luthier_film_over_plastic(prepared.coat, far));
-                    let mean_plastic = luthier_film_mean(luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.y));
+                    let ends = luthier_film_ends(sheet, of_lengths.z, of_lengths.w);
+                    let flat = luthier_echoes(sheet, LUTHIER_MEAN_COSINES.x, LUTHIER_MEAN_SPREADS.x);
+                    let steep = luthier_echoes(sheet, LUTHIER_MEAN_COSINES.y, LUTHIER_MEAN_SPREADS.y);
+                    let plastic = vec3<f32>(0.2);
+                    seen_plastic = luthier_film_seen(sheet, ends, plastic);
+                    let mean_plastic = luthier_film_mean(luthier_film_over(sheet, flat, plastic), luthier_film_over(sheet, steep, plastic));
                     if metallic > 0.0 {
-                        seen_metal = 0.5 * (luthier_film_over_metal(prepared.coat, near) + luthier_film_over_metal(prepared.coat, far));
-                        metal = luthier_film_mean(luthier_film_over_metal(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_metal(prepared.coat, LUTHIER_MEAN_COSINES.y));
+                        seen_metal = luthier_film_seen(sheet, ends, roots);
+                        metal = luthier_film_mean(luthier_film_over(sheet, flat, roots), luthier_film_over(sheet, steep, roots));
                     }
                     // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
                     let added = luthier_family_more(of_more.rgb, mean_plastic) - luthier_family_more(of_more.rgb, vec3<f32>(0.04));
@@ -331,6 +383,29 @@
                     let staying = max(1.0 - all * diffused - several, vec3<f32>(0.0)) / max(1.0 - all * (1.0 - LUTHIER_PLASTIC_PASSED) - of_once.x, 0.02);
                     light *= entering * staying;
                     sent_back = 1.0 - staying * (1.0 - sent_back);
+                } else if sheet.row >= 0.0 {
+                    // Below a coat the film is an F0 for light of one visit, and for that of more, some of which a film thinner than the coat reflects totally.
+                    let ends = luthier_film_ends(sheet, of_edge.x, of_edge.y);
+                    let steepest = min(sheet.ior * sheet.ior, 1.0);
+                    let more_ends = luthier_film_ends(sheet, of_edge.w, 0.4 * steepest);
+                    let flat_cos = sqrt(max(0.5 - 0.5 * steepest, 0.0025));
+                    let flat_away = 1.0 - flat_cos;
+                    let flat_power = flat_away * flat_away * (flat_away * flat_away) * flat_away;
+                    let flat = luthier_echoes(sheet, flat_cos, 0.0);
+                    let plastic = vec3<f32>(0.2);
+                    let seen = luthier_film_f0(sheet, ends, plastic);
+                    kept_plastic = mix(luthier_film_f0(sheet, more_ends, plastic), luthier_film_equal(sheet, flat, plastic, flat_power), of_edge.z);
+                    once = luthier_family_once(of_once.xy, vec4<f32>(seen, 0.04)).rgb;
+                    // A white base returns what the dielectric does not reflect.
+                    let reflected = once + luthier_family_more(of_more.rgb, kept_plastic);
+                    let white = max(light / (1.0 - sent_back), vec3<f32>(0.02));
+                    let crossed = (1.0 - seen) / 0.96;
+                    light *= crossed * max(1.0 - (reflected - of_one.w) / white, vec3<f32>(0.0));
+                    sent_back = 1.0 - crossed * (1.0 - sent_back);
+                    if metallic > 0.0 {
+                        once = mix(once, luthier_family_once(of_once.xy, vec4<f32>(luthier_film_f0(sheet, ends, roots), 0.04)).rgb, metallic);
+                        metal = mix(luthier_film_f0(sheet, more_ends, roots), luthier_film_equal(sheet, flat, roots, flat_power), of_edge.z);
+                    }
                 }
             }
             //? lobes_tinted
@@ -345,8 +420,12 @@
                 once *= exp(-of_lengths.z * depth);
                 // Trapped light passes the slab again before each visit.
                 metal *= exp(-of_lengths.w * depth);
+                //? film_f0
+                kept_plastic *= exp(-of_lengths.w * depth);
             }
             more = metallic * luthier_family_more(of_more.rgb, metal);
+            //? film_f0
+            more += (1.0 - metallic) * luthier_family_more(of_more.rgb, kept_plastic);
             wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
             //? lobes_lean
             met = (1.0 - metallic) * (light * diffuse / passed);

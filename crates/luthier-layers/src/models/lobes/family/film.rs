@@ -1,11 +1,16 @@
-//! A thin film on the base of a family that is metallic in places, which is the first interface.
+//! A thin film on the base of a family that is metallic in places.
 //!
-//! Rows of the family are those without the film: reflectances by Schlick's formula, energies in closed form in the F0. One facet of the film has its own
-//! reflectance, a function of the angle and of the F0 at the place. For all other light the film is an F0 of equal reflectance, by channel: at the angle at
-//! which the eye sees the facets for the light that leaves, and in the mean over all directions for light between facets and from the base.
+//! Rows of the family are those without the film: reflectances by Schlick's formula, energies in closed form in the F0. One facet of a film on the first interface has
+//! its own reflectance, a function of the angle, of the thickness and of the F0 at the place. For all other light the film is an F0 of equal reflectance, by channel: at
+//! the angle at which the eye sees the facets for the light that leaves, and in the mean over all directions for light between facets and from the base. Below a coat
+//! it is an F0 for all light: at the angles at which light of one visit meets the facets, and at those of more, some of which a film that is thinner than the coat reflects
+//! totally.
+
+use std::f64::consts::PI;
 
 use luthier_optics::Rgb;
-use luthier_optics::color::Color;
+use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM, WavelengthNode};
+use luthier_optics::film_over_f0::{FilmOverF0, WAVES_MAX, interference};
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::ior::Ior;
 use luthier_optics::schlick::{DIELECTRIC_F0, schlick_average};
@@ -14,35 +19,79 @@ use luthier_optics::stack::Stack;
 use super::{Family, Paint};
 use crate::models::lobes::Row;
 
-/// Gauss's nodes and weights for means over the hemisphere, `2 mu` being the density of the cosine.
-const MEANS: [(f64, f64); 2] =
-    [(0.355_051_025_721_682, 0.363_917_236_512_047), (0.844_948_974_278_318, 0.636_082_763_487_953)];
+/// Gauss's nodes and weights for means over the hemisphere, `2 mu` being the density of the cosine; last the standard deviations of the squared sines that they
+/// stand for, which are even.
+const MEANS: [(f64, f64, f64); 2] = [
+    (0.355_051_025_721_682, 0.363_917_236_512_047, 0.105_054),
+    (0.844_948_974_278_318, 0.636_082_763_487_953, 0.183_621),
+];
+
+/// Standard deviation of the squared sines at which light of more visits meets facets, over the greatest that no film reflects totally.
+const MORE_SPREAD: f64 = 0.4;
+
+/// Most that these two are apart from their mean, over what it lacks of 1: no squared sine is beyond 1.
+const FLAT_SHARE: f64 = 0.9;
+
+/// Root of a half.
+const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Reflectances of a film at a place, as a row of a family sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmLight {
-    /// In the mean over the facets that the eye sees, of the metal and of the dielectric.
+    /// In the mean over the facets that the eye sees, of the metal and of the dielectric; below a coat as an F0 for light of one visit.
     pub seen: [Rgb; 2],
-    /// F0 of interfaces that reflect as much of diffuse light, of the metal and of the dielectric.
+    /// F0 of interfaces that reflect as much of diffuse light, of the metal and of the dielectric; below a coat of light of more visits.
     pub mean: [Rgb; 2],
 }
 
 impl FilmLight {
-    /// The film of a place for a row of a family, from reflectances of the metal and of the dielectric at a cosine.
-    pub fn new(row: &Row, reflected: impl Fn(f64) -> [Rgb; 2]) -> Self {
-        // Facets are seen at a cosine in the mean, and as far to both sides of it.
-        let [_, facing, apart] = row.albedo_dir;
-        let [near, far] = [facing - apart, facing + apart].map(|cos_theta| reflected(cos_theta.clamp(0.0, 1.0)));
-        let seen = [0, 1].map(|i: usize| [0, 1, 2].map(|c: usize| 0.5 * (near[i][c] + far[i][c])));
+    /// The film of a place for a row of a family, from reflectances of the metal and of the dielectric: at a cosine, and in the mean over squared sines of a standard
+    /// deviation. `ior` is its index over that of the medium above.
+    pub fn new(family: Family, row: &Row, ior: f64, reflected: impl Fn(f64, f64) -> [Rgb; 2]) -> Self {
+        // A mean over squared sines is one of two, half the variance apart, whose echoes fade by the other half.
+        let mean_of = |square: f64, spread: f64, of: &dyn Fn(f64, f64) -> [Rgb; 2]| {
+            let faded = HALF * spread;
+            let apart = faded.min(FLAT_SHARE * (1.0 - square));
+            let ends = [square - apart, square + apart].map(|square| {
+                let cos_theta = (1.0 - square).clamp(FLATTEST, 1.0).sqrt();
+                of(cos_theta, faded)
+            });
+            [0, 1].map(|i: usize| [0, 1, 2].map(|c: usize| 0.5 * (ends[0][i][c] + ends[1][i][c])))
+        };
+        let equal = |cos_theta: f64, spread: f64| {
+            let power = power(cos_theta);
+            reflected(cos_theta, spread).map(|rgb| rgb.map(|found| ((found - power) / (1.0 - power)).clamp(0.0, 1.0)))
+        };
+        if family.is_coated() {
+            let ([_, square, spread], base) = (row.wide, row.base.unwrap_or_default());
+            let [beyond, within] = [base.energy[2], base.internal[2]];
+            let steepest = (ior * ior).min(1.0);
+            let mut mean = mean_of(within, MORE_SPREAD * steepest, &equal);
+            if beyond > 0.0 {
+                let flat = equal((0.5 - 0.5 * steepest).max(FLATTEST).sqrt(), 0.0);
+                for (mean, flat) in mean.iter_mut().zip(flat) {
+                    (0..3).for_each(|c| mean[c] += beyond * (flat[c] - mean[c]));
+                }
+            }
+            return Self { seen: mean_of(square, spread, &equal), mean };
+        }
+        let [_, square, spread] = row.albedo_dir;
+        let seen = mean_of(square, spread, &reflected);
         let mut mean = [[0.0; 3]; 2];
-        for (cos_theta, weight) in MEANS {
-            let away = 1.0 - cos_theta;
-            let power = away * away * (away * away) * away;
-            for (mean, found) in mean.iter_mut().zip(reflected(cos_theta)) {
+        for (cos_theta, weight, spread) in MEANS {
+            let power = power(cos_theta);
+            for (mean, found) in mean.iter_mut().zip(reflected(cos_theta, spread)) {
                 (0..3).for_each(|c| mean[c] += weight * (found[c] - power) / (1.0 - power));
             }
         }
         Self { seen, mean: mean.map(|rgb| rgb.map(|f0| f0.clamp(0.0, 1.0))) }
+    }
+
+    /// Below a coat: factors on the light of the diffuse base that leaves, and on the share of it that leaves at all, which does so at the angles of light of one visit.
+    /// A white base returns what the dielectric does not reflect: `reflected` is that without the film and with it, and `white` the light of such a base.
+    pub(super) fn crossed(&self, c: usize, white: f64, [plain, filmed]: [f64; 2]) -> [f64; 2] {
+        let staying = (1.0 - self.seen[1][c]) / (1.0 - DIELECTRIC_F0);
+        [staying * (1.0 - (filmed - plain) / white.max(ENTERING_MIN)).max(0.0), staying]
     }
 
     /// Light of a channel that one facet of the dielectric reflects to the eye, of `all`, and factors on the light of the diffuse base that leaves, and on the
@@ -59,13 +108,68 @@ impl FilmLight {
     }
 }
 
+/// What Schlick's formula adds for an F0 of 0.
+fn power(cos_theta: f64) -> f64 {
+    let away = 1.0 - cos_theta;
+    away * away * (away * away) * away
+}
+
+/// Least squared cosine at which light meets facets of the base.
+const FLATTEST: f64 = 0.0025;
+
+/// Squared sines at which light meets facets, with weights, as one of them and a standard deviation: as much of an echo remains, and as late, as of these. `late` is
+/// how fast the phase of the echo grows over squared sines.
+pub(in crate::models::lobes) fn facing(met: &[(f64, f64)], late: f64) -> [f64; 2] {
+    let (mut all, mut first) = (0.0, 0.0);
+    for (square, weight) in met {
+        all += weight;
+        first += weight * square;
+    }
+    if all <= 0.0 {
+        return [0.0; 2];
+    }
+    let mean = first / all;
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for (square, weight) in met {
+        let (s, c) = libm::sincos(late * (square - mean));
+        sine += weight * s;
+        cosine += weight * c;
+    }
+    let kept = (libm::hypot(sine, cosine) / all).clamp(LEAST_KEPT, 1.0);
+    [(mean + libm::atan2(sine, cosine) / late).clamp(0.0, 1.0), (-2.0 * libm::log(kept)).max(0.0).sqrt() / late]
+}
+
+/// Least share of an echo that counts.
+const LEAST_KEPT: f64 = 1e-3;
+
+/// Share of squared sines, with weights, that a film of an index over that of the medium above reflects totally, and the mean of the others.
+pub(super) fn beyond(met: &[(f64, f64)], ior: f64) -> [f64; 2] {
+    let (mut out, mut within, mut first) = (0.0, 0.0, 0.0);
+    for (square, weight) in met {
+        if *square > ior * ior {
+            out += weight;
+        } else {
+            within += weight;
+            first += weight * square;
+        }
+    }
+    let all: f64 = out + within;
+    [if all > 0.0 { out / all } else { 0.0 }, if within > 0.0 { first / within } else { 0.0 }]
+}
+
 /// Least share of light that enters, by which light is divided.
 const ENTERING_MIN: f64 = 0.02;
 
-/// The film on the base of a family, with its exact reflectance.
+/// The film on the base of a family.
 #[derive(Debug, Clone)]
 pub(in crate::models::lobes) struct Filmed {
-    /// Its reflectance over the metal of a place, and over the dielectric.
+    /// The film as a series.
+    series: FilmOverF0,
+    /// Index of the film, and the wavelengths of the colour.
+    film: (Ior, Vec<WavelengthNode>, f64),
+    /// F0 of the metal of a place.
+    metal: Rgb,
+    /// Its exact reflectance over that metal, and over the dielectric.
     sampled: [Sampled; 2],
 }
 
@@ -75,14 +179,38 @@ impl Filmed {
         if !is_filmed(stack, family) {
             return None;
         }
-        let interface = Interface::of(stack, 0)?;
+        let mut interface = Interface::of(stack, family.interface)?;
+        for film in &mut interface.films {
+            film.thickness.min_nm *= paint.film_factor;
+            film.thickness.max_nm *= paint.film_factor;
+        }
         let over = |f0: Rgb| Interface { below: Ior::vacuum().with_f0(f0), ..interface.clone() }.sampled(color);
-        Some(Self { sampled: [over(paint.metal), over([DIELECTRIC_F0; 3])] })
+        let film = &interface.films[0];
+        let wavelengths_nm = match color {
+            Color::ThreeWavelengths(wavelengths_nm) => *wavelengths_nm,
+            Color::Spectral => GRANIER_WAVELENGTHS_NM,
+        };
+        let waves = wavelengths_nm.map(|nm| 2.0 * film.ior.at(nm).re * film.thickness.nominal_nm() / nm);
+        let middle_nm = wavelengths_nm[1];
+        let ior = film.ior.at(middle_nm).re / interface.above.at(middle_nm).re;
+        Some(Self {
+            series: FilmOverF0 { ior, waves },
+            film: (film.ior.clone(), color.nodes(), middle_nm),
+            metal: paint.metal,
+            sampled: [over(paint.metal), over([DIELECTRIC_F0; 3])],
+        })
     }
 
-    /// Reflectances at a cosine, of the metal and of the dielectric.
-    pub(in crate::models::lobes) fn reflected(&self, cos_theta: f64) -> [Rgb; 2] {
-        self.sampled.each_ref().map(|sampled| sampled.rgb(cos_theta))
+    /// What a row of the family sees of it.
+    pub(in crate::models::lobes) fn light(&self, family: Family, row: &Row) -> FilmLight {
+        let (film, nodes, middle_nm) = &self.film;
+        FilmLight::new(family, row, self.series.ior, |cos_theta, spread| {
+            let over = |f0: Rgb| {
+                let late = |waves: f64| interference(film, nodes, *middle_nm, waves.min(WAVES_MAX));
+                self.series.reflectance(f0, cos_theta, spread, late)
+            };
+            [over(self.metal), over([DIELECTRIC_F0; 3])]
+        })
     }
 
     /// The interface of a mix by area.
@@ -95,6 +223,19 @@ impl Filmed {
         Sampled { nodes: nodes.collect() }
     }
 }
+
+/// Index of the film on the base of a family over that of the medium above, and how fast the phase of its first echo grows over squared sines where it is thickest.
+pub(super) fn film_on(stack: &Stack, family: Family) -> Option<(f64, f64)> {
+    let interface = Interface::of(stack, family.interface).filter(|_| is_filmed(stack, family))?;
+    let [_, middle_nm, _] = GRANIER_WAVELENGTHS_NM;
+    let film = interface.films.first()?;
+    let (index, above) = (film.ior.at(middle_nm).re, interface.above.at(middle_nm).re);
+    let (ior, waves) = (index / above, 2.0 * index * film.thickness.max_nm / middle_nm);
+    Some((ior, (PI * waves / (ior * ior)).clamp(LATE[0], LATE[1])))
+}
+
+/// Range of phases over squared sines, by which the spread of directions is measured.
+const LATE: [f64; 2] = [1.0, 16.0];
 
 /// Whether a film lies on the base of a family that is metallic in places: rows are those without it.
 pub(in crate::models::lobes) fn is_filmed(stack: &Stack, family: Family) -> bool {

@@ -62,6 +62,70 @@ fn films_in_closed_form_are_those_of_the_simulation() {
     assert!(differences[differences.len() / 2] < 0.005, "{differences:?}");
 }
 
+/// The stack below a coat.
+fn coated(alpha: f64, below: Stack) -> Stack {
+    let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+    let base = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+    let coat = Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, alpha), base };
+    let layers = [coat].into_iter().chain(below.layers).map(|mut layer| {
+        // The dielectric bends no light below the coat.
+        if let Base::Dielectric { ior, .. } = &mut layer.base
+            && let Some(f0) = ior.f0()
+        {
+            *ior = Ior::constant(1.5, 0.0).unwrap().with_f0(f0);
+        }
+        layer
+    });
+    Stack { exterior: below.exterior, layers: layers.collect() }
+}
+
+/// Oracle: paths of the stack in one colour, which meet the film at every facet of the base. Thicknesses are factors on that of the stack, which rows know
+/// nothing of. The film of 1.2 reflects some light totally that the coat keeps.
+#[test]
+fn films_below_a_coat_are_those_of_the_simulation() {
+    let color = Color::Spectral;
+    let colors = [([0.5; 3], 1.0), ([0.3, 0.7, 0.95], 1.0), ([0.9, 0.4, 0.1], 0.0), ([1.0; 3], 1.0), ([1.0; 3], 0.0)];
+    let (mut metals, mut others) = (Vec::new(), Vec::new());
+    for (ior, nm) in [(1.2, 870.0), (1.5, 400.0), (1.8, 250.0)] {
+        for (coat, alpha) in [(0.001, 0.12), (0.2, 0.4)] {
+            let stack = coated(coat, filmed(ior, nm));
+            let family = Family::new(&stack, [coat; 2], [alpha; 2], true).unwrap();
+            let varied = Varied::with(&stack, &color, Some(Varying::Family(family)), SETTINGS);
+            for (number, (base, metallic)) in colors.into_iter().enumerate() {
+                let mut level = family.apply(&stack, [coat, alpha]);
+                let film_factor = 0.8 + 0.1 * number as f64;
+                let thickness = nm * film_factor;
+                level.layers[1].films[0].thickness = FilmThickness { min_nm: thickness, max_nm: thickness };
+                let paint = Paint { film_factor, ..Paint::of(&stack) };
+                let paint = paint.mixed(Mix { metal: base, tint: [1.0; 3], matt: base, metallic });
+                let here = if metallic > 0.0 { paint.metal_of(&level) } else { paint.plastic_of(&level) };
+                let lobes = varied.painted([coat, alpha], &paint).unwrap();
+                for theta in [0.0, 1.0, 1.3] {
+                    let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                    let (mut sum, count) = ([0.0; 3], 30_000);
+                    ColorPaths::new(&here, &color)
+                        .trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c] / count as f64));
+                    let found = lobes.row(wo).albedo_dir;
+                    let apart = (0..3).map(|c: usize| (found[c] - sum[c]).abs()).fold(0.0, f64::max);
+                    if base != [1.0; 3] {
+                        if metallic > 0.0 { &mut metals } else { &mut others }.push(apart);
+                    } else {
+                        let limit = if metallic > 0.0 { 0.004 } else { 0.015 };
+                        assert!(apart < limit, "{ior} {nm} {coat} {metallic} {theta}: {found:?} {sum:?}");
+                    }
+                    assert!(found.iter().all(|albedo| *albedo < 1.002), "{found:?}");
+                }
+            }
+        }
+    }
+    for (differences, limits) in [(&mut metals, [0.01, 0.05]), (&mut others, [0.01, 0.05])] {
+        differences.sort_by(f64::total_cmp);
+        let [median, most] = [differences.len() / 2, differences.len() - 1].map(|i| differences[i]);
+        println!("{median:.4} {most:.4}");
+        assert!(median < limits[0] && most < limits[1], "{median} {most}");
+    }
+}
+
 /// Oracle: the film by itself at another F0. One facet of a mix reflects the mean of both surfaces, at every angle and in every channel.
 #[test]
 fn one_facet_of_a_mix_is_the_mean_of_both() {

@@ -120,9 +120,11 @@ impl Family {
                 } else {
                     [facets[0] - SHADES[0] * slope(facets), rest.facing[0], rest.facing[1]]
                 };
-                let energy = [over(light), length(&rest.base_once, 0), 0.0];
-                let wide = [over(white), self.dip(energies[view], &rest.reflected), rest.first_dip];
-                (albedo, wide, energy, [sent_back[0], around, 0.0])
+                // A metal has an edge tint, or a film below a coat.
+                let dips = [self.dip(energies[view], &rest.reflected), rest.first_dip];
+                let [once, more] = rest.met.unwrap_or([dips, [0.0; 2]]);
+                let energy = [over(light), length(&rest.base_once, 0), more[0]];
+                (albedo, [over(white), once[0], once[1]], energy, [sent_back[0], around, more[1]])
             } else {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)

@@ -55,7 +55,7 @@ mod texels;
 mod trace;
 
 pub use film::FilmLight;
-pub(super) use film::Filmed;
+pub(super) use film::{Filmed, facing};
 pub use paint::{Mix, Paint};
 pub use slopes::{Slopes, Stretch};
 

@@ -24,6 +24,8 @@ pub struct Paint {
     pub albedo: Rgb,
     /// Optical depth of the slab below the coat along the normal, RGB.
     pub depth: Rgb,
+    /// Factor on the thickness of the film on the base.
+    pub film_factor: f64,
 }
 
 /// The base of a `metallic-roughness` surface at a place: a mix of two surfaces by area.
@@ -58,7 +60,14 @@ impl Paint {
             Some(Base::Dielectric { slab, .. }) => slab.optical_depth(),
             _ => [0.0; 3],
         };
-        Self { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo, depth }
+        // A base of nothing but metal is one whose share of metal is 1.
+        let metal = match stack.layers.last().map(|layer| &layer.base) {
+            Some(Base::Conductor { ior }) => ior.f0(),
+            _ => None,
+        };
+        let metallic = if metal.is_some() { 1.0 } else { 0.0 };
+        let metal = metal.unwrap_or_default();
+        Self { metal, tint: [1.0; 3], metallic, albedo, depth, film_factor: 1.0 }
     }
 
     /// These colours with a base of a `metallic-roughness` surface: a metal of an F0, and a dielectric whose diffuse base shows a colour, which is its
@@ -179,8 +188,8 @@ impl Family {
         c: usize,
     ) -> [f64; 5] {
         let (metal, tint, metallic) = (paint.metal[c], paint.tint[c], paint.metallic);
-        // The F0 of the metal where facets see this dip of its edge tint; a film has no tint below it.
-        let at = |dip: f64| film.map_or_else(|| dimmed(metal, tint, dip), |film| film.mean[0][c]);
+        // The F0 of the metal where facets see this dip of its edge tint, which a metal below a film has not.
+        let bare = |dip: f64| dimmed(metal, tint, dip);
         let [white, dip, first_dip] = row.wide;
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
@@ -188,31 +197,42 @@ impl Family {
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
         let [facet, once_length, more_length] = row.albedo_dir;
         let [several, slope, _] = of_once;
-        let (light, sent_back, once, entering) = match film {
-            _ if self.is_coated() => {
-                let once = mix(chain(of_once, at(dip)), chain(of_once, DIELECTRIC_F0)) * passed(once_length);
-                (light, sent_back, once, facet)
-            }
-            // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
-            Some(film) => {
-                let filmed = (several + trapped(of_more, film.mean[1][c]) - trapped(of_more, DIELECTRIC_F0)).max(0.0);
-                let all = facet + slope;
-                let [leaving, staying] = film.passed(c, all, facet + slope * DIELECTRIC_F0, [several, filmed]);
-                let facet = all * mix(film.seen[0][c], film.seen[1][c]);
-                (leaving * light, 1.0 - staying * (1.0 - sent_back), mix(0.0, filmed), 1.0 - facet)
-            }
-            None => {
-                let kept = metallic * edge(metal, tint) * first_dip;
-                (light, sent_back, mix(0.0, several), 1.0 - (facet + slope * mix(metal, DIELECTRIC_F0) - kept))
-            }
+        // Light of the diffuse base, and that of it which came up for the first time.
+        let diffuse = |light: f64, sent_back: f64| {
+            let direct = light * passed(length) * paint.albedo[c];
+            [direct / (1.0 - sent_back * passed(around) * paint.albedo[c]), direct].map(|light| mix(0.0, light))
         };
-        let direct = light * passed(length) * paint.albedo[c];
-        let diffuse = direct / (1.0 - sent_back * passed(around) * paint.albedo[c]);
         // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric reflects hardly any.
-        let again = passed(more_length);
-        // Light that a coat keeps meets the metal flatly.
-        let flat = at(if self.is_coated() { trapped_dip(alphas, cos_theta) } else { dip });
-        [entering, white + mix(0.0, diffuse), once, metallic * trapped(of_more, flat * again), mix(0.0, direct)]
+        let again = |f0: f64| trapped(of_more, f0 * passed(more_length));
+        if self.is_coated() {
+            let once =
+                |metal: f64, plastic: f64| mix(chain(of_once, metal), chain(of_once, plastic)) * passed(once_length);
+            let Some(film) = film else {
+                // Light that a coat keeps meets the metal flatly.
+                let flat = metallic * again(bare(trapped_dip(alphas, cos_theta)));
+                let [base, direct] = diffuse(light, sent_back);
+                return [facet, white + base, once(bare(dip), DIELECTRIC_F0), flat, direct];
+            };
+            let kept = trapped(of_more, film.mean[1][c]);
+            let reflected = [chain(of_once, DIELECTRIC_F0), chain(of_once, film.seen[1][c]) + kept];
+            let [leaving, staying] = film.crossed(c, light / (1.0 - sent_back), reflected);
+            let [base, direct] = diffuse(leaving * light, 1.0 - staying * (1.0 - sent_back));
+            let flat = mix(again(film.mean[0][c]), again(film.mean[1][c]));
+            return [facet, white + base, once(film.seen[0][c], film.seen[1][c]), flat, direct];
+        }
+        let Some(film) = film else {
+            let kept = metallic * edge(metal, tint) * first_dip;
+            let ([base, direct], f0) = (diffuse(light, sent_back), bare(dip));
+            let facet = facet + slope * mix(metal, DIELECTRIC_F0) - kept;
+            return [1.0 - facet, white + base, mix(0.0, several), metallic * again(f0), direct];
+        };
+        // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
+        let filmed = (several + trapped(of_more, film.mean[1][c]) - trapped(of_more, DIELECTRIC_F0)).max(0.0);
+        let all = facet + slope;
+        let [leaving, staying] = film.passed(c, all, facet + slope * DIELECTRIC_F0, [several, filmed]);
+        let facet = all * mix(film.seen[0][c], film.seen[1][c]);
+        let [base, direct] = diffuse(leaving * light, 1.0 - staying * (1.0 - sent_back));
+        [1.0 - facet, white + base, mix(0.0, filmed), metallic * again(film.mean[0][c]), direct]
     }
 }
 

@@ -7,10 +7,10 @@ use crate::models::lobes::{BaseLight, Lobe, Row};
 
 impl Family {
     /// Number of parts of a row: with the lengths of light in a slab that absorbs or cosines of facets below a film, or with the light of a diffuse base apart, to recolour it.
-    /// An edge tint comes after the lengths, whether they count or not.
-    pub fn parts(self, is_tinted: bool, has_base: bool) -> usize {
+    /// An edge tint, or cosines below a film and a coat, come after the lengths, whether they count or not.
+    pub fn parts(self, is_tinted: bool, has_base: bool, is_filmed: bool) -> usize {
         match (self.is_metallic, is_tinted, has_base) {
-            (true, _, _) if self.is_tinted => 7,
+            (true, _, _) if self.is_tinted || is_filmed && self.is_coated() => 7,
             (true, false, _) => 5,
             (true, true, _) | (false, _, false) => 6,
             (false, _, true) => 8,
@@ -31,18 +31,17 @@ impl Family {
         if self.is_metallic {
             let [bright, white, _] = first.strength;
             let [facet, once_length, more_length] = row.albedo_dir;
-            let ([light, base_length, _], [sent_back, around, _]) = (base.energy, base.internal);
+            let ([light, base_length, kept], [sent_back, around, kept_apart]) = (base.energy, base.internal);
             let [white_light, dip, first_dip] = row.wide;
-            let edge = self.is_tinted.then_some([dip, first_dip, 0.0, 0.0]);
-            let parts = [
+            return vec![
                 [bright, white, once_wide, first.shift],
                 more,
                 [x, y, z, w],
                 [facet, white_light, first.share, second.share],
                 [light, sent_back, a, b],
                 [base_length, around, once_length, more_length],
+                [dip, first_dip, kept, kept_apart],
             ];
-            return parts.into_iter().chain(edge).collect();
         }
         vec![
             with(first.strength, first.shift),
@@ -68,10 +67,10 @@ impl Family {
         let (strength, shares, once_wide, albedo_dir, wide, base) = if self.is_metallic {
             let ([facet, wide, first, second], [light, sent_back, a, b]) = (part(3), part(4));
             let [base_length, around, once_length, more_length] = part(5);
-            let [dip, first_dip, ..] = if self.is_tinted { part(6) } else { [0.0; 4] };
+            let [dip, first_dip, kept, kept_apart] = part(6);
             let base = BaseLight {
-                energy: [light, base_length, 0.0],
-                internal: [sent_back, around, 0.0],
+                energy: [light, base_length, kept],
+                internal: [sent_back, around, kept_apart],
                 falloff: [a, b],
                 ..BaseLight::default()
             };
@@ -115,8 +114,9 @@ mod tests {
         let axis = SlopeAxis { least: 0.1, most: 0.4, nodes: 3 };
         for (is_metallic, is_tinted) in [(true, false), (true, true), (false, false)] {
             let family = Family { coat: axis, base: axis, interface: 1, is_metallic, is_tinted };
-            // Numbers that a metallic row has not are 0.
-            let some = |k: f64| [k, k + 1.0, if is_metallic { 0.0 } else { k + 2.0 }];
+            let some = |k: f64| [k, k + 1.0, k + 2.0];
+            // The light of one visit has two numbers in a metallic row.
+            let two = |k: f64| [k, k + 1.0, if is_metallic { 0.0 } else { k + 2.0 }];
             let lobe = |strength, shift, k: f64| Lobe {
                 strength,
                 share: k,
@@ -127,15 +127,15 @@ mod tests {
             };
             let row = Row {
                 albedo_dir: [1.0, 2.0, 3.0],
-                lobes: vec![lobe(some(4.0), 0.3, 0.5), lobe([6.0, 7.0, 8.0], 0.0, 0.75)],
-                wide: if is_metallic && !is_tinted { [9.0, 0.0, 0.0] } else { [9.0, 10.0, 11.0] },
+                lobes: vec![lobe(two(4.0), 0.3, 0.5), lobe([6.0, 7.0, 8.0], 0.0, 0.75)],
+                wide: [9.0, 10.0, 11.0],
                 base: Some(BaseLight { energy: some(12.0), internal: some(15.0), falloff: [0.25, 0.125], met: None }),
             };
             let parts = family.to_parts(&row);
-            assert_eq!(parts.len(), family.parts(true, true));
+            assert_eq!(parts.len(), family.parts(true, true, true));
             assert_eq!(family.of_parts(&parts, 0.25), row);
             // Lengths, or the light of the base, are last.
-            let fewer = family.of_parts(&parts[..family.parts(false, false)], 0.25);
+            let fewer = family.of_parts(&parts[..family.parts(false, false, false)], 0.25);
             assert_eq!(fewer.lobes, row.lobes);
         }
     }

@@ -6,7 +6,7 @@ use luthier_optics::schlick::F82;
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::Family;
-use super::film::is_filmed;
+use super::film::{beyond, facing, film_on};
 use crate::models::lobes::fit::{Simulation, seen_from};
 use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{FirstInterface, FitSettings, ViewAxis, Wide};
@@ -55,8 +55,11 @@ pub(super) struct Rest {
     pub(super) facets: Energies,
     /// Light of one facet of the first interface.
     pub(super) first_facet: Rgb,
-    /// Under a film on the base, mean and standard deviation of the cosine at which facets are seen; else 0.
+    /// Under a film on the base, squared sine at which facets are seen, and its standard deviation; else 0.
     pub(super) facing: [f64; 2],
+    /// Under a film on the base below a coat, those at which light of one visit meets the facets of the base; and of light of more visits the share that the film
+    /// reflects totally, and the mean square of the rest.
+    pub(super) met: Option<[[f64; 2]; 2]>,
     /// Energy that the edge tint 0 keeps of that light at an F0 of 1.
     pub(super) first_dip: f64,
 }
@@ -83,19 +86,56 @@ impl Energies {
     }
 }
 
-/// Weights of a path at each F0 of [`BETWEEN`], and with [`HALF_TINT`] there. Its reflectances are `f + (1 - f) s` with Schlick's s of each facet; those of
-/// equal facets are known from two weights, and so is the cosine at them.
-fn between([_, half, whole]: Rgb, facets: u32, is_tinted: bool) -> [[f64; 2]; 2] {
+/// Schlick's s of the facets that a path met, `f + (1 - f) s` being what each reflects: that of equal facets is known from two weights.
+fn steep([_, half, whole]: Rgb, facets: u32) -> f64 {
+    let mean = libm::pow(half / whole, 1.0 / f64::from(facets));
+    ((mean - SHADES[1]) / (1.0 - SHADES[1])).clamp(0.0, 1.0)
+}
+
+/// Cosine at facets of this s.
+fn cosine(steep: f64) -> f64 {
+    1.0 - libm::pow(steep, 0.2)
+}
+
+/// Squared sines at which a path met facets of the base, each with the same share of its light over a metal of the middle shade. Two facets are told apart by the
+/// weights at all shades; more count as equal.
+fn met(path: &JointPath) -> Vec<(f64, f64)> {
+    let [dark, half, whole] = path.weight;
+    if half <= 0.0 || path.facets == 0 {
+        return Vec::new();
+    }
+    let sines = if path.facets == 2 {
+        // Products of f + (1 - f) s are linear in sum and product of both s.
+        let [low, middle, _] = SHADES;
+        let of_half = half / whole / ((1.0 - middle) * (1.0 - middle)) - 1.0;
+        let cross = low * (1.0 - low);
+        let product = (dark / whole - low * low - cross * of_half) / ((1.0 - low) * (1.0 - low) - cross);
+        let mean = 0.5 * (of_half - product);
+        let root = (mean * mean - product).max(0.0).sqrt();
+        vec![mean - root, mean + root]
+    } else {
+        vec![steep(path.weight, path.facets)]
+    };
+    let share = half / sines.len() as f64;
+    let squares = sines.into_iter().map(|steep| {
+        let cos_theta = cosine(steep.clamp(0.0, 1.0));
+        ((1.0 - cos_theta) * (1.0 + cos_theta), share)
+    });
+    squares.collect()
+}
+
+/// Weights of a path at each F0 of [`BETWEEN`], and with [`HALF_TINT`] there, from those of [`SHADES`].
+fn between(weight: Rgb, facets: u32, is_tinted: bool) -> [[f64; 2]; 2] {
+    let [_, half, whole] = weight;
     if half <= 0.0 || whole <= 0.0 || facets == 0 {
         return [[whole; 2]; 2];
     }
-    let mean = libm::pow(half / whole, 1.0 / f64::from(facets));
-    let steep = ((mean - SHADES[1]) / (1.0 - SHADES[1])).clamp(0.0, 1.0);
+    let steep = steep(weight, facets);
     let between = BETWEEN.map(|f| whole * libm::pow(f + (1.0 - f) * steep, f64::from(facets)));
     if !is_tinted {
         return [between; 2];
     }
-    let cos_theta = 1.0 - libm::pow(steep, 0.2);
+    let cos_theta = cosine(steep);
     let tinted = BETWEEN.map(|f0| {
         let curve = F82 { f0, tint: HALF_TINT };
         whole * libm::pow(curve.eval(cos_theta), f64::from(facets))
@@ -177,6 +217,7 @@ impl Node {
             metal.and_then(|metal| FirstInterface::of(&metal, color))
         });
         let has_base = stack.layers.len() > family.interface + 1;
+        let film = film_on(stack, family);
         let (mut once, mut more, mut wide, mut rest) = (vec![], vec![], vec![], vec![]);
         for row in 0..axis.size() {
             let wo = seen_from(axis, [1.0, 0.0], row);
@@ -194,7 +235,7 @@ impl Node {
                 }
                 of_rest.add(&[], [path.wi, wo], weight, path.base_visits);
             };
-            let mut of_facets = Vec::new();
+            let (mut of_facets, mut squares) = (Vec::new(), [const { Vec::new() }; 2]);
             if let Some(paths) = &paths_below {
                 paths.trace(seed.wrapping_add(1), settings.paths, wo, |path| match path.is_first_facet {
                     true => {}
@@ -221,6 +262,9 @@ impl Node {
                     // Without a coat the second lobe has what several facets of the metal reflect, and the first that of any other base.
                     _ => family.is_metallic,
                 };
+                if film.is_some() && family.is_coated() {
+                    squares[usize::from(more)].extend(met(&path));
+                }
                 energies.reflected[usize::from(more)].add(
                     weight,
                     dimmed,
@@ -235,8 +279,10 @@ impl Node {
                 of_rest.add(&[], [wi, wo], weight, u32::from(!has_base));
             }
             energies.first_facet = first.as_ref().map_or([0.0; 3], |first| first.energy(wo));
-            if is_filmed(stack, family) {
-                energies.facing = first.as_ref().map_or([0.0; 2], |first| first.facing(wo));
+            if let Some((ior, late)) = film {
+                let [once, more] = &squares;
+                energies.met = family.is_coated().then(|| [facing(once, late), beyond(more, ior)]);
+                energies.facing = first.as_ref().map_or([0.0; 2], |first| first.facing(wo, late));
             }
             let [whole, left] = [&untinted, &tinted].map(|of| of.as_ref().map_or(0.0, |first| first.energy(wo)[0]));
             energies.first_dip = whole - left;
