@@ -291,8 +291,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         if has_facets {
             reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
         }
-        let row = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Phase).unwrap();
-        let [width, height] = row.layout.size();
+        let of_phase = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Phase).unwrap();
+        let [width, height] = of_phase.layout.size();
         let mut echoes = Image::zeros(width, height, 4);
         echoes.data = [ECHOES[0], ECHOES[1], ECHOES[2], 0.0].map(|x| x as f32).repeat((width * height) as usize);
         let textures = [
