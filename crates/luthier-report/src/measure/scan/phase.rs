@@ -34,8 +34,8 @@ pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subje
         };
         for s in coordinates(axis, POINTS_PER_CELL).into_iter().map(|u| axis.decode(u)) {
             let sampled = table.read(tile, [s, 0.0], Weights::EightBit);
-            for channel in 0..3 {
-                scan.add(&[s], channel, expected(channel, s), sampled[channel]);
+            for (channel, sampled) in sampled.into_iter().take(3).enumerate() {
+                scan.add(&[s], channel, expected(channel, s), sampled);
             }
         }
     }

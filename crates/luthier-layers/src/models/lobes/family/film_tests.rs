@@ -121,7 +121,6 @@ fn films_below_a_coat_are_those_of_the_simulation() {
     for (differences, limits) in [(&mut metals, [0.01, 0.05]), (&mut others, [0.01, 0.05])] {
         differences.sort_by(f64::total_cmp);
         let [median, most] = [differences.len() / 2, differences.len() - 1].map(|i| differences[i]);
-        println!("{median:.4} {most:.4}");
         assert!(median < limits[0] && most < limits[1], "{median} {most}");
     }
 }
