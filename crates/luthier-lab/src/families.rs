@@ -281,7 +281,7 @@ fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::f
          | group | nodes of the coat | of the base | rows | bytes | seconds of one core |\n|---|--:|--:|--:|--:|--:|"
     )?;
     for Results { group, family, seconds, .. } in results {
-        let parts = family.parts(*group == Group::Tinted, false);
+        let parts = (family.parts(*group == Group::Tinted, false) as i32 - family.first_part()) as usize;
         let bytes = family.nodes() * (options.rows as usize + 2) * parts * 8;
         writeln!(
             out,

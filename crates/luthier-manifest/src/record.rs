@@ -153,6 +153,11 @@ impl LayerRecord {
         self.film_thickness_max_nm > self.film_thickness_nm
     }
 
+    /// Whether its interface lies between transparent media of one relative index in all channels.
+    pub fn has_one_index(&self) -> bool {
+        self.ior_k == [0.0; 3] && self.ior_n == [self.ior_n[0]; 3]
+    }
+
     /// Whether a film lies on a base whose maps give each place an F0. The film tile is over the root of this F0 then, in place of the thickness.
     pub fn has_film_over_f0(&self) -> bool {
         self.f0.is_some() && self.film_ior_n[0] > 0.0

@@ -144,13 +144,26 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
     let sides: Vec<Material> = fitted.iter().filter_map(|material| side(material)).collect();
     let ends = fitted.into_iter().chain(&sides).map(|material| match varying(material) {
         Some(Varying::Family(family)) => {
-            [0, family.parts(has_lengths(material, family), base_below(&material.stack).is_some()) as i32 - 1]
+            let parts = family.parts(has_lengths(material, family), base_below(&material.stack).is_some());
+            ([family.first_part(), parts as i32 - 1], true)
         }
-        _ => [if has_base(material) { -(Row::BASE_PARTS as i32) } else { 0 }, Row::parts(lobes) as i32 - 1],
+        _ => ([if has_base(material) { -BASE_PARTS } else { 0 }, Row::parts(lobes) as i32 - 1], false),
     });
-    ends.reduce(|[first, last], [from, to]| [first.min(from), last.max(to)])
-        .unwrap_or([0, Row::parts(lobes) as i32 - 1])
+    let ends: Vec<([i32; 2], bool)> = ends.collect();
+    let ([mut first, mut last], _) = (ends.iter().copied())
+        .reduce(|([first, last], _), ([from, to], _)| ([first.min(from), last.max(to)], true))
+        .unwrap_or(([0, Row::parts(lobes) as i32 - 1], false));
+    let has = |of_family: bool| ends.iter().any(|(_, is_family)| *is_family == of_family);
+    if has(true) && has(false) {
+        // Beside families other rows have all parts of a base before part 0, or none, and those of two lobes.
+        first = if first < 0 { -BASE_PARTS } else { 0 };
+        last = last.max(Row::parts(LOBES) as i32 - 1);
+    }
+    [first, last]
 }
+
+/// Number of parts of a diffuse base.
+const BASE_PARTS: i32 = Row::BASE_PARTS as i32;
 
 /// Whether rows of a family have lengths of light in a slab, or cosines at which the facets below a film are seen.
 fn has_lengths(material: &Material, family: Family) -> bool {
@@ -386,6 +399,8 @@ fn family_record(family: Family) -> FamilyRecord {
         interface: family.interface as u32,
         is_metallic: family.is_metallic,
         is_tinted: family.is_tinted,
+        has_tail: family.has_tail,
+        sent_back: family.sent_back,
     }
 }
 
@@ -448,7 +463,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 8 } else { 6 }
+        if is_family(self.varying) { 9 } else { 6 }
     }
 
     fn inputs(&self) -> Value {
@@ -492,7 +507,7 @@ fn numbers(varying: Varying) -> Value {
     match varying {
         Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
         Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }) => json!([diffuse_albedo, base_alpha, tarnish]),
-        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted }) => {
+        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted, .. }) => {
             let axis = |SlopeAxis { least, most, nodes }| json!([least, most, nodes]);
             if is_tinted {
                 return json!([axis(coat), axis(base), interface, is_metallic, "edge tint"]);
@@ -546,7 +561,7 @@ impl Parts {
     fn read(self, parts: &[[f64; 4]]) -> Row {
         match self {
             Self::Lobes(_, has_base) => Row::of_parts(parts, has_base),
-            Self::Family(family, tail) => family.of_parts(parts, tail),
+            Self::Family(family, tail) => family.of_parts(family.first_part(), parts, tail),
         }
     }
 }
@@ -569,7 +584,7 @@ impl Job for LobesJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.fit.varying) { 7 } else { 6 }
+        if is_family(self.fit.varying) { 8 } else { 6 }
     }
 
     fn inputs(&self) -> Value {
@@ -596,8 +611,11 @@ impl Job for LobesJob {
             Some(Varying::Family(family)) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
             _ => Parts::Lobes(most.min(LOBES), y.min < 0.0),
         };
-        // Parts of families begin with part 0, where those of a base have a place before it.
-        let first = if matches!(layout, Parts::Family(..)) { (0.0 - y.min) as u32 } else { 0 };
+        // Parts of families begin with their own, where those of a base have a place before it.
+        let first = match layout {
+            Parts::Family(family, _) => (f64::from(family.first_part()) - y.min) as u32,
+            Parts::Lobes(..) => 0,
+        };
         // Parts lie side by side. The first and the last node of each are repeated, so that filtering does not mix in a
         // neighbour.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);

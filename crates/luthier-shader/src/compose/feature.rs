@@ -63,6 +63,8 @@ luthier_lut::named! {
         Rows = "rows",
         /// Some reflectance is computed.
         Computed = "computed",
+        /// An interface whose reflectance is computed has another index in each channel, or absorbs.
+        ComplexIndex = "complex_index",
         /// Reflectances come from more than one source.
         SeveralReflectances = "several_reflectances",
         /// A material chooses a masking.

@@ -97,10 +97,11 @@ impl Features {
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe. Families have two lobes and up to eight parts.
+                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe. Families have two lobes, whatever their parts.
                 let (word, most) = match parts.max as u32 {
+                    _ if names.contains(&Feature::LobesFamily) => (Some(Feature::TwoLobes), 2),
                     3 => (Some(Feature::OneLobe), 1),
-                    4..=7 => (Some(Feature::TwoLobes), 2),
+                    5 => (Some(Feature::TwoLobes), 2),
                     _ => (None, 0),
                 };
                 names.extend(word);
@@ -240,11 +241,13 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
     let is_chain_over = features.has(Feature::Chain) && features.has(Feature::Below);
     let (mut is_packed, mut is_whole, mut is_own, mut is_inside) = (false, false, false, false);
-    let (mut is_power, mut is_kelemen) = (false, false);
+    let (mut is_power, mut is_kelemen, mut is_complex) = (false, false, false);
     for material in set.materials.iter() {
         is_kelemen |= material.model.is_path() && material.records().any(|record| record.masking == Masking::Kelemen);
     }
     for record in set.materials.iter().flat_map(MaterialEntry::records) {
+        let computes = record.reflectance == Reflectance::Exact || form == Form::Full;
+        is_complex |= computes && !is_diffuse(record) && record.f0.is_none() && !record.has_one_index();
         is_packed |= (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
         is_whole |= record.internal_reflection != InternalReflection::default();
         is_whole |= record.diffuse_part == DiffusePart::Beside;
@@ -257,6 +260,7 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
     let words = [
         (Feature::Rows, is_read),
         (Feature::Computed, is_computed),
+        (Feature::ComplexIndex, is_complex),
         (Feature::SeveralReflectances, sources > 1),
         (Feature::Masked, is_masked),
         (Feature::SeveralMaskings, maskings.len() > 1),
@@ -539,7 +543,7 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
         (Feature::LobesCoats, family.has_two_axes()),
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
-        (Feature::LobesTails, material.constants.lobes.is_some_and(|lobes| lobes.inverse_tails[0] > 1.0)),
+        (Feature::LobesTails, family.has_tail),
         (Feature::FilmF0, material.layers.first().is_some_and(LayerRecord::has_film_over_f0)),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()

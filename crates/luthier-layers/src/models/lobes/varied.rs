@@ -425,8 +425,8 @@ impl Traced {
             return Varied { nodes, varying: self.varying.clone() };
         }
         if let Varying::Family(family) = over.varying {
-            let nodes = family.lobes(&over.stack, &over.color, self.settings);
-            return Varied { nodes, varying: self.varying.clone() };
+            let (family, nodes) = family.lobes(&over.stack, &over.color, self.settings);
+            return Varied { nodes, varying: Some(Over { varying: Varying::Family(family), ..over.clone() }) };
         }
         let (count, nominal) = (self.simulations.len(), over.varying.nominal());
         let [here, middle] = [nominal, count / 2].map(|node| (node, self.simulations[node].fewest(most, excess)));

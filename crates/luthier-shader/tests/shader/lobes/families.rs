@@ -68,6 +68,8 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
             // What an edge tint takes.
             8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.0, 0.0],
             9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 0.0],
+            // Shares over their estimates, or the light of a base of other materials.
+            1 => [0.9 + 0.05 * k, 0.8 + 0.1 * c, 0.3 - 0.2 * k, 0.1],
             // Those of other materials, before the first.
             _ => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
         };
@@ -83,6 +85,9 @@ fn plain_layout() -> AtlasLayout {
     AtlasLayout { y, ..layout }
 }
 
+/// Share of the light of a diffuse base that layers send back to it, and its steepness over the roots of both slope parameters.
+const SENT_BACK: [f64; 3] = [0.5, -0.1, 0.05];
+
 /// The axes of a family.
 pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Family {
     let [coat, base] = [0, 1].map(|i: usize| {
@@ -90,13 +95,19 @@ pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Fa
         SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
     });
     let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-    Family { coat, base, interface, is_metallic, is_tinted: false }
+    let sent_back = if is_metallic { SENT_BACK } else { [0.0; 3] };
+    Family { coat, base, interface, is_metallic, is_tinted: false, has_tail: false, sent_back }
+}
+
+/// 1 over the tail of the lobes of a family.
+fn inverse_tail(family: Family) -> f64 {
+    if family.has_tail { 4.0 } else { 1.0 }
 }
 
 /// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
 pub(super) fn material(family: Family) -> MaterialEntry {
     let given = set("lobes").swap_remove(0);
-    let Family { coat, base, interface, is_metallic, is_tinted } = family;
+    let Family { coat, base, interface, is_metallic, is_tinted, has_tail, sent_back } = family;
     let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
     let record = FamilyRecord {
         coat: (interface > 0).then(|| axis(coat)),
@@ -104,6 +115,8 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         interface: interface as u32,
         is_metallic,
         is_tinted,
+        has_tail,
+        sent_back,
     };
     let first = LayerRecord {
         alpha: ALPHAS[0],
@@ -134,7 +147,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         critical_width: 0.0,
         critical_plain_share: 0.0,
         lobes: 2,
-        inverse_tails: [1.0; 2],
+        inverse_tails: [inverse_tail(family); 2],
         varying: Some(VaryingRecord {
             factor: VaryingFactor::Family,
             tiles: family.nodes() as u32,
@@ -214,7 +227,8 @@ fn row(layout: &AtlasLayout, image: &Image, family: Family, alphas: [f64; 2], co
         let [low, high] = [i, i + 1].map(|i| mix(read(i, j), read(i, j + 1), base.fract()));
         mix(low, high, coat.fract())
     };
-    family.of_parts(&(0..8).map(part).collect::<Vec<_>>(), 1.0)
+    let first = family.first_part();
+    family.of_parts(first, &(first..7).map(part).collect::<Vec<_>>(), 1.0 / inverse_tail(family))
 }
 
 /// Light of facets that reflect all of it, once.
@@ -240,6 +254,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(1, true, NODES))]),
         (family(1, true, NODES).tinted(true), &surface[1..], vec![]),
         (family(0, true, [1, 3]).tinted(true), &surface[1..], vec![material(family(1, true, NODES))]),
+        (Family { has_tail: true, ..family(1, true, NODES) }, &surface[1..], vec![]),
+        (Family { has_tail: true, ..family(1, false, NODES) }, &surface[1..], vec![material(family(1, true, NODES))]),
         // From here on slope parameters differ along tangents.
         (family(1, true, NODES), &surface[1..], vec![]),
         (family(1, false, NODES), &surface[..], vec![plain.clone(), material(family(1, false, NODES))]),
@@ -251,7 +267,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
     .into_iter()
     .enumerate()
     {
-        let (is_brushed, is_filmed) = ((9..12).contains(&number), number >= 12);
+        let (is_brushed, is_filmed) = ((11..14).contains(&number), number >= 14);
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
             (_, true) => filmed(material(family)),

@@ -77,30 +77,49 @@
         return luthier_lobe_shape(shift, vec3<f32>(sharpness, decay), sin_theta);
     }
 
-    /// Shares above the horizon of both lobes of a family in the plane of the eye, as estimates: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
-    /// to light above the horizon, in that plane, their radius, and 1 over it; `slope` that of the middle of the first lobe.
-    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+    //? !lobes_tails|~lobes_tails
+    /// Shares above the horizon of both lobes of a family in the plane of the eye, with the tail of GGX: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
+    /// to light above the horizon, in that plane, and their radius; `slope` that of the middle of the first lobe.
+    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, disc: vec2<f32>) -> vec2<f32> {
+        let away = abs(disc.x - vec2<f32>(slope, 0.0)) * sharpness.xz;
+        let along = disc.y * sharpness.xz;
+        let across = disc.y * sharpness.yw;
+        let near = along - away;
+        let far = along + away;
+        let root = sqrt((1.0 + near * near) * (1.0 + far * far));
+        // 1 + d + root and 1 - d + root, without cancellation.
+        let d = near * far;
+        let within = select(4.0 * away * away / max(root - 1.0 - d, vec2<f32>(1e-6)), 1.0 + d + root, d > vec2<f32>(-1.0));
+        let beyond = select(4.0 * along * along / max(root - 1.0 + d, vec2<f32>(1e-6)), 1.0 - d + root, d < vec2<f32>(1.0));
+        let sum = 1.0 + along * along + away * away + root;
+        return max(along * across * within * inverseSqrt(sum * (beyond + 2.0 * across * across)) / root, vec2<f32>(1e-3));
+    }
+
+    //? lobes_tails
+    /// Those of lobes of other tails, as estimates. `disc` has 1 over its radius, too.
+    fn luthier_family_leaving_tail(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
         let away = abs(disc.x - vec2<f32>(slope, 0.0));
         let mean = sqrt(sharpness.xz * sharpness.yw);
         // The nearer the middle of a lobe is to the edge of the disc, the more its width along the way counts.
         let out = min(away * disc.z, vec2<f32>(1.0));
         let near = disc.y * (mean - (mean - sharpness.xz) * out * (2.0 - out)) - away * sharpness.xz;
         let far = max(2.0 * disc.y * mean - near, near);
-        //? lobes_tails
-        {
-            let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
-            let far_cos = exp2(-0.5 * decay * log2(1.0 + far * far));
-            // Small sines by a series: the difference to 1 would be rounded off.
-            let small_near = decay * near * near;
-            let small_far = decay * far * far;
-            let near_sq = select(1.0 - near_cos * near_cos, small_near - 0.5 * small_near * (small_near + near * near), small_near < vec2<f32>(1e-3));
-            let far_sq = select(1.0 - far_cos * far_cos, small_far - 0.5 * small_far * (small_far + far * far), small_far < vec2<f32>(1e-3));
-            let sines = sign(near) * sign(far) * sqrt(max(near_sq * far_sq, vec2<f32>(0.0)));
-            return max(0.5 - 0.5 * (near_cos * far_cos - sines), vec2<f32>(1e-3));
-        }
-        //? else
-        // Tails are those of GGX.
-        return max(0.5 - 0.5 * (1.0 - near * far) * inverseSqrt((1.0 + near * near) * (1.0 + far * far)), vec2<f32>(1e-3));
+        let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
+        let far_cos = exp2(-0.5 * decay * log2(1.0 + far * far));
+        // Small sines by a series: the difference to 1 would be rounded off.
+        let small_near = decay * near * near;
+        let small_far = decay * far * far;
+        let near_sq = select(1.0 - near_cos * near_cos, small_near - 0.5 * small_near * (small_near + near * near), small_near < vec2<f32>(1e-3));
+        let far_sq = select(1.0 - far_cos * far_cos, small_far - 0.5 * small_far * (small_far + far * far), small_far < vec2<f32>(1e-3));
+        let sines = sign(near) * sign(far) * sqrt(max(near_sq * far_sq, vec2<f32>(0.0)));
+        return max(0.5 - 0.5 * (near_cos * far_cos - sines), vec2<f32>(1e-3));
+    }
+
+    //? lobes_tails
+    /// Shares above the horizon of lobes of such a tail, from what rows have over these estimates.
+    fn luthier_family_tail_shares(row: vec2<f32>, beside: vec2<f32>, slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+        let over = luthier_family_part(row, beside, -1.0).xy;
+        return min(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1.0));
     }
 
     //? anisotropic
@@ -152,7 +171,8 @@
         let painted = luthier_materials[header + $word_patina];
         // Integrals of the shape of the remainder, and the number of lobes.
         let counts = luthier_materials[header + $word_patina_diffuse_albedo];
-        let base_layer = u32(luthier_materials[header + $word_glitter_tilt].z);
+        let tilt_word = luthier_materials[header + $word_glitter_tilt];
+        let base_layer = u32(tilt_word.z);
         let first_word = luthier_whole(luthier_materials[header].x);
         let base_word = first_word + base_layer * LUTHIER_LAYER_WORDS;
         // Slope parameters of coat and base, without the variance of normals, which lobes get by themselves.
@@ -247,7 +267,6 @@
         let of_more = luthier_family_part(prepared.row, beside, 1.0);
         let sharpness = luthier_family_part(prepared.row, beside, 2.0);
         let of_facet = luthier_family_part(prepared.row, beside, 3.0);
-        let of_rest = luthier_family_part(prepared.row, beside, 4.0);
         // Energies of rows are over the light that crosses the coat.
         let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
         var diffuse = painted.rgb;
@@ -258,12 +277,11 @@
         // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
         var once = of_once.rgb;
         var more = of_more.rgb;
-        var wide = of_rest.rgb;
+        var wide = vec3<f32>(0.0);
         var facet = 1.0 - crossing * of_facet.rgb;
-        // Coefficients of the remainder, share of the light of one visit that is wide, and what rows have beside estimates of shares.
-        var falloff = vec2<f32>(0.0);
-        var once_wide = 0.0;
-        var leaving = vec2<f32>(of_facet.a, of_rest.a);
+        // The a of the remainder, and the share of the light of one visit that is wide.
+        var falloff = of_facet.a;
+        var once_wide = of_once.z;
         //? lobes_lean
         // Light of the base that came through the coat, and not back from it.
         var met = vec3<f32>(0.0);
@@ -287,17 +305,16 @@
                 diffuse = place.matt;
                 passed = LUTHIER_PLASTIC_PASSED + diffuse * (1.0 - LUTHIER_PLASTIC_PASSED);
             }
-            falloff = of_rest.zw;
-            once_wide = of_once.z;
-            leaving = of_facet.zw;
-            var light = vec3<f32>(of_rest.x);
-            var sent_back = vec3<f32>(of_rest.y);
+            // Rows have the light of a diffuse base of the albedo 0.8.
+            let back = prepared.medium.y + tilt_word.w * roots.x + prepared.medium.w * roots.y;
+            var light = vec3<f32>(of_facet.z * (1.25 - back));
+            var sent_back = vec3<f32>(back);
             //? lobes_tinted|film_f0
-            let of_lengths = luthier_family_part(prepared.row, beside, 5.0);
+            let of_lengths = luthier_family_part(prepared.row, beside, 4.0);
             //? own_edge
             {
                 // Light of one visit below a coat, or of several facets without one, sees an F0 that is less by what rows say; light that a coat keeps is flat.
-                let of_edge = luthier_family_part(prepared.row, beside, 6.0);
+                let of_edge = luthier_family_part(prepared.row, beside, 5.0);
                 let of_one = luthier_family_once(of_once.xy, vec4<f32>(max(metal - place.metal_edge * of_edge.x, vec3<f32>(0.0)), 0.04));
             }
             //? else
@@ -365,9 +382,10 @@
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
-            let of_wide = luthier_family_part(prepared.row, beside, 5.0);
-            falloff = of_wide.xy;
-            once_wide = of_wide.z;
+            let of_wide = luthier_family_part(prepared.row, beside, 4.0);
+            wide = of_wide.rgb;
+            falloff = of_wide.a;
+            once_wide = of_facet.a;
             //? base_color|lobes_lean
             {
                 //? lobes_lean
@@ -375,8 +393,8 @@
                 //? else
                 let is_own = place.base_color.x >= 0.0;
                 if is_own {
-                    let of_base = luthier_family_part(prepared.row, beside, 6.0).rgb;
-                    let of_internal = luthier_family_part(prepared.row, beside, 7.0).rgb;
+                    let of_base = luthier_family_part(prepared.row, beside, 5.0).rgb;
+                    let of_internal = luthier_family_part(prepared.row, beside, 6.0).rgb;
                     let simulated = max(painted.rgb, vec3<f32>(1e-6));
                     //? lobes_lean
                     met = of_base * max(1.0 - of_internal * painted.rgb, vec3<f32>(0.0)) * diffuse / simulated;
@@ -389,7 +407,8 @@
                 }
             }
         }
-        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
+        prepared.medium.y = falloff;
+        prepared.medium.w = (1.0 / LUTHIER_PI) / (1.0 - dot(prepared.medium.yz, counts.xy));
         let below = crossing * (wide + once + more);
         // No more light than falls in.
         let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
@@ -409,17 +428,29 @@
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
         let sharp = sharpness / vec2<f32>(once_spread, more_spread).xxyy;
         //? lobes_tails
-        let decay = luthier_materials[header + $word_glitter_tilt].y;
+        let decay = tilt_word.y;
         //? else
         let decay = 1.0;
         let shift = of_once.a * once_spread;
         var first_shape = luthier_family_shape(shift, sharp.xy, decay, sin_theta);
         var second_shape = luthier_family_shape(0.0, sharp.zw, decay, sin_theta);
-        // Rows have shares over their estimates: between rows the share is that of the shape there.
+        // Between rows the share is that of the shape there. Rows of other tails than that of GGX have it over an estimate.
         let over_radius = max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
         let radius = 1.0 / over_radius;
-        let left_over = luthier_family_leaving(shift * sin_theta, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
-        prepared.shares = min(leaving * left_over, vec2<f32>(1.0));
+        let middle = shift * sin_theta;
+        //? lobes_tails
+        {
+            //? ~lobes_tails
+            if decay == 1.0 {
+                prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
+            } else {
+                prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
+            }
+            //? else
+            prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
+        }
+        //? else
+        prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
             let disc = luthier_leaving_disc(prepared);

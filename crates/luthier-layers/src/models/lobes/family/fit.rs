@@ -2,11 +2,11 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Distribution, Stack};
+use luthier_optics::stack::Stack;
 
-use super::Family;
 use super::paint::{chain, dimmed, trapped};
-use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES, WHITE};
+use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES};
+use super::{Family, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
@@ -15,8 +15,13 @@ use crate::models::lobes::{
 };
 
 impl Family {
-    /// The rows of each node of a stack, slopes over [`Self::spreads`].
-    pub(in crate::models::lobes) fn lobes(self, stack: &Stack, color: &Color, settings: FitSettings) -> Vec<Lobes> {
+    /// The rows of each node of a stack, slopes over [`Self::spreads`], and the family with the numbers of all rows.
+    pub(in crate::models::lobes) fn lobes(
+        self,
+        stack: &Stack,
+        color: &Color,
+        settings: FitSettings,
+    ) -> (Self, Vec<Lobes>) {
         let stack = shown(stack);
         let axis = ViewAxis::of(&stack, settings.rows);
         // Half vectors of the medium below the coat, or next to those outside.
@@ -25,11 +30,8 @@ impl Family {
         let first = FirstInterface::of(&stack, color);
         let base = base_below(&stack);
         let mut beside: Vec<Option<[Found; 2]>> = (0..self.nodes()).map(|_| None).collect();
-        let tail = match stack.layers[self.interface].surface.distribution {
-            Distribution::Beckmann => LEAST_TAIL,
-            _ => 1.0,
-        };
-        let mut nodes = Vec::new();
+        let tail = if self.has_tail { LEAST_TAIL } else { 1.0 };
+        let (mut nodes, mut sent_back) = (Vec::new(), Vec::new());
         for number in 0..self.nodes() {
             let node = Node::new(self, number, axis, index, &stack, color, settings);
             let spreads = Self::spreads(self.alphas(number));
@@ -52,6 +54,7 @@ impl Family {
             let falloff = node.falloff.filter(|_| base.is_some()).unwrap_or(found[1].wide_falloff());
             let own = base.map_or([0.0; 3], |base| base.albedo);
             let seen = if self.is_metallic { [WHITE; 3] } else { own };
+            sent_back.push(internal_of(&node.rest, seen, |energies| energies.clear)[0]);
             let rows = self.rows(&node, &found, spreads, (axis, index, self.alphas(number)[0]), falloff, seen);
             beside[number] = Some(found);
             nodes.push(Lobes {
@@ -68,7 +71,11 @@ impl Family {
                 rows,
             });
         }
-        nodes
+        if self.has_tail {
+            self.hold_shares(&mut nodes);
+        }
+        let sent_back = if self.is_metallic { sent_back } else { Vec::new() };
+        (self.with_sent_back(&sent_back), nodes)
     }
 
     fn rows(
@@ -96,12 +103,14 @@ impl Family {
             let over = |energy: f64| energy / crossing;
             let lobes = lobes.iter().zip(spreads).enumerate().map(|(number, (lobes, spread))| {
                 let mut lobe = lobes[view];
+                lobe.tail = if self.has_tail { lobe.tail.clamp(LEAST_TAIL, 1.0) } else { 1.0 };
                 // Between rows the share is that of the shape there: rows have what its estimate lacks.
-                lobe.share /= leaving.in_plane(&lobe, sin_theta);
+                lobe.share = match self.has_tail {
+                    true => leaving.summed(&lobe, sin_theta) / leaving.in_plane(&lobe, sin_theta),
+                    false => 1.0,
+                };
                 lobe.shift /= spread;
-                // Rows have sharpness times the root of the tail; between two tails, sharpness alone is in line.
-                lobe.tail = lobe.tail.clamp(LEAST_TAIL, 1.0);
-                lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread / lobe.tail.sqrt());
+                lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread);
                 // Energies between nodes hang on neither node's share.
                 lobe.strength = energies[view][number].map(over);
                 // Lobes in the plane of the eye have no shear: its place has the share of the light of the other lobe that is in the remainder.
@@ -112,7 +121,7 @@ impl Family {
                 |energies: &Energies, c: usize| -libm::log(ratio(energies.dimmed[c], energies.clear[c])) / DEPTH;
             let (albedo_dir, wide, energy, internal) = if self.is_metallic {
                 let facets = rest.first_facet;
-                let light = rest.base_once.clear[0] / WHITE;
+                let light = rest.base.clear[0];
                 let white = rest.facets.clear.iter().sum::<f64>() / 3.0;
                 let albedo = if self.is_coated() {
                     let [once, more] = &rest.reflected;
@@ -122,7 +131,7 @@ impl Family {
                 };
                 let energy = [over(light), length(&rest.base_once, 0), 0.0];
                 let wide = [over(white), self.dip(energies[view], &rest.reflected), rest.first_dip];
-                (albedo, wide, energy, [sent_back[0], around, 0.0])
+                (albedo, wide, energy, [0.0, around, 0.0])
             } else {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)

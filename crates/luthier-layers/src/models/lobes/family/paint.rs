@@ -6,10 +6,11 @@ use luthier_optics::schlick::{DIELECTRIC_F0, F82, F82_COS_THETA, metallic_and_ma
 use luthier_optics::stack::{Base, Stack};
 
 use super::film::FilmLight;
-use super::{Family, base_interface};
+use super::shares::spread_by;
+use super::{Family, WHITE, base_interface};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
-use crate::models::lobes::{BaseLight, Frame, Lobe, Row};
+use crate::models::lobes::{BaseLight, Frame, Row};
 
 /// The colours of a family at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,12 +124,7 @@ impl Family {
         let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt();
         let leaving = Leaving::new(refracted(DVec3::new(sin_theta, 0.0, cos_theta), frame.index), frame.index);
         for (lobe, spread) in here.lobes.iter_mut().zip(Self::spreads(alphas)) {
-            *lobe = Lobe {
-                shift: lobe.shift * spread,
-                sharpness: lobe.sharpness.map(|sharpness| sharpness * lobe.tail.sqrt() / spread),
-                shear: 0.0,
-                ..*lobe
-            };
+            *lobe = spread_by(*lobe, spread);
             // Between rows the share is that of the shape there.
             lobe.share = (lobe.share * leaving.in_plane(lobe, sin_theta)).min(1.0);
         }
@@ -163,7 +159,8 @@ impl Family {
             here.albedo_dir[c] = facet + kept * below;
         }
         // The shape of the remainder stays: its light is in the remainder.
-        here.base = row.base.map(|base| BaseLight { falloff: base.falloff, met: Some(met), ..BaseLight::default() });
+        let falloff = [base.falloff[0], frame.wide.falloff()[1]];
+        here.base = row.base.map(|_| BaseLight { falloff, met: Some(met), ..BaseLight::default() });
         here
     }
 
@@ -184,7 +181,10 @@ impl Family {
         let [white, dip, first_dip] = row.wide;
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
-        let ([light, length, _], [sent_back, around, _]) = (base.energy, base.internal);
+        let ([bright, length, _], [_, around, _]) = (base.energy, base.internal);
+        // Rows have the light of a base of one albedo, which no error of this share changes.
+        let sent_back = self.back(alphas);
+        let light = bright * (1.0 / WHITE - sent_back);
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
         let [facet, once_length, more_length] = row.albedo_dir;
         let [several, slope, _] = of_once;

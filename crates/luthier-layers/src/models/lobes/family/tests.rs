@@ -150,25 +150,34 @@ fn shades_are_no_wavelengths() {
 /// Oracle: a midpoint rule over directions of light. Between nodes and rows, lobes send as much light as the albedo says: no more than falls in.
 #[test]
 fn light_between_nodes_sums_to_the_albedo() {
-    let stack = plastic(true, [0.0; 3]);
-    let family = Family::new(&stack, [0.1, 0.4], [0.1, 0.5], true).unwrap();
-    let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 8000, ..SETTINGS });
-    let mix = Mix { metal: [1.0, 0.8, 0.5], tint: [1.0; 3], matt: [0.5; 3], metallic: 1.0 };
-    let lobes = varied.painted([0.2, 0.25], &Paint::of(&stack).mixed(mix)).unwrap();
-    let side = 300;
-    for theta in [0.05, 0.7, 1.2, 1.4] {
-        let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
-        let mut sum = [0.0; 3];
-        for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
-            let (z, phi) = ((f64::from(i) + 0.5) / f64::from(side), TAU * (f64::from(j) + 0.5) / f64::from(side));
-            let (sin, (sin_phi, cos_phi)) = ((1.0 - z * z).sqrt(), libm::sincos(phi));
-            let light = lobes.eval(DVec3::new(sin * cos_phi, sin * sin_phi, z), wo);
-            (0..3).for_each(|c| sum[c] += light[c] * TAU / f64::from(side * side));
+    for distribution in [Distribution::Ggx, Distribution::Beckmann] {
+        let mut stack = plastic(true, [0.0; 3]);
+        stack.layers.iter_mut().for_each(|layer| layer.surface.distribution = distribution);
+        let family = Family::new(&stack, [0.1, 0.4], [0.1, 0.5], true).unwrap();
+        let settings = FitSettings { paths: 8000, ..SETTINGS };
+        let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), settings);
+        let mix = Mix { metal: [1.0, 0.8, 0.5], tint: [1.0; 3], matt: [0.5; 3], metallic: 1.0 };
+        let side = 200;
+        for alphas in [[0.2, 0.25], [0.13, 0.4], [0.36, 0.14]] {
+            let lobes = varied.painted(alphas, &Paint::of(&stack).mixed(mix)).unwrap();
+            for theta in [0.05, 0.7, 1.0, 1.2, 1.4] {
+                let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                let mut sum = [0.0; 3];
+                for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
+                    let (z, phi) =
+                        ((f64::from(i) + 0.5) / f64::from(side), TAU * (f64::from(j) + 0.5) / f64::from(side));
+                    let (sin, (sin_phi, cos_phi)) = ((1.0 - z * z).sqrt(), libm::sincos(phi));
+                    let light = lobes.eval(DVec3::new(sin * cos_phi, sin * sin_phi, z), wo);
+                    (0..3).for_each(|c| sum[c] += light[c] * TAU / f64::from(side * side));
+                }
+                let stated = lobes.row(wo).albedo_dir;
+                // Rows of other tails than that of GGX have shares that are at no place too small.
+                let limit = if distribution == Distribution::Ggx { 0.006 } else { 0.02 };
+                let apart = (0..3).map(|c| (sum[c] - stated[c]).abs()).fold(0.0, f64::max);
+                assert!(apart < limit, "{distribution:?} {alphas:?} {theta}: {sum:?} {stated:?}");
+                assert!(sum[0] < 1.002, "{distribution:?} {alphas:?} {theta}: {sum:?}");
+            }
         }
-        let stated = lobes.row(wo).albedo_dir;
-        assert!((0..3).all(|c| (sum[c] - stated[c]).abs() < 0.006), "{theta}: {sum:?} {stated:?}");
-        // Between rows, shares of the second lobe are off by about a hundredth.
-        assert!(sum[0] < 1.003, "{theta}: {sum:?}");
     }
 }
 

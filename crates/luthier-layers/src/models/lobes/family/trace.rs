@@ -5,8 +5,8 @@ use luthier_optics::color::Color;
 use luthier_optics::schlick::F82;
 use luthier_optics::stack::{Base, Layer, Stack};
 
-use super::Family;
 use super::film::is_filmed;
+use super::{Family, SQUARE, WHITE};
 use crate::models::lobes::fit::{Simulation, seen_from};
 use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{FirstInterface, FitSettings, ViewAxis, Wide};
@@ -14,9 +14,6 @@ use crate::references::layered_mc::{ColorPaths, JointPath};
 
 /// F0 of the base in the channels of a simulation whose energies are in closed form; the middle one is where the absorption of slabs is measured.
 pub(super) const SHADES: Rgb = [0.04, 0.5, 1.0];
-
-/// Albedo of a diffuse base in that simulation.
-pub(super) const WHITE: f64 = 0.8;
 
 /// Wavelength at which indices bend directions where channels are shades.
 const SODIUM_D_NM: f64 = 589.3;
@@ -245,7 +242,7 @@ impl Node {
             wide.push(of_rest);
             rest.push(energies);
         }
-        let falloff = Wide::falloff_of(axis, &wide);
+        let falloff = Wide::fall_of(axis, &wide, SQUARE);
         let of_base = falloff.filter(|_| has_base);
         let [narrow, broad] = cells;
         let lobes = [
