@@ -66,7 +66,7 @@ impl Kind for Table {
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
         let Site { material, shape, lobes: most, .. } = *site;
         let fit = fit(material, most.is_some());
-        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying), shape.format);
+        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying_of(most)), shape.format);
         let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format });
         jobs.map(|job| Arc::new(job) as Arc<dyn Job>).collect()
     }
@@ -209,7 +209,7 @@ pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
 
 /// Decides the shape of the tiles, from the fits of a plan. Without limits on the errors of lobes, the tiles have as
 /// many parts as the material with the most lobes needs. With limits, the smallest shape that holds them is taken, and
-/// the search is reported.
+/// the search is reported. Families have fewer nodes where others have fewer lobes.
 ///
 /// # Errors
 /// [`Broken`] where no shape holds the limits.
@@ -227,10 +227,10 @@ pub(crate) fn decide(
         settings.take_lobes(shape(parts(materials, lobes_of(&fits, None)), common_step(materials), format));
         return Ok(None);
     }
-    let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
     let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
     let candidates = choices.iter().map(|&(most, i)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
+        let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
         let Shape { x, y, base, format } = shape(parts(materials, lobes_of(&fits, Some(most))), STEPS[i], format);
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
@@ -432,12 +432,13 @@ impl Fit {
 
 /// Lobes with every `step`-th of [`ROWS`]. Fits with fewer get those between.
 fn thinned(varied: Varied, step: usize) -> Varied {
-    let own = FitSettings::step(varied.varying());
+    let own = (ROWS - 1) / (varied.nodes[0].axis.size() - 1);
     let varied = if own > 1 { varied.refined(own) } else { varied };
     varied.thinned(step)
 }
 
-/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on.
+/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on, or of a family for as many halvings of its nodes as
+/// lobes lack.
 #[derive(Debug, Serialize, Deserialize)]
 struct Fits(Vec<Fit>);
 
@@ -457,13 +458,21 @@ struct FitJob {
     is_searched: bool,
 }
 
+impl FitJob {
+    /// What rows are over, where a search allows so many lobes: a family always has two, and fewer nodes in place of fewer lobes.
+    fn varying_of(&self, most: Option<usize>) -> Option<Varying> {
+        let fewer = most.map_or(0, |most| LOBES.saturating_sub(most) as u32);
+        self.varying.map(|varying| varying.with_fewer_nodes(fewer))
+    }
+}
+
 impl Job for FitJob {
     fn kind(&self) -> JobKind {
         FIT
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 9 } else { 6 }
+        if is_family(self.varying) { 10 } else { 6 }
     }
 
     fn inputs(&self) -> Value {
@@ -486,10 +495,18 @@ impl Job for FitJob {
         let traced = Traced::new(stack, color, *varying, FitSettings::of(*varying));
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
-        // A family has two lobes: there is nothing to choose.
-        let is_chosen = *is_searched && !is_family(*varying);
+        if *is_searched && is_family(*varying) {
+            let whole: Varied = traced.fit(most, EXCESS);
+            let fits = (0..=LOBES).map(|most| {
+                let fewer = self.varying_of(Some(most));
+                let varied = whole.clone().at_nodes(fewer);
+                let judge = Judge::new(stack, color, fewer);
+                Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }
+            });
+            return Artefact::new(Fits(fits.collect()));
+        }
         let wanted: Vec<(usize, f64)> =
-            if is_chosen { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
+            if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
         let fits = wanted.into_iter().map(|(most, excess)| {
             let varied: Varied = traced.fit(most, excess);
             Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }

@@ -12,7 +12,7 @@ const LACK: f64 = 5e-3;
 
 impl Family {
     /// Raises shares of rows so that half way between views and nodes none is less than that of the shape there: no light comes from interpolation.
-    pub(super) fn hold_shares(self, nodes: &mut [Lobes]) {
+    pub(in crate::models::lobes) fn hold_shares(self, nodes: &mut [Lobes]) {
         let (axis, index) = (nodes[0].axis, nodes[0].frame.index);
         let halves = |count: usize| (0..2 * count - 1).map(|i| (i / 2, i % 2));
         let grid = halves(self.coat.nodes).flat_map(|coat| {
