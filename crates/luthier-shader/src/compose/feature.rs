@@ -229,8 +229,10 @@ luthier_lut::named! {
         OwnSlabs = "own_slabs",
         /// A map of a layer has colours that its slab absorbs.
         OwnTints = "own_tints",
-        /// Maps of a layer have base colours and metal.
+        /// Maps of a layer have base colours and metal, or an F0.
         OwnF0 = "own_f0",
+        /// The dielectric of a base has another F0 than 0.04, by a map or by the file.
+        DielectricF0 = "dielectric_f0",
         /// A film lies on the base of such a material.
         FilmF0 = "film_f0",
         /// Such a metal has an edge tint.

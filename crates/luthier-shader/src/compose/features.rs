@@ -176,6 +176,7 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
             MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
             MapSlot::Albedo => &[Feature::BaseColor],
             MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
+            MapSlot::F0 => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor, Feature::DielectricF0],
             MapSlot::Lean => &[],
             MapSlot::Bumps if !material.model.is_fitted() => &[Feature::Layered, Feature::OwnNormals],
             MapSlot::Bumps if has_base_light(material) => {
@@ -202,6 +203,10 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
         own.insert(Feature::LobesBase);
     }
     own.extend(of_family(material));
+    let interface = material.layers.len().checked_sub(2).map(|number| &material.layers[number]);
+    if own.contains(&Feature::OwnF0) && interface.and_then(|layer| layer.f0).is_some_and(|f0| f0 != [ENGINE_F0; 3]) {
+        own.insert(Feature::DielectricF0);
+    }
     if own.contains(&Feature::OwnF0) && material.layers.iter().any(|layer| layer.metal_f82_tint.is_some()) {
         own.insert(Feature::OwnEdge);
     }
@@ -544,6 +549,9 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }
+
+/// F0 of the dielectric of a `metallic-roughness` surface whose file names no other.
+const ENGINE_F0: f64 = 0.04;
 
 /// Whether patina or a coat covers a diffuse base alone.
 fn is_bare_base(material: &MaterialEntry) -> bool {

@@ -29,9 +29,10 @@ pub(super) const FIRST: u32 = 1;
 /// Ranges of slope parameters of coat and base.
 const RANGES: [[f64; 2]; 2] = [[0.01, 0.25], [0.04, 0.64]];
 
-/// Slope parameters of the material, and its colours: F0 of the base, albedo below it, optical depth of the coat's slab.
+/// Slope parameters of the material, and its colours: F0 of the dielectric, and another one, albedo below it, optical depth of the coat's slab.
 const ALPHAS: [f64; 2] = [0.3, 0.7];
-const F0: Rgb = [0.05, 0.3, 0.6];
+const F0: Rgb = [0.04; 3];
+const OTHER_F0: Rgb = [0.05, 0.3, 0.6];
 const ALBEDO: Rgb = [0.7, 0.4, 0.2];
 const DEPTH: Rgb = [0.1, 0.3, 0.6];
 
@@ -191,6 +192,16 @@ fn filmed(mut given: MaterialEntry) -> MaterialEntry {
     given
 }
 
+/// A material whose dielectric has another F0, with or without a map of it.
+fn with_f0(mut given: MaterialEntry, has_map: bool) -> MaterialEntry {
+    let interface = given.layers.len() - 2;
+    (given.layers[interface].f0, given.layers[interface].ior_n) = (Some(OTHER_F0), OTHER_F0);
+    if has_map {
+        given.maps.push(MapEntry { slot: MapSlot::F0, layer: Some(interface as u32), ..given.maps[0].clone() });
+    }
+    given
+}
+
 /// What the film of the tests reflects.
 const UNDER_FILM: Rgb = [0.3, 0.15, 0.55];
 
@@ -247,14 +258,21 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         // And here a film lies on the base.
         (family(0, true, [1, 3]), &surface[1..], vec![]),
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(0, true, [1, 3]))]),
+        // From here on the dielectric has another F0, by the file, and then at each place.
+        (family(0, true, [1, 3]), &surface[1..], vec![]),
+        (family(1, true, NODES), &surface[1..], vec![material(family(0, true, [1, 3]))]),
+        (family(0, true, [1, 3]).tinted(true), &surface[1..], vec![filmed(material(family(0, true, [1, 3])))]),
+        (family(1, true, NODES), &surface[1..], vec![plain.clone()]),
     ]
     .into_iter()
     .enumerate()
     {
-        let (is_brushed, is_filmed) = ((9..12).contains(&number), number >= 12);
+        let (is_brushed, is_filmed, is_other) = ((9..12).contains(&number), (12..14).contains(&number), number >= 14);
+        let nominal = if is_other { OTHER_F0 } else { F0 };
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
             (_, true) => filmed(material(family)),
+            _ if is_other => with_f0(material(family), number >= 16),
             _ => material(family),
         };
         let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
@@ -269,7 +287,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let mut reflected = Image::zeros(3, 3, 4);
         let has_facets = !family.is_coated() && family.is_metallic;
         if has_facets {
-            reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
+            reflected.data = [nominal[0], nominal[1], nominal[2], 0.0].map(|x| x as f32).repeat(9);
         }
         let film = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Film).unwrap();
         let [width, height] = film.layout.size();
@@ -337,7 +355,13 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             }
             let wide = color.map(f64::from);
             let tint = if family.is_tinted { TINT } else { [1.0; 3] };
-            let mix = Mix { metal: wide, tint, matt: wide, metallic: metal.into() };
+            let mut dielectric = nominal;
+            if number >= 16 {
+                let f0 = [share(0.41), 0.9 * share(0.47), 0.0];
+                dielectric = f0.map(f64::from);
+                place = machine.call("luthier_f0_place", vec![place, Value::U(0), vector(&f0)]);
+            }
+            let mix = Mix { metal: wide, tint, dielectric, matt: wide, metallic: metal.into() };
             if family.is_metallic {
                 let arguments = vec![place, Value::U(0), vector(&color), Value::F(metal)];
                 place = machine.call("luthier_metallic_place", arguments);
@@ -362,7 +386,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 frame.stretch = family.stretch(slopes);
             }
             let row = row(&layout, &image, family, alphas, eye.z);
-            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo: wide, depth };
+            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, dielectric, albedo: wide, depth };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
             let film = is_filmed.then(|| FilmLight::new(&row, |_| [UNDER_FILM; 2]));
             let here = family.row_in(&row, alphas, (&frame, eye.z), &paint, film.as_ref());
@@ -372,7 +396,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let cos_theta_d = eye.dot((light + eye).normalize());
             let expected = [0, 1, 2].map(|c: usize| {
                 let kept = mix.metallic * F82 { f0: wide[c], tint: tint[c] }.dip() * edge_dip(cos_theta_d);
-                let plain = (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0);
+                let plain = (dielectric[c] + mix.metallic * (wide[c] - dielectric[c]) - kept).max(0.0);
                 expected[c] + facets * if is_filmed { UNDER_FILM[c] } else { plain }
             });
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
