@@ -6,7 +6,6 @@ use luthier_model::ModelPart;
 use luthier_optics::Rgb;
 use luthier_optics::brightening::Brightening;
 use luthier_optics::color::Color;
-use luthier_optics::schlick::DIELECTRIC_F0;
 use luthier_optics::stack::{Base, Film, Layer, Stack};
 
 use luthier_manifest::{BeamsRecord, Budget, ColorMode, DiffuseTerm, LowerReflectance, MapSlot, ShadingModel};
@@ -241,23 +240,19 @@ impl Material {
             let films = if number == 0 && interface == 0 { 1 } else { 0 };
             is_tinted || layer.films.len() > films || layer.films.iter().any(Film::varies)
         };
-        // A dielectric whose F0 varies is such a base without metal; and so is that of engines, where it has what slabs absorb in closed form.
-        let is_engine = match &layers[interface].base {
-            Base::Dielectric { ior, .. } => ior.f0() == Some([DIELECTRIC_F0; 3]) && layers.len() > interface + 1,
-            _ => false,
-        };
-        let is_below_varied_slab = interface > 0 && self.layers[0].varies_slab();
+        // A dielectric whose F0 varies is such a base without metal.
+        let is_metallic = self.layers[interface].varies_f0();
         let varies_slopes = has_own_slopes || self.layers[0].varies(MapSlot::Roughness);
-        let is_metallic = self.layers[interface].varies_f0() || is_engine && is_below_varied_slab && varies_slopes;
-        let is_asked = has_own_slopes || is_metallic;
+        // Rows over the thickness of a slab have neither other slopes nor azimuths.
+        let is_asked = has_own_slopes || is_metallic || self.layers[0].varies_slab() && (is_turned || varies_slopes);
         let has_film = if is_metallic {
             layers.iter().enumerate().any(has_color)
         } else {
             layers[0].films.first().is_some_and(Film::varies)
         };
         let first = &self.layers[0];
-        let has_slab = first.varies_slab() && !is_metallic;
-        if !is_asked || is_turned_between || has_film || has_slab || self.effects.patina.is_some() {
+        let has_lengths = first.varies_slab() && !is_metallic;
+        if !is_asked || is_turned_between || has_film || self.effects.patina.is_some() {
             return None;
         }
         let mut of_surface =
@@ -284,7 +279,7 @@ impl Material {
             })
         };
         let is_tinted = self.layers[interface].metallic.is_some_and(|metallic| metallic.f82_tint != [1.0; 3]);
-        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted })
+        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted, has_lengths })
     }
 
     /// The re-radiation of its base, if that is fluorescent.
@@ -398,6 +393,8 @@ pub struct SlopeRanges {
     pub is_metallic: bool,
     /// Whether that metal has an edge tint.
     pub is_tinted: bool,
+    /// Whether the first slab varies above another base.
+    pub has_lengths: bool,
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.

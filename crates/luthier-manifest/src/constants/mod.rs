@@ -162,6 +162,9 @@ pub struct FamilyRecord {
     /// Whether that metal has an edge tint, for which rows have two numbers more. Families of bakes from before have other rows, and lack it: they are
     /// refused.
     pub is_tinted: bool,
+    /// Whether the optical depth of the first slab varies above a base that keeps its colours: rows have lengths of light in it. Absent where not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub has_lengths: bool,
 }
 
 /// Nodes over a range of slope parameters, at equal steps of the root.

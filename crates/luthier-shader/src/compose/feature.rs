@@ -199,6 +199,8 @@ luthier_lut::named! {
         LobesMetallic = "lobes_metallic",
         /// Light of such a family is absorbed below the coat.
         LobesTinted = "lobes_tinted",
+        /// Such a slab varies above a base that keeps its colours.
+        LobesLengths = "lobes_lengths",
         /// Lobes of a family have other tails than GGX.
         LobesTails = "lobes_tails",
         /// Maps of what the first slab absorbs give each channel a tile of rows over its thickness.

@@ -538,12 +538,14 @@ fn family(material: &MaterialEntry) -> Option<FamilyRecord> {
 /// The features of a family.
 fn of_family(material: &MaterialEntry) -> Vec<Feature> {
     let Some(family) = family(material) else { return Vec::new() };
-    let is_tinted = family.is_metallic && material.layers.first().is_some_and(|first| first.optical_depth != [0.0; 3]);
+    let absorbs = material.layers.first().is_some_and(|first| first.optical_depth != [0.0; 3]);
+    let (is_tinted, has_lengths) = (family.is_metallic && absorbs, family.has_lengths && absorbs);
     let words = [
         (Feature::LobesFamily, true),
         (Feature::LobesCoats, family.has_two_axes()),
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
+        (Feature::LobesLengths, has_lengths),
         (Feature::LobesTails, material.constants.lobes.is_some_and(|lobes| lobes.inverse_tails[0] > 1.0)),
         (Feature::FilmF0, material.layers.first().is_some_and(LayerRecord::has_film_over_f0)),
     ];

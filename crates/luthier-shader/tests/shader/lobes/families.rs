@@ -62,13 +62,13 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
             5 => [if is_coated { 0.94 - 0.02 * k } else { 0.01 + 0.02 * k }, 0.02 * c, 0.8 + 0.1 * k, 0.9 - 0.1 * c],
             6 if !is_metallic => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.8],
             6 => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.2 + 0.1 * k],
-            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 0.0],
+            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 2.0 + 0.2 * c],
             // Lengths, or the cosines at which facets are seen.
             7 => [1.4, 0.5 + 0.2 * c, if is_coated { 2.5 } else { 0.7 }, if is_coated { 3.0 + k } else { 0.1 * k }],
-            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 0.0],
+            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 2.2 + 0.1 * k],
             // What an edge tint takes.
             8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.0, 0.0],
-            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 0.0],
+            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 1.5],
             // Those of other materials, before the first.
             _ => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
         };
@@ -91,13 +91,13 @@ pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Fa
         SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
     });
     let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-    Family { coat, base, interface, is_metallic, is_tinted: false }
+    Family { coat, base, interface, is_metallic, is_tinted: false, has_lengths: false }
 }
 
 /// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
 pub(super) fn material(family: Family) -> MaterialEntry {
     let given = set("lobes").swap_remove(0);
-    let Family { coat, base, interface, is_metallic, is_tinted } = family;
+    let Family { coat, base, interface, is_metallic, is_tinted, has_lengths } = family;
     let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
     let record = FamilyRecord {
         coat: (interface > 0).then(|| axis(coat)),
@@ -105,6 +105,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         interface: interface as u32,
         is_metallic,
         is_tinted,
+        has_lengths,
     };
     let first = LayerRecord {
         alpha: ALPHAS[0],
@@ -263,11 +264,15 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(1, true, NODES), &surface[1..], vec![material(family(0, true, [1, 3]))]),
         (family(0, true, [1, 3]).tinted(true), &surface[1..], vec![filmed(material(family(0, true, [1, 3])))]),
         (family(1, true, NODES), &surface[1..], vec![plain.clone()]),
+        // And a base that keeps its colours lies below a slab that varies.
+        (family(1, false, NODES).below_varied_slab(true), &surface[..], vec![plain.clone()]),
+        (family(1, false, NODES).below_varied_slab(true), &surface[1..], vec![material(family(1, true, NODES))]),
     ]
     .into_iter()
     .enumerate()
     {
-        let (is_brushed, is_filmed, is_other) = ((9..12).contains(&number), (12..14).contains(&number), number >= 14);
+        let (is_brushed, is_filmed, is_other) =
+            ((9..12).contains(&number), (12..14).contains(&number), (14..18).contains(&number));
         let nominal = if is_other { OTHER_F0 } else { F0 };
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
@@ -356,7 +361,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let wide = color.map(f64::from);
             let tint = if family.is_tinted { TINT } else { [1.0; 3] };
             let mut dielectric = nominal;
-            if number >= 16 {
+            if is_other && number >= 16 {
                 let f0 = [share(0.41), 0.9 * share(0.47), 0.0];
                 dielectric = f0.map(f64::from);
                 place = machine.call("luthier_f0_place", vec![place, Value::U(0), vector(&f0)]);

@@ -432,24 +432,43 @@
             let of_wide = luthier_family_part(prepared.row, beside, 5.0);
             falloff = of_wide.xy;
             once_wide = of_wide.z;
-            //? base_color|lobes_lean
+            //? lobes_lengths
             {
-                //? lobes_lean
+                var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
+                //? place
+                depth *= place.slab_factor;
+                //? own_tints
+                depth *= own_coat.absorption_factors;
+                once *= exp(-of_wide.w * depth);
+            }
+            //? base_color|lobes_lean|lobes_lengths
+            {
+                //? lobes_lean|lobes_lengths
                 let is_own = dot(painted.rgb, vec3<f32>(1.0)) > 0.0;
                 //? else
                 let is_own = place.base_color.x >= 0.0;
                 if is_own {
-                    let of_base = luthier_family_part(prepared.row, beside, 6.0).rgb;
-                    let of_internal = luthier_family_part(prepared.row, beside, 7.0).rgb;
+                    let of_base = luthier_family_part(prepared.row, beside, 6.0);
+                    let of_internal = luthier_family_part(prepared.row, beside, 7.0);
                     let simulated = max(painted.rgb, vec3<f32>(1e-6));
-                    //? lobes_lean
-                    met = of_base * max(1.0 - of_internal * painted.rgb, vec3<f32>(0.0)) * diffuse / simulated;
-                    //? base_color
+                    var own = simulated * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
+                    var other = diffuse * (1.0 - of_internal.rgb * painted.rgb);
+                    //? lobes_lengths
                     {
-                        let own = simulated * max(1.0 - of_internal * diffuse, vec3<f32>(1e-3));
-                        let other = diffuse * (1.0 - of_internal * painted.rgb);
-                        wide += max(of_base * (other / own - 1.0), -wide);
+                        let around = exp2(select(-1.5, -4.0, base_layer == 0u) * log2(1.0 + of_internal.w * depth));
+                        own = simulated * max(1.0 - of_internal.rgb * around * diffuse, vec3<f32>(1e-3));
+                        other *= exp(-of_base.w * depth);
+                        // Above a diffuse base light of more visits passes the slab as often as its light does.
+                        more *= exp(-of_wide.w * depth) * around;
                     }
+                    //? lobes_lean
+                    met = of_base.rgb * max(other, vec3<f32>(0.0)) / simulated;
+                    //? base_color|lobes_lengths
+                    wide += max(of_base.rgb * (other / own - 1.0), -wide);
+                }
+                //? lobes_lengths
+                if !is_own {
+                    more *= exp2(-4.5 * log2(1.0 + luthier_family_part(prepared.row, beside, 6.0).w * depth));
                 }
             }
         }

@@ -32,8 +32,13 @@
 //! | 1 | reflected by the base more often RGB, share of it that is wide |
 //! | 2 | sharpness of both lobes |
 //! | 3, 4 | light but that of one facet of the first interface RGB, wide remainder RGB; shares above the horizon over their estimates |
-//! | 5 | a and b of the remainder, share of the light of one visit that is wide, 0 |
-//! | 6, 7, to recolour a diffuse base | its light RGB, share of it that is sent back to it RGB |
+//! | 5 | a and b of the remainder, share of the light of one visit that is wide, length of that light |
+//! | 6, 7, to recolour a diffuse base | its light RGB, its length; share of it that is sent back to it RGB, length of that |
+//! | 6, without a base | 0, 0, 0, length of the light of more visits |
+//!
+//! Lengths are 0 unless what the first slab absorbs varies ([`Family::has_lengths`]): then rows are those of a clear slab, and a slab multiplies energies by
+//! `exp(-length depth)`, but for light that is sent back and of more visits: by `(1 + length depth)^-b`, where b is 4 for the former below the first interface alone
+//! and 1.5 below another, and 4.5 for the latter.
 //!
 //! Strengths of all families are energies, not yet over the share above the horizon. The lobe of trapped light has its middle at the normal.
 //!
@@ -129,6 +134,8 @@ pub struct Family {
     pub is_metallic: bool,
     /// Whether that metal has an edge tint, for which rows have two numbers more.
     pub is_tinted: bool,
+    /// Whether the optical depth of the first slab varies above a base that keeps its colours: rows have lengths of light in it.
+    pub has_lengths: bool,
 }
 
 impl Family {
@@ -145,13 +152,19 @@ impl Family {
         let [own, base] =
             if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
         let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-        Some(Self { coat, base, interface, is_metallic, is_tinted: false })
+        Some(Self { coat, base, interface, is_metallic, is_tinted: false, has_lengths: false })
     }
 
     /// The family with an edge tint of the metal, if its base is metallic in places.
     #[must_use]
     pub fn tinted(self, is_tinted: bool) -> Self {
         Self { is_tinted: is_tinted && self.is_metallic, ..self }
+    }
+
+    /// The family with an optical depth of the first slab that varies. A base that is metallic in places has it in closed form anyway.
+    #[must_use]
+    pub fn below_varied_slab(self, has_lengths: bool) -> Self {
+        Self { has_lengths: has_lengths && !self.is_metallic, ..self }
     }
 
     /// Whether interfaces lie above the base.

@@ -158,8 +158,12 @@ impl Family {
         let base = row.base.unwrap_or_default();
         let other = FilmLight::without(row, paint).filter(|_| film.is_none() && self.is_metallic && !self.is_coated());
         let film = film.or(other.as_ref());
-        let more = base.more(simulated, paint.albedo);
-        let mut met = base.of_one_direction(simulated, paint.albedo);
+        let passed = self.passed(&base, simulated, paint.depth);
+        let [more, mut met] = if self.has_lengths {
+            base.dimmed(simulated, paint.albedo, [passed[1], passed[2]])
+        } else {
+            [base.more(simulated, paint.albedo), base.of_one_direction(simulated, paint.albedo)]
+        };
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
                 let [entering, wide, once, trapped, direct] =
@@ -169,6 +173,10 @@ impl Family {
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
+                // Above a diffuse base light of more visits passes the slab as often as its light does.
+                let again = if simulated == [0.0; 3] { passed[1][c] } else { passed[0][c] * passed[2][c] };
+                let [once, trapped] =
+                    if self.has_lengths { [once * passed[0][c], trapped * again] } else { [once, trapped] };
                 [row.albedo_dir[c], row.wide[c] + more.max(-row.wide[c]), once, trapped]
             };
             let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
@@ -185,6 +193,15 @@ impl Family {
         // The shape of the remainder stays: its light is in the remainder.
         here.base = row.base.map(|base| BaseLight { falloff: base.falloff, met: Some(met), ..BaseLight::default() });
         here
+    }
+
+    /// Shares of light that the first slab lets through: of one visit, of the diffuse base or of more visits without one, and of what is sent back to the base.
+    fn passed(self, base: &BaseLight, simulated: Rgb, depth: Rgb) -> [Rgb; 3] {
+        let [once, second, around] = base.lengths;
+        let straight = |length: f64| depth.map(|depth| libm::exp(-length * depth));
+        let spread = |g: f64, spread: f64| depth.map(|depth| libm::pow(1.0 + g * depth, -spread));
+        let second = if simulated == [0.0; 3] { spread(second, MORE_SPREAD) } else { straight(second) };
+        [straight(once), second, spread(around, AROUND_SPREADS[usize::from(self.is_coated())])]
     }
 
     /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
@@ -243,6 +260,14 @@ impl Family {
         [entering, white + mix(0.0, diffuse), once, more, mix(0.0, direct)]
     }
 }
+
+/// Spreads of the lengths of light that is sent back to a diffuse base, which is below the first interface, or below another one that sends some of it back before
+/// it comes to the slab: a slab of depth d lets `(1 + g d)^-spread` of it through. An exponential of the mean would be too bright in thin slabs, and too dark in
+/// thick ones.
+pub(super) const AROUND_SPREADS: [f64; 2] = [4.0, 1.5];
+
+/// That of light of more visits to a metal, which are many where it is bright.
+pub(super) const MORE_SPREAD: f64 = 4.5;
 
 /// Reflectance that an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
 pub(super) fn edge(f0: f64, tint: f64) -> f64 {

@@ -304,3 +304,55 @@ fn another_f0_of_the_dielectric_is_that_of_the_simulation() {
         assert!(apart[apart.len() / 2] < 0.005, "{:?}", apart[apart.len() / 2]);
     }
 }
+
+/// Oracle: paths of the stack with as much absorption as a place has. Rows of bases that keep their colours know lengths of light in a slab that varies: over
+/// metals, over a diffuse base below another interface, and below the first interface alone.
+#[test]
+fn lengths_above_other_bases_are_those_of_the_simulation() {
+    let mut apart = Vec::new();
+    let layer = |base| Layer { films: vec![], surface: Surface::isotropic(Distribution::Ggx, 0.5), base };
+    let index = |n, k| Ior::constant(n, k).unwrap();
+    let coat = || plastic(true, [0.2, 0.5, 1.0]).layers.remove(0);
+    let metal = |n, k| layer(Base::Conductor { ior: index(n, k) });
+    let plain = |n| {
+        let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+        layer(Base::Dielectric { ior: index(n, 0.0), slab })
+    };
+    let diffuse = |albedo| layer(Base::Diffuse(Diffuse { albedo, sigma: 0.0 }));
+    for layers in [
+        vec![coat(), metal(0.2, 3.5)],
+        vec![coat(), metal(2.5, 3.5)],
+        vec![coat(), plain(1.6), diffuse([0.9, 0.5, 0.0])],
+        vec![coat(), diffuse([0.9, 0.5, 0.2])],
+    ] {
+        let stack = Stack { exterior: Ior::vacuum(), layers };
+        for alphas in [[0.02, 0.1], [0.3, 0.3], [0.1, 0.7]] {
+            let interface = super::base_interface(&stack).unwrap();
+            let alphas = if interface == 0 { [alphas[1]; 2] } else { alphas };
+            let family = Family::new(&stack, [alphas[0]; 2], [alphas[1]; 2], false).unwrap().below_varied_slab(true);
+            let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), SETTINGS);
+            for factor in [0.0, 0.3, 1.0, 2.0] {
+                let mut level = family.apply(&stack, alphas);
+                if let Base::Dielectric { slab, .. } = &mut level.layers[0].base {
+                    slab.thickness_um *= factor;
+                }
+                let lobes = varied.painted(alphas, &Paint::of(&level)).unwrap();
+                for theta in [0.0, 0.8, 1.3] {
+                    let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                    let (found, expected) = (lobes.row(wo).albedo_dir, albedo(&level, wo));
+                    for c in 0..3 {
+                        let off = (found[c] - expected[c]).abs();
+                        assert!(
+                            off < 0.025,
+                            "{alphas:?} {factor} {theta}: {found:?} {expected:?} {:?}",
+                            stack.layers[1]
+                        );
+                        apart.push(off);
+                    }
+                }
+            }
+        }
+    }
+    apart.sort_by(f64::total_cmp);
+    assert!(apart[apart.len() / 2] < 0.002, "{:?}", apart[apart.len() / 2]);
+}

@@ -12,7 +12,8 @@ impl Family {
         match (self.is_metallic, is_tinted, has_base) {
             (true, _, _) if self.is_tinted => 7,
             (true, false, _) => 5,
-            (true, true, _) | (false, _, false) => 6,
+            (true, true, _) => 6,
+            (false, _, false) => 6 + usize::from(self.has_lengths),
             (false, _, true) => 8,
         }
     }
@@ -50,9 +51,9 @@ impl Family {
             [x, y, z, w],
             with(row.albedo_dir, first.share),
             with(row.wide, second.share),
-            [a, b, once_wide, 0.0],
-            with(base.energy, 0.0),
-            with(base.internal, 0.0),
+            [a, b, once_wide, base.lengths[0]],
+            with(base.energy, base.lengths[1]),
+            with(base.internal, base.lengths[2]),
         ]
     }
 
@@ -78,8 +79,9 @@ impl Family {
             let albedo_dir = [facet, once_length, more_length];
             ([once[0], once[1], 0.0], [first, second], once[2], albedo_dir, [wide, dip, first_dip], base)
         } else {
-            let [a, b, once_wide, _] = part(5);
-            let base = BaseLight { energy: rgb(6), internal: rgb(7), falloff: [a, b], ..BaseLight::default() };
+            let [a, b, once_wide, once_length] = part(5);
+            let lengths = [once_length, part(6)[3], part(7)[3]];
+            let base = BaseLight { energy: rgb(6), internal: rgb(7), falloff: [a, b], lengths, ..BaseLight::default() };
             (rgb(0), [part(3)[3], part(4)[3]], once_wide, rgb(3), rgb(4), base)
         };
         let lobe = |strength, share, shift, sharpness, wide: f64| Lobe {
@@ -114,7 +116,8 @@ mod tests {
     fn parts_are_the_row() {
         let axis = SlopeAxis { least: 0.1, most: 0.4, nodes: 3 };
         for (is_metallic, is_tinted) in [(true, false), (true, true), (false, false)] {
-            let family = Family { coat: axis, base: axis, interface: 1, is_metallic, is_tinted };
+            let family =
+                Family { coat: axis, base: axis, interface: 1, is_metallic, is_tinted, has_lengths: !is_metallic };
             // Numbers that a metallic row has not are 0.
             let some = |k: f64| [k, k + 1.0, if is_metallic { 0.0 } else { k + 2.0 }];
             let lobe = |strength, shift, k: f64| Lobe {
@@ -129,7 +132,13 @@ mod tests {
                 albedo_dir: [1.0, 2.0, 3.0],
                 lobes: vec![lobe(some(4.0), 0.3, 0.5), lobe([6.0, 7.0, 8.0], 0.0, 0.75)],
                 wide: if is_metallic && !is_tinted { [9.0, 0.0, 0.0] } else { [9.0, 10.0, 11.0] },
-                base: Some(BaseLight { energy: some(12.0), internal: some(15.0), falloff: [0.25, 0.125], met: None }),
+                base: Some(BaseLight {
+                    energy: some(12.0),
+                    internal: some(15.0),
+                    falloff: [0.25, 0.125],
+                    lengths: if is_metallic { [0.0; 3] } else { [2.0, 2.5, 3.0] },
+                    met: None,
+                }),
             };
             let parts = family.to_parts(&row);
             assert_eq!(parts.len(), family.parts(true, true));

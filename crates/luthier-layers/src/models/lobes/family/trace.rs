@@ -170,8 +170,13 @@ impl Node {
         let shades = Color::ThreeWavelengths([SODIUM_D_NM; 3]);
         let color = if family.is_metallic { &shades } else { color };
         // A base that is metallic in places has two simulations.
-        let (here, below) =
-            if family.is_metallic { (of_metal(family, &plain), of_plastic(&plain)) } else { (plain, None) };
+        let (here, below) = if family.is_metallic {
+            (of_metal(family, &plain), of_plastic(&plain))
+        } else if family.has_lengths {
+            (clear(&plain), None)
+        } else {
+            (plain, None)
+        };
         let spreads = Family::spreads(alphas);
         let cells = spreads.map(|spread| Cells::new(index, spread));
         let (paths, paths_below) =
