@@ -385,12 +385,16 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         let turns = [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent];
         let mut varied = material.maps.iter().map(|map| map.slot).chain(material.live.iter().map(|live| live.slot));
         let is_turned = varied.any(|slot| turns.contains(&slot));
-        let is_anisotropic = !facts.is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned);
+        // Lobes of a family are stretched by all interfaces, of which the model reads the first alone.
+        let is_family = rows.is_some_and(|rows| rows.family().is_some());
+        let below = if is_family { material.layers.as_slice() } else { &[] };
+        let is_stretched = std::iter::once(layer).chain(below).any(|layer| layer.alpha_xy[0] != layer.alpha_xy[1]);
+        let is_anisotropic = !facts.is_isotropic && (is_stretched || is_turned);
         if is_anisotropic {
             names.insert(Feature::Anisotropic);
         }
         // Rows have axes, or shapes of a family are stretched along some.
-        if rows.is_some_and(|rows| rows.axes.is_some() || is_anisotropic && rows.family().is_some()) {
+        if rows.is_some_and(|rows| rows.axes.is_some() || is_anisotropic && is_family) {
             names.insert(Feature::LobesAxes);
         }
     }

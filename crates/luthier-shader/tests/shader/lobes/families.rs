@@ -426,6 +426,21 @@ fn rows_of_a_family_are_those_of_the_formulas() {
     }
 }
 
+/// An anisotropic base stretches lobes, where no map turns it and the first interface is isotropic.
+#[test]
+fn an_anisotropic_base_alone_stretches_lobes() {
+    let family = family(1, false, NODES);
+    let (layout, _) = rows(family);
+    let mut given = material(family);
+    let text = |given: &MaterialEntry| {
+        let materials = std::slice::from_ref(given);
+        emit(&MaterialSet::new(materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap()
+    };
+    assert!(!text(&given).contains("luthier_family_stretched"));
+    given.layers[1].alpha_xy = [0.9, 0.3];
+    assert!(text(&given).contains("luthier_family_stretched"));
+}
+
 /// Drawn directions at places of a family: the mean of their weights is the integral of the light by a midpoint rule, and densities sum to at most 1.
 #[test]
 fn directions_of_a_family_are_drawn_as_their_density_says() {
