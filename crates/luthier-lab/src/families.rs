@@ -132,7 +132,7 @@ fn place(group: Group, family: Family, number: u64) -> Place {
     }
     let level = family.apply(&group.stack(tint), slopes);
     let plain = Paint::of(&level);
-    let mix = Mix { metal: color, tint: [1.0; 3], matt: color, metallic };
+    let mix = Mix { metal: color, tint: [1.0; 3], dielectric: [0.04; 3], matt: color, metallic };
     let paint = if group.is_metallic() { plain.mixed(mix) } else { plain };
     let stack = match group {
         Group::TwoCoats | Group::Copper => level,

@@ -146,7 +146,7 @@ impl Material {
     /// Whether a film lies on a base whose maps give each place an F0: only `lobes` shows it.
     pub fn has_film_over_maps(&self) -> bool {
         let layers = self.layers.iter().zip(&self.stack.layers);
-        layers.into_iter().any(|(extras, layer)| extras.metallic.is_some() && !layer.films.is_empty())
+        layers.into_iter().any(|(extras, layer)| extras.varies_f0() && !layer.films.is_empty())
     }
 
     /// Its stack where a weight leaves it bare: without its first layer, or without the film on that.
@@ -227,8 +227,7 @@ impl Material {
             [MapSlot::Alpha, MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent].iter().any(|slot| layer.varies(*slot))
         };
         let is_turned = layers.iter().any(Layer::is_anisotropic);
-        let is_asked = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i]))
-            || self.layers[interface].metallic.is_some()
+        let has_own_slopes = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i]))
             || is_turned && self.layers[0].varies(MapSlot::Roughness);
         let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i]));
         // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
@@ -241,15 +240,19 @@ impl Material {
             let films = if number == 0 && interface == 0 { 1 } else { 0 };
             is_tinted || layer.films.len() > films || layer.films.iter().any(Film::varies)
         };
-        let has_film = if self.layers[interface].metallic.is_some() {
+        // A dielectric whose F0 varies is such a base without metal.
+        let is_metallic = self.layers[interface].varies_f0();
+        let varies_slopes = has_own_slopes || self.layers[0].varies(MapSlot::Roughness);
+        // Rows over the thickness of a slab have neither other slopes nor azimuths.
+        let is_asked = has_own_slopes || is_metallic || self.layers[0].varies_slab() && (is_turned || varies_slopes);
+        let has_film = if is_metallic {
             layers.iter().enumerate().any(has_color)
         } else {
             layers[0].films.first().is_some_and(Film::varies)
         };
-        let is_metallic = self.layers[interface].metallic.is_some();
         let first = &self.layers[0];
-        let has_slab = first.varies_slab() && !is_metallic;
-        if !is_asked || is_turned_between || has_film || has_slab || self.effects.patina.is_some() {
+        let has_lengths = first.varies_slab() && !is_metallic;
+        if !is_asked || is_turned_between || has_film || self.effects.patina.is_some() {
             return None;
         }
         let mut of_surface =
@@ -276,7 +279,7 @@ impl Material {
             })
         };
         let is_tinted = self.layers[interface].metallic.is_some_and(|metallic| metallic.f82_tint != [1.0; 3]);
-        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted })
+        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted, has_lengths })
     }
 
     /// The re-radiation of its base, if that is fluorescent.
@@ -330,7 +333,7 @@ pub struct LayerExtras {
     pub maps: Maps,
     /// Numbers that a program sets at run time.
     pub live: Live,
-    /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
+    /// Base colour and metal of a `metallic-roughness` surface, or F0 of a metal, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
     /// Smallest and largest texel of the maps of slope parameters.
     pub texels: TexelRanges,
@@ -390,6 +393,8 @@ pub struct SlopeRanges {
     pub is_metallic: bool,
     /// Whether that metal has an edge tint.
     pub is_tinted: bool,
+    /// Whether the first slab varies above another base.
+    pub has_lengths: bool,
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.
@@ -401,6 +406,10 @@ pub struct Metallic {
     pub metallic: f64,
     /// Edge tint of the metal, RGB; 1 is none.
     pub f82_tint: Rgb,
+    /// F0 of the dielectric, RGB.
+    pub dielectric: Rgb,
+    /// Whether the layer is a `conductor`: a metal everywhere, whose base colour is its `f0`.
+    pub is_metal: bool,
 }
 
 /// Pictures that modulate a layer.
@@ -432,6 +441,8 @@ pub struct Maps {
     pub base_color: Option<PictureRef>,
     /// Multiplies how metallic it is.
     pub metallic: Option<PictureRef>,
+    /// Multiplies the F0 of an interface: of a metal, or of the dielectric above a diffuse base.
+    pub f0: Option<PictureRef>,
     /// Normals of the inner boundary of the film or slab.
     pub lean: Option<PictureRef>,
 }
@@ -453,7 +464,7 @@ impl NamedMap<'_> {
         match self.slot {
             MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean => TexelUse::Normal,
             MapSlot::Tangent => TexelUse::Direction,
-            MapSlot::Albedo | MapSlot::BaseColor | MapSlot::Absorption => TexelUse::Color,
+            MapSlot::Albedo | MapSlot::BaseColor | MapSlot::F0 | MapSlot::Absorption => TexelUse::Color,
             _ => TexelUse::Number,
         }
     }
@@ -476,6 +487,7 @@ impl Maps {
             ("albedo", MapSlot::Albedo, &self.albedo),
             ("base_color", MapSlot::BaseColor, &self.base_color),
             ("metallic", MapSlot::Metallic, &self.metallic),
+            ("f0", MapSlot::F0, &self.f0),
             ("lean", MapSlot::Lean, &self.lean),
         ]
         .into_iter()
@@ -550,6 +562,7 @@ impl LayerExtras {
             albedo,
             base_color,
             metallic,
+            f0,
             lean,
         } = &mut self.maps;
         let map = match slot {
@@ -566,11 +579,17 @@ impl LayerExtras {
             MapSlot::Albedo => albedo,
             MapSlot::BaseColor => base_color,
             MapSlot::Metallic => metallic,
+            MapSlot::F0 => f0,
             MapSlot::Lean => lean,
             MapSlot::Patina | MapSlot::FlakeNormal => return false,
         };
         let had_map = map.take().is_some();
         self.live.remove(slot) || had_map
+    }
+
+    /// Whether maps give each place of its interface an F0.
+    pub fn varies_f0(&self) -> bool {
+        self.metallic.is_some() || self.maps.f0.is_some()
     }
 
     /// Whether maps or a program vary the optical depth of the slab.

@@ -10,7 +10,7 @@ use luthier_model::ShadingModel;
 const HEADER: [&str; 5] = ["# Source: ", "# Means: ", "# Shown: ", "# Approximated: ", "# Dropped: "];
 
 /// Files, and those of them without a texture, of which there may be few: textures are what is judged.
-const FILES: usize = 24;
+const FILES: usize = 25;
 const PLAIN: usize = 6;
 
 /// Bytes of the folder, with its pictures.

@@ -78,7 +78,8 @@ fn varying(material: &Material) -> Option<Varying> {
     let family = material.family().and_then(|ranges| {
         Some(
             Family::new(&shown(&material.stack), ranges.coat, ranges.base, ranges.is_metallic)?
-                .tinted(ranges.is_tinted),
+                .tinted(ranges.is_tinted)
+                .below_varied_slab(ranges.has_lengths),
         )
     });
     if let Some(family) = family {
@@ -401,6 +402,7 @@ fn family_record(family: Family) -> FamilyRecord {
         is_tinted: family.is_tinted,
         has_tail: family.has_tail,
         sent_back: family.sent_back,
+        has_lengths: family.has_lengths,
     }
 }
 
@@ -472,7 +474,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 10 } else { 6 }
+        if is_family(self.varying) { 11 } else { 7 }
     }
 
     fn inputs(&self) -> Value {
@@ -524,10 +526,13 @@ fn numbers(varying: Varying) -> Value {
     match varying {
         Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
         Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }) => json!([diffuse_albedo, base_alpha, tarnish]),
-        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted, .. }) => {
+        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted, has_lengths, .. }) => {
             let axis = |SlopeAxis { least, most, nodes }| json!([least, most, nodes]);
             if is_tinted {
                 return json!([axis(coat), axis(base), interface, is_metallic, "edge tint"]);
+            }
+            if has_lengths {
+                return json!([axis(coat), axis(base), interface, is_metallic, "lengths"]);
             }
             json!([axis(coat), axis(base), interface, is_metallic])
         }

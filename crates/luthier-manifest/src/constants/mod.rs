@@ -167,6 +167,9 @@ pub struct FamilyRecord {
     /// Of a base that is metallic in places, the share of the light of a diffuse base that layers send back to it: at slope parameters of 0, and what it grows by over a unit of
     /// the root of that of the coat, and of that of the base. Families of bakes from before have it in rows, and are refused.
     pub sent_back: [f64; 3],
+    /// Whether the optical depth of the first slab varies above a base that keeps its colours: rows have lengths of light in it. Absent where not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub has_lengths: bool,
 }
 
 /// Nodes over a range of slope parameters, at equal steps of the root.

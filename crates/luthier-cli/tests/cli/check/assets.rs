@@ -68,7 +68,7 @@ fn every_material_keeps_lobes() {
     let count = |has: &dyn Fn(&Asset) -> bool| kept.iter().filter(|asset| has(asset)).count();
     writeln!(
         page,
-        "\n{all} materials were tried. {} keep `lobes` with all that their files have, {} of them with textures; {} are out. Of those that keep it, {} approximate nothing, {} drop nothing, \
+        "\n{all} materials were tried. {} keep `lobes` with all that their files have, {} of them with textures; out: {}. Of those that keep it, {} approximate nothing, {} drop nothing, \
          and {} do neither.\n",
         kept.len(),
         count(&Asset::has_textures),

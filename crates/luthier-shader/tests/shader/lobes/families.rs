@@ -29,9 +29,10 @@ pub(super) const FIRST: u32 = 1;
 /// Ranges of slope parameters of coat and base.
 const RANGES: [[f64; 2]; 2] = [[0.01, 0.25], [0.04, 0.64]];
 
-/// Slope parameters of the material, and its colours: F0 of the base, albedo below it, optical depth of the coat's slab.
+/// Slope parameters of the material, and its colours: F0 of the dielectric, and another one, albedo below it, optical depth of the coat's slab.
 const ALPHAS: [f64; 2] = [0.3, 0.7];
-const F0: Rgb = [0.05, 0.3, 0.6];
+const F0: Rgb = [0.04; 3];
+const OTHER_F0: Rgb = [0.05, 0.3, 0.6];
 const ALBEDO: Rgb = [0.7, 0.4, 0.2];
 const DEPTH: Rgb = [0.1, 0.3, 0.6];
 
@@ -61,13 +62,14 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
             5 => [if is_coated { 0.94 - 0.02 * k } else { 0.01 + 0.02 * k }, 0.02 * c, 0.8 + 0.1 * k, 0.9 - 0.1 * c],
             6 if !is_metallic => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.8],
             6 => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.2 + 0.1 * k],
-            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 0.0],
+            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 2.0 + 0.2 * c],
             // Lengths, or the cosines at which facets are seen.
             7 => [1.4, 0.5 + 0.2 * c, if is_coated { 2.5 } else { 0.7 }, if is_coated { 3.0 + k } else { 0.1 * k }],
-            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 0.0],
+            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 2.2 + 0.1 * k],
             // What an edge tint takes.
             8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.0, 0.0],
-            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 0.0],
+            9 if !is_metallic => [1.5, 0.0, 0.0, 0.0],
+            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 1.5],
             // Shares over their estimates, or the light of a base of other materials.
             1 => [0.9 + 0.05 * k, 0.8 + 0.1 * c, 0.3 - 0.2 * k, 0.1],
             // Those of other materials, before the first.
@@ -96,7 +98,8 @@ pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Fa
     });
     let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
     let sent_back = if is_metallic { SENT_BACK } else { [0.0; 3] };
-    Family { coat, base, interface, is_metallic, is_tinted: false, has_tail: false, sent_back }
+    let (is_tinted, has_lengths, has_tail) = (false, false, false);
+    Family { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back }
 }
 
 /// 1 over the tail of the lobes of a family.
@@ -107,7 +110,7 @@ fn inverse_tail(family: Family) -> f64 {
 /// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
 pub(super) fn material(family: Family) -> MaterialEntry {
     let given = set("lobes").swap_remove(0);
-    let Family { coat, base, interface, is_metallic, is_tinted, has_tail, sent_back } = family;
+    let Family { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back } = family;
     let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
     let record = FamilyRecord {
         coat: (interface > 0).then(|| axis(coat)),
@@ -117,6 +120,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         is_tinted,
         has_tail,
         sent_back,
+        has_lengths,
     };
     let first = LayerRecord {
         alpha: ALPHAS[0],
@@ -204,6 +208,16 @@ fn filmed(mut given: MaterialEntry) -> MaterialEntry {
     given
 }
 
+/// A material whose dielectric has another F0, with or without a map of it.
+fn with_f0(mut given: MaterialEntry, has_map: bool) -> MaterialEntry {
+    let interface = given.layers.len() - 2;
+    (given.layers[interface].f0, given.layers[interface].ior_n) = (Some(OTHER_F0), OTHER_F0);
+    if has_map {
+        given.maps.push(MapEntry { slot: MapSlot::F0, layer: Some(interface as u32), ..given.maps[0].clone() });
+    }
+    given
+}
+
 /// What the film of the tests reflects.
 const UNDER_FILM: Rgb = [0.3, 0.15, 0.55];
 
@@ -263,14 +277,25 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         // And here a film lies on the base.
         (family(0, true, [1, 3]), &surface[1..], vec![]),
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(0, true, [1, 3]))]),
+        // From here on the dielectric has another F0, by the file, and then at each place.
+        (family(0, true, [1, 3]), &surface[1..], vec![]),
+        (family(1, true, NODES), &surface[1..], vec![material(family(0, true, [1, 3]))]),
+        (family(0, true, [1, 3]).tinted(true), &surface[1..], vec![filmed(material(family(0, true, [1, 3])))]),
+        (family(1, true, NODES), &surface[1..], vec![plain.clone()]),
+        // And a base that keeps its colours lies below a slab that varies.
+        (family(1, false, NODES).below_varied_slab(true), &surface[..], vec![plain.clone()]),
+        (family(1, false, NODES).below_varied_slab(true), &surface[1..], vec![material(family(1, true, NODES))]),
     ]
     .into_iter()
     .enumerate()
     {
-        let (is_brushed, is_filmed) = ((11..14).contains(&number), number >= 14);
+        let (is_brushed, is_filmed, is_other) =
+            ((11..14).contains(&number), (14..16).contains(&number), (16..20).contains(&number));
+        let nominal = if is_other { OTHER_F0 } else { F0 };
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
             (_, true) => filmed(material(family)),
+            _ if is_other => with_f0(material(family), number >= 16),
             _ => material(family),
         };
         let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
@@ -285,7 +310,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let mut reflected = Image::zeros(3, 3, 4);
         let has_facets = !family.is_coated() && family.is_metallic;
         if has_facets {
-            reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
+            reflected.data = [nominal[0], nominal[1], nominal[2], 0.0].map(|x| x as f32).repeat(9);
         }
         let film = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Film).unwrap();
         let [width, height] = film.layout.size();
@@ -353,7 +378,13 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             }
             let wide = color.map(f64::from);
             let tint = if family.is_tinted { TINT } else { [1.0; 3] };
-            let mix = Mix { metal: wide, tint, matt: wide, metallic: metal.into() };
+            let mut dielectric = nominal;
+            if is_other && number >= 16 {
+                let f0 = [share(0.41), 0.9 * share(0.47), 0.0];
+                dielectric = f0.map(f64::from);
+                place = machine.call("luthier_f0_place", vec![place, Value::U(0), vector(&f0)]);
+            }
+            let mix = Mix { metal: wide, tint, dielectric, matt: wide, metallic: metal.into() };
             if family.is_metallic {
                 let arguments = vec![place, Value::U(0), vector(&color), Value::F(metal)];
                 place = machine.call("luthier_metallic_place", arguments);
@@ -378,7 +409,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 frame.stretch = family.stretch(slopes);
             }
             let row = row(&layout, &image, family, alphas, eye.z);
-            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo: wide, depth };
+            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, dielectric, albedo: wide, depth };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
             let film = is_filmed.then(|| FilmLight::new(&row, |_| [UNDER_FILM; 2]));
             let here = family.row_in(&row, alphas, (&frame, eye.z), &paint, film.as_ref());
@@ -388,7 +419,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let cos_theta_d = eye.dot((light + eye).normalize());
             let expected = [0, 1, 2].map(|c: usize| {
                 let kept = mix.metallic * F82 { f0: wide[c], tint: tint[c] }.dip() * edge_dip(cos_theta_d);
-                let plain = (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0);
+                let plain = (dielectric[c] + mix.metallic * (wide[c] - dielectric[c]) - kept).max(0.0);
                 expected[c] + facets * if is_filmed { UNDER_FILM[c] } else { plain }
             });
             let arguments = vec![place, Value::U(0), vector(&wo.map(|w| w as f32))];
@@ -411,6 +442,21 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         }
         assert!(brightest > 0.1, "{brightest}");
     }
+}
+
+/// An anisotropic base stretches lobes, where no map turns it and the first interface is isotropic.
+#[test]
+fn an_anisotropic_base_alone_stretches_lobes() {
+    let family = family(1, false, NODES);
+    let (layout, _) = rows(family);
+    let mut given = material(family);
+    let text = |given: &MaterialEntry| {
+        let materials = std::slice::from_ref(given);
+        emit(&MaterialSet::new(materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap()
+    };
+    assert!(!text(&given).contains("luthier_family_stretched"));
+    given.layers[1].alpha_xy = [0.9, 0.3];
+    assert!(text(&given).contains("luthier_family_stretched"));
 }
 
 /// Drawn directions at places of a family: the mean of their weights is the integral of the light by a midpoint rule, and densities sum to at most 1.

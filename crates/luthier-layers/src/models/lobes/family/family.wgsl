@@ -23,6 +23,25 @@
         }
     }
 
+    //? lobes_metallic, dielectric_f0
+    /// Share of the light of a diffuse base that is sent back to it below a coat and a dielectric of an F0: `sent_back` is it at an F0 of 0.04.
+    fn luthier_family_sent_back(sent_back: f32, f0: vec3<f32>) -> vec3<f32> {
+        let known = 1.0 - LUTHIER_PLASTIC_PASSED;
+        let kept = saturate((sent_back - known) / (LUTHIER_PLASTIC_PASSED - (1.0 - sent_back) * known));
+        let average = f0 + (1.0 - f0) / 21.0;
+        let passed = (1.0 - average) / max(1.0 - average * kept, vec3<f32>(0.02));
+        return 1.0 - passed * ((1.0 - known * kept) / LUTHIER_PLASTIC_PASSED) * (1.0 - sent_back);
+    }
+
+    //? lobes_metallic, film_f0|dielectric_f0
+    /// Light of several facets of a dielectric at an F0, of which `known` is that at 0.04: that of a metal, and light that crossed some of them. `steep` is the mean
+    /// of Schlick's (1 - cos)^5 at the facets that the eye sees.
+    fn luthier_family_several(known: f32, energies: vec3<f32>, steep: f32, f0: vec3<f32>) -> vec3<f32> {
+        let excess = (known - luthier_family_more(energies, vec3<f32>(0.04)).x) / ((0.04 + 0.96 * steep) * 0.9406040);
+        let crossed = (f0 + (1.0 - f0) * steep) * (1.0 - f0) * sqrt(max(1.0 - f0, vec3<f32>(0.0)));
+        return max(luthier_family_more(energies, f0) + excess * crossed, vec3<f32>(0.0));
+    }
+
     //? film_f0
     {
         /// Cosines at which the mean of a reflectance over all directions is taken, by Gauss.
@@ -297,13 +316,19 @@
             var metal = vec3<f32>(0.0);
             var metallic = 0.0;
             var passed = vec3<f32>(1.0);
+            //? dielectric_f0
+            let dielectric = select(luthier_materials[base_word + $word_ior_n].xyz, place.dielectric_f0, place.dielectric_f0.x >= 0.0);
             //? own_f0
             if place.metal.w >= 0.0 {
                 metal = place.metal.rgb;
                 metallic = place.metal.w;
-                // The dielectric has an F0 of 0.04: its diffuse base, of the albedo diffuse / passed, shows the colour of the place (Saunderson 1942).
+                // The diffuse base, of the albedo diffuse / passed, shows the colour of the place (Saunderson 1942).
                 diffuse = place.matt;
-                passed = LUTHIER_PLASTIC_PASSED + diffuse * (1.0 - LUTHIER_PLASTIC_PASSED);
+                //? dielectric_f0
+                let entered = (1.0 - dielectric) * (20.0 / 21.0);
+                //? else
+                let entered = LUTHIER_PLASTIC_PASSED;
+                passed = entered + diffuse * (1.0 - entered);
             }
             // Rows have the light of a diffuse base of the albedo 0.8.
             let back = prepared.medium.y + tilt_word.w * roots.x + prepared.medium.w * roots.y;
@@ -319,37 +344,63 @@
             }
             //? else
             let of_one = luthier_family_once(of_once.xy, vec4<f32>(metal, 0.04));
+            //? dielectric_f0
+            once = mix(luthier_family_once(of_once.xy, vec4<f32>(dielectric, 0.0)).rgb, of_one.rgb, metallic);
+            //? else
             once = mix(vec3<f32>(of_one.w), of_one.rgb, metallic);
             var several = vec3<f32>(of_once.x);
             var seen_metal = metal;
             //? own_edge
             metal = max(metal - place.metal_edge * select(luthier_family_trapped_dip(held, wo.z), of_edge.x, base_layer == 0u), vec3<f32>(0.0));
-            //? film_f0
+            //? film_f0|dielectric_f0
             {
+                // Light of one facet of the dielectric over that of a mirror, and its F0 for light from everywhere.
                 let all = of_facet.x + of_once.y;
+                //? dielectric_f0
+                {
+                    var seen_plastic = (of_facet.x + of_once.y * dielectric) / max(all, 0.02);
+                    var mean_plastic = dielectric;
+                    var is_other = base_layer == 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0;
+                }
+                //? else
+                {
+                    var seen_plastic = vec3<f32>(0.04);
+                    var mean_plastic = vec3<f32>(0.04);
+                    var is_other = false;
+                }
+                //? film_f0
                 let is_filmed = base_layer == 0u && luthier_is_film_over(prepared.coat);
-                var seen_plastic = vec3<f32>(0.04);
+                //? film_f0
                 if is_filmed {
+                    is_other = true;
                     // Facets are seen at a cosine in the mean, and as far to both sides of it.
                     let near = clamp(of_lengths.z - of_lengths.w, 0.0, 1.0);
                     let far = clamp(of_lengths.z + of_lengths.w, 0.0, 1.0);
                     seen_plastic = 0.5 * (luthier_film_over_plastic(prepared.coat, near) + luthier_film_over_plastic(prepared.coat, far));
-                    let mean_plastic = luthier_film_mean(luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.y));
+                    mean_plastic = luthier_film_mean(luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_plastic(prepared.coat, LUTHIER_MEAN_COSINES.y));
                     if metallic > 0.0 {
                         seen_metal = 0.5 * (luthier_film_over_metal(prepared.coat, near) + luthier_film_over_metal(prepared.coat, far));
                         metal = luthier_film_mean(luthier_film_over_metal(prepared.coat, LUTHIER_MEAN_COSINES.x), luthier_film_over_metal(prepared.coat, LUTHIER_MEAN_COSINES.y));
                     }
-                    // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
-                    let added = luthier_family_more(of_more.rgb, mean_plastic) - luthier_family_more(of_more.rgb, vec3<f32>(0.04));
-                    several = max(of_once.x + added, vec3<f32>(0.0));
+                }
+                if is_other {
+                    several = luthier_family_several(of_once.x, of_more.rgb, of_facet.x / max(all, 0.02), mean_plastic);
                     // What facets do not reflect enters, seen from the eye as well as in the mean.
-                    let entering = max(1.0 - all * seen_plastic - several, vec3<f32>(0.0)) / max(1.0 - (of_facet.x + 0.04 * of_once.y) - of_once.x, 0.02);
                     let diffused = mean_plastic + (1.0 - mean_plastic) / 21.0;
                     let staying = max(1.0 - all * diffused - several, vec3<f32>(0.0)) / max(1.0 - all * (1.0 - LUTHIER_PLASTIC_PASSED) - of_once.x, 0.02);
-                    light *= entering * staying;
-                    sent_back = 1.0 - staying * (1.0 - sent_back);
+                    let leaving_base = staying * (1.0 - sent_back);
+                    light = max(1.0 - all * seen_plastic - several, vec3<f32>(0.0)) * leaving_base;
+                    sent_back = 1.0 - leaving_base;
+                }
+                //? dielectric_f0
+                if base_layer > 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0 {
+                    let reflected = of_facet.y + luthier_family_once(of_once.xy, vec4<f32>(dielectric, 0.0)).rgb + luthier_family_more(of_more.rgb, dielectric);
+                    sent_back = luthier_family_sent_back(back, dielectric);
+                    light = max(of_facet.x - reflected, vec3<f32>(0.0)) * (1.0 - sent_back);
                 }
             }
+            //? dielectric_f0
+            var again = vec3<f32>(1.0);
             //? lobes_tinted
             {
                 var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
@@ -361,9 +412,19 @@
                 sent_back *= exp(-of_lengths.y * depth);
                 once *= exp(-of_lengths.z * depth);
                 // Trapped light passes the slab again before each visit.
+                //? dielectric_f0
+                {
+                    again = exp(-of_lengths.w * depth);
+                    metal *= again;
+                }
+                //? else
                 metal *= exp(-of_lengths.w * depth);
             }
             more = metallic * luthier_family_more(of_more.rgb, metal);
+            //? dielectric_f0
+            if base_layer > 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0 {
+                more += (1.0 - metallic) * luthier_family_more(of_more.rgb, dielectric * again);
+            }
             wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
             //? lobes_lean
             met = (1.0 - metallic) * (light * diffuse / passed);
@@ -371,6 +432,9 @@
             if base_layer == 0u {
                 // Several facets of the dielectric, and one of either.
                 once = (1.0 - metallic) * several;
+                //? dielectric_f0
+                facet = of_facet.x + of_once.y * mix(dielectric, seen_metal, metallic);
+                //? else
                 facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), seen_metal, metallic);
                 //? own_edge
                 facet -= of_edge.y * metallic * place.metal_edge;
@@ -386,24 +450,45 @@
             wide = of_wide.rgb;
             falloff = of_wide.a;
             once_wide = of_facet.a;
-            //? base_color|lobes_lean
+            //? lobes_lengths
             {
-                //? lobes_lean
+                var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
+                //? place
+                depth *= place.slab_factor;
+                //? own_tints
+                depth *= own_coat.absorption_factors;
+                let of_lengths = luthier_family_part(prepared.row, beside, 7.0);
+                let visited = exp(-of_lengths.x * depth);
+                once *= visited;
+            }
+            //? base_color|lobes_lean|lobes_lengths
+            {
+                //? lobes_lean|lobes_lengths
                 let is_own = dot(painted.rgb, vec3<f32>(1.0)) > 0.0;
                 //? else
                 let is_own = place.base_color.x >= 0.0;
                 if is_own {
-                    let of_base = luthier_family_part(prepared.row, beside, 5.0).rgb;
-                    let of_internal = luthier_family_part(prepared.row, beside, 6.0).rgb;
+                    let of_base = luthier_family_part(prepared.row, beside, 5.0);
+                    let of_internal = luthier_family_part(prepared.row, beside, 6.0);
                     let simulated = max(painted.rgb, vec3<f32>(1e-6));
-                    //? lobes_lean
-                    met = of_base * max(1.0 - of_internal * painted.rgb, vec3<f32>(0.0)) * diffuse / simulated;
-                    //? base_color
+                    var own = simulated * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
+                    var other = diffuse * (1.0 - of_internal.rgb * painted.rgb);
+                    //? lobes_lengths
                     {
-                        let own = simulated * max(1.0 - of_internal * diffuse, vec3<f32>(1e-3));
-                        let other = diffuse * (1.0 - of_internal * painted.rgb);
-                        wide += max(of_base * (other / own - 1.0), -wide);
+                        let around = exp2(select(-1.5, -4.0, base_layer == 0u) * log2(1.0 + of_internal.w * depth));
+                        own = simulated * max(1.0 - of_internal.rgb * around * diffuse, vec3<f32>(1e-3));
+                        other *= exp(-of_base.w * depth);
+                        // Above a diffuse base light of more visits passes the slab as often as its light does.
+                        more *= visited * around;
                     }
+                    //? lobes_lean
+                    met = of_base.rgb * max(other, vec3<f32>(0.0)) / simulated;
+                    //? base_color|lobes_lengths
+                    wide += max(of_base.rgb * (other / own - 1.0), -wide);
+                }
+                //? lobes_lengths
+                if !is_own {
+                    more *= exp2(-4.5 * log2(1.0 + luthier_family_part(prepared.row, beside, 5.0).w * depth));
                 }
             }
         }

@@ -4,7 +4,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use super::paint::{chain, dimmed, trapped};
+use super::paint::{AROUND_SPREADS, MORE_SPREAD, chain, dimmed, trapped};
 use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES};
 use super::{Family, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
@@ -89,7 +89,9 @@ impl Family {
     ) -> Vec<Row> {
         let sent_back = internal_of(&node.rest, albedo, |energies| energies.clear);
         let dimmed = internal_of(&node.rest, albedo, |energies| energies.dimmed);
-        let around = -libm::log(ratio(dimmed[0], sent_back[0])) / DEPTH;
+        // All channels have the same share, but those in which the base is black.
+        let brightest = (0..3).max_by(|&a, &b| albedo[a].total_cmp(&albedo[b])).unwrap_or(0);
+        let around = -libm::log(ratio(dimmed[brightest], sent_back[brightest])) / DEPTH;
         let energies: Vec<[Rgb; 2]> = node.rest.iter().map(|rest| self.reflected(rest)).collect();
         let lobes = [0, 1].map(|lobe: usize| {
             let energies: Vec<Rgb> = energies.iter().map(|energies| energies[lobe]).collect();
@@ -136,7 +138,18 @@ impl Family {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
             };
-            let base = Some(BaseLight { energy, internal, falloff, met: None });
+            let mean = |energies: &Energies| {
+                let [dimmed, clear] = [energies.dimmed, energies.clear].map(|energies| energies.iter().sum::<f64>());
+                -libm::log(ratio(dimmed, clear)) / DEPTH
+            };
+            let lengths = if self.has_lengths {
+                let [once, more, base] = [&rest.reflected[0], &rest.reflected[1], &rest.base_once].map(mean);
+                let second = if albedo == [0.0; 3] { spread_length(more, MORE_SPREAD) } else { base };
+                [once, second, spread_length(around, AROUND_SPREADS[usize::from(self.is_coated())])]
+            } else {
+                [0.0; 3]
+            };
+            let base = Some(BaseLight { energy, internal, falloff, lengths, met: None });
             Row { albedo_dir, lobes: lobes.collect(), wide, base }
         });
         rows.collect()
@@ -175,6 +188,11 @@ impl Family {
         }
         0.5 * (low + high)
     }
+}
+
+/// The number g of `(1 + g depth)^-spread`, which is `exp(-length depth)` at [`DEPTH`].
+fn spread_length(length: f64, spread: f64) -> f64 {
+    (libm::exp(length * DEPTH / spread) - 1.0) / DEPTH
 }
 
 /// Steepness of an energy in the F0, from those of the least of [`SHADES`] and the greatest.

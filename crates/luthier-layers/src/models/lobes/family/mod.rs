@@ -32,7 +32,12 @@
 //! | 2 | sharpness of both lobes |
 //! | 3 | light but that of one facet of the first interface RGB, share of the light of one visit that is wide |
 //! | 4 | wide remainder RGB, a of it |
-//! | 5, 6, to recolour a diffuse base | its light RGB, share of it that is sent back to it RGB |
+//! | 5, 6, to recolour a diffuse base | its light RGB, its length; share of it that is sent back to it RGB, length of that |
+//! | 7, or 5 without a base | lengths of the light of one visit, and of more visits without a base |
+//!
+//! Lengths are 0 unless what the first slab absorbs varies ([`Family::has_lengths`]): then rows are those of a clear slab, and a slab multiplies energies by
+//! `exp(-length depth)`, but for light that is sent back and of more visits: by `(1 + length depth)^-b`, where b is 4 for the former below the first interface alone
+//! and 1.5 below another, and 4.5 for the latter.
 //!
 //! Strengths of all families are energies, not yet over the share above the horizon. The lobe of trapped light has its middle at the normal. The b of the remainder is one
 //! number of the family.
@@ -136,6 +141,8 @@ pub struct Family {
     /// Of a base that is metallic in places, the share of the light of a diffuse base that layers send back to it: at slope parameters of 0, and what it grows by over a unit of
     /// the root of that of the coat, and of that of the base. 0 before a fit.
     pub sent_back: [f64; 3],
+    /// Whether the optical depth of the first slab varies above a base that keeps its colours: rows have lengths of light in it.
+    pub has_lengths: bool,
 }
 
 impl Family {
@@ -153,7 +160,8 @@ impl Family {
             if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
         let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
         let has_tail = stack.layers[interface].surface.distribution == Distribution::Beckmann;
-        Some(Self { coat, base, interface, is_metallic, is_tinted: false, has_tail, sent_back: [0.0; 3] })
+        let (is_tinted, has_lengths) = (false, false);
+        Some(Self { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back: [0.0; 3] })
     }
 
     /// The family with an edge tint of the metal, if its base is metallic in places.
@@ -181,6 +189,12 @@ impl Family {
             (middle, if square > EXTENT_MIN * EXTENT_MIN { steep / square } else { 0.0 })
         });
         Self { sent_back: [mean - coat.0 * coat.1 - base.0 * base.1, coat.1, base.1], ..self }
+    }
+
+    /// The family with an optical depth of the first slab that varies. A base that is metallic in places has it in closed form anyway.
+    #[must_use]
+    pub fn below_varied_slab(self, has_lengths: bool) -> Self {
+        Self { has_lengths: has_lengths && !self.is_metallic, ..self }
     }
 
     /// Whether interfaces lie above the base.

@@ -119,6 +119,7 @@ mod tests {
         is_tinted: false,
         has_tail: false,
         sent_back: [0.0; 3],
+        has_lengths: false,
     };
 
     /// Oracle: by hand. An isotropic coat of .2 over a base of .1 and .3 whose tangent is turned by a quarter of a circle.

@@ -12,7 +12,9 @@ impl Family {
         match (self.is_metallic, is_tinted, has_base) {
             (true, _, _) if self.is_tinted => 6,
             (true, false, _) => 4,
-            (true, true, _) | (false, _, false) => 5,
+            (true, true, _) => 5,
+            (false, ..) if self.has_lengths => 8,
+            (false, _, false) => 5,
             (false, _, true) => 7,
         }
     }
@@ -55,8 +57,9 @@ impl Family {
             [x, y, z, w],
             with(row.albedo_dir, once_wide),
             with(row.wide, a),
-            with(base.energy, 0.0),
-            with(base.internal, 0.0),
+            with(base.energy, base.lengths[1]),
+            with(base.internal, base.lengths[2]),
+            [base.lengths[0], 0.0, 0.0, 0.0],
         ];
         shares.into_iter().chain(parts).collect()
     }
@@ -86,8 +89,8 @@ impl Family {
             let albedo_dir = [facet, once_length, more_length];
             ([once[0], once[1], 0.0], once[2], albedo_dir, [wide, dip, first_dip], base)
         } else {
-            let falloff = [part(4)[3], 0.0];
-            let base = BaseLight { energy: rgb(5), internal: rgb(6), falloff, ..BaseLight::default() };
+            let (falloff, lengths) = ([part(4)[3], 0.0], [part(7)[0], part(5)[3], part(6)[3]]);
+            let base = BaseLight { energy: rgb(5), internal: rgb(6), falloff, lengths, ..BaseLight::default() };
             (rgb(0), part(3)[3], rgb(3), rgb(4), base)
         };
         let [first_share, second_share, ..] = if self.has_tail { part(-1) } else { [1.0; 4] };
@@ -124,8 +127,16 @@ mod tests {
         let axis = SlopeAxis { least: 0.1, most: 0.4, nodes: 3 };
         for (is_metallic, is_tinted) in [(true, false), (true, true), (false, false)] {
             let has_tail = !is_tinted;
-            let family =
-                Family { coat: axis, base: axis, interface: 1, is_metallic, is_tinted, has_tail, sent_back: [0.0; 3] };
+            let family = Family {
+                coat: axis,
+                base: axis,
+                interface: 1,
+                is_metallic,
+                is_tinted,
+                has_lengths: !is_metallic,
+                has_tail,
+                sent_back: [0.0; 3],
+            };
             // Numbers that a metallic row has not are 0.
             let some = |k: f64| [k, k + 1.0, if is_metallic { 0.0 } else { k + 2.0 }];
             let lobe = |strength, shift, k: f64| Lobe {
@@ -144,6 +155,7 @@ mod tests {
                     energy: some(12.0),
                     internal: if is_metallic { [0.0, 16.0, 0.0] } else { some(15.0) },
                     falloff: [0.25, 0.0],
+                    lengths: if is_metallic { [0.0; 3] } else { [2.0, 2.5, 3.0] },
                     met: None,
                 }),
             };

@@ -2,7 +2,7 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::schlick::F82;
+use luthier_optics::schlick::{DIELECTRIC_F0, F82};
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::film::is_filmed;
@@ -125,13 +125,18 @@ fn of_mirror(stack: &Stack, tint: f64) -> Stack {
     metal
 }
 
-/// The stack without metal, over a diffuse base of [`WHITE`].
+/// The stack without metal, with the F0 that rows know over a diffuse base of [`WHITE`].
 fn of_plastic(stack: &Stack) -> Option<Stack> {
     let mut plastic = clear(stack);
-    let [.., Layer { films, .. }, Layer { base: Base::Diffuse(base), .. }] = plastic.layers.as_mut_slice() else {
+    let [.., Layer { films, base: interface, .. }, Layer { base: Base::Diffuse(base), .. }] =
+        plastic.layers.as_mut_slice()
+    else {
         return None;
     };
     films.clear();
+    if let Base::Dielectric { ior, .. } = interface {
+        *ior = ior.clone().with_f0([DIELECTRIC_F0; 3]);
+    }
     base.albedo = [WHITE; 3];
     Some(plastic)
 }
@@ -162,8 +167,13 @@ impl Node {
         let shades = Color::ThreeWavelengths([SODIUM_D_NM; 3]);
         let color = if family.is_metallic { &shades } else { color };
         // A base that is metallic in places has two simulations.
-        let (here, below) =
-            if family.is_metallic { (of_metal(family, &plain), of_plastic(&plain)) } else { (plain, None) };
+        let (here, below) = if family.is_metallic {
+            (of_metal(family, &plain), of_plastic(&plain))
+        } else if family.has_lengths {
+            (clear(&plain), None)
+        } else {
+            (plain, None)
+        };
         let spreads = Family::spreads(alphas);
         let cells = spreads.map(|spread| Cells::new(index, spread));
         let (paths, paths_below) =

@@ -36,7 +36,16 @@ fn draws_at_places_of_a_family_follow_their_density() {
     ] {
         let level = family.apply(&whole, slopes);
         let lobes = varied
-            .painted(slopes, &Paint::of(&level).mixed(Mix { metal: shade, tint: [1.0; 3], matt: shade, metallic }))
+            .painted(
+                slopes,
+                &Paint::of(&level).mixed(Mix {
+                    metal: shade,
+                    tint: [1.0; 3],
+                    dielectric: [0.04; 3],
+                    matt: shade,
+                    metallic,
+                }),
+            )
             .unwrap();
         for theta in [0.1, 0.8, 1.3] {
             let (sin, cos) = libm::sincos(theta);
