@@ -58,16 +58,22 @@
         return guess - newton / (1.0 + newton * guess);
     }
 
-    /// A direction mirrored at a visible normal of Beckmann's distribution; below the horizon for light that meets the surface again.
-    fn luthier_draw_gaussian(alpha: vec2<f32>, axis: vec2<f32>, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
+    /// A direction mirrored at a facet of Beckmann's distribution; below the horizon for light that meets the surface again.
+    fn luthier_draw_gaussian(given: LuthierFacetDraw, wo: vec3<f32>, u: vec3<f32>) -> vec3<f32> {
+        let axis = given.axis;
         let eye = vec3<f32>(luthier_in_frame(axis, wo.xy), wo.z);
-        let stretched = normalize(vec3<f32>(alpha * eye.xy, eye.z));
+        let stretched = given.eye;
         let sin_theta = sqrt(dot(stretched.xy, stretched.xy));
-        let along = luthier_draw_slope_along(vec2<f32>(stretched.z, sin_theta), u.x);
-        let across = luthier_draw_slope_across(u.y);
+        var along = 0.0;
+        if u.x < given.plain {
+            along = luthier_draw_slope_across(u.y * given.seen);
+        } else {
+            along = luthier_draw_slope_along(vec2<f32>(stretched.z, sin_theta), u.y);
+        }
+        let across = luthier_draw_slope_across(u.z);
         let azimuth = select(vec2<f32>(1.0, 0.0), stretched.xy / max(sin_theta, 1e-20), sin_theta > 1e-20);
         let slope = vec2<f32>(azimuth.x * along - azimuth.y * across, azimuth.y * along + azimuth.x * across);
-        let wh = normalize(vec3<f32>(-alpha * slope, 1.0));
+        let wh = normalize(vec3<f32>(-given.alpha * slope, 1.0));
         let wi = 2.0 * dot(wh, eye) * wh - eye;
         return vec3<f32>(axis.x * wi.x - axis.y * wi.y, axis.y * wi.x + axis.x * wi.y, wi.z);
     }

@@ -85,7 +85,9 @@ impl<'a> Prepared<'a> {
             return 0.0;
         }
         let first = self.facet.as_ref().map_or(0.0, |facet| facet.pdf_solid_angle(wi));
-        let densities = std::iter::once(first).chain(self.below.densities(&self.draws, wi)).chain([self.wide.pdf_solid_angle(wi.z)]);
+        let densities = std::iter::once(first)
+            .chain(self.below.densities(&self.draws, wi))
+            .chain([self.wide.pdf_solid_angle(wi.z)]);
         self.chances.iter().zip(densities).filter(|(chance, _)| **chance > 0.0).map(|(c, d)| c * d).sum()
     }
 
@@ -102,7 +104,7 @@ impl<'a> Prepared<'a> {
             rest -= chance;
         }
         let wi = if part == 0 {
-            let wh = self.facet.as_ref()?.sample([u, v]);
+            let wh = self.facet.as_ref()?.sample([rest / self.chances[0], u, v]);
             2.0 * wh.dot(self.wo) * wh - self.wo
         } else if part < wide {
             self.below.sample(self.draws.get(part - 1)?, [u, v])?

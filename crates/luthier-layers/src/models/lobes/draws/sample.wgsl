@@ -70,12 +70,12 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
     let of_wide = (choice - (chances.x + chances.y + chances.z)) / chances.w;
     var drawn = LuthierSample(luthier_draw_wide(given.wide, vec3<f32>(saturate(of_wide), u.yz)), 0.0, vec3<f32>(0.0), 3u);
     if choice < chances.x {
-        drawn.wi = luthier_draw_facet(prepared, u.yz);
+        drawn.wi = luthier_draw_facet(prepared, vec3<f32>(choice / chances.x, u.yz));
         drawn.part = 0u;
     }
     //? lobes_patina
     if choice > total {
-        drawn.wi = luthier_draw_facet(luthier_bare_lobes(prepared), u.yz);
+        drawn.wi = luthier_draw_facet(luthier_bare_lobes(prepared), vec3<f32>((choice - total) / max(luthier_bare_energy(prepared), 1e-6), u.yz));
         drawn.part = 0u;
     }
     //? one_lobe|two_lobes

@@ -3,43 +3,57 @@
 use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
-use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
+use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
-use super::{NM, direction, layer, metal, stack};
-use crate::models::lobes::{FitSettings, Lobes, Simulation, most_lobes};
+use super::{NM, coat, direction, layer, metal, stack};
+use crate::models::lobes::{Family, FitSettings, Lobes, Mix, Paint, Simulation, Slopes, Varied, Varying, most_lobes};
 
 const SETTINGS: FitSettings = FitSettings { rows: 10, paths: 8000, seed: 5 };
 
 /// Views, degrees from the normal.
-const VIEWS: [f64; 10] = [0.0, 15.0, 30.0, 45.0, 52.0, 60.0, 70.0, 75.0, 80.0, 85.0];
+const VIEWS: [f64; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 80.0, 85.0];
 
-const DRAWN: u32 = 1 << 14;
+const DRAWN: u32 = 1 << 13;
 
-/// Greatest weight of the draws of a view, the mean of its channels, over that of the albedo; and the share of draws without weight.
-fn greatest(lobes: &Lobes, wo: DVec3) -> (f64, f64, usize) {
+/// A limit of the largest weight over the albedo, each the mean of its channels. Facets of an index of 1.33 over black have 1.6; the aim is [`AIM`].
+const LIMIT: f64 = 1.65;
+
+const AIM: f64 = 1.5;
+
+/// Share of the views whose largest weight may be above [`AIM`].
+const BEYOND: f64 = 0.06;
+
+/// Greatest weight of the draws of a view, over the albedo.
+fn greatest(lobes: &Lobes, wo: DVec3) -> f64 {
     let prepared = lobes.prepare(wo).unwrap();
     let albedo: f64 = prepared.albedo_dir().iter().sum();
-    // A lattice (Roberts 2018), whose second number is denser at both ends.
+    // A lattice (Roberts 2018), whose second number is denser at both ends every other time.
     let steps = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
-    let (mut most, mut lost, mut part) = (0.0, 0.0, 0);
-    for i in 0..DRAWN {
+    let draws = (0..DRAWN).filter_map(|i| {
         let [choice, u, v] = steps.map(|step: f64| (0.5 + step * f64::from(i)).fract());
         let u = if i % 2 == 0 { u } else { u * u * u * (10.0 - 15.0 * u + 6.0 * u * u) };
-        match prepared.sample([choice, u, v]) {
-            Some(sample) => {
-                let weight = sample.weight.iter().sum::<f64>() / albedo;
-                if weight > most {
-                    (most, part) = (weight, sample.part);
-                }
-            }
-            None => lost += if i % 2 == 0 { 2.0 / f64::from(DRAWN) } else { 0.0 },
-        }
-    }
-    (most, lost, part)
+        prepared.sample([choice, u, v])
+    });
+    draws.map(|sample| sample.weight.iter().sum::<f64>() / albedo).fold(0.0, f64::max)
 }
 
-fn clear(index: f64, absorption_per_um: [f64; 3]) -> Base {
-    Base::Dielectric { ior: Ior::constant(index, 0.0).unwrap(), slab: Slab { thickness_um: 1.0, absorption_per_um } }
+/// Greatest weights of all views.
+fn of_views(name: &str, lobes: &Lobes) -> Vec<f64> {
+    let found: Vec<f64> = VIEWS.iter().map(|&theta| greatest(lobes, direction(theta, 0.4))).collect();
+    eprintln!("{name:36} {}", found.iter().map(|weight| format!("{weight:.2}")).collect::<Vec<_>>().join(" "));
+    found
+}
+
+fn judge(found: &[f64]) {
+    let beyond = found.iter().filter(|weight| **weight > AIM).count() as f64 / found.len() as f64;
+    let most = found.iter().copied().fold(0.0, f64::max);
+    eprintln!("{} views: {most:.3} at most, {beyond:.3} of them above {AIM}", found.len());
+    assert!(most < LIMIT && beyond < BEYOND, "{most} {beyond}");
+}
+
+fn clear(index: f64) -> Base {
+    let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.0; 3] };
+    Base::Dielectric { ior: Ior::constant(index, 0.0).unwrap(), slab }
 }
 
 fn matt(albedo: [f64; 3]) -> Layer {
@@ -50,51 +64,60 @@ fn fitted(stack: &Stack) -> Lobes {
     Simulation::new(stack, &Color::ThreeWavelengths(NM), SETTINGS).fit_fewest(most_lobes(stack), 0.03)
 }
 
-fn report(name: &str, lobes: &Lobes) -> f64 {
-    let mut worst = 0.0_f64;
-    let mut line = format!("{name:28}");
-    for theta in VIEWS {
-        let wo = direction(theta, 0.4);
-        let (most, lost, part) = greatest(lobes, wo);
-        let below = lobes.below(wo).unwrap();
-        let row = below.row();
-        let shares: Vec<String> = row.lobes.iter().map(|lobe| format!("{:.2}", lobe.share)).collect();
-        if [0.0, 45.0, 75.0, 85.0].contains(&theta) {
-            let n = lobes.frame.index;
-            let sin = libm::hypot(wo.x, wo.y);
-            let radius = 1.0 / ((wo.z * wo.z + n * n - 1.0).sqrt() + (n * n - 1.0).max(0.0).sqrt());
-            let total: f64 = row.albedo_dir.iter().sum();
-            for lobe in &row.lobes {
-                let shape = lobe.in_plane(sin);
-                let e: f64 = lobe.strength.iter().sum::<f64>() * lobe.share / total;
-                eprintln!("LOBE {name} {theta} n {n:.2} share {:.2} e {e:.2} mid {:.2} w {:.2} {:.2} t {:.2}", lobe.share, (shape.middle[0] - sin * radius) / radius, shape.width[0] / radius, shape.width[1] / radius, shape.tail);
-            }
+/// Coats of all roughnesses over black, red and white, over metals, and metals; one of them brushed.
+#[test]
+fn weights_of_materials_are_bounded() {
+    let mut found = Vec::new();
+    for alpha in [0.01, 0.1, 0.3, 0.6, 1.0] {
+        for (index, albedo) in [(1.33, [0.0; 3]), (1.5, [0.0; 3]), (1.5, [0.8, 0.1, 0.05]), (1.9, [0.9; 3])] {
+            let lobes = fitted(&stack(vec![layer(alpha, clear(index)), matt(albedo)]));
+            found.extend(of_views(&format!("{alpha} of {index} over {albedo:?}"), &lobes));
         }
-        line += &format!(" {theta}: {most:.2}@{part} l{:.0}% s{}", lost * 100.0, shares.join(","));
-        worst = worst.max(most);
+        for (base, tint) in [(0.05, 0.0), (0.2, 2.0), (0.5, 0.0)] {
+            let lobes = fitted(&stack(vec![layer(alpha, coat([tint, 0.5 * tint, 0.0])), layer(base, metal())]));
+            found.extend(of_views(&format!("{alpha} over a metal of {base}"), &lobes));
+        }
+        found.extend(of_views(&format!("metal of {alpha}"), &fitted(&stack(vec![layer(alpha, metal())]))));
     }
-    let wide = lobes.frame.wide;
-    eprintln!("{line} WIDE {:?} {:.3} max {:.3} crit {:?}", wide.falloff(), wide.integral(), (0..101).map(|i| wide.value(f64::from(i) * 0.01)).fold(0.0, f64::max) / wide.integral(), lobes.axis.critical());
-    worst
+    for alpha in [0.05, 0.2, 0.4] {
+        for albedo in [[0.0; 3], [0.5, 0.2, 0.1]] {
+            let mut rough = stack(vec![layer(alpha, clear(1.5)), matt(albedo)]);
+            rough.layers[0].surface.distribution = Distribution::Beckmann;
+            found.extend(of_views(&format!("Beckmann {alpha} over {albedo:?}"), &fitted(&rough)));
+        }
+    }
+    let mut brushed = stack(vec![layer(0.2, coat([0.0; 3])), layer(0.3, metal())]);
+    brushed.layers[1].surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.4, alpha_y: 0.15, rotation: 0.3 };
+    found.extend(of_views("brushed", &fitted(&brushed)));
+    judge(&found);
 }
 
+/// A family with and without metal, below coats and without.
 #[test]
-fn weights_of_uniform_materials_are_bounded() {
-    let mut worst = 0.0_f64;
-    for alpha in [0.01, 0.1, 0.3, 0.6, 1.0] {
-        for index in [1.33, 1.5, 1.9] {
-            for albedo in [[0.0; 3], [0.03; 3], [0.8, 0.1, 0.05], [0.9; 3]] {
-                let lobes = fitted(&stack(vec![layer(alpha, clear(index, [0.0; 3])), matt(albedo)]));
-                worst = worst.max(report(&format!("{alpha} {index} matt {albedo:?}"), &lobes));
-            }
+fn weights_at_places_of_a_family_are_bounded() {
+    let interface = Base::Dielectric {
+        ior: Ior::constant(1.5, 0.0).unwrap().with_f0([0.04; 3]),
+        slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
+    };
+    let whole = stack(vec![layer(0.3, coat([0.0; 3])), layer(0.5, interface), matt([0.5; 3])]);
+    let family = Family::new(&whole, [0.05, 0.5], [0.1, 0.8], true).unwrap();
+    let varied = Varied::with(&whole, &Color::ThreeWavelengths(NM), Some(Varying::Family(family)), SETTINGS);
+    let mut found = Vec::new();
+    let brushed = Slopes { along: [0.6, 0.2], turn: [0.6, 0.8] };
+    let places: [[Slopes; 2]; 5] = [
+        [0.05.into(), 0.1.into()],
+        [0.05.into(), 0.6.into()],
+        [0.25.into(), 0.3.into()],
+        [0.5.into(), 0.8.into()],
+        [0.2.into(), brushed],
+    ];
+    for slopes in places {
+        for (shade, metallic) in [([0.9, 0.6, 0.3], 1.0), ([0.7, 0.4, 0.2], 0.0), ([0.02; 3], 0.0), ([0.8; 3], 0.5)] {
+            let level = family.apply(&whole, slopes);
+            let mix = Mix { metal: shade, tint: [1.0; 3], matt: shade, metallic };
+            let lobes = varied.painted(slopes, &Paint::of(&level).mixed(mix)).unwrap();
+            found.extend(of_views(&format!("{:?} {shade:?} {metallic}", slopes.map(|slope| slope.along)), &lobes));
         }
-        for base in [0.05, 0.2, 0.5] {
-            for tint in [0.0, 2.0] {
-                let lobes = fitted(&stack(vec![layer(alpha, clear(1.5, [tint, 0.5 * tint, 0.0])), layer(base, metal())]));
-                worst = worst.max(report(&format!("{alpha} metal {base} {tint}"), &lobes));
-            }
-        }
-        worst = worst.max(report(&format!("{alpha} metal"), &fitted(&stack(vec![layer(alpha, metal())]))));
     }
-    eprintln!("{worst}");
+    judge(&found);
 }
