@@ -18,6 +18,9 @@ use super::{Below, Lobes};
 /// those near it, and there is next to no chance for them.
 const SPILL: f64 = 0.04;
 
+/// Factor on the energy of the first facet for its chance, about a bound on the weights of facets alone: what is drawn of all parts is then bounded alike.
+const FACETS: f64 = 1.3;
+
 /// The model as seen from a direction.
 #[derive(Debug, Clone)]
 pub struct Prepared<'a> {
@@ -51,7 +54,7 @@ impl<'a> Prepared<'a> {
         let row = below.row();
         let facet = lobes.first.as_ref().map(|first| FacetDraw::new(&first.facets, wo, first.reflectance.rgb(1.0)));
         let draws = below.draws();
-        let first = 1.3 * mean(row.first_facet()).max(0.0);
+        let first = FACETS * mean(row.first_facet()).max(0.0);
         let parts = row.lobes.iter().zip(&draws).map(|(lobe, draw)| mean(lobe.strength).max(0.0) * draw.chance);
         let draw = WideDraw::new(below.wide());
         let wide = mean(row.wide).max(0.0) * draw.chance + SPILL * first;
