@@ -68,8 +68,8 @@ impl LobeDraw {
         let of_round = round.share * widest / narrowest;
         let (cap, cost) = if of_round < own.share { (round, of_round) } else { (own, own.share) };
         let tail = shape.tail.max(TAIL_MIN);
-        let chance = cost * (1.0 + 0.47 * (1.0 - tail) * (1.0 - 0.5 * tail));
-        if chance < 1.0 && disc.radius < RADIUS_MAX {
+        let bound = cost * (1.0 + 0.47 * (1.0 - tail) * (1.0 - 0.5 * tail));
+        if bound < 1.0 && disc.radius < RADIUS_MAX {
             Self { shape, cap: Some(cap), chance: cost }
         } else {
             Self { shape, cap: None, chance: 1.0 }
