@@ -602,6 +602,7 @@ mod tests {
             interface: 1,
             is_metallic: true,
             is_tinted: false,
+            has_lengths: false,
             has_tail: false,
             sent_back: [0.625, 0.125, -0.25],
         };

@@ -114,7 +114,7 @@ fn weights_at_places_of_a_family_are_bounded() {
     for slopes in places {
         for (shade, metallic) in [([0.9, 0.6, 0.3], 1.0), ([0.7, 0.4, 0.2], 0.0), ([0.02; 3], 0.0), ([0.8; 3], 0.5)] {
             let level = family.apply(&whole, slopes);
-            let mix = Mix { metal: shade, tint: [1.0; 3], matt: shade, metallic };
+            let mix = Mix { metal: shade, tint: [1.0; 3], dielectric: [0.04; 3], matt: shade, metallic };
             let lobes = varied.painted(slopes, &Paint::of(&level).mixed(mix)).unwrap();
             found.extend(of_views(&format!("{:?} {shade:?} {metallic}", slopes.map(|slope| slope.along)), &lobes));
         }
