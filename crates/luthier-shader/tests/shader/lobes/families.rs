@@ -242,7 +242,7 @@ fn row(layout: &AtlasLayout, image: &Image, family: Family, alphas: [f64; 2], co
         mix(low, high, coat.fract())
     };
     let first = family.first_part();
-    family.of_parts(first, &(first..7).map(part).collect::<Vec<_>>(), 1.0 / inverse_tail(family))
+    family.of_parts(first, &(first..8).map(part).collect::<Vec<_>>(), 1.0 / inverse_tail(family))
 }
 
 /// Light of facets that reflect all of it, once.
