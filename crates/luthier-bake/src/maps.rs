@@ -132,6 +132,8 @@ pub fn live_numbers(material: &Material) -> Vec<LiveEntry> {
                     Base::Diffuse(base) => (base.albedo.to_vec(), from(Some(1.0)), Vec::new()),
                     _ => return,
                 },
+                // No program sets an F0.
+                MapSlot::F0 => return,
                 MapSlot::BaseColor | MapSlot::Metallic => {
                     let Some(surface) = extras.metallic else { return };
                     let is_color = slot == MapSlot::BaseColor;
@@ -162,13 +164,20 @@ pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
             Base::Diffuse(diffuse) => Some(diffuse.albedo),
             _ => None,
         };
+        let f0 = match &material.stack.layers[i].base {
+            Base::Dielectric { ior, .. } => ior.f0(),
+            _ => None,
+        };
+        let is_metal = layer.metallic.is_some_and(|surface| surface.is_metal);
         maps.extend(layer.maps.named().map(|map| MaterialMap {
-            slot: map.slot,
+            // The F0 of a metal is its base colour.
+            slot: if is_metal && map.slot == MapSlot::F0 { MapSlot::BaseColor } else { map.slot },
             layer: Some(i as u32),
             source: MapSource::Picture(map.picture.clone(), map.texels()),
             factor: match map.slot {
                 MapSlot::Albedo => albedo,
-                MapSlot::BaseColor => layer.metallic.map(|surface| surface.base_color),
+                MapSlot::F0 if !is_metal => f0,
+                MapSlot::BaseColor | MapSlot::F0 => layer.metallic.map(|surface| surface.base_color),
                 MapSlot::Metallic => layer.metallic.map(|surface| [surface.metallic; 3]),
                 _ => None,
             },

@@ -151,6 +151,7 @@ impl Part {
         let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
         for (record, extras) in records.iter_mut().zip(extras) {
             record.metal_f82_tint = extras.metallic.and_then(|metal| tint(metal.f82_tint));
+            record.is_metal = extras.metallic.is_some_and(|metal| metal.is_metal);
         }
         // Other models show the base's colour under white light, as an albedo.
         if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {

@@ -33,6 +33,8 @@ pub(crate) struct Parts {
     pub(crate) lower_reflectance: LowerReflectance,
     pub(crate) path: PathParts,
     pub(crate) color: Color,
+    /// Whether reflectances that are as cheap as a read have no rows: in the model `lobes`, whose other functions are rows.
+    pub(crate) computes: bool,
 }
 
 impl Parts {
@@ -46,14 +48,17 @@ impl Parts {
             lower_reflectance: bake.lower_reflectance.filter(|_| model.is_path()).unwrap_or_default(),
             path,
             color: material.color(),
+            computes: model.is_fitted(),
         }
     }
 
     /// Writes the choices, and the curve of an approximate reflectance, into the record of an interface.
     fn write(&self, interface: &Interface, record: &mut LayerRecord) {
-        (record.masking, record.reflectance) = (self.masking, self.reflectance);
+        let is_computed = self.computes && (record.f0.is_some() || has_one_index(interface));
+        (record.masking, record.reflectance) =
+            (self.masking, if is_computed { Reflectance::Exact } else { self.reflectance });
         record.internal_reflection = self.path.internal_reflection;
-        let curves = match self.reflectance {
+        let curves = match record.reflectance {
             Reflectance::Table | Reflectance::Exact => return,
             Reflectance::Approximate => interface.sampled(&self.color).schlick(),
             Reflectance::Lazanyi => interface.sampled(&self.color).lazanyi(),
@@ -64,6 +69,16 @@ impl Parts {
             exponent: curves.map(|curve| curve.exponent),
         });
     }
+}
+
+/// Whether an interface without films is one of transparent media with the same relative index at all wavelengths.
+fn has_one_index(interface: &Interface) -> bool {
+    let indices = Color::Spectral.nodes().into_iter().map(|node| {
+        let here = interface.at(node.wavelength_nm, 0);
+        here.below / here.above
+    });
+    let indices: Vec<Complex64> = indices.collect();
+    interface.films.is_empty() && indices.iter().all(|index| index.im == 0.0 && *index == indices[0])
 }
 
 /// An edge tint, if it is one.

@@ -52,7 +52,12 @@ impl PageLive {
                 MapSlot::Thickness => (4 * layer + 2, None),
                 MapSlot::Tangent => (4 * layer + 3, None),
                 MapSlot::Absorption => (4 * layer + 4, None),
-                MapSlot::Normal | MapSlot::Bumps | MapSlot::Lean | MapSlot::FlakeNormal | MapSlot::Patina => continue,
+                MapSlot::Normal
+                | MapSlot::Bumps
+                | MapSlot::Lean
+                | MapSlot::FlakeNormal
+                | MapSlot::Patina
+                | MapSlot::F0 => continue,
             };
             found.set.extend(counts);
             for (part, value) in values(live).into_iter().enumerate() {

@@ -13,7 +13,7 @@ pub(crate) const MAP_WORDS: usize = 10;
 const TEXELS_MAX: usize = 1 << 22;
 
 /// Words of each layer that has maps of its own, behind those.
-const OWN_WORDS: usize = 9;
+const OWN_WORDS: usize = 10;
 
 impl Scene {
     /// The texel of a live number: of its value, or of the number of the file where a place does not have that by itself.
@@ -73,6 +73,14 @@ impl Scene {
             if let (Some(header), Some([r, g, b])) = (header, self.live_texel(material, live)) {
                 *header = [(behind + texels.len()) as u32, 1, 1, 0];
                 texels.push([r, g, b, 1.0].map(f32::to_bits));
+            }
+        }
+        // A map of the F0 of a conductor says that the surface is a metal everywhere.
+        if let Some(layer) = entry.layers.iter().position(|layer| layer.is_metal) {
+            let number = MAP_WORDS + OWN_WORDS * layer + own_word(MapSlot::Metallic);
+            if let Some(header) = headers.get_mut(number).filter(|header| header[1] == 0) {
+                *header = [(behind + texels.len()) as u32, 1, 1, 0];
+                texels.push([1.0_f32; 4].map(f32::to_bits));
             }
         }
         // A map of metal alone leaves the base colour to the file, where the albedo of the base is that of a brighter one.
@@ -162,7 +170,14 @@ impl Scene {
         let mut calls: Vec<String> = calls.collect();
         if self.interface.calls("luthier_metallic_place") {
             calls.push("surface = shading_metallic(surface, material, maps.uv);".to_owned());
-            return (functions + include_str!("wgsl/surface_metallic.wgsl"), calls);
+            let own_f0 = if self.interface.calls("luthier_f0_place") {
+                "let f0s = shading_own(material, count - 2u, 9u);\n    if f0s.y > 0u {\n        \
+                 place = luthier_f0_place(place, material, shading_bilinear(f0s, uv).xyz);\n    }"
+            } else {
+                ""
+            };
+            let metallic = include_str!("wgsl/surface_metallic.wgsl").replace("$own_f0", own_f0);
+            return (functions + &metallic, calls);
         }
         (functions, calls)
     }
@@ -265,7 +280,7 @@ fn texel_of(live: &LiveValue) -> [f32; 3] {
             [0.5 + 0.5 * (x * x - y * y) / length_sq, 0.5 + x * y / length_sq, 0.0]
         }
         MapSlot::Roughness => [x.max(0.0).sqrt(); 3],
-        MapSlot::Absorption | MapSlot::Albedo | MapSlot::BaseColor => [x, y, z],
+        MapSlot::Absorption | MapSlot::Albedo | MapSlot::BaseColor | MapSlot::F0 => [x, y, z],
         _ => [x; 3],
     }
 }
@@ -297,7 +312,8 @@ fn slot_word(slot: MapSlot) -> usize {
         | MapSlot::Tangent
         | MapSlot::Absorption
         | MapSlot::BaseColor
-        | MapSlot::Metallic => usize::MAX,
+        | MapSlot::Metallic
+        | MapSlot::F0 => usize::MAX,
     }
 }
 
@@ -312,6 +328,7 @@ fn own_word(slot: MapSlot) -> usize {
         MapSlot::BaseColor => 6,
         MapSlot::Metallic => 7,
         MapSlot::Absorption => 8,
+        MapSlot::F0 => 9,
         _ => 5,
     }
 }

@@ -61,6 +61,10 @@ impl Scene {
             let members = members.iter().filter(|(member, _)| self.interface.fills("LuthierLayerPlace", member));
             fill.extend(members.map(|(member, value)| format!("place.layers[{layer}].{member} = {value};")));
         }
+        if self.interface.calls("luthier_f0_place") {
+            let f0 = input(7, "yzw");
+            fill.push(format!("if {f0}.x >= 0.0 {{ place = luthier_f0_place(place, material, {f0}); }}"));
+        }
         if self.interface.calls("luthier_metallic_place") {
             let [color, metallic] = ["xyz", "w"].map(|part| input(6, part));
             let next = format!("luthier_metallic_place(place, material, {color}, {metallic})");
@@ -80,6 +84,7 @@ fn input(word: usize, components: &str) -> String {
 /// The words of a pair and its place, with so many layers.
 fn words(material: u32, (place, wi, wo): &Spot, layers: usize) -> Vec<[f32; 4]> {
     let (color, metallic) = place.metallic.unwrap_or(([0.0; 3], -1.0));
+    let [r, g, b] = place.f0.unwrap_or([-1.0; 3]);
     let mut words = vec![
         word(*wi, material as f32),
         word(*wo, place.slope_variance),
@@ -88,7 +93,7 @@ fn words(material: u32, (place, wi, wo): &Spot, layers: usize) -> Vec<[f32; 4]> 
         word(place.flake_normal, place.film_factor),
         word(place.base_color.unwrap_or([-1.0; 3]), place.patina.unwrap_or(-1.0)),
         word(color, metallic),
-        [place.weight_factor, 0.0, 0.0, 0.0],
+        [place.weight_factor, r, g, b],
     ];
     for layer in 0..layers {
         let own = place.layers.get(layer).unwrap_or(&LayerValues::NONE);

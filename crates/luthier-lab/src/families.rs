@@ -132,7 +132,7 @@ fn place(group: Group, family: Family, number: u64) -> Place {
     }
     let level = family.apply(&group.stack(tint), slopes);
     let plain = Paint::of(&level);
-    let mix = Mix { metal: color, tint: [1.0; 3], matt: color, metallic };
+    let mix = Mix { metal: color, tint: [1.0; 3], dielectric: [0.04; 3], matt: color, metallic };
     let paint = if group.is_metallic() { plain.mixed(mix) } else { plain };
     let stack = match group {
         Group::TwoCoats | Group::Copper => level,
@@ -281,7 +281,7 @@ fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::f
          | group | nodes of the coat | of the base | rows | bytes | seconds of one core |\n|---|--:|--:|--:|--:|--:|"
     )?;
     for Results { group, family, seconds, .. } in results {
-        let parts = family.parts(*group == Group::Tinted, false, false);
+        let parts = (family.parts(*group == Group::Tinted, false, false) as i32 - family.first_part()) as usize;
         let bytes = family.nodes() * (options.rows as usize + 2) * parts * 8;
         writeln!(
             out,

@@ -119,10 +119,11 @@ impl Subject {
             Some(below) => Mix {
                 metal: below.metal(color, weight),
                 tint: surface.f82_tint,
+                dielectric: surface.dielectric,
                 matt: below.matt(color, weight),
                 metallic,
             },
-            None => Mix { metal: color, tint: surface.f82_tint, matt: color, metallic },
+            None => Mix { metal: color, tint: surface.f82_tint, dielectric: surface.dielectric, matt: color, metallic },
         };
         let roughness = number(&self.roughness);
         let slopes = [(0, 0), (1, self.base)].map(|(i, layer)| {
@@ -335,7 +336,7 @@ mod tests {
     /// By hand, along the normal: D V = 1 / (4 pi alpha^2), .5 / pi of the colour, and .04 of light for the coat and for the surface.
     #[test]
     fn the_formula_of_gltf_along_the_normal() {
-        let mix = |metallic| Mix { metal: [0.5; 3], tint: [1.0; 3], matt: [0.5; 3], metallic };
+        let mix = |metallic| Mix { metal: [0.5; 3], tint: [1.0; 3], dielectric: [0.04; 3], matt: [0.5; 3], metallic };
         let here =
             |metallic, weight| Here { color: [0.5; 3], mix: mix(metallic), weight, slopes: [0.1.into(), 0.5.into()] };
         let found = |metallic, weight| gltf(&here(metallic, weight), DVec3::Z, DVec3::Z)[0];

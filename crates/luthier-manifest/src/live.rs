@@ -46,6 +46,7 @@ impl LiveEntry {
             MapSlot::FlakeNormal => return "flake_normal".to_owned(),
             MapSlot::Albedo => return "base_color".to_owned(),
             MapSlot::BaseColor | MapSlot::Metallic => return "luthier_metallic_place".to_owned(),
+            MapSlot::F0 => return "luthier_f0_place".to_owned(),
             MapSlot::Lean => return "inner_normal".to_owned(),
             MapSlot::Thickness => "slab_factor",
             MapSlot::Absorption => "absorption_factors",

@@ -40,6 +40,8 @@ luthier_lut::named! {
         BaseColor = "base-color",
         /// Factor on how metallic such a surface is.
         Metallic = "metallic",
+        /// Factor on the F0 of the dielectric above a diffuse base, RGB.
+        F0 = "f0",
         /// Tangent-space normal of the inner boundary of the film or slab, RGB as for [`MapSlot::Normal`].
         Lean = "lean",
     }
@@ -80,7 +82,7 @@ impl MapSlot {
             Self::Alpha | Self::AlphaX | Self::AlphaY => Some(Feature::LayerAlpha),
             Self::Tangent => Some(Feature::Tangents),
             Self::Albedo => Some(Feature::AlbedoMap),
-            Self::BaseColor | Self::Metallic => Some(Feature::MetallicMap),
+            Self::BaseColor | Self::Metallic | Self::F0 => Some(Feature::MetallicMap),
             Self::Lean => Some(Feature::LeanMap),
             Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
             Self::Absorption if layer > 0 => Some(Feature::InnerAbsorptionMap),

@@ -252,7 +252,8 @@ impl MaterialEntry {
     fn tints_lobes(&self) -> bool {
         let varying = self.constants.lobes.and_then(|lobes| lobes.varying);
         varying.is_some_and(|varying| {
-            varying.factor == VaryingFactor::SlabFactor || varying.family.is_some_and(|family| family.is_metallic)
+            varying.factor == VaryingFactor::SlabFactor
+                || varying.family.is_some_and(|family| family.is_metallic || family.has_lengths)
         })
     }
 

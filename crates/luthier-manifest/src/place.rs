@@ -25,6 +25,8 @@ pub struct PlaceValues {
     pub weight_factor: f32,
     /// Base colour and metal of a metallic-roughness surface, if maps have them. The albedo that follows replaces `base_color`.
     pub metallic: Option<([f32; 3], f32)>,
+    /// F0 of the dielectric above a diffuse base, RGB; `None` leaves that of the material.
+    pub f0: Option<[f32; 3]>,
     /// Values of textures of single layers, from the top down; a missing layer has no textures.
     pub layers: Vec<LayerValues>,
 }
@@ -69,6 +71,7 @@ impl PlaceValues {
         patina: None,
         weight_factor: 1.0,
         metallic: None,
+        f0: None,
         layers: Vec::new(),
     };
 }

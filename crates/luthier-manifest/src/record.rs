@@ -94,6 +94,9 @@ pub struct LayerRecord {
     /// Edge tint of the metal that a `metallic-roughness` interface with maps is at some places, RGB. Absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub metal_f82_tint: Option<[f64; 3]>,
+    /// Whether such an interface is a metal at all places: a map of its base colour, which has none of metal beside it, is that of the F0 of a conductor.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_metal: bool,
     /// Real part of the film's relative index; 0 without a film.
     pub film_ior_n: [f64; 3],
     /// Imaginary part.
@@ -148,6 +151,11 @@ impl LayerRecord {
     /// Whether the thickness of its film varies over the surface.
     pub fn varies(&self) -> bool {
         self.film_thickness_max_nm > self.film_thickness_nm
+    }
+
+    /// Whether its interface lies between transparent media of one relative index in all channels.
+    pub fn has_one_index(&self) -> bool {
+        self.ior_k == [0.0; 3] && self.ior_n == [self.ior_n[0]; 3]
     }
 
     /// Whether a film reflects by a series in the F0 of the place below it. Its phase row has means over the channels then.
@@ -311,6 +319,7 @@ mod tests {
             f0: None,
             f82_tint: None,
             metal_f82_tint: None,
+            is_metal: false,
             film_ior_n: [16.0, 17.0, 18.0],
             film_ior_k: [19.0, 20.0, 21.0],
             film_thickness_waves: [22.0, 23.0, 24.0],

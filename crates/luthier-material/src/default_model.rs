@@ -84,7 +84,7 @@ impl Material {
                 let n = ior.at(SODIUM_D_NM).re;
                 let is_thinner = above.replace(n).is_some_and(|above| n < above);
                 let is_bright = ior.f0().is_some_and(|f0| f0.into_iter().any(|f0| f0 > MIRROR_F0));
-                is_thinner || is_bright || extras.metallic.is_some()
+                is_thinner || is_bright || extras.varies_f0()
             }
         });
         // The first interface counts as the medium above the second.
@@ -116,6 +116,8 @@ mod tests {
     const VARYING: &str = "[[layer]]\ntype = \"thin-film\"\nior = 1.9\n[layer.thickness_nm]\nmin = 100\nmax = 200\n\
                            extent_um = 1000\nmap = { noise = { seed = 1, frequency = 2, octaves = 1 } }\n";
     const METALLIC: &str = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.9\nmetallic = 1\n";
+    const ENGINE: &str = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.5\n";
+    const F0: &str = "maps = { f0 = \"f.png\" }\n";
     const FLAKES: &str = "[effects.flakes]\ncells = { seed = 1, count = 8, spread_deg = 10 }\ntiling = 10\n";
 
     const PATINA: &str = "[effects.patina]\nextent = 0.5\ntransition = 0.5\nmap = { noise = {} }\n";
@@ -191,16 +193,16 @@ mod tests {
             (COAT.to_owned() + smooth + GOLD + rough + "[layer.maps]\nbumps = \"n.png\"\n", "lobes", "elek", None),
             (COAT.to_owned() + scratched + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + stained + WHITE, "lobes", "elek", None),
-            (COAT.to_owned() + worn + WHITE, "belcour", "elek", Some("layer.0.maps.thickness")),
-            (COAT.to_owned() + worn + GOLD + beckmann, "belcour", "elek", Some("layer.0.maps.thickness")),
+            (COAT.to_owned() + worn + WHITE, "lobes", "elek", None),
+            (COAT.to_owned() + worn + GOLD + beckmann, "lobes", "elek", None),
             (COAT.to_owned() + smooth + GOLD + brushed, "lobes", "weidlich-wilkie", None),
             (COAT.to_owned() + scratched + GOLD + brushed, "lobes", "weidlich-wilkie", None),
-            (
-                COAT.to_owned() + stained + GOLD + brushed,
-                "yamaguchi",
-                "weidlich-wilkie",
-                Some("layer.0.maps.thickness"),
-            ),
+            (COAT.to_owned() + stained + GOLD + brushed, "lobes", "weidlich-wilkie", None),
+            (COAT.to_owned() + stained + ENGINE + rough + OWN, "lobes", "elek", None),
+            (COAT.to_owned() + worn + ENGINE + rough, "lobes", "elek", None),
+            (GOLD.replace("ior = \"au\"", "f0 = 0.9") + rough + F0, "lobes", "elek", None),
+            (COAT.to_owned() + stained + &GOLD.replace("ior = \"au\"", "f0 = 0.9") + rough + F0, "lobes", "elek", None),
+            (COAT.to_owned() + "f0 = 0.2\n" + rough + F0 + WHITE + PAINT, "lobes", "elek", None),
             (VARYING.to_owned() + COAT + rough + WHITE, "lobes", "elek", None),
             (VARYING.to_owned() + COAT + scratched + WHITE, "elek", "elek", Some("layer.0.film.0.thickness_nm")),
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "lobes", "elek", None),

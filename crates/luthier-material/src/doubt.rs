@@ -188,9 +188,9 @@ fn films(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
 }
 
 fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, bake: &BakeSettings, at: &At<'_>, sink: &mut Sink<'_>) {
-    // Beside a diffuse base it stands for a metal.
+    // Beside a diffuse base it stands for a metal. Engines scale the F0 of their surface as they like.
     let is_clear = bake.diffuse_part != Some(DiffusePart::Beside);
-    if let Some(f0) = ior.f0().filter(|_| at.has("f0") && is_clear) {
+    if let Some(f0) = ior.f0().filter(|_| at.has("f0") && !at.has("base_color") && is_clear) {
         let most = f0.iter().fold(0.0, |a: f64, b| a.max(*b));
         if most > DIELECTRIC_F0_MAX {
             let message = format!("an F0 of {} is that of no clear medium: diamond has 0.17", short(most));

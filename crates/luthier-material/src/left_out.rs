@@ -129,7 +129,8 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                     | MapSlot::AlphaY
                     | MapSlot::Tangent
                     | MapSlot::BaseColor
-                    | MapSlot::Metallic => !has_axis,
+                    | MapSlot::Metallic
+                    | MapSlot::F0 => !has_axis,
                     _ => false,
                 };
                 if let Some(feature) = slot.layer_feature(number as u32).filter(|_| lacks) {

@@ -148,7 +148,7 @@ impl Material {
         let mut layers = self.layers.iter().zip(&self.stack.layers).enumerate();
         let found = layers.find(|(number, (extras, layer))| {
             let varies = layer.films.first().is_some_and(Film::varies);
-            !layer.films.is_empty() && extras.metallic.is_some() || varies && *number > 0
+            !layer.films.is_empty() && extras.varies_f0() || varies && *number > 0
         });
         found.map(|(number, _)| number)
     }
@@ -236,14 +236,7 @@ impl Material {
             [MapSlot::Alpha, MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent].iter().any(|slot| layer.varies(*slot))
         };
         let is_turned = layers.iter().any(Layer::is_anisotropic);
-        // A metal of an F0 below a film that varies has the closed forms of one whose F0 varies.
-        let base = &layers[interface];
-        let varies = base.films.first().is_some_and(Film::varies);
-        let is_metal = matches!(&base.base, Base::Conductor { ior } if ior.f0().is_some());
-        let is_metallic = self.layers[interface].metallic.is_some() || varies && is_metal;
-        let is_asked = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i]))
-            || self.layers[interface].metallic.is_some()
-            || varies && interface > 0
+        let has_own_slopes = [0, interface].into_iter().any(|i| has_slopes(&self.layers[i]))
             || is_turned && self.layers[0].varies(MapSlot::Roughness);
         let is_turned_between = (1..interface).any(|i| layers[i].is_anisotropic() || has_slopes(&self.layers[i]));
         // Rows of a base that is metallic in places have shades of the metal in place of channels: nothing above it has a colour but the first slab.
@@ -255,14 +248,26 @@ impl Material {
             };
             is_tinted || layer.films.len() > usize::from(number == interface)
         };
+        // A dielectric whose F0 varies is such a base without metal, and a metal of an F0 below a film that varies one whose F0 varies.
+        let base = &layers[interface];
+        let varies = base.films.first().is_some_and(Film::varies);
+        let is_metal = matches!(&base.base, Base::Conductor { ior } if ior.f0().is_some());
+        let varies_f0 = self.layers[interface].varies_f0();
+        let is_metallic = varies_f0 || varies && is_metal;
+        let varies_slopes = has_own_slopes || self.layers[0].varies(MapSlot::Roughness);
+        // Rows over the thickness of a slab have neither other slopes nor azimuths.
+        let is_asked = has_own_slopes
+            || varies_f0
+            || varies && interface > 0
+            || self.layers[0].varies_slab() && (is_turned || varies_slopes);
         let has_film = if is_metallic {
             layers.iter().enumerate().any(has_color) || !base.films.iter().all(Film::is_clear)
         } else {
             layers.iter().any(|layer| layer.films.first().is_some_and(Film::varies))
         };
         let first = &self.layers[0];
-        let has_slab = first.varies_slab() && !is_metallic;
-        if !is_asked || is_turned_between || has_film || has_slab || self.effects.patina.is_some() {
+        let has_lengths = first.varies_slab() && !is_metallic;
+        if !is_asked || is_turned_between || has_film || self.effects.patina.is_some() {
             return None;
         }
         let mut of_surface =
@@ -290,7 +295,15 @@ impl Material {
         };
         let is_tinted = self.layers[interface].metallic.is_some_and(|metallic| metallic.f82_tint != [1.0; 3]);
         let is_filmed = is_metallic && !base.films.is_empty();
-        Some(SlopeRanges { interface, coat: range(0), base: range(interface), is_metallic, is_tinted, is_filmed })
+        Some(SlopeRanges {
+            interface,
+            coat: range(0),
+            base: range(interface),
+            is_metallic,
+            is_tinted,
+            is_filmed,
+            has_lengths,
+        })
     }
 
     /// The re-radiation of its base, if that is fluorescent.
@@ -344,7 +357,7 @@ pub struct LayerExtras {
     pub maps: Maps,
     /// Numbers that a program sets at run time.
     pub live: Live,
-    /// Base colour and metal of a `metallic-roughness` surface, if maps multiply them: the stack has the surface without metal.
+    /// Base colour and metal of a `metallic-roughness` surface, or F0 of a metal, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
     /// Smallest and largest texel of the maps of slope parameters.
     pub texels: TexelRanges,
@@ -406,6 +419,8 @@ pub struct SlopeRanges {
     pub is_tinted: bool,
     /// Whether a film lies on such a base.
     pub is_filmed: bool,
+    /// Whether the first slab varies above another base.
+    pub has_lengths: bool,
 }
 
 /// Base colour and metal of a `metallic-roughness` surface.
@@ -417,6 +432,10 @@ pub struct Metallic {
     pub metallic: f64,
     /// Edge tint of the metal, RGB; 1 is none.
     pub f82_tint: Rgb,
+    /// F0 of the dielectric, RGB.
+    pub dielectric: Rgb,
+    /// Whether the layer is a `conductor`: a metal everywhere, whose base colour is its `f0`.
+    pub is_metal: bool,
 }
 
 /// Pictures that modulate a layer.
@@ -448,6 +467,8 @@ pub struct Maps {
     pub base_color: Option<PictureRef>,
     /// Multiplies how metallic it is.
     pub metallic: Option<PictureRef>,
+    /// Multiplies the F0 of an interface: of a metal, or of the dielectric above a diffuse base.
+    pub f0: Option<PictureRef>,
     /// Normals of the inner boundary of the film or slab.
     pub lean: Option<PictureRef>,
 }
@@ -469,7 +490,7 @@ impl NamedMap<'_> {
         match self.slot {
             MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean => TexelUse::Normal,
             MapSlot::Tangent => TexelUse::Direction,
-            MapSlot::Albedo | MapSlot::BaseColor | MapSlot::Absorption => TexelUse::Color,
+            MapSlot::Albedo | MapSlot::BaseColor | MapSlot::F0 | MapSlot::Absorption => TexelUse::Color,
             _ => TexelUse::Number,
         }
     }
@@ -492,6 +513,7 @@ impl Maps {
             ("albedo", MapSlot::Albedo, &self.albedo),
             ("base_color", MapSlot::BaseColor, &self.base_color),
             ("metallic", MapSlot::Metallic, &self.metallic),
+            ("f0", MapSlot::F0, &self.f0),
             ("lean", MapSlot::Lean, &self.lean),
         ]
         .into_iter()
@@ -566,6 +588,7 @@ impl LayerExtras {
             albedo,
             base_color,
             metallic,
+            f0,
             lean,
         } = &mut self.maps;
         let map = match slot {
@@ -582,11 +605,17 @@ impl LayerExtras {
             MapSlot::Albedo => albedo,
             MapSlot::BaseColor => base_color,
             MapSlot::Metallic => metallic,
+            MapSlot::F0 => f0,
             MapSlot::Lean => lean,
             MapSlot::Patina | MapSlot::FlakeNormal => return false,
         };
         let had_map = map.take().is_some();
         self.live.remove(slot) || had_map
+    }
+
+    /// Whether maps give each place of its interface an F0.
+    pub fn varies_f0(&self) -> bool {
+        self.metallic.is_some() || self.maps.f0.is_some()
     }
 
     /// Whether maps or a program vary the optical depth of the slab.

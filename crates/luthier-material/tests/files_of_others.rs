@@ -109,10 +109,7 @@ fn words_of_other_formats_have_an_advice() {
         ),
         (layer("metallic-roughness", "baseColorFactor = 0.5\nroughness = 0.3"), "did you mean `base_color`?"),
         (layer("metallic-roughness", "base_color = 0.5\nroughness = 0.3\nopacity = 1"), "which places are covered"),
-        (
-            layer("conductor", "f0 = 1\nroughness = 0.3\nmaps = { base_color = \"c.png\" }"),
-            "`type = \"metallic-roughness\"`",
-        ),
+        (layer("conductor", "f0 = 1\nroughness = 0.3\nmaps = { base_color = \"c.png\" }"), "a map of its `f0`"),
         (layer("conductor", "color = 1\nroughness = 0.3"), "did you mean `f0`?"),
         (layer("principled", "base_color = 1"), "`type = \"metallic-roughness\"`"),
         (format!("roughness = 0.3\n{}", layer("diffuse", "albedo = 0.5")), "below a `[[layer]]`"),

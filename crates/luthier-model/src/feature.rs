@@ -52,8 +52,8 @@ luthier_lut::named! {
         InnerAbsorptionMap = "the absorption map of an inner slab",
         /// A map of the albedo of the diffuse base.
         AlbedoMap = "the albedo map",
-        /// Maps of base colour and metal of a metallic-roughness surface.
-        MetallicMap = "maps of base colour and metal",
+        /// Maps of base colour and metal of a metallic-roughness surface, and of the F0 of interfaces.
+        MetallicMap = "maps of base colour, metal and F0",
         /// Flakes below the first interface.
         Flakes = "flakes",
         /// Patina: a first layer that covers the others in places only.

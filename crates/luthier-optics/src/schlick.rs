@@ -62,13 +62,15 @@ pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
 
 /// [`metallic_roughness`] with a base colour of its own for the metal, and another for the dielectric.
 pub fn metallic_and_matt(metal: Rgb, matt: Rgb, metallic: f64) -> (Rgb, Rgb) {
-    let (curves, albedo) = metallic_and_tinted(metal.map(|f0| F82 { f0, tint: 1.0 }), matt, metallic);
+    let (curves, albedo) =
+        metallic_and_tinted(metal.map(|f0| F82 { f0, tint: 1.0 }), [DIELECTRIC_F0; 3], matt, metallic);
     (curves.map(|curve| curve.f0), albedo)
 }
 
-/// [`metallic_and_matt`] with a metal that has an edge tint: the interface is [`F82::in_dielectric`], and passes `t` of less what that reflects on average.
-pub fn metallic_and_tinted(metal: [F82; 3], matt: Rgb, metallic: f64) -> ([F82; 3], Rgb) {
-    let curves = metal.map(|metal| metal.in_dielectric(metallic));
+/// [`metallic_and_matt`] with a metal that has an edge tint, and a dielectric of another F0: the interface is [`F82::in_dielectric`], and passes `t` of less
+/// what that reflects on average.
+pub fn metallic_and_tinted(metal: [F82; 3], dielectric: Rgb, matt: Rgb, metallic: f64) -> ([F82; 3], Rgb) {
+    let curves = [0, 1, 2].map(|c: usize| metal[c].in_dielectric(dielectric[c], metallic));
     let albedo = [0, 1, 2].map(|i: usize| {
         let seen = matt[i] * (1.0 - metallic);
         let passed = 1.0 - curves[i].average();
@@ -78,7 +80,7 @@ pub fn metallic_and_tinted(metal: [F82; 3], matt: Rgb, metallic: f64) -> ([F82; 
     (curves, albedo)
 }
 
-/// F0 of the dielectric of a `metallic-roughness` surface.
+/// F0 of the dielectric of a `metallic-roughness` surface whose file names no other.
 pub const DIELECTRIC_F0: f64 = 0.04;
 
 /// Schlick's cosine-weighted mean over the hemisphere: F0 + (1 - F0)/21.
@@ -213,11 +215,11 @@ impl F82 {
         Self { f0, tint: if there > 0.0 { 1.0 - dip * edge_dip(F82_COS_THETA) / there } else { 1.0 } }
     }
 
-    /// The mean of this curve, with the share `metallic`, and that of a dielectric of F0 0.04 without a tint: a `metallic-roughness` interface. Both are linear
+    /// The mean of this curve, with the share `metallic`, and that of a dielectric of an F0 without a tint: a `metallic-roughness` interface. Both are linear
     /// in F0 and in the weight of the correction, so that the mean is such a curve, too, where none is held to 0.
     #[must_use]
-    pub fn in_dielectric(&self, metallic: f64) -> Self {
-        let f0 = DIELECTRIC_F0 + metallic * (self.f0 - DIELECTRIC_F0);
+    pub fn in_dielectric(&self, dielectric: f64, metallic: f64) -> Self {
+        let f0 = dielectric + metallic * (self.f0 - dielectric);
         if self.tint == 1.0 { Self { f0, tint: 1.0 } } else { Self::of_dip(f0, metallic * self.dip()) }
     }
 }
@@ -354,7 +356,7 @@ mod tests {
     fn a_mix_with_a_tinted_metal_is_the_mean() {
         let metal = F82 { f0: 0.7, tint: 0.3 };
         for metallic in [0.0, 0.25, 0.5, 1.0] {
-            let mixed = metal.in_dielectric(metallic);
+            let mixed = metal.in_dielectric(DIELECTRIC_F0, metallic);
             let n = 2000;
             let mut sum = 0.0;
             for i in 0..=n {

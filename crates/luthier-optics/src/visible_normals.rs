@@ -38,7 +38,7 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
 }
 
 /// Slopes beyond this many standard widths are never drawn.
-const SLOPE_LIMIT: f64 = 6.0;
+pub const SLOPE_LIMIT: f64 = 6.0;
 
 /// The slope x with `C(x) = u C(x_max)`, where C is the cumulative visible distribution of Gaussian slopes of unit alpha,
 /// `C(x) = cos (1 + erf x)/2 + sin exp(-x^2)/(2 sqrt pi)`, for x up to cos/sin. Halley's steps, kept inside
@@ -79,7 +79,7 @@ fn invert_visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
 }
 
 /// The slope x with `(1 + erf x)/2 = u`: Winitzki's closed form, good to 2e-3, and one step of Halley's method on it.
-fn normal_slope(u: f64) -> f64 {
+pub fn normal_slope(u: f64) -> f64 {
     let u = u.clamp(1e-15, 1.0 - 1e-15);
     let tails = libm::log(4.0 * u * (1.0 - u));
     let a = 2.0 / (PI * 0.147) + 0.5 * tails;

@@ -163,7 +163,7 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
         Feature::AlbedoMap => found = take(material, MapSlot::Albedo, |_| true),
         Feature::LeanMap => found = take(material, MapSlot::Lean, |_| true),
         Feature::MetallicMap => {
-            for slot in [MapSlot::BaseColor, MapSlot::Metallic] {
+            for slot in [MapSlot::BaseColor, MapSlot::Metallic, MapSlot::F0] {
                 found |= take(material, slot, |_| true);
             }
         }

@@ -1,7 +1,7 @@
 //! Functions and structures of shaders that programs around them use.
 
 /// Public functions of shaders: calls, and a description of each for the manual.
-pub(crate) const FUNCTIONS: [(&str, &str); 24] = [
+pub(crate) const FUNCTIONS: [(&str, &str); 25] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
         "luthier_eval_lit(material, wi, wo, light)",
@@ -42,6 +42,10 @@ pub(crate) const FUNCTIONS: [(&str, &str); 24] = [
     (
         "luthier_metallic_place(place, material, base_color, metallic)",
         "the place with another base colour of a metallic-roughness surface, and another metallic",
+    ),
+    (
+        "luthier_f0_place(place, material, f0)",
+        "the place with another F0 of the dielectric on a diffuse base; before luthier_metallic_place, where both are called",
     ),
     ("luthier_patina_amount(material, map_value)", "patina of a place for the value of a texture"),
     ("luthier_glitter_normal(material, uv)", "normal of a place"),

@@ -66,7 +66,7 @@ impl Kind for Table {
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
         let Site { material, shape, lobes: most, .. } = *site;
         let fit = fit(material, most.is_some());
-        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying), shape.format);
+        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying_of(most)), shape.format);
         let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format });
         jobs.map(|job| Arc::new(job) as Arc<dyn Job>).collect()
     }
@@ -78,7 +78,8 @@ fn varying(material: &Material) -> Option<Varying> {
     let family = material.family().and_then(|ranges| {
         Some(
             Family::new(&shown(&material.stack), ranges.coat, ranges.base, ranges.is_metallic)?
-                .tinted(ranges.is_tinted),
+                .tinted(ranges.is_tinted)
+                .below_varied_slab(ranges.has_lengths),
         )
     });
     if let Some(family) = family {
@@ -143,25 +144,35 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
     let fitted: Vec<&Material> = materials.iter().filter(|material| material.model().is_fitted()).collect();
     let sides: Vec<Material> = fitted.iter().filter_map(|material| side(material)).collect();
     let ends = fitted.into_iter().chain(&sides).map(|material| match varying(material) {
-        Some(Varying::Family(family)) => [
-            0,
-            family.parts(
+        Some(Varying::Family(family)) => {
+            let parts = family.parts(
                 has_lengths(material, family),
                 base_below(&material.stack).is_some(),
                 is_filmed(material, family),
-            ) as i32
-                - 1,
-        ],
-        _ => [if has_base(material) { -(Row::BASE_PARTS as i32) } else { 0 }, Row::parts(lobes) as i32 - 1],
+            );
+            ([family.first_part(), parts as i32 - 1], true)
+        }
+        _ => ([if has_base(material) { -BASE_PARTS } else { 0 }, Row::parts(lobes) as i32 - 1], false),
     });
-    ends.reduce(|[first, last], [from, to]| [first.min(from), last.max(to)])
-        .unwrap_or([0, Row::parts(lobes) as i32 - 1])
+    let ends: Vec<([i32; 2], bool)> = ends.collect();
+    let ([mut first, mut last], _) = (ends.iter().copied())
+        .reduce(|([first, last], _), ([from, to], _)| ([first.min(from), last.max(to)], true))
+        .unwrap_or(([0, Row::parts(lobes) as i32 - 1], false));
+    let has = |of_family: bool| ends.iter().any(|(_, is_family)| *is_family == of_family);
+    if has(true) && has(false) {
+        // Beside families other rows have all parts of a base before part 0, or none, and those of two lobes.
+        first = if first < 0 { -BASE_PARTS } else { 0 };
+        last = last.max(Row::parts(LOBES) as i32 - 1);
+    }
+    [first, last]
 }
 
 /// Whether a film lies on the base of a family that is metallic in places.
 fn is_filmed(material: &Material, family: Family) -> bool {
     family.is_metallic && !material.stack.layers[family.interface].films.is_empty()
 }
+/// Number of parts of a diffuse base.
+const BASE_PARTS: i32 = Row::BASE_PARTS as i32;
 
 /// Whether rows of a family have lengths of light in a slab, or cosines at which the facets below a film are seen.
 fn has_lengths(material: &Material, family: Family) -> bool {
@@ -207,7 +218,7 @@ pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
 
 /// Decides the shape of the tiles, from the fits of a plan. Without limits on the errors of lobes, the tiles have as
 /// many parts as the material with the most lobes needs. With limits, the smallest shape that holds them is taken, and
-/// the search is reported.
+/// the search is reported. Families have fewer nodes where others have fewer lobes.
 ///
 /// # Errors
 /// [`Broken`] where no shape holds the limits.
@@ -225,10 +236,10 @@ pub(crate) fn decide(
         settings.take_lobes(shape(parts(materials, lobes_of(&fits, None)), common_step(materials), format));
         return Ok(None);
     }
-    let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
     let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
     let candidates = choices.iter().map(|&(most, i)| {
         let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
+        let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
         let Shape { x, y, base, format } = shape(parts(materials, lobes_of(&fits, Some(most))), STEPS[i], format);
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
@@ -397,6 +408,9 @@ fn family_record(family: Family) -> FamilyRecord {
         interface: family.interface as u32,
         is_metallic: family.is_metallic,
         is_tinted: family.is_tinted,
+        has_tail: family.has_tail,
+        sent_back: family.sent_back,
+        has_lengths: family.has_lengths,
     }
 }
 
@@ -428,12 +442,13 @@ impl Fit {
 
 /// Lobes with every `step`-th of [`ROWS`]. Fits with fewer get those between.
 fn thinned(varied: Varied, step: usize) -> Varied {
-    let own = FitSettings::step(varied.varying());
+    let own = (ROWS - 1) / (varied.nodes[0].axis.size() - 1);
     let varied = if own > 1 { varied.refined(own) } else { varied };
     varied.thinned(step)
 }
 
-/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on.
+/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on, or of a family for as many halvings of its nodes as
+/// lobes lack.
 #[derive(Debug, Serialize, Deserialize)]
 struct Fits(Vec<Fit>);
 
@@ -453,13 +468,21 @@ struct FitJob {
     is_searched: bool,
 }
 
+impl FitJob {
+    /// What rows are over, where a search allows so many lobes: a family always has two, and fewer nodes in place of fewer lobes.
+    fn varying_of(&self, most: Option<usize>) -> Option<Varying> {
+        let fewer = most.map_or(0, |most| LOBES.saturating_sub(most) as u32);
+        self.varying.map(|varying| varying.with_fewer_nodes(fewer))
+    }
+}
+
 impl Job for FitJob {
     fn kind(&self) -> JobKind {
         FIT
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 8 } else { 6 }
+        if is_family(self.varying) { 11 } else { 7 }
     }
 
     fn inputs(&self) -> Value {
@@ -482,10 +505,18 @@ impl Job for FitJob {
         let traced = Traced::new(stack, color, *varying, FitSettings::of(*varying));
         let judge = Judge::new(stack, color, *varying);
         let most = most_lobes(stack);
-        // A family has two lobes: there is nothing to choose.
-        let is_chosen = *is_searched && !is_family(*varying);
+        if *is_searched && is_family(*varying) {
+            let whole: Varied = traced.fit(most, EXCESS);
+            let fits = (0..=LOBES).map(|most| {
+                let fewer = self.varying_of(Some(most));
+                let varied = whole.clone().at_nodes(fewer);
+                let judge = Judge::new(stack, color, fewer);
+                Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }
+            });
+            return Artefact::new(Fits(fits.collect()));
+        }
         let wanted: Vec<(usize, f64)> =
-            if is_chosen { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
+            if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
         let fits = wanted.into_iter().map(|(most, excess)| {
             let varied: Varied = traced.fit(most, excess);
             Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }
@@ -503,10 +534,13 @@ fn numbers(varying: Varying) -> Value {
     match varying {
         Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
         Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }) => json!([diffuse_albedo, base_alpha, tarnish]),
-        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted }) => {
+        Varying::Family(Family { coat, base, interface, is_metallic, is_tinted, has_lengths, .. }) => {
             let axis = |SlopeAxis { least, most, nodes }| json!([least, most, nodes]);
             if is_tinted {
                 return json!([axis(coat), axis(base), interface, is_metallic, "edge tint"]);
+            }
+            if has_lengths {
+                return json!([axis(coat), axis(base), interface, is_metallic, "lengths"]);
             }
             json!([axis(coat), axis(base), interface, is_metallic])
         }
@@ -557,7 +591,7 @@ impl Parts {
     fn read(self, parts: &[[f64; 4]]) -> Row {
         match self {
             Self::Lobes(_, has_base) => Row::of_parts(parts, has_base),
-            Self::Family(family, tail) => family.of_parts(parts, tail),
+            Self::Family(family, tail) => family.of_parts(family.first_part(), parts, tail),
         }
     }
 }
@@ -580,7 +614,7 @@ impl Job for LobesJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.fit.varying) { 7 } else { 6 }
+        if is_family(self.fit.varying) { 8 } else { 6 }
     }
 
     fn inputs(&self) -> Value {
@@ -607,8 +641,11 @@ impl Job for LobesJob {
             Some(Varying::Family(family)) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
             _ => Parts::Lobes(most.min(LOBES), y.min < 0.0),
         };
-        // Parts of families begin with part 0, where those of a base have a place before it.
-        let first = if matches!(layout, Parts::Family(..)) { (0.0 - y.min) as u32 } else { 0 };
+        // Parts of families begin with their own, where those of a base have a place before it.
+        let first = match layout {
+            Parts::Family(family, _) => (f64::from(family.first_part()) - y.min) as u32,
+            Parts::Lobes(..) => 0,
+        };
         // Parts lie side by side. The first and the last node of each are repeated, so that filtering does not mix in a
         // neighbour.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);

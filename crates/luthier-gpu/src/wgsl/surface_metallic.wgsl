@@ -5,10 +5,12 @@ fn shading_metallic(given: LuthierPlace, material: u32, uv: vec2<f32>) -> Luthie
     if count < 2u {
         return given;
     }
+    var place = given;
+    $own_f0
     let colors = shading_own(material, count - 2u, 6u);
     let metals = shading_own(material, count - 2u, 7u);
     if max(colors.y, metals.y) == 0u {
-        return given;
+        return place;
     }
     // Without metal the albedo of the base says the base colour.
     let passed = 0.96 * 20.0 / 21.0;
@@ -21,7 +23,7 @@ fn shading_metallic(given: LuthierPlace, material: u32, uv: vec2<f32>) -> Luthie
     if metals.y > 0u {
         metallic = shading_bilinear(metals, uv).x;
     }
-    return luthier_metallic_place(given, material, color, metallic);
+    return luthier_metallic_place(place, material, color, metallic);
 }
 
 // Albedo of the diffuse base of a material.

@@ -130,13 +130,21 @@ impl Facets {
         Self { distribution: self.distribution.walked(), ..*self }
     }
 
+    /// The distribution whose visible normals are drawn.
+    pub(crate) fn drawn_distribution(&self) -> Distribution {
+        self.distribution.walked()
+    }
+
+    /// Slope parameters along both tangents.
+    pub(crate) fn alphas(&self) -> [f64; 2] {
+        [self.alpha_x, self.alpha_y]
+    }
+
     /// A facet normal that `w` sees, from two numbers in 0..1: of the surface's own distribution, or of GGX for one without visible normals in
     /// closed form. `w.z > 0`.
     pub fn sample(&self, w: DVec3, u: [f64; 2]) -> DVec3 {
         let m = visible_normals::sample(self.drawn().distribution, 1.0, self.stretched(w), u);
-        let m = DVec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z).normalize();
-        let (c, s) = (self.cos_rotation, self.sin_rotation);
-        DVec3::new(c * m.x - s * m.y, s * m.x + c * m.y, m.z)
+        self.unturned(DVec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z).normalize())
     }
 
     /// Density in solid angle of the reflection of `wo` at a sampled facet: `G1 D / (4 cos_theta_o)`. Zero below the horizon, although reflections at
@@ -156,9 +164,16 @@ impl Facets {
         drawn.density(wh) / (4.0 * wo.z * (1.0 + drawn.lambda(wo)))
     }
 
-    fn turned(&self, w: DVec3) -> DVec3 {
+    /// A direction of the surface in the frame of the tangents.
+    pub(crate) fn turned(&self, w: DVec3) -> DVec3 {
         let (c, s) = (self.cos_rotation, self.sin_rotation);
         DVec3::new(c * w.x + s * w.y, c * w.y - s * w.x, w.z)
+    }
+
+    /// The inverse of [`Facets::turned`].
+    pub(crate) fn unturned(&self, w: DVec3) -> DVec3 {
+        let (c, s) = (self.cos_rotation, self.sin_rotation);
+        DVec3::new(c * w.x - s * w.y, s * w.x + c * w.y, w.z)
     }
 
     fn stretched(&self, w: DVec3) -> DVec3 {

@@ -162,6 +162,14 @@ pub struct FamilyRecord {
     /// Whether that metal has an edge tint, for which rows have two numbers more. Families of bakes from before have other rows, and lack it: they are
     /// refused.
     pub is_tinted: bool,
+    /// Whether lobes have another tail than GGX: rows then have their shares above the horizon, as part -1.
+    pub has_tail: bool,
+    /// Of a base that is metallic in places, the share of the light of a diffuse base that layers send back to it: at slope parameters of 0, and what it grows by over a unit of
+    /// the root of that of the coat, and of that of the base. Families of bakes from before have it in rows, and are refused.
+    pub sent_back: [f64; 3],
+    /// Whether the optical depth of the first slab varies above a base that keeps its colours: rows have lengths of light in it. Absent where not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub has_lengths: bool,
 }
 
 /// Nodes over a range of slope parameters, at equal steps of the root.
@@ -264,10 +272,10 @@ impl LobesRecord {
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
     /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of a family: the reciprocal tail of its lobes, the number of the
-    /// base among the layers, 0. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
+    /// base among the layers, and by how much the share sent back grows over the root of the slope parameter of the coat. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
     fn sheet(&self) -> [f64; 3] {
         if let Some(family) = self.family() {
-            return [self.inverse_tails[0], f64::from(family.interface), 0.0];
+            return [self.inverse_tails[0], f64::from(family.interface), family.sent_back[1]];
         }
         if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
             return [1.0 / (least - most), most / (most - least), -1.0];
@@ -406,14 +414,14 @@ impl MaterialConstants {
     /// |---|---|
     /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, of a family the roots of the least and the most slope parameter of the base and its steps in a unit of the root, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, number of the lobes' height |
     /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of beams the normal of the inner boundary, 1; of `microfacet` with an added diffuse term 1 in w |
-    /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
+    /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S; of a family the first and the last of `sent_back` in place of a and of that integral |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start; in w of a brightened base the share of the light of a diffuse base that comes back, else 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2, and of a film with one in other models 3; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
     /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes, and 4 more where a coat has a weight and [`CoatRecord::side`] |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 1 over the tail of its lobes, number of the base among the layers, 0; of lobes with one tile 1 over the tail of each, 0; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 1 over the tail of its lobes, number of the base among the layers, the second of `sent_back`; of lobes with one tile 1 over the tail of each, 0; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = vec4(self.phong_diffuse, self.phong_exponent);
@@ -453,6 +461,9 @@ impl MaterialConstants {
             words[5][3] = -3.0;
             let nodes = if family.is_metallic { nodes } else { -nodes };
             words[7] = vec4(family.coat.map_or([0.0; 3], |coat| coat.words()), nodes);
+            // Rows have a, from which the integral follows.
+            let [least, _, by_base] = family.sent_back.map(|x| x as f32);
+            (words[2][1], words[2][3]) = (least, by_base);
         }
         if let Some(base) = self.brightening {
             words[4][3] = base.diffuse as f32;
@@ -584,6 +595,27 @@ mod tests {
         assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -1.0]]);
         assert_eq!(film.nominal(), 4.0);
         assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
+        let slopes = |nodes| SlopesRecord { least: 0.25, most: 1.0, nodes };
+        let family = FamilyRecord {
+            coat: Some(slopes(3)),
+            base: slopes(5),
+            interface: 1,
+            is_metallic: true,
+            is_tinted: false,
+            has_lengths: false,
+            has_tail: false,
+            sent_back: [0.625, 0.125, -0.25],
+        };
+        let of_family = VaryingRecord {
+            factor: VaryingFactor::Family,
+            tiles: 15,
+            least_spread: 1.0,
+            factors: None,
+            family: Some(family),
+        };
+        let of_family = words(LobesRecord { varying: Some(of_family), ..lobes });
+        assert_eq!([of_family[0], of_family[2]], [[0.5, 1.0, 8.0, 0.25], [0.5625, 0.625, 0.75, -0.25]]);
+        assert_eq!([of_family[7], of_family[9]], [[0.5, 1.0, 4.0, 5.0], [0.0, 2.0, 1.0, 0.125]]);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
         assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
         let over_patina =
@@ -629,12 +661,15 @@ mod tests {
         assert_eq!([true, false].map(around), [[0.0, 0.6, 0.8, 7.0], [0.0, 0.6, 0.8, 3.5]]);
     }
 
-    /// Rows of a family from before edge tints have other parts, so that reading them would go unseen.
+    /// Rows of families from before these fields have other parts, so that reading them would go unseen.
     #[test]
     fn families_of_earlier_rows_are_refused() {
         let earlier = r#"{"base": {"least": 0.1, "most": 0.4, "nodes": 3}, "interface": 1, "is_metallic": true"#;
         let read = |end: &str| serde_json::from_str::<FamilyRecord>(&format!("{earlier}{end}}}"));
         assert!(read("").unwrap_err().to_string().contains("is_tinted"));
-        assert!(!read(", \"is_tinted\": false").unwrap().is_tinted);
+        assert!(read(", \"is_tinted\": false").unwrap_err().to_string().contains("has_tail"));
+        let later = ", \"is_tinted\": false, \"has_tail\": true";
+        assert!(read(later).unwrap_err().to_string().contains("sent_back"));
+        assert!(read(&format!("{later}, \"sent_back\": [0.6, 0.0, 0.0]")).unwrap().has_tail);
     }
 }

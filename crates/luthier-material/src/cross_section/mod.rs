@@ -267,8 +267,11 @@ fn beyond(extras: &LayerExtras) -> Vec<PartNumber> {
         numbers.push(PartNumber { name: "darkening", value: "undone".to_owned() });
     }
     if let Some(metallic) = extras.metallic {
-        numbers.push(PartNumber { name: "base colour", value: rgb(metallic.base_color) });
-        numbers.push(PartNumber { name: "metallic", value: short(metallic.metallic) });
+        let color = if metallic.is_metal { "F0" } else { "base colour" };
+        numbers.push(PartNumber { name: color, value: rgb(metallic.base_color) });
+        if !metallic.is_metal {
+            numbers.push(PartNumber { name: "metallic", value: short(metallic.metallic) });
+        }
         if metallic.f82_tint != [1.0; 3] {
             numbers.push(PartNumber { name: "edge tint", value: rgb(metallic.f82_tint) });
         }

@@ -98,6 +98,7 @@ fn refusal(coat: &Section<'_>, base: &Section<'_>) -> Option<Refusal> {
             "the base below this coat has a map of its `albedo`, whose texels cannot be brighter",
             "write the base as `type = \"metallic-roughness\"` with a map of `base_color`, or leave `darkening` out",
         )),
+        Some("conductor") if has_map(base, "f0") => None,
         Some("metallic-roughness") if has_map(base, "base_color") || has_map(base, "metallic") => None,
         Some("metallic-roughness") if has_map(coat, "weight") => Some((
             "with a map of the weight of this coat, each place needs a colour of its own",

@@ -64,6 +64,11 @@ pub(super) fn decode(
                 ior::check_clear(&ior, at, "ior", sink);
                 Base::Dielectric { ior, slab: slab(at) }
             }
+            "conductor" if at.has("f0") && schlick::maps_f0(at) => {
+                let (interface, diffuse) = schlick::textured_conductor(at, above, brightened, sink);
+                below = diffuse;
+                interface
+            }
             "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at, brightened, sink) },
             "conductor" => {
                 schlick::check_tint_of_index(at, sink);
@@ -88,6 +93,7 @@ pub(super) fn decode(
         }
         schlick::check_films(at, &films, layers.len(), sink);
         maps::check(at, layers.len(), sink);
+        maps::check_f0(at, layers.len(), sections.get(i + 1), sink);
         live::check(at, layers.len(), &surface, sink);
         let number = layers.len();
         let key = format!("layer.{number}");
@@ -95,7 +101,6 @@ pub(super) fn decode(
         films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         films::check_weights(&films, at, number, sink);
         let weighed = films.first().filter(|film| film.weight_span.is_some());
-        let metallic = if kind == "metallic-roughness" { schlick::textured(at) } else { None };
         let extra = LayerExtras {
             weight: weighed.map_or_else(|| at.number("weight").unwrap_or(1.0), |film| film.weight),
             weighs_film: weighed.is_some(),
@@ -107,7 +112,7 @@ pub(super) fn decode(
                 None => maps::decode(at),
             },
             live: live::decode(at, &surface),
-            metallic,
+            metallic: schlick::textured(at),
             texels: TexelRanges::default(),
             brightening: brightened.map(|below| below.shares),
         };

@@ -2,7 +2,7 @@
 
 use luthier_manifest::MapSlot;
 
-use super::{live, picture};
+use super::{effects, live, picture};
 use crate::diagnostic::Sink;
 use crate::material::{LayerExtras, Maps};
 use crate::section::Section;
@@ -24,6 +24,7 @@ pub(super) fn decode(at: &Section<'_>) -> Maps {
         albedo: picture::under(&maps, "albedo"),
         base_color: picture::under(&maps, "base_color"),
         metallic: picture::under(&maps, "metallic"),
+        f0: picture::under(&maps, "f0"),
         lean: picture::under(&maps, "lean"),
     }
 }
@@ -62,6 +63,34 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
     }
 }
 
+/// Refuses maps of an F0 of interfaces that have none, or whose F0 decides more than how much they reflect.
+pub(super) fn check_f0(at: &Section<'_>, number: usize, next: Option<&Section<'_>>, sink: &mut Sink<'_>) {
+    let Some(maps) = at.section("maps").filter(|maps| maps.has("f0")) else { return };
+    let is_dielectric = at.text("type") == Some("dielectric");
+    let is_bright = at.reflectance("f0").is_some_and(|f0| f0.into_iter().any(|f0| f0 > F0_MAX));
+    let (message, hint) = if !at.has("f0") && at.text("type") != Some("metallic-roughness") {
+        ("a map of `f0` scales an `f0`, which this layer has not", "give the layer an `f0` in place of its `ior`")
+    } else if is_dielectric && next.is_none_or(|next| next.text("type") != Some("diffuse")) {
+        (
+            "a map of `f0` is for a metal, or for the dielectric on a diffuse base: other interfaces have one F0 in all places",
+            "leave it out, or write a `weight` with a map in its place",
+        )
+    } else if is_dielectric && number == 0 && effects::weight_span(at).is_some() {
+        ("a map of `f0` beside a weight of the same layer: both say how much of it is there", "leave one of them out")
+    } else if is_bright && at.text("type") != Some("conductor") {
+        (
+            "below an `f0` this large, hardly any light is left that texels could scale",
+            "write `f0 = 0.9` at most, or make the layer a `conductor`",
+        )
+    } else {
+        return;
+    };
+    sink.error(maps.value_span("f0"), message, Some(hint.to_owned()));
+}
+
+/// Largest F0 of a dielectric with a map of it: tables have what it does not reflect in steps, which texels multiply.
+const F0_MAX: f64 = 0.9;
+
 /// Refuses maps of colour and metal that would say too little: a texture of the base colour alone leaves open how metallic a place is.
 fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
     let metallic = at.number("metallic").unwrap_or(0.0);
@@ -69,6 +98,15 @@ fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
         let message = "a map of `base_color` on a metal needs one of `metallic` beside it";
         let hint = "write `metallic = \"white.png\"` under `maps`, a white picture, or `metallic = 0`".to_owned();
         sink.error(maps.value_span("base_color"), message, Some(hint));
+    }
+    let is_engine = at.text("type") == Some("metallic-roughness");
+    let names_f0 = maps.has("f0") || at.has("f0") && live::varies(at, "metallic");
+    if is_engine && names_f0 && !live::varies(at, "base_color") {
+        let key = if maps.has("f0") { "f0" } else { "metallic" };
+        let message =
+            "the F0 of the dielectric decides the albedo of the base below it, which needs a map of `base_color`";
+        let hint = "write `base_color = \"white.png\"` under `maps`, a white picture".to_owned();
+        sink.error(maps.value_span(key), message, Some(hint));
     }
     if maps.has("albedo") && at.has("reradiation") {
         let message = "a map of the albedo needs an albedo, and this base has `reradiation`";

@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::f0_table::printed_f0;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::schlick::{F82, index_of_f0, metallic_and_tinted};
+use luthier_optics::schlick::{DIELECTRIC_F0, F82, index_of_f0, metallic_and_tinted};
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::darkening::Brightened;
@@ -19,6 +19,26 @@ use crate::suggest::short;
 pub(super) fn conductor(at: &Section<'_>, brightened: Option<Brightened>, sink: &mut Sink<'_>) -> Ior {
     let f0 = f0(at, sink);
     Ior::vacuum().with_f0(brightened.map_or(f0, |below| below.metal(f0))).with_f82_tint(f82_tint(at))
+}
+
+/// The layers of a conductor whose F0 a map multiplies: those of a `metallic-roughness` surface that is a metal in all places.
+pub(super) fn textured_conductor(
+    at: &Section<'_>,
+    above: &Ior,
+    brightened: Option<Brightened>,
+    sink: &mut Sink<'_>,
+) -> (Base, Option<Diffuse>) {
+    let color = f0(at, sink);
+    let (metal, matt) = brightened.map_or((color, color), |below| (below.metal(color), below.matt(color)));
+    let metal = metal.map(|f0| F82 { f0, tint: 1.0 });
+    over_diffuse(above, metallic_and_tinted(metal, [DIELECTRIC_F0; 3], matt, 0.0), 0.0)
+}
+
+/// An interface that bends no light, over a diffuse base of an albedo.
+fn over_diffuse(above: &Ior, (curves, albedo): ([F82; 3], Rgb), sigma: f64) -> (Base, Option<Diffuse>) {
+    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f82(curves);
+    let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+    (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma }))
 }
 
 /// The edge tint of a metal; 1 is none.
@@ -67,7 +87,7 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 
 /// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal lacks:
 ///
-/// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
+/// - F0 is `f = d + metallic (base_color - d)`, where d is the `f0` of the dielectric, 0.04 if absent;
 /// - the index is that of the medium above: engines bend no light;
 /// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
 ///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes.
@@ -110,20 +130,34 @@ pub(super) fn metallic_roughness(
     let (metal, matt) = brightened.map_or((color, color), |below| (below.metal(color), below.matt(color)));
     let tint = f82_tint(at);
     let metal = [0, 1, 2].map(|c: usize| F82 { f0: metal[c], tint: tint[c] });
-    let (curves, albedo) = metallic_and_tinted(metal, matt, metallic);
-    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f82(curves);
-    let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
-    (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
+    let mixed = metallic_and_tinted(metal, dielectric_f0(at, sink), matt, metallic);
+    over_diffuse(above, mixed, at.number("sigma").unwrap_or(0.0))
 }
 
-/// Base colour and metal of a `metallic-roughness` layer, where maps of the file multiply them.
+/// Base colour and metal of a `metallic-roughness` layer, where maps of the file multiply them; or F0 of a conductor, where a map does.
 pub(super) fn textured(at: &Section<'_>) -> Option<Metallic> {
-    let is_varied = live::varies(at, "base_color") || live::varies(at, "metallic");
-    is_varied.then(|| Metallic {
+    let of_file = |key: &str| {
+        let printed = at.text(key).and_then(printed_f0).map(|printed| printed.map(|value| value.min(1.0)));
+        printed.or_else(|| at.reflectance(key))
+    };
+    let f82_tint = f82_tint(at);
+    if at.text("type") == Some("conductor") {
+        let base_color = of_file("f0").filter(|_| maps_f0(at))?;
+        return Some(Metallic { base_color, metallic: 1.0, f82_tint, dielectric: [DIELECTRIC_F0; 3], is_metal: true });
+    }
+    let is_varied = ["base_color", "metallic", "f0"].iter().any(|key| live::varies(at, key));
+    (is_varied && at.text("type") == Some("metallic-roughness")).then(|| Metallic {
         base_color: at.reflectance("base_color").unwrap_or([0.0; 3]),
         metallic: at.number("metallic").unwrap_or(0.0),
-        f82_tint: f82_tint(at),
+        f82_tint,
+        dielectric: of_file("f0").unwrap_or([DIELECTRIC_F0; 3]),
+        is_metal: false,
     })
+}
+
+/// Whether a map multiplies the F0 of a layer.
+pub(super) fn maps_f0(at: &Section<'_>) -> bool {
+    at.section("maps").is_some_and(|maps| maps.has("f0"))
 }
 
 /// Reports a patina over an interface with an F0 that would lie below a denser medium where no patina has grown.
@@ -173,15 +207,21 @@ pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number
         sink.error(at.key_span("f82_tint"), message, Some("leave it out, or leave the film out".to_owned()));
     }
     let varies = number > 0 && films.iter().any(|film| film.variation.is_some());
-    if textured(at).is_none() && !(varies && carries_films_that_vary(at)) {
+    let is_mapped = textured(at).is_some() || maps_f0(at);
+    if !is_mapped && !(varies && carries_films_that_vary(at)) {
         return;
     }
-    let base = match textured(at) {
-        Some(_) => "a surface whose maps give each place another F0, by which it interferes",
-        None => "an F0 below the first layer, where films vary",
+    let base = match is_mapped {
+        true => "a surface whose maps give each place another F0, by which it interferes",
+        false => "an F0 below the first layer, where films vary",
     };
     for (i, film) in films.iter().enumerate() {
-        let (span, message, hint) = if i > 0 {
+        let is_conductor = at.text("type") == Some("conductor");
+        let (span, message, hint) = if is_mapped && at.has("f0") && !is_conductor || maps_f0(at) && number > 0 {
+            let message =
+                "a film on a surface with an `f0` of its own and maps that vary it: films interfere by the F0";
+            (film.span.clone(), message.to_owned(), "leave the film out, or the maps")
+        } else if i > 0 {
             (film.span.clone(), format!("a second film on {base}"), "leave one film")
         } else if !film.film.is_clear() {
             let message = format!("a film that absorbs on {base}: its closed forms are those of clear films");
@@ -191,6 +231,11 @@ pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number
         };
         sink.error(span, message, Some(hint.to_owned()));
     }
+}
+
+/// The F0 of the dielectric of a `metallic-roughness` layer.
+fn dielectric_f0(at: &Section<'_>, sink: &mut Sink<'_>) -> Rgb {
+    if at.has("f0") { f0(at, sink) } else { [DIELECTRIC_F0; 3] }
 }
 
 /// The F0 of an interface, as numbers or by the name of a substance. The gold of the lecture has a red above 1, which counts as 1.

@@ -90,9 +90,9 @@ pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
         ("dielectric", "color" | "colour" | "base_color") => Some(
             "a coat takes its colour from `absorption_per_um` and `thickness_um`; a base of colour is a layer below",
         ),
-        ("conductor-maps", "f0" | "base_color" | "metallic" | "albedo") => Some(
-            "a metal with a picture of its F0 is `type = \"metallic-roughness\"` with `metallic = 1`, and white as a map of `metallic`",
-        ),
+        ("conductor-maps", "base_color" | "metallic" | "albedo") => {
+            Some("a picture of the colours of a metal is a map of its `f0`")
+        }
         ("dielectric", "f82_tint") => {
             Some("an edge tint is for metals: `conductor` with an `f0`, or `metallic-roughness`")
         }
@@ -101,10 +101,10 @@ pub(crate) fn here(table: &Table, name: &str) -> Option<&'static str> {
             Some("a coat darkens what lies below it: write `darkening = false` in the `[[layer]]` of the coat above")
         }
         ("metallic-roughness", "specular_color" | "edge_color" | "edge_tint" | "specularColor") => {
-            Some("the tint of a metal's edge is `f82_tint`; without metal its F0 is 0.04")
+            Some("the tint of a metal's edge is `f82_tint`; without metal its F0 is `f0`")
         }
-        ("metallic-roughness", "ior" | "f0" | "specular") => {
-            Some("its F0 without metal is 0.04; for another write a dielectric with `ior` over a diffuse base")
+        ("metallic-roughness", "ior" | "specular") => {
+            Some("its F0 without metal is `f0`, 0.04 if absent: ((n - 1) / (n + 1))^2 for an index of n")
         }
         _ => None,
     }

@@ -106,6 +106,17 @@ const F0: Key = Key::optional(
     F0_DOC,
 );
 
+const DIELECTRIC_F0: Key = Key::with_default(
+    "f0",
+    Kind::OneOf(&[
+        Kind::Number(UNIT),
+        Kind::Choice(&F0_NAMES),
+        Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 },
+    ]),
+    "0.04",
+    "Reflectance at normal incidence without metal: a number, one for each of R, G, B (linear Rec.709), or a substance of the lecture's tables.",
+);
+
 const F82_TINT: Key = Key::with_default(
     "f82_tint",
     UNIT_RGB,
@@ -228,6 +239,8 @@ const TANGENT_MAP: Key = Key::optional(
     "A map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
 );
 
+const F0_MAP: Key = Key::optional("f0", PICTURE, "A picture whose colours multiply the `f0` of the layer.");
+
 const LEAN_MAP: Key = Key::optional(
     "lean",
     PICTURE,
@@ -248,6 +261,7 @@ static DIELECTRIC_MAPS: Table = Table {
         ALPHA_X_MAP,
         ALPHA_Y_MAP,
         TANGENT_MAP,
+        F0_MAP,
         LEAN_MAP,
     ],
     exactly_one: None,
@@ -255,7 +269,7 @@ static DIELECTRIC_MAPS: Table = Table {
 static CONDUCTOR_MAPS: Table = Table {
     name: "conductor-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP, LEAN_MAP],
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP, F0_MAP, LEAN_MAP],
     exactly_one: None,
 };
 static DIFFUSE_MAPS: Table = Table {
@@ -277,6 +291,7 @@ static METALLIC_MAPS: Table = Table {
         TANGENT_MAP,
         Key::optional("base_color", PICTURE, "A picture whose colours multiply the base colour."),
         Key::optional("metallic", PICTURE, "A map that multiplies `metallic`."),
+        F0_MAP,
     ],
     exactly_one: None,
 };
@@ -456,8 +471,9 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
             "metallic",
             Kind::Number(UNIT),
             "0",
-            "0 is a dielectric of F0 0.04 over a diffuse base, 1 a metal; in between F0 and diffuse colour are mixed.",
+            "0 is a dielectric over a diffuse base, 1 a metal; in between F0 and diffuse colour are mixed.",
         ),
+        DIELECTRIC_F0,
         F82_TINT,
         ROUGHNESS,
         ALPHA,

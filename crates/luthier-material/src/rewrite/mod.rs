@@ -77,7 +77,7 @@ impl File<'_> {
             }
         }
         let table = table_at(self.document, place).ok_or(("type", "this layer is not in the file"))?;
-        let is_mixed = table.get("type").and_then(Item::as_str) == Some("metallic-roughness");
+        let is_mixed = is_two(table);
         if is_second {
             return self.below_mixed(number, place);
         }
@@ -144,19 +144,20 @@ impl File<'_> {
             return Err(("base_color", "this layer is a metal"));
         };
         let table = table_at(self.document, place).ok_or(("type", "this layer is not in the file"))?;
-        if table.get("type").and_then(Item::as_str) != Some("metallic-roughness") {
+        if !is_two(table) {
             return Ok(());
         }
-        let maps = table.get("maps").and_then(Item::as_table_like);
-        if maps.is_some_and(|maps| maps.contains_key("base_color") || maps.contains_key("metallic")) {
-            return Err(("maps", "a layer with maps of its base colour or metal has no other numbers"));
+        if varies_color(table) {
+            return Err(("maps", "a layer with maps of its base colour, metal or F0 has no other numbers"));
         }
+        let maps = table.get("maps").and_then(Item::as_table_like);
         if table.contains_key("f82_tint") {
             return Err(("f82_tint", "a layer with an edge tint is a metal to a share, and has no other numbers"));
         }
         // Both have the normal of the layer.
         let bumps = maps.and_then(|maps| maps.get("bumps")).and_then(Item::as_value).cloned();
         table.remove("metallic");
+        table.remove("f0");
         table.remove("sigma");
         put(table, "type", Item::Value("dielectric".into()));
         rename(table, "base_color", "f0", rgb(ior.f0().unwrap_or_default()));
@@ -212,11 +213,9 @@ fn place_of(document: &DocumentMut, number: usize) -> Option<(usize, bool)> {
     for place in 0.. {
         let table = document.get("layer")?.get(place)?.as_table_like()?;
         let metal = table.get("metallic").and_then(number_of).unwrap_or(0.0);
-        let has_maps = table.get("maps").and_then(Item::as_table_like);
-        let is_textured = has_maps.is_some_and(|maps| maps.contains_key("base_color") || maps.contains_key("metallic"));
         let count = match table.get("type").and_then(Item::as_str)? {
             "thin-film" => 0,
-            "metallic-roughness" if is_textured || metal < 1.0 => 2,
+            _ if is_two(table) && (varies_color(table) || metal < 1.0) => 2,
             _ => 1,
         };
         if number < next + count {
@@ -225,6 +224,21 @@ fn place_of(document: &DocumentMut, number: usize) -> Option<(usize, bool)> {
         next += count;
     }
     None
+}
+
+/// Whether a layer of the file stands for an interface and a diffuse base: a metallic-roughness layer, or a conductor with a map of its F0.
+fn is_two(table: &dyn TableLike) -> bool {
+    match table.get("type").and_then(Item::as_str) {
+        Some("metallic-roughness") => true,
+        Some("conductor") => varies_color(table),
+        _ => false,
+    }
+}
+
+/// Whether a layer has a map of its base colour, metal or F0.
+fn varies_color(table: &dyn TableLike) -> bool {
+    let maps = table.get("maps").and_then(Item::as_table_like);
+    maps.is_some_and(|maps| ["base_color", "metallic", "f0"].iter().any(|key| maps.contains_key(key)))
 }
 
 fn table_at(document: &mut DocumentMut, place: usize) -> Option<&mut dyn TableLike> {

@@ -113,10 +113,11 @@ fn varying_of(material: &MaterialEntry) -> Option<Varying> {
 
 /// The axes of a family by its record.
 pub(crate) fn family_of(record: FamilyRecord) -> Family {
-    let FamilyRecord { coat, base, interface, is_metallic, is_tinted } = record;
+    let FamilyRecord { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back } = record;
     let axis = |SlopesRecord { least, most, nodes }| SlopeAxis { least, most, nodes: nodes as usize };
     let coat = coat.map_or(SlopeAxis { least: 0.0, most: 0.0, nodes: 1 }, axis);
-    Family { coat, base: axis(base), interface: interface as usize, is_metallic, is_tinted }
+    let (base, interface) = (axis(base), interface as usize);
+    Family { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back }
 }
 
 /// The model in f64 at exactly the f32 directions that the device gets.

@@ -14,12 +14,13 @@ use luthier_layers::twins::shaded::{Part, Place};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
 use luthier_manifest::reads;
 use luthier_manifest::{
-    LayerKind, LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, VaryingFactor, VaryingRecord,
+    LayerKind, LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, Reflectance, VaryingFactor, VaryingRecord,
 };
 use luthier_optics::Rgb;
+use luthier_optics::dielectric_albedo::fresnel_dielectric;
 use luthier_optics::film_over_f0::{FilmOverF0, WAVES_MAX};
 use luthier_optics::microfacet::scaled_distribution;
-use luthier_optics::schlick::{DIELECTRIC_F0, edge_dip};
+use luthier_optics::schlick::{DIELECTRIC_F0, F82, edge_dip};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -67,9 +68,7 @@ impl Table<'_> {
     /// A row of a family, whose lobes have a tail, between two tiles.
     fn family_row(&self, (family, tail): (Family, f64), tile: (u32, f64), cos_theta: f64, weights: Weights) -> Row {
         let parts = self.parts_between(tile.0, tile.1, cos_theta, weights);
-        // Parts of a family begin with part 0.
-        let before = self.entry.layout.y.as_ref().map_or(0.0, |y| 0.0 - y.min) as usize;
-        family.of_parts(&parts[before..], tail)
+        family.of_parts(self.entry.layout.y.as_ref().map_or(0, |y| y.min as i32), &parts, tail)
     }
 
     /// The parts of a row between two tiles. The stored numbers are interpolated, not the lobes that they encode, because shaders do so.
@@ -218,6 +217,10 @@ impl Lobes {
             tint: [1.0; 3],
             metallic,
             film_factor: place.sample.film_factor,
+            dielectric: {
+                let own = place.layers.get(family.interface).and_then(|own| own.f0).map(|own| own.map(|own| own.f0));
+                own.or(entry.layers[family.interface].f0).unwrap_or([DIELECTRIC_F0; 3])
+            },
             albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
             depth: {
                 let (depths, slabs) = (entry.layers[0].optical_depth, slab_factors(place));
@@ -494,6 +497,18 @@ pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
     Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] }
 }
 
+/// Reflectance of a layer that has no rows because its closed form is as cheap: of an F0, or of transparent media of one index.
+fn computed(record: &LayerRecord, cos_theta: f64) -> Option<Rgb> {
+    if record.reflectance != Reflectance::Exact || record.film_ior_n[0] > 0.0 {
+        return None;
+    }
+    let Some(f0) = record.f0 else {
+        return record.has_one_index().then(|| [fresnel_dielectric(record.ior_n[0], cos_theta); 3]);
+    };
+    let tint = record.f82_tint.unwrap_or([1.0; 3]);
+    Some([0, 1, 2].map(|c: usize| F82 { f0: f0[c], tint: tint[c] }.eval(cos_theta)))
+}
+
 /// Layers and tables without which the shader of a material cannot be evaluated.
 fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
     let kinds = TableKind::ALL.into_iter().filter(|kind| kind.facts().values != Values::Picture);
@@ -503,6 +518,9 @@ fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
 
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        if let Some(reflected) = computed(&self.records[layer], cos_theta_d) {
+            return self.passed(layer, cos_theta_d, reflected);
+        }
         let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
         if let Some([metal, plastic]) = self.film_ends(layer, cos_theta_d, 0.0) {
             return [0, 1, 2].map(|c: usize| plastic[c] + self.here.metal.1 * (metal[c] - plastic[c]));

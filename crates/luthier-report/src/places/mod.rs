@@ -206,6 +206,7 @@ pub(crate) fn words(place: &PlaceValues) -> String {
         }
     }
     out.extend(place.base_color.map(|color| vector("base_color", color)));
+    out.extend(place.f0.map(|f0| vector("F0", f0)));
     out.extend(place.metallic.map(|(color, metallic)| format!("{}, metallic {metallic:.3}", vector("colour", color))));
     for (i, own) in place.layers.iter().enumerate() {
         let plain = luthier_manifest::LayerValues::NONE;

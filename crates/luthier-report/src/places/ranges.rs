@@ -87,6 +87,7 @@ impl Places {
         let mut place = PlaceValues::NONE;
         let constants = &self.entry.constants;
         let (mut color, mut metal, mut lean) = (None, None, UP);
+        let is_metal = self.entry.layers.iter().any(|layer| layer.is_metal);
         for (slot, layer, range) in &self.ranges {
             let drawn = range.map(|range| numbers.between(range));
             let [r, g, _] = drawn.map(|value| value as f32);
@@ -111,6 +112,7 @@ impl Places {
                 MapSlot::Albedo => place.base_color = Some(rgb),
                 MapSlot::BaseColor => color = Some(rgb),
                 MapSlot::Metallic => metal = Some(r),
+                MapSlot::F0 => place.f0 = Some(rgb),
                 MapSlot::Lean => lean = normal([drawn[0], drawn[1]]),
                 MapSlot::Bumps
                 | MapSlot::Alpha
@@ -137,7 +139,8 @@ impl Places {
             place.weight_factor = numbers.between([0.0, 1.0 / coat.weight.max(0.1)]) as f32;
         }
         if color.is_some() || metal.is_some() {
-            place.metallic = Some((color.unwrap_or_else(|| self.base_color()), metal.unwrap_or(0.0)));
+            place.metallic =
+                Some((color.unwrap_or_else(|| self.base_color()), metal.unwrap_or(if is_metal { 1.0 } else { 0.0 })));
         }
         if let Some([factor, x, y]) = self.film.map(|film| film.map(|range| numbers.between(range))) {
             place.film_factor = factor as f32;

@@ -10,6 +10,7 @@ use luthier_layers::twins::terms::Exact;
 use luthier_manifest::{BrighteningRecord, MaterialEntry, PlaceValues};
 use luthier_optics::Rgb;
 use luthier_optics::brightening::Brightening;
+use luthier_optics::schlick::{DIELECTRIC_F0, F82};
 
 use crate::error::ReportError;
 use crate::measure::directions::wide;
@@ -113,7 +114,14 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
         layers: layers.collect(),
         metal: None,
     };
-    if let (Some((color, metallic)), Some(interface)) = (values.metallic, entry.layers.len().checked_sub(2)) {
+    let Some(interface) = entry.layers.len().checked_sub(2) else { return place };
+    let own_f0 = values.f0.map(|f0| f0.map(f64::from));
+    if let Some(f0) = own_f0 {
+        place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);
+        place.layers[interface].f0 = Some(f0.map(|f0| F82 { f0, tint: 1.0 }));
+    }
+    if let Some((color, metallic)) = values.metallic {
+        let dielectric = own_f0.or(entry.layers[interface].f0).unwrap_or([DIELECTRIC_F0; 3]);
         let (color, metallic) = (color.map(f64::from), metallic.into());
         let tint = entry.layers[interface].metal_f82_tint.unwrap_or([1.0; 3]);
         let mix = match entry.constants.brightening {
@@ -121,9 +129,9 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
                 let coat = entry.constants.coat.as_ref();
                 let weight = coat.map_or(1.0, |coat| (coat.weight * f64::from(values.weight_factor)).clamp(0.0, 1.0));
                 let shares = Brightening { diffuse, metal };
-                Mix { metal: shares.metal(color, weight), tint, matt: shares.matt(color, weight), metallic }
+                Mix { metal: shares.metal(color, weight), tint, dielectric, matt: shares.matt(color, weight), metallic }
             }
-            None => Mix { metal: color, tint, matt: color, metallic },
+            None => Mix { metal: color, tint, dielectric, matt: color, metallic },
         };
         let (curves, albedo) = mix.surface();
         place.metal = Some(mix);

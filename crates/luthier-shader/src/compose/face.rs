@@ -38,7 +38,7 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
     }));
     modules.extend([prepare(set, features, parts), light(set, features)]);
     if set.functions.has(FunctionGroup::Sample) {
-        if features.has(Feature::Visible) || features.has(Feature::Coat) {
+        if features.has(Feature::Visible) {
             modules.push(include_str!("../wgsl/face/visible.wgsl").to_owned());
         }
         if features.has(Feature::Lobes) {

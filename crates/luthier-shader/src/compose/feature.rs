@@ -63,6 +63,8 @@ luthier_lut::named! {
         Rows = "rows",
         /// Some reflectance is computed.
         Computed = "computed",
+        /// An interface whose reflectance is computed has another index in each channel, or absorbs.
+        ComplexIndex = "complex_index",
         /// Reflectances come from more than one source.
         SeveralReflectances = "several_reflectances",
         /// A material chooses a masking.
@@ -199,6 +201,8 @@ luthier_lut::named! {
         LobesMetallic = "lobes_metallic",
         /// Light of such a family is absorbed below the coat.
         LobesTinted = "lobes_tinted",
+        /// Such a slab varies above a base that keeps its colours.
+        LobesLengths = "lobes_lengths",
         /// Lobes of a family have other tails than GGX.
         LobesTails = "lobes_tails",
         /// Maps of what the first slab absorbs give each channel a tile of rows over its thickness.
@@ -229,8 +233,10 @@ luthier_lut::named! {
         OwnSlabs = "own_slabs",
         /// A map of a layer has colours that its slab absorbs.
         OwnTints = "own_tints",
-        /// Maps of a layer have base colours and metal.
+        /// Maps of a layer have base colours and metal, or an F0.
         OwnF0 = "own_f0",
+        /// The dielectric of a base has another F0 than 0.04, by a map or by the file.
+        DielectricF0 = "dielectric_f0",
         /// A film lies on the base of such a material.
         FilmF0 = "film_f0",
         /// Such a metal has an edge tint.

@@ -97,10 +97,11 @@ impl Features {
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe. Families have two lobes and up to eight parts.
+                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe. Families have two lobes, whatever their parts.
                 let (word, most) = match parts.max as u32 {
+                    _ if names.contains(&Feature::LobesFamily) => (Some(Feature::TwoLobes), 2),
                     3 => (Some(Feature::OneLobe), 1),
-                    4..=7 => (Some(Feature::TwoLobes), 2),
+                    5 => (Some(Feature::TwoLobes), 2),
                     _ => (None, 0),
                 };
                 names.extend(word);
@@ -176,6 +177,7 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
             MapSlot::Albedo if has_base_light(material) => &[Feature::BaseColor, Feature::LobesBase][..],
             MapSlot::Albedo => &[Feature::BaseColor],
             MapSlot::BaseColor | MapSlot::Metallic => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor],
+            MapSlot::F0 => &[Feature::Layered, Feature::OwnF0, Feature::BaseColor, Feature::DielectricF0],
             MapSlot::Lean => &[],
             MapSlot::Bumps if !material.model.is_fitted() => &[Feature::Layered, Feature::OwnNormals],
             MapSlot::Bumps if has_base_light(material) => {
@@ -202,6 +204,10 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
         own.insert(Feature::LobesBase);
     }
     own.extend(of_family(material));
+    let interface = material.layers.len().checked_sub(2).map(|number| &material.layers[number]);
+    if own.contains(&Feature::OwnF0) && interface.and_then(|layer| layer.f0).is_some_and(|f0| f0 != [ENGINE_F0; 3]) {
+        own.insert(Feature::DielectricF0);
+    }
     if own.contains(&Feature::OwnF0) && material.layers.iter().any(|layer| layer.metal_f82_tint.is_some()) {
         own.insert(Feature::OwnEdge);
     }
@@ -240,11 +246,13 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
     let is_chain_over = features.has(Feature::Chain) && features.has(Feature::Below);
     let (mut is_packed, mut is_whole, mut is_own, mut is_inside) = (false, false, false, false);
-    let (mut is_power, mut is_kelemen) = (false, false);
+    let (mut is_power, mut is_kelemen, mut is_complex) = (false, false, false);
     for material in set.materials.iter() {
         is_kelemen |= material.model.is_path() && material.records().any(|record| record.masking == Masking::Kelemen);
     }
     for record in set.materials.iter().flat_map(MaterialEntry::records) {
+        let computes = record.reflectance == Reflectance::Exact || form == Form::Full;
+        is_complex |= computes && !is_diffuse(record) && record.f0.is_none() && !record.has_one_index();
         is_packed |= (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
         is_whole |= record.internal_reflection != InternalReflection::default();
         is_whole |= record.diffuse_part == DiffusePart::Beside;
@@ -257,6 +265,7 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, features: &Features) -> Vec<Featu
     let words = [
         (Feature::Rows, is_read),
         (Feature::Computed, is_computed),
+        (Feature::ComplexIndex, is_complex),
         (Feature::SeveralReflectances, sources > 1),
         (Feature::Masked, is_masked),
         (Feature::SeveralMaskings, maskings.len() > 1),
@@ -380,12 +389,16 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
         let turns = [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent];
         let mut varied = material.maps.iter().map(|map| map.slot).chain(material.live.iter().map(|live| live.slot));
         let is_turned = varied.any(|slot| turns.contains(&slot));
-        let is_anisotropic = !facts.is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned);
+        // Lobes of a family are stretched by all interfaces, of which the model reads the first alone.
+        let is_family = rows.is_some_and(|rows| rows.family().is_some());
+        let below = if is_family { material.layers.as_slice() } else { &[] };
+        let is_stretched = std::iter::once(layer).chain(below).any(|layer| layer.alpha_xy[0] != layer.alpha_xy[1]);
+        let is_anisotropic = !facts.is_isotropic && (is_stretched || is_turned);
         if is_anisotropic {
             names.insert(Feature::Anisotropic);
         }
         // Rows have axes, or shapes of a family are stretched along some.
-        if rows.is_some_and(|rows| rows.axes.is_some() || is_anisotropic && rows.family().is_some()) {
+        if rows.is_some_and(|rows| rows.axes.is_some() || is_anisotropic && is_family) {
             names.insert(Feature::LobesAxes);
         }
     }
@@ -533,17 +546,22 @@ fn family(material: &MaterialEntry) -> Option<FamilyRecord> {
 /// The features of a family.
 fn of_family(material: &MaterialEntry) -> Vec<Feature> {
     let Some(family) = family(material) else { return Vec::new() };
-    let is_tinted = family.is_metallic && material.layers.first().is_some_and(|first| first.optical_depth != [0.0; 3]);
+    let absorbs = material.layers.first().is_some_and(|first| first.optical_depth != [0.0; 3]);
+    let (is_tinted, has_lengths) = (family.is_metallic && absorbs, family.has_lengths && absorbs);
     let words = [
         (Feature::LobesFamily, true),
         (Feature::LobesCoats, family.has_two_axes()),
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
-        (Feature::LobesTails, material.constants.lobes.is_some_and(|lobes| lobes.inverse_tails[0] > 1.0)),
+        (Feature::LobesLengths, has_lengths),
+        (Feature::LobesTails, family.has_tail),
         (Feature::FilmF0, material.layers.iter().any(LayerRecord::has_film_over_f0)),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }
+
+/// F0 of the dielectric of a `metallic-roughness` surface whose file names no other.
+const ENGINE_F0: f64 = 0.04;
 
 /// Whether patina or a coat covers a diffuse base alone.
 fn is_bare_base(material: &MaterialEntry) -> bool {

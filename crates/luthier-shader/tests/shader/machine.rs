@@ -428,6 +428,13 @@ fn math(fun: MathFunction, operands: [Value; 3]) -> Value {
         let (a, b) = (v[0].float(), || v[1].float());
         F(match fun {
             M::Abs => a.abs(),
+            M::Sign => {
+                if a == 0.0 {
+                    0.0
+                } else {
+                    a.signum()
+                }
+            }
             M::Min => a.min(b()),
             M::Max => a.max(b()),
             M::Clamp => a.max(b()).min(v[2].float()),

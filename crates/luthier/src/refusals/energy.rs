@@ -181,17 +181,29 @@ fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
     // Where a coat has its greatest weight, no texel makes it less.
     let patina = material.weight().filter(|_| !material.weighs_film() || model.is_path()).map(Growth::of_coat);
     let side = material.weighs_film().then_some(Side::Film);
-    let Some((number, Metallic { base_color, metallic, f82_tint: tint })) = textured else {
+    let Some((number, Metallic { base_color, metallic, f82_tint: tint, dielectric, is_metal })) = textured else {
         return vec![Place { patina, side, ..Place::NONE }];
     };
-    let shares = if metallic > 0.0 { vec![metallic, 0.0] } else { vec![0.0] };
+    let shares = if is_metal {
+        vec![1.0]
+    } else if metallic > 0.0 {
+        vec![metallic, 0.0]
+    } else {
+        vec![0.0]
+    };
     let places = shares.into_iter().map(|metallic| {
         let mix = match material.brightening() {
             Some(below) => {
                 let weight = material.weight().unwrap_or(1.0);
-                Mix { metal: below.metal(base_color, weight), tint, matt: below.matt(base_color, weight), metallic }
+                Mix {
+                    metal: below.metal(base_color, weight),
+                    tint,
+                    dielectric,
+                    matt: below.matt(base_color, weight),
+                    metallic,
+                }
             }
-            None => Mix { metal: base_color, tint, matt: base_color, metallic },
+            None => Mix { metal: base_color, tint, dielectric, matt: base_color, metallic },
         };
         let (curves, albedo) = mix.surface();
         let mut layers = vec![LayerSample::NONE; number + 1];

@@ -13,6 +13,7 @@ use luthier_lut::{Image, Picture};
 use luthier_manifest::{MapSlot, ShadingModel};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::Rgb;
+use luthier_optics::schlick::{DIELECTRIC_F0, F82};
 use luthier_optics::stack::Base;
 use luthier_terminal::{Failure, Outcome};
 
@@ -96,6 +97,7 @@ pub(crate) fn add_layers(
     let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
     let mut layers = vec![LayerSample::NONE; count];
     let mut metallic: Option<(usize, Rgb, Rgb, f64)> = None;
+    let mut own_f0: Option<(usize, Rgb)> = None;
     for map in maps {
         let own = &mut layers[map.layer];
         let image = picture(material, &map.picture, map.texels)?.image();
@@ -123,12 +125,16 @@ pub(crate) fn add_layers(
                 let here = [0, 1, 2].map(|c: usize| diffuse.albedo[c] * texel(c));
                 place.base_color = place.base_color.or(Some(here));
             }
-            MapSlot::BaseColor | MapSlot::Metallic => {
+            MapSlot::F0 if material.layers[map.layer].metallic.is_none_or(|surface| !surface.is_metal) => {
+                let Base::Dielectric { ior, .. } = &material.stack.layers[map.layer].base else { continue };
+                own_f0 = ior.f0().map(|f0| (map.layer, [0, 1, 2].map(|c: usize| f0[c] * texel(c))));
+            }
+            MapSlot::BaseColor | MapSlot::Metallic | MapSlot::F0 => {
                 let Some(surface) = material.layers[map.layer].metallic else { continue };
                 let (_, _, color, metal) =
                     metallic.get_or_insert((map.layer, surface.f82_tint, surface.base_color, surface.metallic));
                 match map.slot {
-                    MapSlot::BaseColor => (0..3).for_each(|c| color[c] *= texel(c)),
+                    MapSlot::BaseColor | MapSlot::F0 => (0..3).for_each(|c| color[c] *= texel(c)),
                     _ => *metal *= texel(0),
                 }
             }
@@ -137,13 +143,24 @@ pub(crate) fn add_layers(
     }
     place.layers = layers;
     live::set(place, &mut metallic, material, model, &inputs.live)?;
+    if let Some((layer, f0)) = own_f0 {
+        place.layers[layer].f0 = Some(f0.map(|f0| F82 { f0, tint: 1.0 }));
+    }
     if let Some((layer, tint, color, metal)) = metallic {
+        let of_file = material.layers[layer].metallic.map_or([DIELECTRIC_F0; 3], |surface| surface.dielectric);
+        let dielectric = own_f0.map_or(of_file, |(_, f0)| f0);
         let mix = match material.brightening() {
             Some(below) => {
                 let weight = weight(material, inputs)?.unwrap_or(1.0);
-                Mix { metal: below.metal(color, weight), tint, matt: below.matt(color, weight), metallic: metal }
+                Mix {
+                    metal: below.metal(color, weight),
+                    tint,
+                    dielectric,
+                    matt: below.matt(color, weight),
+                    metallic: metal,
+                }
             }
-            None => Mix { metal: color, tint, matt: color, metallic: metal },
+            None => Mix { metal: color, tint, dielectric, matt: color, metallic: metal },
         };
         let (curves, albedo) = mix.surface();
         if place.layers.len() <= layer {

@@ -104,6 +104,35 @@ fn lobes_are_as_small_as_their_budget_allows() {
     workshop.run(&albedo).exits(0);
 }
 
+/// Rows over slope parameters of single layers have as few nodes and views as hold the limit, and all of them without one.
+#[test]
+fn families_are_as_small_as_their_budget_allows() {
+    let layer = |text: &str| format!("\n[[layer]]\n{text}\n");
+    let base = "type = \"metallic-roughness\"\nbase_color = 0.8\nmetallic = 1\nalpha = 1\nmaps = { alpha = \"r.png\" }";
+    let text =
+        format!("schema = 1\nname = \"a\"\n{}{}", layer("type = \"dielectric\"\nior = 1.5\nalpha = 0.1"), layer(base));
+    let workshop = Workshop::with(&[("a.toml", &text)]);
+    let map = image::ImageBuffer::from_fn(2, 1, |x, _| image::Luma([40 + 160 * x as u8]));
+    map.save(workshop.path("r.png")).unwrap();
+    let tiles: Vec<u64> = ([Some("0.5"), Some("0.06"), None].iter())
+        .map(|limit| {
+            let limit = limit.map_or(vec![], |limit| vec!["--max-lobe-err", limit]);
+            workshop
+                .run(&[&["bake", "a.toml", "--target", "wgsl", "-q", "--model", "lobes"], &limit[..]].concat())
+                .exits(0);
+            let manifest = workshop.json("out/manifest.json");
+            let lobes = &manifest["materials"][0]["constants"]["lobes"];
+            let (family, tiles) = (&lobes["varying"]["family"], lobes["varying"]["tiles"].as_u64().unwrap());
+            assert_eq!(family["base"]["nodes"].as_u64().unwrap() * family["coat"]["nodes"].as_u64().unwrap(), tiles);
+            if let [_, limit] = limit[..] {
+                assert!(lobes["error"]["lobe"].as_f64().unwrap() <= limit.parse().unwrap(), "{lobes}");
+            }
+            tiles
+        })
+        .collect();
+    assert!(tiles[0] == 2 && tiles[0] <= tiles[1] && tiles[1] <= tiles[2] && tiles[2] > 2, "{tiles:?}");
+}
+
 /// Limits on lobes where there are none are refused: in a file with its line, as an option.
 #[test]
 fn limits_on_lobes_need_lobes() {

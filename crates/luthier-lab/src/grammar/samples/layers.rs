@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 40] = [
+pub(super) static SAMPLES: [Sample; 41] = [
     sample(
         "material.exterior",
         "exterior",
@@ -242,6 +242,12 @@ pub(super) static SAMPLES: [Sample; 40] = [
         "layer.0.metallic",
         "layer = [{ type = 'metallic-roughness', base_color = [0.955, 0.638, 0.538], metallic = @, roughness = 0.4 }]\nbake = { model = 'elek' }",
         &["0", "0.5", "1"],
+    ),
+    sample(
+        "metallic-roughness.f0",
+        "layer.0.f0",
+        "layer = [{ type = 'metallic-roughness', base_color = [0.1, 0.02, 0.02], roughness = 0.3, f0 = @ }]\nbake = { model = 'elek' }",
+        &["0.04", "0.2", "[0.5, 0.3, 0.1]"],
     ),
     sample(
         "metallic-roughness.sigma",

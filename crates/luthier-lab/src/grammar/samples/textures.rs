@@ -4,7 +4,7 @@ use super::{Sample, sample};
 
 const FILM: &str = "layer.0.film.0.thickness_nm";
 
-pub(super) static SAMPLES: [Sample; 25] = [
+pub(super) static SAMPLES: [Sample; 26] = [
     sample(
         "noise.seed",
         FILM,
@@ -88,6 +88,12 @@ pub(super) static SAMPLES: [Sample; 25] = [
         "layer.0.maps.tangent",
         "layer = [{ type = 'conductor', ior = 'al', alpha_x = 0.4, alpha_y = 0.06, maps = { @ } }]\nbake = { model = 'weidlich-wilkie' }",
         &["absent|", "'rays.png'|tangent = 'rays.png'", "'circles.png'|tangent = 'circles.png'"],
+    ),
+    sample(
+        "dielectric-maps.f0",
+        "layer.0.maps.f0",
+        "layer = [{ type = 'conductor', f0 = 0.95, roughness = 0.4, maps = { @ } }]\nbake = { model = 'elek' }",
+        &["absent|", "'paint.png'|f0 = 'paint.png'", "'thickness.png'|f0 = 'thickness.png'"],
     ),
     sample(
         "dielectric-maps.lean",

@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 
+use super::draws::{Disc, LobeDraw};
 use super::half_vector::{outside, refracted, slope};
 use super::leaving::{LEAVING_MIN, Leaving};
-use super::{Frame, Lobe, Row, Shape};
+use super::{Frame, Lobe, Row, Shape, Wide};
 
 /// Least cosine of a normal against that of the surface.
 pub(super) const UP_MIN: f64 = 1e-3;
@@ -177,15 +178,29 @@ impl Below {
         sum
     }
 
-    /// Densities in solid angle of the lobes, one after the other, with which [`Self::sample`] draws.
-    pub(super) fn densities(&self, wi: DVec3) -> impl Iterator<Item = f64> {
+    /// The shape of the remainder.
+    pub(super) fn wide(&self) -> &Wide {
+        &self.frame.wide
+    }
+
+    /// The draws of the lobes, one after the other.
+    pub(super) fn draws(&self) -> Vec<LobeDraw> {
+        let index = self.frame.index;
+        let radius = 1.0 / (index * self.eye.z + ((index - 1.0) * (index + 1.0)).max(0.0).sqrt());
+        let middle = [index * self.eye.x * radius - self.tilt[0], index * self.eye.y * radius - self.tilt[1]];
+        let disc = Disc { middle, radius };
+        self.shapes.iter().map(|shape| LobeDraw::new(*shape, disc)).collect()
+    }
+
+    /// Densities in solid angle with which [`Self::sample`] draws.
+    pub(super) fn densities<'a>(&self, draws: &'a [LobeDraw], wi: DVec3) -> impl Iterator<Item = f64> + 'a {
         let (at, factor) = self.slope(wi);
-        self.shapes.iter().map(move |shape| shape.density(at) * factor)
+        draws.iter().map(move |draw| draw.density(at) * factor)
     }
 
     /// A direction of a lobe for two numbers that are uniform in 0..1; `None` below the horizon.
-    pub(super) fn sample(&self, lobe: usize, u: [f64; 2]) -> Option<DVec3> {
-        let [x, y] = self.shapes.get(lobe)?.sample(u);
+    pub(super) fn sample(&self, draw: &LobeDraw, u: [f64; 2]) -> Option<DVec3> {
+        let [x, y] = draw.sample(u);
         let slope = [x + self.tilt[0], y + self.tilt[1]];
         let DVec3 { x, y, z } = outside(slope, self.eye, self.frame.index)?;
         let [cos, sin] = self.turn;

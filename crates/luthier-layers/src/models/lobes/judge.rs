@@ -211,8 +211,8 @@ fn in_colors(family: Family, stack: &Stack, number: usize) -> ([Slopes; 2], Pain
     let is_metal = is_metal || base_below(stack).is_none();
     let tint = if family.is_tinted { TINT } else { [1.0; 3] };
     let film_factor = thicken(&mut here, family, number);
-    let paint = Paint { film_factor, ..Paint::of(&here) };
-    let paint = paint.mixed(Mix { metal: color, tint, matt: color, metallic: if is_metal { 1.0 } else { 0.0 } });
+    let (plain, metallic) = (Paint { film_factor, ..Paint::of(&here) }, if is_metal { 1.0 } else { 0.0 });
+    let paint = plain.mixed(Mix { metal: color, tint, dielectric: plain.dielectric, matt: color, metallic });
     let here = if is_metal { paint.metal_of(&here) } else { paint.plastic_of(&here) };
     (slopes, paint, here)
 }

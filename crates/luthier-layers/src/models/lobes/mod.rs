@@ -32,6 +32,7 @@
 
 mod axes;
 mod below;
+mod draws;
 mod ellipse;
 mod eval;
 mod family;
@@ -42,7 +43,6 @@ mod judge;
 mod leaving;
 mod parameters;
 mod patina;
-mod prepared;
 mod rows;
 mod shape;
 mod tally;
@@ -52,13 +52,13 @@ mod varied;
 
 pub use axes::Axes;
 pub use below::Below;
+pub use draws::{Prepared, Sample};
 use family::Filmed;
 pub use family::{Family, FilmLight, Mix, Paint, SlopeAxis, Slopes, Stretch, base_interface};
 pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};
 pub use patina::{Cover, bare};
-pub use prepared::{Prepared, Sample};
 pub use rows::{BaseLight, Critical, Lobe, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
 pub(crate) use varied::scaled_along;
@@ -89,7 +89,13 @@ pub(crate) const ROOM: Room = Room {
             include_str!("eval.wgsl")
         ),
         parts: include_str!("parts.wgsl"),
-        sample: include_str!("sample.wgsl"),
+        sample: concat!(
+            include_str!("draws/facet.wgsl"),
+            include_str!("draws/gaussian.wgsl"),
+            include_str!("draws/lobe.wgsl"),
+            include_str!("draws/wide.wgsl"),
+            include_str!("draws/sample.wgsl")
+        ),
         environment: include_str!("environment.wgsl"),
     },
     twin: eval::twin,

@@ -213,6 +213,9 @@ pub struct BaseLight {
     pub internal: Rgb,
     /// Coefficients of the shape of a Lambertian base's light, which the remainder takes; 0 above another base.
     pub falloff: [f64; 2],
+    /// Lengths of light in the first slab, over its thickness, in rows of a family with such: of one visit to the base interface; of the light of the diffuse base,
+    /// or of more visits without one; and of what is sent back to it.
+    pub lengths: [f64; 3],
     /// Energy of the light that meets the base from one direction, in a row of a family in colours; its other numbers know no colour.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub met: Option<Rgb>,
@@ -227,6 +230,19 @@ impl BaseLight {
             // A base that was simulated black leaves no light to scale.
             if own > 0.0 { self.energy[c] * (other / own - 1.0) } else { 0.0 }
         })
+    }
+
+    /// [`Self::more`] and [`Self::of_one_direction`] where the first slab lets a share of the light of the base through, and a share of what is sent back to it.
+    pub(super) fn dimmed(&self, simulated: Rgb, albedo: Rgb, [passed, around]: [Rgb; 2]) -> [Rgb; 2] {
+        let mut light = [[0.0; 3]; 2];
+        for c in [0, 1, 2].into_iter().filter(|&c| simulated[c] > 0.0) {
+            let own = simulated[c] / (1.0 - self.internal[c] * simulated[c]).max(1e-3);
+            let left = (1.0 - self.internal[c] * around[c] * albedo[c]).max(1e-3);
+            let direct = self.energy[c] * albedo[c] * passed[c] / own;
+            light[0][c] = direct / left - self.energy[c];
+            light[1][c] = direct;
+        }
+        light
     }
 
     /// Energy that a base of another albedo has of light that comes through the layers, without what these send back to it.
@@ -361,7 +377,13 @@ impl Row {
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
         let parts = &parts[..parts.len().min(Self::parts(LOBES))];
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
-        let base = BaseLight { energy: rgb(of_base.get(1)), internal: rgb(of_base.first()), falloff, met: None };
+        let base = BaseLight {
+            energy: rgb(of_base.get(1)),
+            internal: rgb(of_base.first()),
+            falloff,
+            lengths: [0.0; 3],
+            met: None,
+        };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
         let shears = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part[3]));
         let shaped = match *inner {
@@ -452,9 +474,13 @@ impl Row {
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
         let met = self.base.and_then(|base| base.met).zip(other.base.and_then(|base| base.met));
+        let lengths = self.base.zip(other.base).map(|(own, other)| [own.lengths, other.lengths]);
         let (own, other) = (self.to_parts(), other.to_parts());
         let parts = own.iter().zip(&other).map(|(a, b)| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i])));
         let mut between = Self::of_parts(&parts.collect::<Vec<_>>(), self.base.is_some());
+        if let (Some(base), Some([a, b])) = (&mut between.base, lengths) {
+            base.lengths = [0, 1, 2].map(|i: usize| a[i] + t * (b[i] - a[i]));
+        }
         if let (Some(base), Some((a, b))) = (&mut between.base, met) {
             base.met = Some([0, 1, 2].map(|c: usize| a[c] + t * (b[c] - a[c])));
         }
@@ -545,7 +571,13 @@ mod tests {
             tail: 0.25,
         };
         for lobes in [vec![], vec![lobe(0.0)], vec![lobe(0.0), lobe(0.25)]] {
-            let base = BaseLight { energy: [0.7, 0.8, 0.9], internal: [0.4, 0.5, 0.6], falloff: [0.2, 0.1], met: None };
+            let base = BaseLight {
+                energy: [0.7, 0.8, 0.9],
+                internal: [0.4, 0.5, 0.6],
+                falloff: [0.2, 0.1],
+                lengths: [0.0; 3],
+                met: None,
+            };
             for base in [None, Some(base)] {
                 let row = Row { albedo_dir: [4.0, 5.0, 6.0], lobes: lobes.clone(), wide: [0.1, 0.2, 0.3], base };
                 let (parts, of_base) = (row.to_parts(), base.map_or(0, |_| Row::BASE_PARTS));

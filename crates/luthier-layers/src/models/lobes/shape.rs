@@ -178,24 +178,37 @@ impl Wide {
     /// Coefficients of the shape nearest to the light of a Lambertian base, by least squares over the cosine of that light; `None` without such light.
     /// Its shape does not depend on the view, so all views are added up.
     pub(super) fn falloff_of(axis: ViewAxis, views: &[Tally]) -> Option<[f64; 2]> {
+        Self::nearest(axis, views, |[one, fifth, square]| vec![one, fifth, square])
+            .map(|found| [found[1] / found[0], found[2] / found[0]])
+    }
+
+    /// [`Self::falloff_of`] with a given b.
+    pub(super) fn fall_of(axis: ViewAxis, views: &[Tally], square: f64) -> Option<[f64; 2]> {
+        Self::nearest(axis, views, |[one, fifth, second]| vec![one + square * second, fifth])
+            .map(|found| [found[1] / found[0], square])
+    }
+
+    /// Factors on terms, made of a constant and both powers of [`Self::value`], whose sum is nearest to the light of all views.
+    fn nearest(axis: ViewAxis, views: &[Tally], terms_of: impl Fn([f64; 3]) -> Vec<f64>) -> Option<Vec<f64>> {
         let mut light = [0.0; COSINES];
         for by_cosine in views.iter().filter_map(|view| view.by_cosine.as_ref()) {
             light.iter_mut().zip(by_cosine).for_each(|(sum, energy)| *sum += energy);
         }
         let total: f64 = light.iter().sum();
         let shape = Self { falloff: [0.0; 2], axis, integral: 1.0 };
-        let (mut matrix, mut right) = (vec![vec![0.0; 3]; 3], vec![0.0; 3]);
+        let count = terms_of([0.0; 3]).len();
+        let (mut matrix, mut right) = (vec![vec![0.0; count]; count], vec![0.0; count]);
         for (bin, light) in light.iter().enumerate() {
             let of_cosine = over_bin(bin, |_| 1.0);
             let [fifth, square] = [0, 1].map(|power: usize| over_bin(bin, |mu| shape.slopes(mu)[power]));
-            let terms = [of_cosine, fifth, square];
-            for i in 0..3 {
-                right[i] += terms[i] * light / total / of_cosine;
-                (0..3).for_each(|j| matrix[i][j] += terms[i] * terms[j] / of_cosine);
+            let terms = terms_of([of_cosine, fifth, square]);
+            for (i, own) in terms.iter().enumerate() {
+                right[i] += own * light / total / of_cosine;
+                terms.iter().zip(&mut matrix[i]).for_each(|(other, sum)| *sum += own * other / of_cosine);
             }
         }
         let found = solve(matrix, right);
-        (total > 0.0 && found[0] > 0.0).then(|| [found[1] / found[0], found[2] / found[0]])
+        (total > 0.0 && found[0] > 0.0).then_some(found)
     }
 
     /// The integral of `S(mu) mu / pi` over the hemisphere; within 1e-4.

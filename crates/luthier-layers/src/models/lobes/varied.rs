@@ -64,6 +64,17 @@ impl Varying {
         }
     }
 
+    /// A family with half of the steps between nodes, `halvings` times, but one at least over each range; anything else as it is.
+    #[must_use]
+    pub fn with_fewer_nodes(self, halvings: u32) -> Self {
+        let Self::Family(family) = self else { return self };
+        let [coat, base] = [family.coat, family.base].map(|axis| {
+            let steps = (axis.nodes - 1).div_ceil(1 << halvings);
+            super::SlopeAxis { nodes: steps + 1, ..axis }
+        });
+        Self::Family(Family { coat, base, ..family })
+    }
+
     /// The node of the stack itself: at factor 1, or with all layers.
     pub fn nominal(self) -> usize {
         match self {
@@ -270,30 +281,56 @@ impl Varied {
         (self.nominal(), bare)
     }
 
+    /// The rows of a family at a fractional number of a node of the coat, and of the base.
+    fn among(&self, family: Family, [coat, base]: [f64; 2]) -> Lobes {
+        let [coat, base] = [(coat, family.coat), (base, family.base)].map(|(place, axis)| {
+            let first = (place as usize).min(axis.nodes.saturating_sub(2));
+            (first, (first + 1).min(axis.nodes - 1), place - first as f64)
+        });
+        let mut lobes = self.nodes[0].clone();
+        let rows = (0..lobes.rows.len()).map(|row| {
+            let [low, high] = [coat.0, coat.1].map(|coat| {
+                let [low, high] = [base.0, base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
+                low.between(&high, base.2)
+            });
+            low.between(&high, coat.2)
+        });
+        lobes.rows = rows.collect();
+        lobes
+    }
+
+    /// The rows of a family at the nodes of one over the same ranges, with fewer nodes; those of anything else as they are.
+    #[must_use]
+    pub fn at_nodes(self, fewer: Option<Varying>) -> Self {
+        let (Some(Over { varying: Varying::Family(family), .. }), Some(Varying::Family(fewer))) =
+            (&self.varying, fewer)
+        else {
+            return self;
+        };
+        let (family, fewer) = (*family, Family { sent_back: family.sent_back, ..fewer });
+        let places = (0..fewer.nodes()).map(|node| family.places(fewer.alphas(node)));
+        let mut nodes: Vec<Lobes> = places.map(|place| self.among(family, place)).collect();
+        if fewer.has_tail {
+            fewer.hold_shares(&mut nodes);
+        }
+        let varying = self.varying.map(|over| Over { varying: Varying::Family(fewer), ..over });
+        Self { nodes, varying }
+    }
+
+    /// Number of tiles.
+    pub fn tiles(&self) -> usize {
+        self.nodes.iter().map(|lobes| lobes.rows.len() / lobes.axis.size()).sum()
+    }
+
     /// The lobes of a family at slope parameters of coat and base, held to the ranges, and in colours; the first interface is that of the stack.
     pub fn painted<S: Into<Slopes>>(&self, slopes: [S; 2], paint: &Paint) -> Option<Lobes> {
         let over = self.varying.as_ref()?;
         let Varying::Family(family) = over.varying else { return None };
         let slopes = slopes.map(Into::into);
         let alphas = slopes.map(Slopes::mean);
-        let [coat, base] = family.places(alphas);
         let held = family.held(alphas);
-        let [next_coat, next_base] = [(coat, family.coat), (base, family.base)].map(|(place, axis)| {
-            let first = (place as usize).min(axis.nodes.saturating_sub(2));
-            (first, (first + 1).min(axis.nodes - 1), place - first as f64)
-        });
-        let mut lobes = self.nodes[0].clone();
-        let rows = (0..lobes.rows.len()).map(|row| {
-            let [low, high] = [next_coat.0, next_coat.1].map(|coat| {
-                let [low, high] =
-                    [next_base.0, next_base.1].map(|base| self.stored(coat * family.base.nodes + base, row));
-                low.between(&high, next_base.2)
-            });
-            low.between(&high, next_coat.2)
-        });
-        lobes.rows = rows.collect();
         // Between rows, numbers are in line, and what follows from them is not.
-        lobes = lobes.refined(PAINTED_STEPS);
+        let mut lobes = self.among(family, family.places(alphas)).refined(PAINTED_STEPS);
         let (frame, axis) = (lobes.frame, lobes.axis);
         let filmed = Filmed::new(&over.stack, family, paint, &over.color);
         for (place, row) in lobes.rows.iter_mut().enumerate() {
@@ -425,8 +462,8 @@ impl Traced {
             return Varied { nodes, varying: self.varying.clone() };
         }
         if let Varying::Family(family) = over.varying {
-            let nodes = family.lobes(&over.stack, &over.color, self.settings);
-            return Varied { nodes, varying: self.varying.clone() };
+            let (family, nodes) = family.lobes(&over.stack, &over.color, self.settings);
+            return Varied { nodes, varying: Some(Over { varying: Varying::Family(family), ..over.clone() }) };
         }
         let (count, nominal) = (self.simulations.len(), over.varying.nominal());
         let [here, middle] = [nominal, count / 2].map(|node| (node, self.simulations[node].fewest(most, excess)));

@@ -118,7 +118,8 @@ fn a_coat_over_a_side_is_the_mean_of_two_stacks() {
     };
     let normal = leaning(-0.05, 0.1);
     let sample = TextureSample { normal, alpha_factor: 0.8, slab_factor: 0.3, ..TextureSample::NONE };
-    let mix = Mix { metal: [0.9, 0.6, 0.3], tint: [1.0; 3], matt: [0.5, 0.4, 0.2], metallic: 0.3 };
+    let mix =
+        Mix { metal: [0.9, 0.6, 0.3], tint: [1.0; 3], dielectric: [0.04; 3], matt: [0.5, 0.4, 0.2], metallic: 0.3 };
     let flakes = Under { flake_normal: DVec3::new(0.2, 0.1, 0.9).normalize(), ..Under::NONE };
     let plain = Place { sample, layers: vec![own(0.5), own(0.7)], ..Place::NONE };
     for (stack, place) in [

@@ -20,7 +20,10 @@ fn $fresnel_computed(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
         if layer.film_ior_n.x > 0.0 {
             return luthier_film(layer, cos_theta_d);
         }
+        //? complex_index
         return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
+        //? else
+        return vec3<f32>(luthier_fresnel_real(layer.ior_n.x, cos_theta_d));
     }
     //? else
     return luthier_film(layer, cos_theta_d);

@@ -79,6 +79,9 @@ struct LuthierPlace {
     //? lobes_metallic, own_f0
     /// Colour that the base shows where it is no metal, RGB.
     matt: vec3<f32>,
+    //? dielectric_f0
+    /// F0 of the dielectric above a diffuse base, RGB, see `luthier_f0_place`; below 0 that of each material.
+    dielectric_f0: vec3<f32>,
     //? granier
     /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
     inner_normal: vec3<f32>,
@@ -110,6 +113,7 @@ fn luthier_place() -> LuthierPlace {
     place.base_color = vec3<f32>(-1.0);
     place.metal = vec4<f32>(-1.0);
     place.metal_edge = vec3<f32>(0.0);
+    place.dielectric_f0 = vec3<f32>(-1.0);
     $each_layer
     return place;
 }
@@ -287,6 +291,19 @@ fn luthier_place_on_first(place: LuthierPlace) -> LuthierPlace {
     }
 }
 
+//? dielectric_f0
+/// A place with another F0 of the dielectric on the diffuse base of a material.
+fn luthier_f0_place(place: LuthierPlace, material: u32, f0: vec3<f32>) -> LuthierPlace {
+    let index = luthier_layer_count(material) - 2u;
+    let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
+    var next = place;
+    next.dielectric_f0 = f0;
+    if index < $layers {
+        next.layers[index].passing = (1.0 - f0) / max(1.0 - luthier_materials[first + $word_ior_n].xyz, vec3<f32>(1e-6));
+    }
+    return next;
+}
+
 //? own_f0
 /// A place with another base colour of a `metallic-roughness` material, and another `metallic`, 0 to 1: F0 of its interface and albedo of its base
 /// (glTF 2.0, appendix B).
@@ -322,7 +339,11 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
         let metal = base_color;
         let matt = base_color;
     }
-    let f0 = 0.04 + metallic * (metal - 0.04);
+    //? dielectric_f0
+    let dielectric = select(nominal, place.dielectric_f0, place.dielectric_f0.x >= 0.0);
+    //? else
+    let dielectric = vec3<f32>(0.04);
+    let f0 = dielectric + metallic * (metal - dielectric);
     let shown = matt * (1.0 - metallic);
     //? own_edge
     {

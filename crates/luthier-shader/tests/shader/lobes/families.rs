@@ -30,9 +30,10 @@ pub(super) const FIRST: u32 = 1;
 /// Ranges of slope parameters of coat and base.
 const RANGES: [[f64; 2]; 2] = [[0.01, 0.25], [0.04, 0.64]];
 
-/// Slope parameters of the material, and its colours: F0 of the base, albedo below it, optical depth of the coat's slab.
+/// Slope parameters of the material, and its colours: F0 of the dielectric, and another one, albedo below it, optical depth of the coat's slab.
 const ALPHAS: [f64; 2] = [0.3, 0.7];
-const F0: Rgb = [0.05, 0.3, 0.6];
+const F0: Rgb = [0.04; 3];
+const OTHER_F0: Rgb = [0.05, 0.3, 0.6];
 const ALBEDO: Rgb = [0.7, 0.4, 0.2];
 const DEPTH: Rgb = [0.1, 0.3, 0.6];
 
@@ -62,13 +63,16 @@ pub(super) fn rows_of(tiles: u32, is_metallic: bool, is_coated: impl Fn(u32) -> 
             5 => [if is_coated { 0.94 - 0.02 * k } else { 0.01 + 0.02 * k }, 0.02 * c, 0.8 + 0.1 * k, 0.9 - 0.1 * c],
             6 if !is_metallic => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.8],
             6 => [0.4 + 0.1 * k, 0.3 - 0.2 * k, 0.1 * c, 0.2 + 0.1 * k],
-            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 0.0],
+            7 if !is_metallic => [0.1, 0.2 - 0.1 * k, 0.2, 2.0 + 0.2 * c],
             // Lengths, or the squared sines at which facets are seen.
             7 => [1.4, 0.5 + 0.2 * c, if is_coated { 2.5 } else { 0.5 }, if is_coated { 3.0 + k } else { 0.1 * k }],
-            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 0.0],
+            8 if !is_metallic => [0.3, 0.2 + 0.1 * k, 0.25, 2.2 + 0.1 * k],
             // What an edge tint takes, or the squared sines at which light meets a film below a coat.
             8 => [0.15 + 0.1 * k, 0.05 + 0.03 * c, 0.2, 0.4],
-            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 0.0],
+            9 if !is_metallic => [1.5, 0.0, 0.0, 0.0],
+            9 => [0.5 + 0.2 * c, 0.4, 0.3 + 0.1 * k, 1.5],
+            // Shares over their estimates, or the light of a base of other materials.
+            1 => [0.9 + 0.05 * k, 0.8 + 0.1 * c, 0.3 - 0.2 * k, 0.1],
             // Those of other materials, before the first.
             _ => [0.4 + 0.1 * k, 0.02, 0.3 - 0.2 * k, 0.1],
         };
@@ -84,6 +88,9 @@ fn plain_layout() -> AtlasLayout {
     AtlasLayout { y, ..layout }
 }
 
+/// Share of the light of a diffuse base that layers send back to it, and its steepness over the roots of both slope parameters.
+const SENT_BACK: [f64; 3] = [0.5, -0.1, 0.05];
+
 /// The axes of a family.
 pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Family {
     let [coat, base] = [0, 1].map(|i: usize| {
@@ -91,13 +98,20 @@ pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Fa
         SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
     });
     let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-    Family { coat, base, interface, is_metallic, is_tinted: false }
+    let sent_back = if is_metallic { SENT_BACK } else { [0.0; 3] };
+    let (is_tinted, has_lengths, has_tail) = (false, false, false);
+    Family { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back }
+}
+
+/// 1 over the tail of the lobes of a family.
+fn inverse_tail(family: Family) -> f64 {
+    if family.has_tail { 4.0 } else { 1.0 }
 }
 
 /// A material of a family: a coat over a base with an F0 over a diffuse one; without the coat where the base is the first interface.
 pub(super) fn material(family: Family) -> MaterialEntry {
     let given = set("lobes").swap_remove(0);
-    let Family { coat, base, interface, is_metallic, is_tinted } = family;
+    let Family { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back } = family;
     let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
     let record = FamilyRecord {
         coat: (interface > 0).then(|| axis(coat)),
@@ -105,6 +119,9 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         interface: interface as u32,
         is_metallic,
         is_tinted,
+        has_tail,
+        sent_back,
+        has_lengths,
     };
     let first = LayerRecord {
         alpha: ALPHAS[0],
@@ -135,7 +152,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         critical_width: 0.0,
         critical_plain_share: 0.0,
         lobes: 2,
-        inverse_tails: [1.0; 2],
+        inverse_tails: [inverse_tail(family); 2],
         varying: Some(VaryingRecord {
             factor: VaryingFactor::Family,
             tiles: family.nodes() as u32,
@@ -207,6 +224,16 @@ fn of_film(f0: Rgb, factor: f64, cos_theta: f64, spread: f64) -> Rgb {
     film.reflectance(f0, cos_theta, spread, |_| ECHOES)
 }
 
+/// A material whose dielectric has another F0, with or without a map of it.
+fn with_f0(mut given: MaterialEntry, has_map: bool) -> MaterialEntry {
+    let interface = given.layers.len() - 2;
+    (given.layers[interface].f0, given.layers[interface].ior_n) = (Some(OTHER_F0), OTHER_F0);
+    if has_map {
+        given.maps.push(MapEntry { slot: MapSlot::F0, layer: Some(interface as u32), ..given.maps[0].clone() });
+    }
+    given
+}
+
 /// Edge tint of a metal.
 const TINT: [f64; 3] = [0.2, 0.6, 0.9];
 
@@ -227,7 +254,8 @@ fn row(layout: &AtlasLayout, image: &Image, family: Family, alphas: [f64; 2], co
         let [low, high] = [i, i + 1].map(|i| mix(read(i, j), read(i, j + 1), base.fract()));
         mix(low, high, coat.fract())
     };
-    family.of_parts(&(0..8).map(part).collect::<Vec<_>>(), 1.0)
+    let first = family.first_part();
+    family.of_parts(first, &(first..8).map(part).collect::<Vec<_>>(), 1.0 / inverse_tail(family))
 }
 
 /// Light of facets that reflect all of it, once.
@@ -253,6 +281,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         (family(0, true, [1, 3]), &surface[1..], vec![plain.clone(), material(family(1, true, NODES))]),
         (family(1, true, NODES).tinted(true), &surface[1..], vec![]),
         (family(0, true, [1, 3]).tinted(true), &surface[1..], vec![material(family(1, true, NODES))]),
+        (Family { has_tail: true, ..family(1, true, NODES) }, &surface[1..], vec![]),
+        (Family { has_tail: true, ..family(1, false, NODES) }, &surface[1..], vec![material(family(1, true, NODES))]),
         // From here on slope parameters differ along tangents.
         (family(1, true, NODES), &surface[1..], vec![]),
         (family(1, false, NODES), &surface[..], vec![plain.clone(), material(family(1, false, NODES))]),
@@ -267,14 +297,29 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             &surface[1..],
             vec![plain.clone(), filmed(material(family(0, true, [1, 3])), family(0, true, [1, 3]))],
         ),
+        // From here on the dielectric has another F0, by the file, and then at each place.
+        (family(0, true, [1, 3]), &surface[1..], vec![]),
+        (family(1, true, NODES), &surface[1..], vec![material(family(0, true, [1, 3]))]),
+        (
+            family(0, true, [1, 3]).tinted(true),
+            &surface[1..],
+            vec![filmed(material(family(0, true, [1, 3])), family(0, true, [1, 3]))],
+        ),
+        (family(1, true, NODES), &surface[1..], vec![plain.clone()]),
+        // And a base that keeps its colours lies below a slab that varies.
+        (family(1, false, NODES).below_varied_slab(true), &surface[..], vec![plain.clone()]),
+        (family(1, false, NODES).below_varied_slab(true), &surface[1..], vec![material(family(1, true, NODES))]),
     ]
     .into_iter()
     .enumerate()
     {
-        let (is_brushed, is_filmed) = ((9..12).contains(&number), number >= 12);
+        let (is_brushed, is_filmed, is_other) =
+            ((11..14).contains(&number), (14..18).contains(&number), (18..22).contains(&number));
+        let nominal = if is_other { OTHER_F0 } else { F0 };
         let first = match (is_brushed, is_filmed) {
             (true, _) => brushed(material(family)),
             (_, true) => filmed(material(family), family),
+            _ if is_other => with_f0(material(family), number >= 18),
             _ => material(family),
         };
         let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
@@ -289,7 +334,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let mut reflected = Image::zeros(3, 3, 4);
         let has_facets = !family.is_coated() && family.is_metallic;
         if has_facets {
-            reflected.data = [F0[0], F0[1], F0[2], 0.0].map(|x| x as f32).repeat(9);
+            reflected.data = [nominal[0], nominal[1], nominal[2], 0.0].map(|x| x as f32).repeat(9);
         }
         let of_phase = tables_with(&layout).into_iter().find(|table| table.kind == TableKind::Phase).unwrap();
         let [width, height] = of_phase.layout.size();
@@ -360,7 +405,13 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             }
             let wide = color.map(f64::from);
             let tint = if family.is_tinted { TINT } else { [1.0; 3] };
-            let mix = Mix { metal: wide, tint, matt: wide, metallic: metal.into() };
+            let mut dielectric = nominal;
+            if is_other && number >= 18 {
+                let f0 = [share(0.41), 0.9 * share(0.47), 0.0];
+                dielectric = f0.map(f64::from);
+                place = machine.call("luthier_f0_place", vec![place, Value::U(0), vector(&f0)]);
+            }
+            let mix = Mix { metal: wide, tint, dielectric, matt: wide, metallic: metal.into() };
             if family.is_metallic {
                 let arguments = vec![place, Value::U(0), vector(&color), Value::F(metal)];
                 place = machine.call("luthier_metallic_place", arguments);
@@ -385,7 +436,15 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 frame.stretch = family.stretch(slopes);
             }
             let row = row(&layout, &image, family, alphas, eye.z);
-            let plain = Paint { metal: [0.0; 3], tint: [1.0; 3], metallic: 0.0, albedo: wide, depth, film_factor: 1.0 };
+            let plain = Paint {
+                metal: [0.0; 3],
+                tint: [1.0; 3],
+                metallic: 0.0,
+                dielectric,
+                albedo: wide,
+                depth,
+                film_factor: 1.0,
+            };
             let paint = if family.is_metallic { plain.mixed(mix) } else { plain };
             let film_factor = f64::from(thickness);
             let film = is_filmed.then(|| {
@@ -400,7 +459,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             let cos_theta_d = eye.dot((light + eye).normalize());
             let expected = [0, 1, 2].map(|c: usize| {
                 let kept = mix.metallic * F82 { f0: wide[c], tint: tint[c] }.dip() * edge_dip(cos_theta_d);
-                let plain = (0.04 + mix.metallic * (wide[c] - 0.04) - kept).max(0.0);
+                let plain = (dielectric[c] + mix.metallic * (wide[c] - dielectric[c]) - kept).max(0.0);
                 let of_film = |f0: Rgb| of_film(f0, film_factor, cos_theta_d.min(1.0), 0.0)[c];
                 let filmed = || mix.metallic * of_film(wide) + (1.0 - mix.metallic) * of_film([0.04; 3]);
                 expected[c] + facets * if is_filmed { filmed() } else { plain }
@@ -425,6 +484,21 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         }
         assert!(brightest > 0.1, "{brightest}");
     }
+}
+
+/// An anisotropic base stretches lobes, where no map turns it and the first interface is isotropic.
+#[test]
+fn an_anisotropic_base_alone_stretches_lobes() {
+    let family = family(1, false, NODES);
+    let (layout, _) = rows(family);
+    let mut given = material(family);
+    let text = |given: &MaterialEntry| {
+        let materials = std::slice::from_ref(given);
+        emit(&MaterialSet::new(materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap()
+    };
+    assert!(!text(&given).contains("luthier_family_stretched"));
+    given.layers[1].alpha_xy = [0.9, 0.3];
+    assert!(text(&given).contains("luthier_family_stretched"));
 }
 
 /// Drawn directions at places of a family: the mean of their weights is the integral of the light by a midpoint rule, and densities sum to at most 1.

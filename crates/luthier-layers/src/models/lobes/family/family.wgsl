@@ -23,6 +23,25 @@
         }
     }
 
+    //? lobes_metallic, dielectric_f0
+    /// Share of the light of a diffuse base that is sent back to it below a coat and a dielectric of an F0: `sent_back` is it at an F0 of 0.04.
+    fn luthier_family_sent_back(sent_back: f32, f0: vec3<f32>) -> vec3<f32> {
+        let known = 1.0 - LUTHIER_PLASTIC_PASSED;
+        let kept = saturate((sent_back - known) / (LUTHIER_PLASTIC_PASSED - (1.0 - sent_back) * known));
+        let average = f0 + (1.0 - f0) / 21.0;
+        let passed = (1.0 - average) / max(1.0 - average * kept, vec3<f32>(0.02));
+        return 1.0 - passed * ((1.0 - known * kept) / LUTHIER_PLASTIC_PASSED) * (1.0 - sent_back);
+    }
+
+    //? lobes_metallic, film_f0|dielectric_f0
+    /// Light of several facets of a dielectric at an F0, of which `known` is that at 0.04: that of a metal, and light that crossed some of them. `steep` is the mean
+    /// of Schlick's (1 - cos)^5 at the facets that the eye sees.
+    fn luthier_family_several(known: f32, energies: vec3<f32>, steep: f32, f0: vec3<f32>) -> vec3<f32> {
+        let excess = (known - luthier_family_more(energies, vec3<f32>(0.04)).x) / ((0.04 + 0.96 * steep) * 0.9406040);
+        let crossed = (f0 + (1.0 - f0) * steep) * (1.0 - f0) * sqrt(max(1.0 - f0, vec3<f32>(0.0)));
+        return max(luthier_family_more(energies, f0) + excess * crossed, vec3<f32>(0.0));
+    }
+
     //? film_f0
     {
         /// Cosines at which the mean of a reflectance over all directions is taken, by Gauss, and standard deviations of the squared sines that they stand for.
@@ -111,30 +130,49 @@
         return luthier_lobe_shape(shift, vec3<f32>(sharpness, decay), sin_theta);
     }
 
-    /// Shares above the horizon of both lobes of a family in the plane of the eye, as estimates: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
-    /// to light above the horizon, in that plane, their radius, and 1 over it; `slope` that of the middle of the first lobe.
-    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+    //? !lobes_tails|~lobes_tails
+    /// Shares above the horizon of both lobes of a family in the plane of the eye, with the tail of GGX: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
+    /// to light above the horizon, in that plane, and their radius; `slope` that of the middle of the first lobe.
+    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, disc: vec2<f32>) -> vec2<f32> {
+        let away = abs(disc.x - vec2<f32>(slope, 0.0)) * sharpness.xz;
+        let along = disc.y * sharpness.xz;
+        let across = disc.y * sharpness.yw;
+        let near = along - away;
+        let far = along + away;
+        let root = sqrt((1.0 + near * near) * (1.0 + far * far));
+        // 1 + d + root and 1 - d + root, without cancellation.
+        let d = near * far;
+        let within = select(4.0 * away * away / max(root - 1.0 - d, vec2<f32>(1e-6)), 1.0 + d + root, d > vec2<f32>(-1.0));
+        let beyond = select(4.0 * along * along / max(root - 1.0 + d, vec2<f32>(1e-6)), 1.0 - d + root, d < vec2<f32>(1.0));
+        let sum = 1.0 + along * along + away * away + root;
+        return max(along * across * within * inverseSqrt(sum * (beyond + 2.0 * across * across)) / root, vec2<f32>(1e-3));
+    }
+
+    //? lobes_tails
+    /// Those of lobes of other tails, as estimates. `disc` has 1 over its radius, too.
+    fn luthier_family_leaving_tail(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
         let away = abs(disc.x - vec2<f32>(slope, 0.0));
         let mean = sqrt(sharpness.xz * sharpness.yw);
         // The nearer the middle of a lobe is to the edge of the disc, the more its width along the way counts.
         let out = min(away * disc.z, vec2<f32>(1.0));
         let near = disc.y * (mean - (mean - sharpness.xz) * out * (2.0 - out)) - away * sharpness.xz;
         let far = max(2.0 * disc.y * mean - near, near);
-        //? lobes_tails
-        {
-            let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
-            let far_cos = exp2(-0.5 * decay * log2(1.0 + far * far));
-            // Small sines by a series: the difference to 1 would be rounded off.
-            let small_near = decay * near * near;
-            let small_far = decay * far * far;
-            let near_sq = select(1.0 - near_cos * near_cos, small_near - 0.5 * small_near * (small_near + near * near), small_near < vec2<f32>(1e-3));
-            let far_sq = select(1.0 - far_cos * far_cos, small_far - 0.5 * small_far * (small_far + far * far), small_far < vec2<f32>(1e-3));
-            let sines = sign(near) * sign(far) * sqrt(max(near_sq * far_sq, vec2<f32>(0.0)));
-            return max(0.5 - 0.5 * (near_cos * far_cos - sines), vec2<f32>(1e-3));
-        }
-        //? else
-        // Tails are those of GGX.
-        return max(0.5 - 0.5 * (1.0 - near * far) * inverseSqrt((1.0 + near * near) * (1.0 + far * far)), vec2<f32>(1e-3));
+        let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
+        let far_cos = exp2(-0.5 * decay * log2(1.0 + far * far));
+        // Small sines by a series: the difference to 1 would be rounded off.
+        let small_near = decay * near * near;
+        let small_far = decay * far * far;
+        let near_sq = select(1.0 - near_cos * near_cos, small_near - 0.5 * small_near * (small_near + near * near), small_near < vec2<f32>(1e-3));
+        let far_sq = select(1.0 - far_cos * far_cos, small_far - 0.5 * small_far * (small_far + far * far), small_far < vec2<f32>(1e-3));
+        let sines = sign(near) * sign(far) * sqrt(max(near_sq * far_sq, vec2<f32>(0.0)));
+        return max(0.5 - 0.5 * (near_cos * far_cos - sines), vec2<f32>(1e-3));
+    }
+
+    //? lobes_tails
+    /// Shares above the horizon of lobes of such a tail, from what rows have over these estimates.
+    fn luthier_family_tail_shares(row: vec2<f32>, beside: vec2<f32>, slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+        let over = luthier_family_part(row, beside, -1.0).xy;
+        return min(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1.0));
     }
 
     //? anisotropic
@@ -186,7 +224,8 @@
         let painted = luthier_materials[header + $word_patina];
         // Integrals of the shape of the remainder, and the number of lobes.
         let counts = luthier_materials[header + $word_patina_diffuse_albedo];
-        let base_layer = u32(luthier_materials[header + $word_glitter_tilt].z);
+        let tilt_word = luthier_materials[header + $word_glitter_tilt];
+        let base_layer = u32(tilt_word.z);
         let first_word = luthier_whole(luthier_materials[header].x);
         let base_word = first_word + base_layer * LUTHIER_LAYER_WORDS;
         // Slope parameters of coat and base, without the variance of normals, which lobes get by themselves.
@@ -281,7 +320,6 @@
         let of_more = luthier_family_part(prepared.row, beside, 1.0);
         let sharpness = luthier_family_part(prepared.row, beside, 2.0);
         let of_facet = luthier_family_part(prepared.row, beside, 3.0);
-        let of_rest = luthier_family_part(prepared.row, beside, 4.0);
         // Energies of rows are over the light that crosses the coat.
         let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
         var diffuse = painted.rgb;
@@ -292,12 +330,11 @@
         // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
         var once = of_once.rgb;
         var more = of_more.rgb;
-        var wide = of_rest.rgb;
+        var wide = vec3<f32>(0.0);
         var facet = 1.0 - crossing * of_facet.rgb;
-        // Coefficients of the remainder, share of the light of one visit that is wide, and what rows have beside estimates of shares.
-        var falloff = vec2<f32>(0.0);
-        var once_wide = 0.0;
-        var leaving = vec2<f32>(of_facet.a, of_rest.a);
+        // The a of the remainder, and the share of the light of one visit that is wide.
+        var falloff = of_facet.a;
+        var once_wide = of_once.z;
         //? lobes_lean
         // Light of the base that came through the coat, and not back from it.
         var met = vec3<f32>(0.0);
@@ -325,23 +362,28 @@
                     metallic = 1.0;
                 }
             }
+            //? dielectric_f0
+            let dielectric = select(luthier_materials[base_word + $word_ior_n].xyz, place.dielectric_f0, place.dielectric_f0.x >= 0.0);
             //? own_f0
             if place.metal.w >= 0.0 {
                 metal = place.metal.rgb;
                 metallic = place.metal.w;
-                // The dielectric has an F0 of 0.04: its diffuse base, of the albedo diffuse / passed, shows the colour of the place (Saunderson 1942).
+                // The diffuse base, of the albedo diffuse / passed, shows the colour of the place (Saunderson 1942).
                 diffuse = place.matt;
-                passed = LUTHIER_PLASTIC_PASSED + diffuse * (1.0 - LUTHIER_PLASTIC_PASSED);
+                //? dielectric_f0
+                let entered = (1.0 - dielectric) * (20.0 / 21.0);
+                //? else
+                let entered = LUTHIER_PLASTIC_PASSED;
+                passed = entered + diffuse * (1.0 - entered);
             }
-            falloff = of_rest.zw;
-            once_wide = of_once.z;
-            leaving = of_facet.zw;
-            var light = vec3<f32>(of_rest.x);
-            var sent_back = vec3<f32>(of_rest.y);
+            // Rows have the light of a diffuse base of the albedo 0.8.
+            let back = prepared.medium.y + tilt_word.w * roots.x + prepared.medium.w * roots.y;
+            var light = vec3<f32>(of_facet.z * (1.25 - back));
+            var sent_back = vec3<f32>(back);
             //? lobes_tinted|film_f0
-            let of_lengths = luthier_family_part(prepared.row, beside, 5.0);
+            let of_lengths = luthier_family_part(prepared.row, beside, 4.0);
             //? own_edge|film_f0
-            let of_edge = luthier_family_part(prepared.row, beside, 6.0);
+            let of_edge = luthier_family_part(prepared.row, beside, 5.0);
             //? own_edge
             {
                 // Light of one visit below a coat, or of several facets without one, sees an F0 that is less by what rows say; light that a coat keeps is flat.
@@ -349,6 +391,9 @@
             }
             //? else
             let of_one = luthier_family_once(of_once.xy, vec4<f32>(metal, 0.04));
+            //? dielectric_f0
+            once = mix(luthier_family_once(of_once.xy, vec4<f32>(dielectric, 0.0)).rgb, of_one.rgb, metallic);
+            //? else
             once = mix(vec3<f32>(of_one.w), of_one.rgb, metallic);
             // F0 of the dielectric for light that a coat keeps: without a film it reflects hardly any.
             //? film_f0
@@ -357,33 +402,51 @@
             var seen_metal = metal;
             //? own_edge
             metal = max(metal - place.metal_edge * select(luthier_family_trapped_dip(held, wo.z), of_edge.x, base_layer == 0u), vec3<f32>(0.0));
-            //? film_f0
+            //? film_f0|dielectric_f0
             {
+                // Light of one facet of the dielectric over that of a mirror, and its F0 for light from everywhere.
                 let all = of_facet.x + of_once.y;
+                //? dielectric_f0
+                {
+                    var seen_plastic = (of_facet.x + of_once.y * dielectric) / max(all, 0.02);
+                    var mean_plastic = dielectric;
+                    var is_other = base_layer == 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0;
+                }
+                //? else
+                {
+                    var seen_plastic = vec3<f32>(0.04);
+                    var mean_plastic = vec3<f32>(0.04);
+                    var is_other = false;
+                }
+                //? film_f0
                 let is_filmed = base_layer == 0u && sheet.row >= 0.0;
-                var seen_plastic = vec3<f32>(0.04);
-                let roots = sqrt(max(metal, vec3<f32>(0.0)));
+                //? film_f0
+                let metal_roots = sqrt(max(metal, vec3<f32>(0.0)));
+                //? film_f0
                 if is_filmed {
+                    is_other = true;
                     let ends = luthier_film_ends(sheet, of_lengths.z, of_lengths.w);
                     let flat = luthier_echoes(sheet, LUTHIER_MEAN_COSINES.x, LUTHIER_MEAN_SPREADS.x);
                     let steep = luthier_echoes(sheet, LUTHIER_MEAN_COSINES.y, LUTHIER_MEAN_SPREADS.y);
                     let plastic = vec3<f32>(0.2);
                     seen_plastic = luthier_film_seen(sheet, ends, plastic);
-                    let mean_plastic = luthier_film_mean(luthier_film_over(sheet, flat, plastic), luthier_film_over(sheet, steep, plastic));
+                    mean_plastic = luthier_film_mean(luthier_film_over(sheet, flat, plastic), luthier_film_over(sheet, steep, plastic));
                     if metallic > 0.0 {
-                        seen_metal = luthier_film_seen(sheet, ends, roots);
-                        metal = luthier_film_mean(luthier_film_over(sheet, flat, roots), luthier_film_over(sheet, steep, roots));
+                        seen_metal = luthier_film_seen(sheet, ends, metal_roots);
+                        metal = luthier_film_mean(luthier_film_over(sheet, flat, metal_roots), luthier_film_over(sheet, steep, metal_roots));
                     }
-                    // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
-                    let added = luthier_family_more(of_more.rgb, mean_plastic) - luthier_family_more(of_more.rgb, vec3<f32>(0.04));
-                    several = max(of_once.x + added, vec3<f32>(0.0));
+                }
+                if is_other {
+                    several = luthier_family_several(of_once.x, of_more.rgb, of_facet.x / max(all, 0.02), mean_plastic);
                     // What facets do not reflect enters, seen from the eye as well as in the mean.
-                    let entering = max(1.0 - all * seen_plastic - several, vec3<f32>(0.0)) / max(1.0 - (of_facet.x + 0.04 * of_once.y) - of_once.x, 0.02);
                     let diffused = mean_plastic + (1.0 - mean_plastic) / 21.0;
                     let staying = max(1.0 - all * diffused - several, vec3<f32>(0.0)) / max(1.0 - all * (1.0 - LUTHIER_PLASTIC_PASSED) - of_once.x, 0.02);
-                    light *= entering * staying;
-                    sent_back = 1.0 - staying * (1.0 - sent_back);
-                } else if sheet.row >= 0.0 {
+                    let leaving_base = staying * (1.0 - sent_back);
+                    light = max(1.0 - all * seen_plastic - several, vec3<f32>(0.0)) * leaving_base;
+                    sent_back = 1.0 - leaving_base;
+                }
+                //? film_f0
+                if base_layer > 0u && sheet.row >= 0.0 {
                     // Below a coat the film is an F0 for light of one visit, and for that of more, some of which a film thinner than the coat reflects totally.
                     let ends = luthier_film_ends(sheet, of_edge.x, of_edge.y);
                     let steepest = min(sheet.ior * sheet.ior, 1.0);
@@ -403,11 +466,19 @@
                     light *= crossed * max(1.0 - (reflected - of_one.w) / white, vec3<f32>(0.0));
                     sent_back = 1.0 - crossed * (1.0 - sent_back);
                     if metallic > 0.0 {
-                        once = mix(once, luthier_family_once(of_once.xy, vec4<f32>(luthier_film_f0(sheet, ends, roots), 0.04)).rgb, metallic);
-                        metal = mix(luthier_film_f0(sheet, more_ends, roots), luthier_film_equal(sheet, flat, roots, flat_power), of_edge.z);
+                        once = mix(once, luthier_family_once(of_once.xy, vec4<f32>(luthier_film_f0(sheet, ends, metal_roots), 0.04)).rgb, metallic);
+                        metal = mix(luthier_film_f0(sheet, more_ends, metal_roots), luthier_film_equal(sheet, flat, metal_roots, flat_power), of_edge.z);
                     }
                 }
+                //? dielectric_f0
+                if base_layer > 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0 {
+                    let reflected = of_facet.y + luthier_family_once(of_once.xy, vec4<f32>(dielectric, 0.0)).rgb + luthier_family_more(of_more.rgb, dielectric);
+                    sent_back = luthier_family_sent_back(back, dielectric);
+                    light = max(of_facet.x - reflected, vec3<f32>(0.0)) * (1.0 - sent_back);
+                }
             }
+            //? dielectric_f0
+            var again = vec3<f32>(1.0);
             //? lobes_tinted
             {
                 var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
@@ -419,6 +490,12 @@
                 sent_back *= exp(-of_lengths.y * depth);
                 once *= exp(-of_lengths.z * depth);
                 // Trapped light passes the slab again before each visit.
+                //? dielectric_f0
+                {
+                    again = exp(-of_lengths.w * depth);
+                    metal *= again;
+                }
+                //? else
                 metal *= exp(-of_lengths.w * depth);
                 //? film_f0
                 kept_plastic *= exp(-of_lengths.w * depth);
@@ -426,6 +503,10 @@
             more = metallic * luthier_family_more(of_more.rgb, metal);
             //? film_f0
             more += (1.0 - metallic) * luthier_family_more(of_more.rgb, kept_plastic);
+            //? dielectric_f0
+            if base_layer > 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0 {
+                more += (1.0 - metallic) * luthier_family_more(of_more.rgb, dielectric * again);
+            }
             wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
             //? lobes_lean
             met = (1.0 - metallic) * (light * diffuse / passed);
@@ -433,6 +514,9 @@
             if base_layer == 0u {
                 // Several facets of the dielectric, and one of either.
                 once = (1.0 - metallic) * several;
+                //? dielectric_f0
+                facet = of_facet.x + of_once.y * mix(dielectric, seen_metal, metallic);
+                //? else
                 facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), seen_metal, metallic);
                 //? own_edge
                 facet -= of_edge.y * metallic * place.metal_edge;
@@ -444,31 +528,54 @@
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
-            let of_wide = luthier_family_part(prepared.row, beside, 5.0);
-            falloff = of_wide.xy;
-            once_wide = of_wide.z;
-            //? base_color|lobes_lean
+            let of_wide = luthier_family_part(prepared.row, beside, 4.0);
+            wide = of_wide.rgb;
+            falloff = of_wide.a;
+            once_wide = of_facet.a;
+            //? lobes_lengths
             {
-                //? lobes_lean
+                var depth = luthier_materials[first_word + $word_slab].xyz * 0.6931472;
+                //? place
+                depth *= place.slab_factor;
+                //? own_tints
+                depth *= own_coat.absorption_factors;
+                let of_lengths = luthier_family_part(prepared.row, beside, 7.0);
+                let visited = exp(-of_lengths.x * depth);
+                once *= visited;
+            }
+            //? base_color|lobes_lean|lobes_lengths
+            {
+                //? lobes_lean|lobes_lengths
                 let is_own = dot(painted.rgb, vec3<f32>(1.0)) > 0.0;
                 //? else
                 let is_own = place.base_color.x >= 0.0;
                 if is_own {
-                    let of_base = luthier_family_part(prepared.row, beside, 6.0).rgb;
-                    let of_internal = luthier_family_part(prepared.row, beside, 7.0).rgb;
+                    let of_base = luthier_family_part(prepared.row, beside, 5.0);
+                    let of_internal = luthier_family_part(prepared.row, beside, 6.0);
                     let simulated = max(painted.rgb, vec3<f32>(1e-6));
-                    //? lobes_lean
-                    met = of_base * max(1.0 - of_internal * painted.rgb, vec3<f32>(0.0)) * diffuse / simulated;
-                    //? base_color
+                    var own = simulated * max(1.0 - of_internal.rgb * diffuse, vec3<f32>(1e-3));
+                    var other = diffuse * (1.0 - of_internal.rgb * painted.rgb);
+                    //? lobes_lengths
                     {
-                        let own = simulated * max(1.0 - of_internal * diffuse, vec3<f32>(1e-3));
-                        let other = diffuse * (1.0 - of_internal * painted.rgb);
-                        wide += max(of_base * (other / own - 1.0), -wide);
+                        let around = exp2(select(-1.5, -4.0, base_layer == 0u) * log2(1.0 + of_internal.w * depth));
+                        own = simulated * max(1.0 - of_internal.rgb * around * diffuse, vec3<f32>(1e-3));
+                        other *= exp(-of_base.w * depth);
+                        // Above a diffuse base light of more visits passes the slab as often as its light does.
+                        more *= visited * around;
                     }
+                    //? lobes_lean
+                    met = of_base.rgb * max(other, vec3<f32>(0.0)) / simulated;
+                    //? base_color|lobes_lengths
+                    wide += max(of_base.rgb * (other / own - 1.0), -wide);
+                }
+                //? lobes_lengths
+                if !is_own {
+                    more *= exp2(-4.5 * log2(1.0 + luthier_family_part(prepared.row, beside, 5.0).w * depth));
                 }
             }
         }
-        prepared.medium = vec4<f32>(prepared.medium.x, falloff, (1.0 / LUTHIER_PI) / (1.0 - dot(falloff, counts.xy)));
+        prepared.medium.y = falloff;
+        prepared.medium.w = (1.0 / LUTHIER_PI) / (1.0 - dot(prepared.medium.yz, counts.xy));
         let below = crossing * (wide + once + more);
         // No more light than falls in.
         let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
@@ -488,17 +595,29 @@
         let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
         let sharp = sharpness / vec2<f32>(once_spread, more_spread).xxyy;
         //? lobes_tails
-        let decay = luthier_materials[header + $word_glitter_tilt].y;
+        let decay = tilt_word.y;
         //? else
         let decay = 1.0;
         let shift = of_once.a * once_spread;
         var first_shape = luthier_family_shape(shift, sharp.xy, decay, sin_theta);
         var second_shape = luthier_family_shape(0.0, sharp.zw, decay, sin_theta);
-        // Rows have shares over their estimates: between rows the share is that of the shape there.
+        // Between rows the share is that of the shape there. Rows of other tails than that of GGX have it over an estimate.
         let over_radius = max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
         let radius = 1.0 / over_radius;
-        let left_over = luthier_family_leaving(shift * sin_theta, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
-        prepared.shares = min(leaving * left_over, vec2<f32>(1.0));
+        let middle = shift * sin_theta;
+        //? lobes_tails
+        {
+            //? ~lobes_tails
+            if decay == 1.0 {
+                prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
+            } else {
+                prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
+            }
+            //? else
+            prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
+        }
+        //? else
+        prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
             let disc = luthier_leaving_disc(prepared);

@@ -16,6 +16,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::schlick::{DIELECTRIC_F0, schlick_average};
 use luthier_optics::stack::Stack;
 
+use super::paint::{dimmed, edge};
 use super::{Family, Paint};
 use crate::models::lobes::Row;
 
@@ -94,18 +95,41 @@ impl FilmLight {
         [staying * (1.0 - (filmed - plain) / white.max(ENTERING_MIN)).max(0.0), staying]
     }
 
-    /// Light of a channel that one facet of the dielectric reflects to the eye, of `all`, and factors on the light of the diffuse base that leaves, and on the
-    /// share of it that leaves at all. What facets do not reflect enters, seen from the eye as well as in the mean: `several` are energies of several facets
-    /// without the film and with it, and `plain` of one without it.
-    pub(super) fn passed(&self, c: usize, all: f64, plain: f64, several: [f64; 2]) -> [f64; 2] {
-        let ratio = |one: [f64; 2]| {
-            let [without, with] = [0, 1].map(|i: usize| 1.0 - one[i] - several[i]);
-            with.max(0.0) / without.max(ENTERING_MIN)
-        };
-        let mean = [DIELECTRIC_F0, self.mean[1][c]].map(|f0| all * schlick_average(f0));
-        let staying = ratio(mean);
-        [ratio([plain, all * self.seen[1][c]]) * staying, staying]
+    /// The interface without a film, where its dielectric has another F0 than that of rows; `None` with that. One facet reflects in proportion to the F0.
+    pub(super) fn without(row: &Row, paint: &Paint) -> Option<Self> {
+        if paint.dielectric == [DIELECTRIC_F0; 3] {
+            return None;
+        }
+        let [facet, ..] = row.albedo_dir;
+        let [_, slope, _] = row.lobes.first()?.strength;
+        let [_, dip, first_dip] = row.wide;
+        let over_all = 1.0 / (facet + slope).max(ENTERING_MIN);
+        let kept = [0, 1, 2].map(|c: usize| edge(paint.metal[c], paint.tint[c]) * first_dip);
+        let metal = [0, 1, 2].map(|c: usize| (facet + slope * paint.metal[c] - kept[c]) * over_all);
+        let mean = [0, 1, 2].map(|c: usize| dimmed(paint.metal[c], paint.tint[c], dip));
+        let dielectric = paint.dielectric.map(|f0| (facet + slope * f0) * over_all);
+        Some(Self { seen: [metal, dielectric], mean: [mean, paint.dielectric] })
     }
+
+    /// Light of a channel of a white diffuse base that sends nothing back, and the share of it that is sent back: what facets do not reflect enters. One facet
+    /// reflects `all` of light where it is a mirror, and `several` are energies of several facets at the F0 of rows and here.
+    pub(super) fn below(&self, c: usize, all: f64, several: [f64; 2], sent_back: f64) -> [f64; 2] {
+        let [without, with] = [(DIELECTRIC_F0, several[0]), (self.mean[1][c], several[1])]
+            .map(|(f0, several)| (1.0 - all * schlick_average(f0) - several).max(0.0));
+        let leaving = with / without.max(ENTERING_MIN) * (1.0 - sent_back);
+        [(1.0 - all * self.seen[1][c] - several[1]).max(0.0) * leaving, 1.0 - leaving]
+    }
+}
+
+/// Share of the light of a diffuse base that is sent back to it below a coat, where the dielectric between has an F0: `sent_back` is it at the F0 that rows know.
+///
+/// Light that goes up leaves with the share `(1 - f) (1 - k) / (1 - f k)`, where f is the mean reflectance of the dielectric, and k that of the coat from
+/// inside.
+pub(super) fn sent_back_below_coat(sent_back: f64, f0: f64) -> f64 {
+    let known = schlick_average(DIELECTRIC_F0);
+    let kept = ((sent_back - known) / (1.0 - known - (1.0 - sent_back) * known)).clamp(0.0, 1.0);
+    let passed = |f: f64| (1.0 - f) / (1.0 - f * kept).max(ENTERING_MIN);
+    1.0 - passed(schlick_average(f0)) / passed(known) * (1.0 - sent_back)
 }
 
 /// What Schlick's formula adds for an F0 of 0.

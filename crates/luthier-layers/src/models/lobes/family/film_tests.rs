@@ -40,7 +40,13 @@ fn films_in_closed_form_are_those_of_the_simulation() {
             let varied = Varied::with(&stack, &color, Some(Varying::Family(family)), SETTINGS);
             for (base, metallic) in colors {
                 let level = family.apply(&stack, [alpha; 2]);
-                let paint = Paint::of(&level).mixed(Mix { metal: base, tint: [1.0; 3], matt: base, metallic });
+                let paint = Paint::of(&level).mixed(Mix {
+                    metal: base,
+                    tint: [1.0; 3],
+                    dielectric: [0.04; 3],
+                    matt: base,
+                    metallic,
+                });
                 let here = if metallic > 0.0 { paint.metal_of(&level) } else { paint.plastic_of(&level) };
                 let lobes = varied.painted([alpha; 2], &paint).unwrap();
                 for theta in [0.0, 1.0, 1.3] {
@@ -132,7 +138,7 @@ fn one_facet_of_a_mix_is_the_mean_of_both() {
     let family = Family::new(&stack, [0.2; 2], [0.2; 2], true).unwrap();
     let few = FitSettings { paths: 500, ..SETTINGS };
     let varied = Varied::with(&stack, &Color::Spectral, Some(Varying::Family(family)), few);
-    let mix = Mix { metal: [0.9, 0.5, 0.2], tint: [1.0; 3], matt: [0.1; 3], metallic: 0.3 };
+    let mix = Mix { metal: [0.9, 0.5, 0.2], tint: [1.0; 3], dielectric: [0.04; 3], matt: [0.1; 3], metallic: 0.3 };
     let level = family.apply(&stack, [0.2; 2]);
     let paint = Paint::of(&level).mixed(mix);
     let first = varied.painted([0.2; 2], &paint).unwrap().first.unwrap();

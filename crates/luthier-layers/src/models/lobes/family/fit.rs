@@ -2,11 +2,11 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Distribution, Stack};
+use luthier_optics::stack::Stack;
 
-use super::Family;
-use super::paint::{chain, dimmed, trapped};
-use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES, WHITE};
+use super::paint::{AROUND_SPREADS, MORE_SPREAD, chain, dimmed, trapped};
+use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES};
+use super::{Family, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
@@ -15,8 +15,13 @@ use crate::models::lobes::{
 };
 
 impl Family {
-    /// The rows of each node of a stack, slopes over [`Self::spreads`].
-    pub(in crate::models::lobes) fn lobes(self, stack: &Stack, color: &Color, settings: FitSettings) -> Vec<Lobes> {
+    /// The rows of each node of a stack, slopes over [`Self::spreads`], and the family with the numbers of all rows.
+    pub(in crate::models::lobes) fn lobes(
+        self,
+        stack: &Stack,
+        color: &Color,
+        settings: FitSettings,
+    ) -> (Self, Vec<Lobes>) {
         let stack = shown(stack);
         let axis = ViewAxis::of(&stack, settings.rows);
         // Half vectors of the medium below the coat, or next to those outside.
@@ -25,11 +30,8 @@ impl Family {
         let first = FirstInterface::of(&stack, color);
         let base = base_below(&stack);
         let mut beside: Vec<Option<[Found; 2]>> = (0..self.nodes()).map(|_| None).collect();
-        let tail = match stack.layers[self.interface].surface.distribution {
-            Distribution::Beckmann => LEAST_TAIL,
-            _ => 1.0,
-        };
-        let mut nodes = Vec::new();
+        let tail = if self.has_tail { LEAST_TAIL } else { 1.0 };
+        let (mut nodes, mut sent_back) = (Vec::new(), Vec::new());
         for number in 0..self.nodes() {
             let node = Node::new(self, number, axis, index, &stack, color, settings);
             let spreads = Self::spreads(self.alphas(number));
@@ -52,6 +54,7 @@ impl Family {
             let falloff = node.falloff.filter(|_| base.is_some()).unwrap_or(found[1].wide_falloff());
             let own = base.map_or([0.0; 3], |base| base.albedo);
             let seen = if self.is_metallic { [WHITE; 3] } else { own };
+            sent_back.push(internal_of(&node.rest, seen, |energies| energies.clear)[0]);
             let rows = self.rows(&node, &found, spreads, (axis, index, self.alphas(number)[0]), falloff, seen);
             beside[number] = Some(found);
             nodes.push(Lobes {
@@ -68,7 +71,11 @@ impl Family {
                 rows,
             });
         }
-        nodes
+        if self.has_tail {
+            self.hold_shares(&mut nodes);
+        }
+        let sent_back = if self.is_metallic { sent_back } else { Vec::new() };
+        (self.with_sent_back(&sent_back), nodes)
     }
 
     fn rows(
@@ -82,7 +89,9 @@ impl Family {
     ) -> Vec<Row> {
         let sent_back = internal_of(&node.rest, albedo, |energies| energies.clear);
         let dimmed = internal_of(&node.rest, albedo, |energies| energies.dimmed);
-        let around = -libm::log(ratio(dimmed[0], sent_back[0])) / DEPTH;
+        // All channels have the same share, but those in which the base is black.
+        let brightest = (0..3).max_by(|&a, &b| albedo[a].total_cmp(&albedo[b])).unwrap_or(0);
+        let around = -libm::log(ratio(dimmed[brightest], sent_back[brightest])) / DEPTH;
         let energies: Vec<[Rgb; 2]> = node.rest.iter().map(|rest| self.reflected(rest)).collect();
         let lobes = [0, 1].map(|lobe: usize| {
             let energies: Vec<Rgb> = energies.iter().map(|energies| energies[lobe]).collect();
@@ -96,12 +105,14 @@ impl Family {
             let over = |energy: f64| energy / crossing;
             let lobes = lobes.iter().zip(spreads).enumerate().map(|(number, (lobes, spread))| {
                 let mut lobe = lobes[view];
+                lobe.tail = if self.has_tail { lobe.tail.clamp(LEAST_TAIL, 1.0) } else { 1.0 };
                 // Between rows the share is that of the shape there: rows have what its estimate lacks.
-                lobe.share /= leaving.in_plane(&lobe, sin_theta);
+                lobe.share = match self.has_tail {
+                    true => leaving.summed(&lobe, sin_theta) / leaving.in_plane(&lobe, sin_theta),
+                    false => 1.0,
+                };
                 lobe.shift /= spread;
-                // Rows have sharpness times the root of the tail; between two tails, sharpness alone is in line.
-                lobe.tail = lobe.tail.clamp(LEAST_TAIL, 1.0);
-                lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread / lobe.tail.sqrt());
+                lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread);
                 // Energies between nodes hang on neither node's share.
                 lobe.strength = energies[view][number].map(over);
                 // Lobes in the plane of the eye have no shear: its place has the share of the light of the other lobe that is in the remainder.
@@ -112,7 +123,7 @@ impl Family {
                 |energies: &Energies, c: usize| -libm::log(ratio(energies.dimmed[c], energies.clear[c])) / DEPTH;
             let (albedo_dir, wide, energy, internal) = if self.is_metallic {
                 let facets = rest.first_facet;
-                let light = rest.base_once.clear[0] / WHITE;
+                let light = rest.base.clear[0];
                 let white = rest.facets.clear.iter().sum::<f64>() / 3.0;
                 let albedo = if self.is_coated() {
                     let [once, more] = &rest.reflected;
@@ -124,12 +135,23 @@ impl Family {
                 let dips = [self.dip(energies[view], &rest.reflected), rest.first_dip];
                 let [once, more] = rest.met.unwrap_or([dips, [0.0; 2]]);
                 let energy = [over(light), length(&rest.base_once, 0), more[0]];
-                (albedo, [over(white), once[0], once[1]], energy, [sent_back[0], around, more[1]])
+                (albedo, [over(white), once[0], once[1]], energy, [0.0, around, more[1]])
             } else {
                 let wide = [0, 1, 2].map(|c: usize| over(rest.base.clear[c] + rest.facets.clear[c]));
                 (rest.first_facet.map(|facet| over(1.0 - facet)), wide, rest.base.clear.map(over), sent_back)
             };
-            let base = Some(BaseLight { energy, internal, falloff, met: None });
+            let mean = |energies: &Energies| {
+                let [dimmed, clear] = [energies.dimmed, energies.clear].map(|energies| energies.iter().sum::<f64>());
+                -libm::log(ratio(dimmed, clear)) / DEPTH
+            };
+            let lengths = if self.has_lengths {
+                let [once, more, base] = [&rest.reflected[0], &rest.reflected[1], &rest.base_once].map(mean);
+                let second = if albedo == [0.0; 3] { spread_length(more, MORE_SPREAD) } else { base };
+                [once, second, spread_length(around, AROUND_SPREADS[usize::from(self.is_coated())])]
+            } else {
+                [0.0; 3]
+            };
+            let base = Some(BaseLight { energy, internal, falloff, lengths, met: None });
             Row { albedo_dir, lobes: lobes.collect(), wide, base }
         });
         rows.collect()
@@ -168,6 +190,11 @@ impl Family {
         }
         0.5 * (low + high)
     }
+}
+
+/// The number g of `(1 + g depth)^-spread`, which is `exp(-length depth)` at [`DEPTH`].
+fn spread_length(length: f64, spread: f64) -> f64 {
+    (libm::exp(length * DEPTH / spread) - 1.0) / DEPTH
 }
 
 /// Steepness of an energy in the F0, from those of the least of [`SHADES`] and the greatest.

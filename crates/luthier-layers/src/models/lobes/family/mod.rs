@@ -12,15 +12,14 @@
 //! | 0 | reflected by the metal once: energies at c = .8 and 1; share of it that is wide; shift |
 //! | 1 | reflected by the metal more often: energies at c = .5, .9, 1; share of it that is wide |
 //! | 2 | sharpness of both lobes |
-//! | 3 | light but that of one facet of the first interface; facets of the coat alone; shares of both lobes above the horizon, over their estimates |
-//! | 4 | light of a white diffuse base that sends nothing back, share of it that is sent back to the base; a and b of the remainder |
-//! | 5, below a slab that absorbs | lengths of the light of the diffuse base, of that sent back to it, of light of one visit, and of more |
-//! | 5, under a film on the base | 0, 0, mean and standard deviation of the cosine at which facets are seen |
-//! | 6, of a metal with an edge tint | what it takes from the F0 of light of one visit below a coat, or of several facets without one; and from one facet without a coat |
+//! | 3 | light but that of one facet of the first interface; facets of the coat alone; light of a diffuse base of the albedo .8; a of the remainder |
+//! | 4, below a slab that absorbs | lengths of the light of the diffuse base, of that sent back to it, of light of one visit, and of more |
+//! | 4, under a film on the base | 0, 0, mean and standard deviation of the cosine at which facets are seen |
+//! | 5, of a metal with an edge tint | what it takes from the F0 of light of one visit below a coat, or of several facets without one; and from one facet without a coat |
 //!
 //! Between its energies light of one visit is `q c / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The dielectric reflects once as a metal of its F0 does. The light of the diffuse
-//! base is `t r / (1 - s r)`. A slab multiplies each
+//! base is `t r / (1 - s r)`, where s, the share of it that is sent back to the base, is linear in the roots of both slope parameters ([`Family::sent_back`]). A slab multiplies each
 //! energy by `exp(-length depth)`, but for light of more visits c, because such light passes it again before each. Without a coat, the first lobe has the
 //! light of several facets of the dielectric, x of part 0, and the second that of the metal; the albedo of one facet is x of part 3, plus y of part 0 times the F0.
 //!
@@ -31,16 +30,23 @@
 //! | 0 | reflected by the base once RGB, shift |
 //! | 1 | reflected by the base more often RGB, share of it that is wide |
 //! | 2 | sharpness of both lobes |
-//! | 3, 4 | light but that of one facet of the first interface RGB, wide remainder RGB; shares above the horizon over their estimates |
-//! | 5 | a and b of the remainder, share of the light of one visit that is wide, 0 |
-//! | 6, 7, to recolour a diffuse base | its light RGB, share of it that is sent back to it RGB |
+//! | 3 | light but that of one facet of the first interface RGB, share of the light of one visit that is wide |
+//! | 4 | wide remainder RGB, a of it |
+//! | 5, 6, to recolour a diffuse base | its light RGB, its length; share of it that is sent back to it RGB, length of that |
+//! | 7, or 5 without a base | lengths of the light of one visit, and of more visits without a base |
 //!
-//! Strengths of all families are energies, not yet over the share above the horizon. The lobe of trapped light has its middle at the normal.
+//! Lengths are 0 unless what the first slab absorbs varies ([`Family::has_lengths`]): then rows are those of a clear slab, and a slab multiplies energies by
+//! `exp(-length depth)`, but for light that is sent back and of more visits: by `(1 + length depth)^-b`, where b is 4 for the former below the first interface alone
+//! and 1.5 below another, and 4.5 for the latter.
+//!
+//! Strengths of all families are energies, not yet over the share above the horizon. The lobe of trapped light has its middle at the normal. The b of the remainder is one
+//! number of the family.
 //!
 //! Rows have quotients over closed forms, so that lines between nodes and between rows hold: slopes of lobes over [`Family::spreads`], energies over
-//! [`Family::crossing`], and shares above the horizon over their estimates (`Leaving`). So anisotropy needs no axis: lobes of anisotropic interfaces are stretched by
-//! the matrix of their slope parameters ([`Slopes`]). An interpolated share would not be that of the interpolated shape: light would be
-//! off by a hundredth at all views. Tails are one number of the family. Some of the light of both lobes is wide, by the same share in all channels; above no
+//! [`Family::crossing`]. So anisotropy needs no axis: lobes of anisotropic interfaces are stretched by
+//! the matrix of their slope parameters ([`Slopes`]). An interpolated share above the horizon would not be that of the interpolated shape: light would be
+//! off by a hundredth at all views. Lobes with the tail of GGX have that share in closed form (`Leaving`). Rows of others ([`Family::has_tail`]) have it over an estimate,
+//! as x and y of a part before the others, part -1. Tails are one number of the family. Some of the light of both lobes is wide, by the same share in all channels; above no
 //! diffuse base, whose light has a shape, of trapped light alone.
 
 mod film;
@@ -48,6 +54,7 @@ mod film;
 mod film_tests;
 mod fit;
 mod paint;
+mod shares;
 mod slopes;
 #[cfg(test)]
 mod tests;
@@ -59,7 +66,7 @@ pub(super) use film::{Filmed, facing};
 pub use paint::{Mix, Paint};
 pub use slopes::{Slopes, Stretch};
 
-use luthier_optics::stack::{Base, Layer, Stack};
+use luthier_optics::stack::{Base, Distribution, Layer, Stack};
 
 use crate::layers::ALPHA_MIN;
 
@@ -129,6 +136,13 @@ pub struct Family {
     pub is_metallic: bool,
     /// Whether that metal has an edge tint, for which rows have two numbers more.
     pub is_tinted: bool,
+    /// Whether lobes have another tail than GGX: rows have their shares above the horizon.
+    pub has_tail: bool,
+    /// Of a base that is metallic in places, the share of the light of a diffuse base that layers send back to it: at slope parameters of 0, and what it grows by over a unit of
+    /// the root of that of the coat, and of that of the base. 0 before a fit.
+    pub sent_back: [f64; 3],
+    /// Whether the optical depth of the first slab varies above a base that keeps its colours: rows have lengths of light in it.
+    pub has_lengths: bool,
 }
 
 impl Family {
@@ -145,13 +159,42 @@ impl Family {
         let [own, base] =
             if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
         let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-        Some(Self { coat, base, interface, is_metallic, is_tinted: false })
+        let has_tail = stack.layers[interface].surface.distribution == Distribution::Beckmann;
+        let (is_tinted, has_lengths) = (false, false);
+        Some(Self { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back: [0.0; 3] })
     }
 
     /// The family with an edge tint of the metal, if its base is metallic in places.
     #[must_use]
     pub fn tinted(self, is_tinted: bool) -> Self {
         Self { is_tinted: is_tinted && self.is_metallic, ..self }
+    }
+
+    /// Share of the light of a diffuse base that is sent back to it, where that is metallic in places.
+    fn back(self, [coat, base]: [f64; 2]) -> f64 {
+        let [least, by_coat, by_base] = self.sent_back;
+        least + by_coat * coat.sqrt() + by_base * base.sqrt()
+    }
+
+    /// The family with the line through such shares of its nodes, by least squares: nodes are a grid, so that each axis has its steepness.
+    fn with_sent_back(self, shares: &[f64]) -> Self {
+        let roots: Vec<[f64; 2]> = (0..shares.len()).map(|node| self.alphas(node).map(f64::sqrt)).collect();
+        let count = shares.len().max(1) as f64;
+        let mean = shares.iter().sum::<f64>() / count;
+        let [coat, base] = [0, 1].map(|axis: usize| {
+            let middle = roots.iter().map(|roots| roots[axis]).sum::<f64>() / count;
+            let away = || roots.iter().map(|roots| roots[axis] - middle);
+            let square: f64 = away().map(|x| x * x).sum();
+            let steep: f64 = away().zip(shares).map(|(x, share)| x * share).sum();
+            (middle, if square > EXTENT_MIN * EXTENT_MIN { steep / square } else { 0.0 })
+        });
+        Self { sent_back: [mean - coat.0 * coat.1 - base.0 * base.1, coat.1, base.1], ..self }
+    }
+
+    /// The family with an optical depth of the first slab that varies. A base that is metallic in places has it in closed form anyway.
+    #[must_use]
+    pub fn below_varied_slab(self, has_lengths: bool) -> Self {
+        Self { has_lengths: has_lengths && !self.is_metallic, ..self }
     }
 
     /// Whether interfaces lie above the base.
@@ -202,6 +245,12 @@ impl Family {
         1.0 - missed * missed * (missed * missed) * missed
     }
 }
+
+/// Albedo of a diffuse base in the simulation of a family whose base is metallic in places.
+const WHITE: f64 = 0.8;
+
+/// The b of the remainder above a diffuse base: in fits it is .06 within .05, and hangs on no slope parameter.
+const SQUARE: f64 = 0.06;
 
 /// Squared cosine at which flat views see the facets of a coat, over its slope parameter.
 const FACING: f64 = 0.4;

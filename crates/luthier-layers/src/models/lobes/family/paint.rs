@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::schlick::{DIELECTRIC_F0, F82, F82_COS_THETA, metallic_and_matt, metallic_and_tinted, schlick};
+use luthier_optics::schlick::{DIELECTRIC_F0, F82, F82_COS_THETA, metallic_and_tinted, schlick};
 use luthier_optics::stack::{Base, Stack};
 
-use super::film::FilmLight;
-use super::{Family, base_interface};
+use super::film::{FilmLight, sent_back_below_coat};
+use super::shares::spread_by;
+use super::{Family, WHITE, base_interface};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
-use crate::models::lobes::{BaseLight, Frame, Lobe, Row};
+use crate::models::lobes::{BaseLight, Frame, Row};
 
 /// The colours of a family at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Paint {
     pub tint: Rgb,
     /// Share of the metal in the base, 0 to 1.
     pub metallic: f64,
+    /// F0 of the dielectric, RGB.
+    pub dielectric: Rgb,
     /// Albedo of the diffuse base, RGB.
     pub albedo: Rgb,
     /// Optical depth of the slab below the coat along the normal, RGB.
@@ -35,6 +38,8 @@ pub struct Mix {
     pub metal: Rgb,
     /// Edge tint of the metal, RGB; 1 without.
     pub tint: Rgb,
+    /// F0 of the dielectric, RGB.
+    pub dielectric: Rgb,
     /// Colour that the dielectric shows, RGB.
     pub matt: Rgb,
     /// Share of the metal.
@@ -45,7 +50,7 @@ impl Mix {
     /// Curves of the reflectance of the interface of this base as one surface, and albedo of the diffuse base below it: as models other than `lobes` have it.
     pub fn surface(&self) -> ([F82; 3], Rgb) {
         let curves = [0, 1, 2].map(|c: usize| F82 { f0: self.metal[c], tint: self.tint[c] });
-        metallic_and_tinted(curves, self.matt, self.metallic)
+        metallic_and_tinted(curves, self.dielectric, self.matt, self.metallic)
     }
 }
 
@@ -67,15 +72,22 @@ impl Paint {
         };
         let metallic = if metal.is_some() { 1.0 } else { 0.0 };
         let metal = metal.unwrap_or_default();
-        Self { metal, tint: [1.0; 3], metallic, albedo, depth, film_factor: 1.0 }
+        let interface = base_interface(stack).map(|number| &stack.layers[number].base);
+        let dielectric = match interface {
+            Some(Base::Dielectric { ior, .. }) => ior.f0(),
+            _ => None,
+        };
+        let dielectric = dielectric.unwrap_or([DIELECTRIC_F0; 3]);
+        Self { metal, tint: [1.0; 3], metallic, dielectric, albedo, depth, film_factor: 1.0 }
     }
 
     /// These colours with a base of a `metallic-roughness` surface: a metal of an F0, and a dielectric whose diffuse base shows a colour, which is its
     /// share.
     #[must_use]
-    pub fn mixed(self, Mix { metal, tint, matt, metallic }: Mix) -> Self {
-        let (_, albedo) = metallic_and_matt(metal, matt, 0.0);
-        Self { metal, tint, metallic, albedo, ..self }
+    pub fn mixed(self, mix: Mix) -> Self {
+        let (_, albedo) = Mix { metallic: 0.0, ..mix }.surface();
+        let Mix { metal, tint, dielectric, metallic, .. } = mix;
+        Self { metal, tint, metallic, dielectric, albedo, ..self }
     }
 
     /// Curves of the reflectance of the metal.
@@ -95,10 +107,14 @@ impl Paint {
         metal
     }
 
-    /// A stack without metal, with the diffuse base of these colours.
+    /// A stack without metal, with the F0 and the diffuse base of these colours.
     #[must_use]
     pub fn plastic_of(&self, stack: &Stack) -> Stack {
         let mut plastic = stack.clone();
+        let interface = base_interface(stack).map(|number| &mut plastic.layers[number].base);
+        if let Some(Base::Dielectric { ior, .. }) = interface {
+            *ior = ior.clone().with_f0(self.dielectric);
+        }
         if let Some(Base::Diffuse(base)) = plastic.layers.last_mut().map(|layer| &mut layer.base) {
             base.albedo = self.albedo;
         }
@@ -111,7 +127,10 @@ impl Paint {
         if let (true, Base::Conductor { ior } | Base::Dielectric { ior, .. }) =
             (family.is_metallic, &mut painted.layers[family.interface].base)
         {
-            *ior = ior.clone().with_f82(self.curves().map(|metal| metal.in_dielectric(self.metallic)));
+            let curves = self.curves();
+            *ior = ior
+                .clone()
+                .with_f82([0, 1, 2].map(|c: usize| curves[c].in_dielectric(self.dielectric[c], self.metallic)));
         }
         painted
     }
@@ -132,12 +151,7 @@ impl Family {
         let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt();
         let leaving = Leaving::new(refracted(DVec3::new(sin_theta, 0.0, cos_theta), frame.index), frame.index);
         for (lobe, spread) in here.lobes.iter_mut().zip(Self::spreads(alphas)) {
-            *lobe = Lobe {
-                shift: lobe.shift * spread,
-                sharpness: lobe.sharpness.map(|sharpness| sharpness * lobe.tail.sqrt() / spread),
-                shear: 0.0,
-                ..*lobe
-            };
+            *lobe = spread_by(*lobe, spread);
             // Between rows the share is that of the shape there.
             lobe.share = (lobe.share * leaving.in_plane(lobe, sin_theta)).min(1.0);
         }
@@ -147,8 +161,14 @@ impl Family {
         let [wide_once, wide_trapped] =
             [1, 0].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.sqrt()));
         let base = row.base.unwrap_or_default();
-        let more = base.more(simulated, paint.albedo);
-        let mut met = base.of_one_direction(simulated, paint.albedo);
+        let other = FilmLight::without(row, paint).filter(|_| film.is_none() && self.is_metallic && !self.is_coated());
+        let film = film.or(other.as_ref());
+        let passed = self.passed(&base, simulated, paint.depth);
+        let [more, mut met] = if self.has_lengths {
+            base.dimmed(simulated, paint.albedo, [passed[1], passed[2]])
+        } else {
+            [base.more(simulated, paint.albedo), base.of_one_direction(simulated, paint.albedo)]
+        };
         for (c, more) in more.into_iter().enumerate() {
             let [entering, wide, once, trapped] = if self.is_metallic {
                 let [entering, wide, once, trapped, direct] =
@@ -158,6 +178,10 @@ impl Family {
             } else {
                 let [once, trapped] =
                     [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or(0.0, |lobe| lobe.strength[c]));
+                // Above a diffuse base light of more visits passes the slab as often as its light does.
+                let again = if simulated == [0.0; 3] { passed[1][c] } else { passed[0][c] * passed[2][c] };
+                let [once, trapped] =
+                    if self.has_lengths { [once * passed[0][c], trapped * again] } else { [once, trapped] };
                 [row.albedo_dir[c], row.wide[c] + more.max(-row.wide[c]), once, trapped]
             };
             let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
@@ -172,8 +196,18 @@ impl Family {
             here.albedo_dir[c] = facet + kept * below;
         }
         // The shape of the remainder stays: its light is in the remainder.
-        here.base = row.base.map(|base| BaseLight { falloff: base.falloff, met: Some(met), ..BaseLight::default() });
+        let falloff = [base.falloff[0], frame.wide.falloff()[1]];
+        here.base = row.base.map(|_| BaseLight { falloff, met: Some(met), ..BaseLight::default() });
         here
+    }
+
+    /// Shares of light that the first slab lets through: of one visit, of the diffuse base or of more visits without one, and of what is sent back to the base.
+    fn passed(self, base: &BaseLight, simulated: Rgb, depth: Rgb) -> [Rgb; 3] {
+        let [once, second, around] = base.lengths;
+        let straight = |length: f64| depth.map(|depth| libm::exp(-length * depth));
+        let spread = |g: f64, spread: f64| depth.map(|depth| libm::pow(1.0 + g * depth, -spread));
+        let second = if simulated == [0.0; 3] { spread(second, MORE_SPREAD) } else { straight(second) };
+        [straight(once), second, spread(around, AROUND_SPREADS[usize::from(self.is_coated())])]
     }
 
     /// Energies of a base that is metallic in places, by channel: light but that of one facet of the first interface, the remainder without trapped light, and
@@ -187,57 +221,73 @@ impl Family {
         film: Option<&FilmLight>,
         c: usize,
     ) -> [f64; 5] {
-        let (metal, tint, metallic) = (paint.metal[c], paint.tint[c], paint.metallic);
-        // The F0 of the metal where facets see this dip of its edge tint, which a metal below a film has not.
-        let bare = |dip: f64| dimmed(metal, tint, dip);
+        let (metal, tint, metallic, f0) = (paint.metal[c], paint.tint[c], paint.metallic, paint.dielectric[c]);
+        // The F0 of the metal where facets see this dip of its edge tint; a film has no tint below it.
+        let at = |dip: f64| film.map_or_else(|| dimmed(metal, tint, dip), |film| film.mean[0][c]);
         let [white, dip, first_dip] = row.wide;
         let mix = |of_metal: f64, of_plastic: f64| of_plastic + metallic * (of_metal - of_plastic);
         let passed = |length: f64| libm::exp(-length * paint.depth[c]);
-        let ([light, length, _], [sent_back, around, _]) = (base.energy, base.internal);
+        let ([bright, length, _], [_, around, _]) = (base.energy, base.internal);
+        // Rows have the light of a base of one albedo, which no error of this share changes.
+        let sent_back = self.back(alphas);
+        let light = bright * (1.0 / WHITE - sent_back);
         let [of_once, of_more] = [0, 1].map(|lobe: usize| row.lobes.get(lobe).map_or([0.0; 3], |lobe| lobe.strength));
         let [facet, once_length, more_length] = row.albedo_dir;
         let [several, slope, _] = of_once;
-        // Light of the diffuse base, and that of it which came up for the first time.
-        let diffuse = |light: f64, sent_back: f64| {
-            let direct = light * passed(length) * paint.albedo[c];
-            [direct / (1.0 - sent_back * passed(around) * paint.albedo[c]), direct].map(|light| mix(0.0, light))
+        let again = passed(more_length);
+        let (light, sent_back, once, plastic_more, entering) = match film {
+            Some(film) if self.is_coated() => {
+                let once = [0, 1].map(|i: usize| chain(of_once, film.seen[i][c]));
+                let reflected = [chain(of_once, DIELECTRIC_F0), once[1] + trapped(of_more, film.mean[1][c])];
+                let [leaving, staying] = film.crossed(c, light / (1.0 - sent_back), reflected);
+                let (light, sent_back) = (leaving * light, 1.0 - staying * (1.0 - sent_back));
+                let more = trapped(of_more, film.mean[1][c] * again);
+                (light, sent_back, mix(once[0], once[1]) * passed(once_length), more, facet)
+            }
+            None if self.is_coated() => {
+                let once = [at(dip), f0].map(|f0| chain(of_once, f0));
+                let (light, sent_back, more) = if paint.dielectric == [DIELECTRIC_F0; 3] {
+                    (light, sent_back, 0.0)
+                } else {
+                    // What facets do not reflect enters.
+                    let sent_back = sent_back_below_coat(sent_back, f0);
+                    let entering = facet - white - once[1] - trapped(of_more, f0);
+                    (entering.max(0.0) * (1.0 - sent_back), sent_back, trapped(of_more, f0 * again))
+                };
+                (light, sent_back, mix(once[0], once[1]) * passed(once_length), more, facet)
+            }
+            Some(film) => {
+                let filmed = between_facets(several, of_more, facet / (facet + slope).max(ALL_MIN), film.mean[1][c]);
+                let all = facet + slope;
+                let [light, sent_back] = film.below(c, all, [several, filmed], sent_back);
+                let facet = all * mix(film.seen[0][c], film.seen[1][c]);
+                (light, sent_back, mix(0.0, filmed), 0.0, 1.0 - facet)
+            }
+            None => {
+                let kept = metallic * edge(metal, tint) * first_dip;
+                (light, sent_back, mix(0.0, several), 0.0, 1.0 - (facet + slope * mix(metal, DIELECTRIC_F0) - kept))
+            }
         };
-        // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric reflects hardly any.
-        let again = |f0: f64| trapped(of_more, f0 * passed(more_length));
-        if self.is_coated() {
-            let once =
-                |metal: f64, plastic: f64| mix(chain(of_once, metal), chain(of_once, plastic)) * passed(once_length);
-            let Some(film) = film else {
-                // Light that a coat keeps meets the metal flatly.
-                let flat = metallic * again(bare(trapped_dip(alphas, cos_theta)));
-                let [base, direct] = diffuse(light, sent_back);
-                return [facet, white + base, once(bare(dip), DIELECTRIC_F0), flat, direct];
-            };
-            let kept = trapped(of_more, film.mean[1][c]);
-            let reflected = [chain(of_once, DIELECTRIC_F0), chain(of_once, film.seen[1][c]) + kept];
-            let [leaving, staying] = film.crossed(c, light / (1.0 - sent_back), reflected);
-            let [base, direct] = diffuse(leaving * light, 1.0 - staying * (1.0 - sent_back));
-            let flat = mix(again(film.mean[0][c]), again(film.mean[1][c]));
-            return [facet, white + base, once(film.seen[0][c], film.seen[1][c]), flat, direct];
-        }
-        let Some(film) = film else {
-            let kept = metallic * edge(metal, tint) * first_dip;
-            let ([base, direct], f0) = (diffuse(light, sent_back), bare(dip));
-            let facet = facet + slope * mix(metal, DIELECTRIC_F0) - kept;
-            return [1.0 - facet, white + base, mix(0.0, several), metallic * again(f0), direct];
-        };
-        // Several facets of the dielectric reflect as those of a metal of the film's F0, less those of the F0 that rows know.
-        let filmed = (several + trapped(of_more, film.mean[1][c]) - trapped(of_more, DIELECTRIC_F0)).max(0.0);
-        let all = facet + slope;
-        let [leaving, staying] = film.passed(c, all, facet + slope * DIELECTRIC_F0, [several, filmed]);
-        let facet = all * mix(film.seen[0][c], film.seen[1][c]);
-        let [base, direct] = diffuse(leaving * light, 1.0 - staying * (1.0 - sent_back));
-        [1.0 - facet, white + base, mix(0.0, filmed), metallic * again(film.mean[0][c]), direct]
+        let direct = light * passed(length) * paint.albedo[c];
+        let diffuse = direct / (1.0 - sent_back * passed(around) * paint.albedo[c]);
+        // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric of the F0 that rows know reflects hardly any.
+        // Light that a coat keeps meets the metal flatly.
+        let flat = at(if self.is_coated() { trapped_dip(alphas, cos_theta) } else { dip });
+        let more = mix(trapped(of_more, flat * again), plastic_more);
+        [entering, white + mix(0.0, diffuse), once, more, mix(0.0, direct)]
     }
 }
 
+/// Spreads of the lengths of light that is sent back to a diffuse base, which is below the first interface, or below another one that sends some of it back before
+/// it comes to the slab: a slab of depth d lets `(1 + g d)^-spread` of it through. An exponential of the mean would be too bright in thin slabs, and too dark in
+/// thick ones.
+pub(super) const AROUND_SPREADS: [f64; 2] = [4.0, 1.5];
+
+/// That of light of more visits to a metal, which are many where it is bright.
+pub(super) const MORE_SPREAD: f64 = 4.5;
+
 /// Reflectance that an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
-fn edge(f0: f64, tint: f64) -> f64 {
+pub(super) fn edge(f0: f64, tint: f64) -> f64 {
     schlick(f0, F82_COS_THETA) * (1.0 - tint)
 }
 
@@ -277,8 +327,21 @@ pub(super) fn trapped([half, bright, white]: Rgb, f: f64) -> f64 {
     f * f * (half + (2.0 * f - 1.0) * (white - half)).max(0.0) / (1.0 - pole * f)
 }
 
+/// Energy of light of several facets of a dielectric at an F0: that of a metal, and light that crossed some of them. `known` is all of it at the F0 that rows
+/// know, and `steep` the mean of Schlick's `(1 - cos)^5` at the facets that the eye sees.
+///
+/// Light that one facet reflects and others let through grows with the F0, and ends where they let nothing through: about as `f (1 - f)^1.5`.
+pub(super) fn between_facets(known: f64, energies: Rgb, steep: f64, f: f64) -> f64 {
+    let crossed = |f: f64| (f + (1.0 - f) * steep) * (1.0 - f) * (1.0 - f).max(0.0).sqrt();
+    let excess = (known - trapped(energies, DIELECTRIC_F0)) / crossed(DIELECTRIC_F0);
+    (trapped(energies, f) + excess * crossed(f)).max(0.0)
+}
+
 /// Least divisor of a pole.
 const BEYOND_MIN: f64 = 1e-9;
+
+/// Least light of one facet of a mirror by which light is divided.
+const ALL_MIN: f64 = 0.02;
 
 /// Largest pole.
 const POLE_MAX: f64 = 0.99;

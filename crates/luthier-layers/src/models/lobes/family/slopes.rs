@@ -117,6 +117,9 @@ mod tests {
         interface: 1,
         is_metallic: true,
         is_tinted: false,
+        has_tail: false,
+        sent_back: [0.0; 3],
+        has_lengths: false,
     };
 
     /// Oracle: by hand. An isotropic coat of .2 over a base of .1 and .3 whose tangent is turned by a quarter of a circle.

@@ -2,11 +2,11 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::schlick::F82;
+use luthier_optics::schlick::{DIELECTRIC_F0, F82};
 use luthier_optics::stack::{Base, Layer, Stack};
 
-use super::Family;
 use super::film::{beyond, facing, film_on};
+use super::{Family, SQUARE, WHITE};
 use crate::models::lobes::fit::{Simulation, seen_from};
 use crate::models::lobes::tally::{Cells, Tally};
 use crate::models::lobes::{FirstInterface, FitSettings, ViewAxis, Wide};
@@ -14,9 +14,6 @@ use crate::references::layered_mc::{ColorPaths, JointPath};
 
 /// F0 of the base in the channels of a simulation whose energies are in closed form; the middle one is where the absorption of slabs is measured.
 pub(super) const SHADES: Rgb = [0.04, 0.5, 1.0];
-
-/// Albedo of a diffuse base in that simulation.
-pub(super) const WHITE: f64 = 0.8;
 
 /// Wavelength at which indices bend directions where channels are shades.
 const SODIUM_D_NM: f64 = 589.3;
@@ -168,13 +165,18 @@ fn of_mirror(stack: &Stack, tint: f64) -> Stack {
     metal
 }
 
-/// The stack without metal, over a diffuse base of [`WHITE`].
+/// The stack without metal, with the F0 that rows know over a diffuse base of [`WHITE`].
 fn of_plastic(stack: &Stack) -> Option<Stack> {
     let mut plastic = clear(stack);
-    let [.., Layer { films, .. }, Layer { base: Base::Diffuse(base), .. }] = plastic.layers.as_mut_slice() else {
+    let [.., Layer { films, base: interface, .. }, Layer { base: Base::Diffuse(base), .. }] =
+        plastic.layers.as_mut_slice()
+    else {
         return None;
     };
     films.clear();
+    if let Base::Dielectric { ior, .. } = interface {
+        *ior = ior.clone().with_f0([DIELECTRIC_F0; 3]);
+    }
     base.albedo = [WHITE; 3];
     Some(plastic)
 }
@@ -205,8 +207,13 @@ impl Node {
         let shades = Color::ThreeWavelengths([SODIUM_D_NM; 3]);
         let color = if family.is_metallic { &shades } else { color };
         // A base that is metallic in places has two simulations.
-        let (here, below) =
-            if family.is_metallic { (of_metal(family, &plain), of_plastic(&plain)) } else { (plain, None) };
+        let (here, below) = if family.is_metallic {
+            (of_metal(family, &plain), of_plastic(&plain))
+        } else if family.has_lengths {
+            (clear(&plain), None)
+        } else {
+            (plain, None)
+        };
         let spreads = Family::spreads(alphas);
         let cells = spreads.map(|spread| Cells::new(index, spread));
         let (paths, paths_below) =
@@ -291,7 +298,7 @@ impl Node {
             wide.push(of_rest);
             rest.push(energies);
         }
-        let falloff = Wide::falloff_of(axis, &wide);
+        let falloff = Wide::fall_of(axis, &wide, SQUARE);
         let of_base = falloff.filter(|_| has_base);
         let [narrow, broad] = cells;
         let lobes = [

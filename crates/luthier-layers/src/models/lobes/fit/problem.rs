@@ -235,6 +235,7 @@ impl<'a> Problem<'a> {
                 energy: tally.base,
                 internal,
                 falloff: self.simulation.base_falloff.map_or([0.0; 2], |_| wide.falloff()),
+                lengths: [0.0; 3],
                 met: None,
             }),
         });

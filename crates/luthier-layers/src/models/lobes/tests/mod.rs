@@ -4,6 +4,7 @@ mod anisotropic;
 mod draws;
 mod place;
 mod tilt;
+mod weights;
 
 use glam::DVec3;
 use luthier_model::Masking;

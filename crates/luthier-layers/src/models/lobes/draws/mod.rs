@@ -1,13 +1,25 @@
 //! The model at a view: values, samples, densities.
 
-use std::f64::consts::PI;
+mod facet;
+mod lobe;
+mod wide;
 
 use glam::DVec3;
 use luthier_model::Masking;
 use luthier_optics::Rgb;
 
+use self::facet::FacetDraw;
+pub(super) use self::lobe::{Disc, LobeDraw};
+use self::wide::WideDraw;
 use super::tally::mean;
 use super::{Below, Lobes};
+
+/// Share of the draws of the first facet that the wide remainder gets: of smooth surfaces, facets far from the mirror direction reflect many times as much as
+/// those near it, and there is next to no chance for them.
+const SPILL: f64 = 0.04;
+
+/// Factor on the energy of the first facet for its chance, about a bound on the weights of facets alone: what is drawn of all parts is then bounded alike.
+const FACETS: f64 = 1.3;
 
 /// The model as seen from a direction.
 #[derive(Debug, Clone)]
@@ -15,6 +27,10 @@ pub struct Prepared<'a> {
     lobes: &'a Lobes,
     wo: DVec3,
     below: Below,
+    /// Draws of the first facet, of each lobe, and of the wide remainder.
+    facet: Option<FacetDraw>,
+    draws: Vec<LobeDraw>,
+    wide: WideDraw,
     /// Probabilities of the first facet, of each lobe, and of the wide remainder.
     chances: Vec<f64>,
 }
@@ -36,15 +52,20 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(lobes: &'a Lobes, wo: DVec3) -> Option<Self> {
         let below = lobes.below(wo)?;
         let row = below.row();
-        let parts = std::iter::once(row.first_facet()).chain(row.lobes.iter().map(|lobe| lobe.strength));
-        let mut chances: Vec<f64> = parts.chain([row.wide]).map(|rgb| mean(rgb).max(0.0)).collect();
+        let facet = lobes.first.as_ref().map(|first| FacetDraw::new(&first.facets, wo, first.reflectance.rgb(1.0)));
+        let draws = below.draws();
+        let first = FACETS * mean(row.first_facet()).max(0.0);
+        let parts = row.lobes.iter().zip(&draws).map(|(lobe, draw)| mean(lobe.strength).max(0.0) * draw.chance);
+        let draw = WideDraw::new(below.wide());
+        let wide = mean(row.wide).max(0.0) * draw.chance + SPILL * first;
+        let mut chances: Vec<f64> = std::iter::once((1.0 - SPILL) * first).chain(parts).chain([wide]).collect();
         let total: f64 = chances.iter().sum();
         if total > 0.0 {
             chances.iter_mut().for_each(|chance| *chance /= total);
         } else if let Some(wide) = chances.last_mut() {
             *wide = 1.0;
         }
-        Some(Self { lobes, wo, below, chances })
+        Some(Self { lobes, wo, below, facet, draws, wide: draw, chances })
     }
 
     /// Directional albedo by channel.
@@ -66,8 +87,10 @@ impl<'a> Prepared<'a> {
         if wi.z <= 0.0 {
             return 0.0;
         }
-        let first = self.lobes.first.as_ref().map_or(0.0, |first| first.facets.pdf_solid_angle(wi, self.wo));
-        let densities = std::iter::once(first).chain(self.below.densities(wi)).chain([wi.z / PI]);
+        let first = self.facet.as_ref().map_or(0.0, |facet| facet.pdf_solid_angle(wi));
+        let densities = std::iter::once(first)
+            .chain(self.below.densities(&self.draws, wi))
+            .chain([self.wide.pdf_solid_angle(wi.z)]);
         self.chances.iter().zip(densities).filter(|(chance, _)| **chance > 0.0).map(|(c, d)| c * d).sum()
     }
 
@@ -84,13 +107,13 @@ impl<'a> Prepared<'a> {
             rest -= chance;
         }
         let wi = if part == 0 {
-            let wh = self.lobes.first.as_ref()?.facets.sample(self.wo, [u, v]);
+            let wh = self.facet.as_ref()?.sample([rest / self.chances[0], u, v]);
             2.0 * wh.dot(self.wo) * wh - self.wo
         } else if part < wide {
-            self.below.sample(part - 1, [u, v])?
+            self.below.sample(self.draws.get(part - 1)?, [u, v])?
         } else {
-            let (sin, cos) = libm::sincos(2.0 * PI * v);
-            DVec3::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt())
+            let rest = (rest / self.chances[wide]).clamp(0.0, 1.0 - f64::EPSILON);
+            self.wide.sample([rest, u, v])
         };
         let pdf_solid_angle = self.pdf_solid_angle(wi);
         (pdf_solid_angle > 0.0).then(|| {
