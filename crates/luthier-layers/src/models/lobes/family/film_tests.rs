@@ -103,7 +103,8 @@ fn films_below_a_coat_are_those_of_the_simulation() {
                 let thickness = nm * film_factor;
                 level.layers[1].films[0].thickness = FilmThickness { min_nm: thickness, max_nm: thickness };
                 let paint = Paint { film_factor, ..Paint::of(&stack) };
-                let paint = paint.mixed(Mix { metal: base, tint: [1.0; 3], matt: base, metallic });
+                let paint =
+                    paint.mixed(Mix { metal: base, tint: [1.0; 3], dielectric: [0.04; 3], matt: base, metallic });
                 let here = if metallic > 0.0 { paint.metal_of(&level) } else { paint.plastic_of(&level) };
                 let lobes = varied.painted([coat, alpha], &paint).unwrap();
                 for theta in [0.0, 1.0, 1.3] {
