@@ -469,7 +469,7 @@ struct FitJob {
 }
 
 impl FitJob {
-    /// What rows are over, where a search allows so many lobes: a family always has two, and fewer nodes in place of fewer lobes.
+    /// Part of the stack that rows are over, where a search allows so many lobes: a family always has two, and fewer nodes in place of fewer lobes.
     fn varying_of(&self, most: Option<usize>) -> Option<Varying> {
         let fewer = most.map_or(0, |most| LOBES.saturating_sub(most) as u32);
         self.varying.map(|varying| varying.with_fewer_nodes(fewer))

@@ -283,7 +283,7 @@ impl Family {
 /// thick ones.
 pub(super) const AROUND_SPREADS: [f64; 2] = [4.0, 1.5];
 
-/// That of light of more visits to a metal, which are many where it is bright.
+/// Spread of light of more visits to a metal, which are many where it is bright.
 pub(super) const MORE_SPREAD: f64 = 4.5;
 
 /// Reflectance that an edge tint keeps at 81.8 degrees: the weight of the correction times its largest value.
