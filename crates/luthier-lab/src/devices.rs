@@ -71,10 +71,6 @@ pub(crate) fn run(options: &DevicesOptions) -> Outcome {
             for row in rows(&measured) {
                 let Some(time) = row["net_ns"].as_f64() else { continue };
                 let Some((key, counts)) = shaders.of_row(row)? else { continue };
-                // These shaders have other reads since they were timed: reflectances of coats are computed.
-                if model_of(&key) == Some(ShadingModel::Lobes) {
-                    continue;
-                }
                 let model = if row["shader"].is_null() { key.shader.clone() } else { paper_model(&key.shader) };
                 // Counts are those of all lights of a view.
                 let time = 1e3 * time * f64::from(key.lights);

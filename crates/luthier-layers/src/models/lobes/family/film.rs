@@ -132,7 +132,7 @@ pub(super) fn sent_back_below_coat(sent_back: f64, f0: f64) -> f64 {
     1.0 - passed(schlick_average(f0)) / passed(known) * (1.0 - sent_back)
 }
 
-/// What Schlick's formula adds for an F0 of 0.
+/// Reflectance of an F0 of 0 by Schlick's formula.
 fn power(cos_theta: f64) -> f64 {
     let away = 1.0 - cos_theta;
     away * away * (away * away) * away
@@ -225,7 +225,7 @@ impl Filmed {
         })
     }
 
-    /// What a row of the family sees of it.
+    /// Its light as a row of the family sees it.
     pub(in crate::models::lobes) fn light(&self, family: Family, row: &Row) -> FilmLight {
         let (film, nodes, middle_nm) = &self.film;
         FilmLight::new(family, row, self.series.ior, |cos_theta, spread| {
