@@ -72,7 +72,7 @@ fn devices_are_fitted_to_kept_measurements() {
         let costs = luthier_cost::DeviceCost::parse(&workshop.text(&format!("data/{name}.json"))).unwrap();
         assert_eq!(costs.name, name);
         // Of one material; shaders of `lobes` have a read less than when they were timed, so that counts of today fit these times less well.
-        assert!(costs.fit.rows > 8 && costs.fit.own.median < 0.2, "{costs:?}");
+        assert!(costs.fit.rows > 8 && costs.fit.own.median < 0.25, "{costs:?}");
         assert!(page.contains(&format!("| {name} | {} |", costs.unit)), "{page}");
     }
     assert!(page.contains("## Shaders timed on h100") && page.contains("cycles of RDNA2 by RADV's compiler"), "{page}");
