@@ -148,7 +148,7 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
             let parts = family.parts(
                 has_lengths(material, family),
                 base_below(&material.stack).is_some(),
-                is_filmed(material, family),
+                family.is_filmed(&material.stack),
             );
             ([family.first_part(), parts as i32 - 1], true)
         }
@@ -167,16 +167,12 @@ fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
     [first, last]
 }
 
-/// Whether a film lies on the base of a family that is metallic in places.
-fn is_filmed(material: &Material, family: Family) -> bool {
-    family.is_metallic && !material.stack.layers[family.interface].films.is_empty()
-}
 /// Number of parts of a diffuse base.
 const BASE_PARTS: i32 = Row::BASE_PARTS as i32;
 
 /// Whether rows of a family have lengths of light in a slab, or cosines at which the facets below a film are seen.
 fn has_lengths(material: &Material, family: Family) -> bool {
-    let is_under_film = !family.is_coated() && is_filmed(material, family);
+    let is_under_film = !family.is_coated() && family.is_filmed(&material.stack);
     is_under_film || Paint::of(&material.stack).depth != [0.0; 3]
 }
 

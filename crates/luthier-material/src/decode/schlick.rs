@@ -208,7 +208,7 @@ pub(super) fn check_films(at: &Section<'_>, films: &[films::Pending<'_>], number
     }
     let varies = number > 0 && films.iter().any(|film| film.variation.is_some());
     let is_mapped = textured(at).is_some() || maps_f0(at);
-    if !is_mapped && !(varies && carries_films_that_vary(at)) {
+    if !(is_mapped || varies && carries_films_that_vary(at)) {
         return;
     }
     let base = match is_mapped {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 
-use super::draws::{Disc, LobeDraw};
+use super::draws::LobeDraw;
 use super::half_vector::{outside, refracted, slope};
 use super::leaving::{LEAVING_MIN, Leaving};
 use super::{Frame, Lobe, Row, Shape, Wide};
@@ -185,11 +185,8 @@ impl Below {
 
     /// The draws of the lobes, one after the other.
     pub(super) fn draws(&self) -> Vec<LobeDraw> {
-        let index = self.frame.index;
-        let radius = 1.0 / (index * self.eye.z + ((index - 1.0) * (index + 1.0)).max(0.0).sqrt());
-        let middle = [index * self.eye.x * radius - self.tilt[0], index * self.eye.y * radius - self.tilt[1]];
-        let disc = Disc { middle, radius };
-        self.shapes.iter().map(|shape| LobeDraw::new(*shape, disc)).collect()
+        let leaving = Leaving::new(self.eye, self.frame.index);
+        self.shapes.iter().map(|shape| LobeDraw::new(*shape, &leaving, self.tilt)).collect()
     }
 
     /// Densities in solid angle with which [`Self::sample`] draws.

@@ -25,9 +25,12 @@ pub(super) const LEAVING_MIN: f64 = 1e-3;
 /// `d = c + sqrt(n^2 - 1)`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Leaving {
-    middle: [f64; 2],
-    radius: f64,
+    pub(super) middle: [f64; 2],
+    pub(super) radius: f64,
 }
+
+/// Radius to which a disc is held.
+pub(super) const RADIUS_MAX: f64 = 1.0 / DISC_MIN;
 
 impl Leaving {
     /// The disc of an eye inside a medium of relative index `index`.

@@ -9,17 +9,8 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
+use crate::models::lobes::leaving::{Leaving, RADIUS_MAX};
 use crate::models::lobes::{Shape, TAIL_MIN};
-
-/// The slopes of half vectors to light above the horizon: middle of their disc, and its radius.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::models::lobes) struct Disc {
-    pub(in crate::models::lobes) middle: [f64; 2],
-    pub(in crate::models::lobes) radius: f64,
-}
-
-/// The greatest disc: beyond, single precision would see noise.
-const RADIUS_MAX: f64 = 20.0;
 
 /// A lobe as it is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -58,13 +49,14 @@ impl Cap {
 }
 
 impl LobeDraw {
-    /// The draw of a shape, light of which leaves from a disc of slopes.
-    pub(in crate::models::lobes) fn new(shape: Shape, disc: Disc) -> Self {
+    /// The draw of a shape whose middle is moved by a slope, where light leaves from a disc of slopes.
+    pub(in crate::models::lobes) fn new(shape: Shape, disc: &Leaving, moved: [f64; 2]) -> Self {
+        let middle = [0, 1].map(|axis: usize| disc.middle[axis] - moved[axis]);
         let widest = shape.width[0].max(shape.width[1]);
         let narrowest = shape.width[0].min(shape.width[1]);
-        let own = Cap::new(shape.width, DVec2::from(shape.scaled(disc.middle)), disc.radius / narrowest);
+        let own = Cap::new(shape.width, DVec2::from(shape.scaled(middle)), disc.radius / narrowest);
         let wide = Shape { width: [widest; 2], ..shape };
-        let round = Cap::new(wide.width, DVec2::from(wide.scaled(disc.middle)), disc.radius / widest);
+        let round = Cap::new(wide.width, DVec2::from(wide.scaled(middle)), disc.radius / widest);
         let of_round = round.share * widest / narrowest;
         let (cap, cost) = if of_round < own.share { (round, of_round) } else { (own, own.share) };
         let tail = shape.tail.max(TAIL_MIN);

@@ -40,10 +40,9 @@
         var given: LuthierLobeDraw;
         given.middle = luthier_lobe_slope(shape, vec2<f32>(0.0));
         given.chance = 1.0;
-        // Slopes to light above the horizon fill a disc.
-        let inverse_radius = prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0));
-        let radius = 1.0 / max(inverse_radius, 0.05);
-        let apart = radius * luthier_in_frame(prepared.azimuth, prepared.wo.xy) - given.middle;
+        let disc = luthier_leaving_disc(prepared);
+        let radius = disc.z;
+        let apart = disc.xy - given.middle;
         //? lobes_axes
         {
             let lopsided = vec2<f32>(0.5 * (shape.sharpness.x - shape.sharpness.y), shape.shear);
@@ -64,7 +63,7 @@
         let is_round = round_share * most < own_share * least;
         let cost = select(own_share, round_share * most / least, is_round);
         let tail = 1.0 / shape.decay;
-        if cost * (1.0 + 0.47 * (1.0 - tail) * (1.0 - 0.5 * tail)) < 1.0 && inverse_radius > 0.05 {
+        if cost * (1.0 + 0.47 * (1.0 - tail) * (1.0 - 0.5 * tail)) < 1.0 && radius < 19.99 {
             let middle = select(of_own, of_round, is_round);
             let away = length(middle);
             given.chance = cost;

@@ -9,7 +9,7 @@ use luthier_model::Masking;
 use luthier_optics::Rgb;
 
 use self::facet::FacetDraw;
-pub(super) use self::lobe::{Disc, LobeDraw};
+pub(super) use self::lobe::LobeDraw;
 use self::wide::WideDraw;
 use super::tally::mean;
 use super::{Below, Lobes};

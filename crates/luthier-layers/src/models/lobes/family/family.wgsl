@@ -149,12 +149,12 @@
     }
 
     //? lobes_tails
-    /// Those of lobes of other tails, as estimates. `disc` has 1 over its radius, too.
-    fn luthier_family_leaving_tail(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+    /// Those of lobes of other tails, as estimates.
+    fn luthier_family_leaving_tail(slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
         let away = abs(disc.x - vec2<f32>(slope, 0.0));
         let mean = sqrt(sharpness.xz * sharpness.yw);
         // The nearer the middle of a lobe is to the edge of the disc, the more its width along the way counts.
-        let out = min(away * disc.z, vec2<f32>(1.0));
+        let out = min(away / disc.y, vec2<f32>(1.0));
         let near = disc.y * (mean - (mean - sharpness.xz) * out * (2.0 - out)) - away * sharpness.xz;
         let far = max(2.0 * disc.y * mean - near, near);
         let near_cos = exp2(-0.5 * decay * log2(1.0 + near * near));
@@ -170,7 +170,7 @@
 
     //? lobes_tails
     /// Shares above the horizon of lobes of such a tail, from what rows have over these estimates.
-    fn luthier_family_tail_shares(row: vec2<f32>, beside: vec2<f32>, slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec3<f32>) -> vec2<f32> {
+    fn luthier_family_tail_shares(row: vec2<f32>, beside: vec2<f32>, slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
         let over = luthier_family_part(row, beside, -1.0).xy;
         return min(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1.0));
     }
@@ -602,8 +602,8 @@
         var first_shape = luthier_family_shape(shift, sharp.xy, decay, sin_theta);
         var second_shape = luthier_family_shape(0.0, sharp.zw, decay, sin_theta);
         // Between rows the share is that of the shape there. Rows of other tails than that of GGX have it over an estimate.
-        let over_radius = max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
-        let radius = 1.0 / over_radius;
+        // Rows are in the plane of the eye.
+        let radius = luthier_leaving_disc(prepared).z;
         let middle = shift * sin_theta;
         //? lobes_tails
         {
@@ -611,10 +611,10 @@
             if decay == 1.0 {
                 prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
             } else {
-                prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
+                prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, radius * vec2<f32>(sin_theta, 1.0));
             }
             //? else
-            prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, vec3<f32>(sin_theta * radius, radius, over_radius));
+            prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, radius * vec2<f32>(sin_theta, 1.0));
         }
         //? else
         prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));

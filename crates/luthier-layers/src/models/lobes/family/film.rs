@@ -13,7 +13,7 @@ use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM, WavelengthNode};
 use luthier_optics::film_over_f0::{FilmOverF0, WAVES_MAX, interference};
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::ior::Ior;
-use luthier_optics::schlick::{DIELECTRIC_F0, schlick_average};
+use luthier_optics::schlick::{DIELECTRIC_F0, schlick, schlick_average};
 use luthier_optics::stack::Stack;
 
 use super::paint::{dimmed, edge};
@@ -30,11 +30,10 @@ const MEANS: [(f64, f64, f64); 2] = [
 /// Standard deviation of the squared sines at which light of more visits meets facets, over the greatest that no film reflects totally.
 const MORE_SPREAD: f64 = 0.4;
 
-/// Most that these two are apart from their mean, over what it lacks of 1: no squared sine is beyond 1.
+/// Most that both squared sines which stand for others are apart from their mean, over what it lacks of 1: none is beyond 1.
 const FLAT_SHARE: f64 = 0.9;
 
-/// Root of a half.
-const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const ROOT_HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Reflectances of a film at a place, as a row of a family sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +50,7 @@ impl FilmLight {
     pub fn new(family: Family, row: &Row, ior: f64, reflected: impl Fn(f64, f64) -> [Rgb; 2]) -> Self {
         // A mean over squared sines is one of two, half the variance apart, whose echoes fade by the other half.
         let mean_of = |square: f64, spread: f64, of: &dyn Fn(f64, f64) -> [Rgb; 2]| {
-            let faded = HALF * spread;
+            let faded = ROOT_HALF * spread;
             let apart = faded.min(FLAT_SHARE * (1.0 - square));
             let ends = [square - apart, square + apart].map(|square| {
                 let cos_theta = (1.0 - square).clamp(FLATTEST, 1.0).sqrt();
@@ -60,7 +59,7 @@ impl FilmLight {
             [0, 1].map(|i: usize| [0, 1, 2].map(|c: usize| 0.5 * (ends[0][i][c] + ends[1][i][c])))
         };
         let equal = |cos_theta: f64, spread: f64| {
-            let power = power(cos_theta);
+            let power = schlick(0.0, cos_theta);
             reflected(cos_theta, spread).map(|rgb| rgb.map(|found| ((found - power) / (1.0 - power)).clamp(0.0, 1.0)))
         };
         if family.is_coated() {
@@ -80,7 +79,7 @@ impl FilmLight {
         let seen = mean_of(square, spread, &reflected);
         let mut mean = [[0.0; 3]; 2];
         for (cos_theta, weight, spread) in MEANS {
-            let power = power(cos_theta);
+            let power = schlick(0.0, cos_theta);
             for (mean, found) in mean.iter_mut().zip(reflected(cos_theta, spread)) {
                 (0..3).for_each(|c| mean[c] += weight * (found[c] - power) / (1.0 - power));
             }
@@ -130,12 +129,6 @@ pub(super) fn sent_back_below_coat(sent_back: f64, f0: f64) -> f64 {
     let kept = ((sent_back - known) / (1.0 - known - (1.0 - sent_back) * known)).clamp(0.0, 1.0);
     let passed = |f: f64| (1.0 - f) / (1.0 - f * kept).max(ENTERING_MIN);
     1.0 - passed(schlick_average(f0)) / passed(known) * (1.0 - sent_back)
-}
-
-/// Reflectance of an F0 of 0 by Schlick's formula.
-fn power(cos_theta: f64) -> f64 {
-    let away = 1.0 - cos_theta;
-    away * away * (away * away) * away
 }
 
 /// Least squared cosine at which light meets facets of the base.
@@ -200,7 +193,7 @@ pub(in crate::models::lobes) struct Filmed {
 impl Filmed {
     /// The film of a stack on the metal of some colours; `None` without a film, or of a family whose energies are those of the film.
     pub(in crate::models::lobes) fn new(stack: &Stack, family: Family, paint: &Paint, color: &Color) -> Option<Self> {
-        if !is_filmed(stack, family) {
+        if !family.is_filmed(stack) {
             return None;
         }
         let mut interface = Interface::of(stack, family.interface)?;
@@ -250,7 +243,7 @@ impl Filmed {
 
 /// Index of the film on the base of a family over that of the medium above, and how fast the phase of its first echo grows over squared sines where it is thickest.
 pub(super) fn film_on(stack: &Stack, family: Family) -> Option<(f64, f64)> {
-    let interface = Interface::of(stack, family.interface).filter(|_| is_filmed(stack, family))?;
+    let interface = Interface::of(stack, family.interface).filter(|_| family.is_filmed(stack))?;
     let [_, middle_nm, _] = GRANIER_WAVELENGTHS_NM;
     let film = interface.films.first()?;
     let (index, above) = (film.ior.at(middle_nm).re, interface.above.at(middle_nm).re);
@@ -261,7 +254,9 @@ pub(super) fn film_on(stack: &Stack, family: Family) -> Option<(f64, f64)> {
 /// Range of phases over squared sines, by which the spread of directions is measured.
 const LATE: [f64; 2] = [1.0, 16.0];
 
-/// Whether a film lies on the base of a family that is metallic in places: rows are those without it.
-pub(in crate::models::lobes) fn is_filmed(stack: &Stack, family: Family) -> bool {
-    family.is_metallic && !stack.layers[family.interface].films.is_empty()
+impl Family {
+    /// Whether a film lies on the base of a stack that is metallic in places: rows are those without it.
+    pub fn is_filmed(self, stack: &Stack) -> bool {
+        self.is_metallic && !stack.layers[self.interface].films.is_empty()
+    }
 }

@@ -6,9 +6,9 @@ use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
+use super::tests::traced;
 use super::{Family, Mix, Paint};
 use crate::models::lobes::{FitSettings, Varied, Varying};
-use crate::references::layered_mc::ColorPaths;
 
 const SETTINGS: FitSettings = FitSettings { rows: 19, paths: 16_000, seed: 5 };
 
@@ -51,10 +51,7 @@ fn films_in_closed_form_are_those_of_the_simulation() {
                 let lobes = varied.painted([alpha; 2], &paint).unwrap();
                 for theta in [0.0, 1.0, 1.3] {
                     let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
-                    let (mut sum, count) = ([0.0; 3], 30_000);
-                    ColorPaths::new(&here, &color)
-                        .trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c] / count as f64));
-                    let found = lobes.row(wo).albedo_dir;
+                    let (found, sum) = (lobes.row(wo).albedo_dir, traced(&here, &color, 30_000, wo));
                     let apart = (0..3).map(|c: usize| (found[c] - sum[c]).abs()).fold(0.0, f64::max);
                     let limit = if base == [1.0; 3] { 0.004 } else { 0.035 };
                     assert!(apart < limit, "{ior} {nm} {alpha} {base:?} {metallic} {theta}: {found:?} {sum:?}");
@@ -109,10 +106,7 @@ fn films_below_a_coat_are_those_of_the_simulation() {
                 let lobes = varied.painted([coat, alpha], &paint).unwrap();
                 for theta in [0.0, 1.0, 1.3] {
                     let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
-                    let (mut sum, count) = ([0.0; 3], 30_000);
-                    ColorPaths::new(&here, &color)
-                        .trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c] / count as f64));
-                    let found = lobes.row(wo).albedo_dir;
+                    let (found, sum) = (lobes.row(wo).albedo_dir, traced(&here, &color, 30_000, wo));
                     let apart = (0..3).map(|c: usize| (found[c] - sum[c]).abs()).fold(0.0, f64::max);
                     if base != [1.0; 3] {
                         if metallic > 0.0 { &mut metals } else { &mut others }.push(apart);

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Family;
+use super::texels::DARK;
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
 use crate::models::lobes::{Lobe, Lobes, Row};
@@ -46,7 +47,7 @@ impl Family {
 fn mean_of<'a>(rows: impl Iterator<Item = &'a Row> + Clone, lobe: usize) -> Lobe {
     let count = rows.clone().count() as f64;
     let lobes = rows.map(|row| row.lobes[lobe]);
-    let first = Lobe { share: 0.0, shift: 0.0, sharpness: [0.0; 2], ..lobes.clone().next().unwrap_or(NONE) };
+    let first = Lobe { share: 0.0, shift: 0.0, sharpness: [0.0; 2], ..lobes.clone().next().unwrap_or(DARK) };
     lobes.fold(first, |sum, own| Lobe {
         share: sum.share + own.share / count,
         shift: sum.shift + own.shift / count,
@@ -54,9 +55,6 @@ fn mean_of<'a>(rows: impl Iterator<Item = &'a Row> + Clone, lobe: usize) -> Lobe
         ..sum
     })
 }
-
-/// No lobe.
-const NONE: Lobe = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 1.0 };
 
 /// A lobe of a row at a place where lobes are about this wide.
 pub(super) fn spread_by(lobe: Lobe, spread: f64) -> Lobe {

@@ -27,8 +27,13 @@ fn plastic(is_coated: bool, tint: [f64; 3]) -> Stack {
 }
 
 fn albedo(stack: &Stack, wo: DVec3) -> [f64; 3] {
-    let (mut sum, count) = ([0.0; 3], 60_000);
-    ColorPaths::new(stack, &COLOR).trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c]));
+    traced(stack, &COLOR, 60_000, wo)
+}
+
+/// Albedo of a stack by so many paths.
+pub(super) fn traced(stack: &Stack, color: &Color, count: u64, wo: DVec3) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    ColorPaths::new(stack, color).trace(11, count, wo, |path| (0..3).for_each(|c| sum[c] += path.weight[c]));
     sum.map(|sum| sum / count as f64)
 }
 

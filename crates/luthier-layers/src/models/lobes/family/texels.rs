@@ -111,7 +111,8 @@ impl Family {
 }
 
 /// A lobe without light.
-const DARK: Lobe = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 1.0 };
+pub(super) const DARK: Lobe =
+    Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 1.0 };
 
 fn with([r, g, b]: Rgb, w: f64) -> [f64; 4] {
     [r, g, b, w]

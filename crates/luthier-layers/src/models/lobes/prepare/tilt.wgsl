@@ -1,4 +1,3 @@
-//? lobes_tilted|lobes_family
 /// Slopes of half vectors to light above the horizon: middle of their disc, in the frame of the lobes, and its radius.
 fn luthier_leaving_disc(prepared: LuthierPreparedLobes) -> vec3<f32> {
     let radius = 1.0 / max(prepared.inside_cos + sqrt(max(prepared.medium.x, 0.0)), 0.05);
