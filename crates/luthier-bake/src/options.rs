@@ -9,13 +9,13 @@ use crate::BakeError;
 /// Options of a bake, beside the settings of its materials.
 ///
 /// ```
-/// # let text = "schema = 1\nname = \"glass\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n";
+/// # let text = "schema = 1\nname = \"metal\"\n[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.0 }\nalpha = 0.1\n";
 /// # let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-/// # let glass = luthier_material::parse("glass.toml", text, &read).unwrap().material;
+/// # let metal = luthier_material::parse("metal.toml", text, &read).unwrap().material;
 /// use luthier_bake::{MemoryStore, Options, outline_with};
 ///
 /// let options = Options { search: false, ..Options::default() };
-/// let outline = outline_with(&[glass], &options, &|_, _| Err("no images".into()), &MemoryStore::default())?;
+/// let outline = outline_with(&[metal], &options, &|_, _| Err("no images".into()), &MemoryStore::default())?;
 /// let (_, rows, _) = &outline.tables[0]; // Fresnel rows
 /// assert_eq!((rows.x.size, outline.searches.len()), (128, 0));
 /// # Ok::<(), luthier_bake::BakeError>(())
