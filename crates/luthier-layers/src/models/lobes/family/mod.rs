@@ -82,21 +82,18 @@ pub struct SlopeAxis {
     pub nodes: usize,
 }
 
-/// Steps between nodes from a slope parameter of 0 to one of 1, where one slope parameter varies.
-const STEPS: f64 = 8.0;
-
-/// Those of the coat and of the base, where both vary: their table then has at most 40 tiles.
-const STEPS_OF_BOTH: [f64; 2] = [4.0, 7.0];
+/// Steps between nodes from a slope parameter of 0 to one of 1. A table has at most 8 tiles for one slope parameter, and 64 for two: atlases have a power of two.
+const STEPS: f64 = 7.0;
 
 impl SlopeAxis {
-    /// The axis of a range, held to the slope parameters of models, with so many steps from 0 to 1. One node suffices for a range without extent.
-    pub fn new([least, most]: [f64; 2], steps: f64) -> Self {
+    /// The axis of a range, held to the slope parameters of models. One node suffices for a range without extent.
+    pub fn new([least, most]: [f64; 2]) -> Self {
         let [least, most] = [least, most].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0));
         let extent = most.sqrt() - least.sqrt();
         if extent < EXTENT_MIN {
             return Self { least: most, most, nodes: 1 };
         }
-        Self { least, most, nodes: 1 + libm::ceil(steps * extent - EXTENT_MIN).max(1.0) as usize }
+        Self { least, most, nodes: 1 + libm::ceil(STEPS * extent - EXTENT_MIN).max(1.0) as usize }
     }
 
     /// Fractional number of the node of a slope parameter, held to the range.
@@ -153,12 +150,8 @@ impl Family {
         if stack.layers[..interface].iter().skip(1).any(Layer::is_anisotropic) {
             return None;
         }
-        let alone = [coat, base].map(|range| SlopeAxis::new(range, STEPS));
-        let is_coated = interface > 0;
-        let both = is_coated && alone.iter().all(|axis| axis.nodes > 1);
-        let [own, base] =
-            if both { [SlopeAxis::new(coat, STEPS_OF_BOTH[0]), SlopeAxis::new(base, STEPS_OF_BOTH[1])] } else { alone };
-        let coat = if is_coated { own } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
+        let base = SlopeAxis::new(base);
+        let coat = if interface > 0 { SlopeAxis::new(coat) } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
         let has_tail = stack.layers[interface].surface.distribution == Distribution::Beckmann;
         let (is_tinted, has_lengths) = (false, false);
         Some(Self { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back: [0.0; 3] })
