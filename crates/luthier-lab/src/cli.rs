@@ -63,6 +63,8 @@ pub(crate) enum Verb {
     Devices(DevicesOptions),
     /// Count both layouts of rows of lobes and the coats of engines on chips that are not there, and predict their times: a page in Markdown
     Layouts(LayoutsOptions),
+    /// Take materials in `lobes` under several limits on errors, and predict what each costs: a page in Markdown
+    Ladder(LadderOptions),
     /// Count what the materials of one shader pay for each other, and predict times: a page in Markdown
     Sets(SetsOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
@@ -488,6 +490,16 @@ pub(crate) struct PapersOptions {
                   Examples:\n  luthier-lab layouts materials/papers/car-paint.toml materials/red-lacquer.toml -o docs/pages/layouts.md"
 )]
 pub(crate) struct LayoutsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Costs come from counts of the texts: no driver is needed.\n\n\
+                  Examples:\n  luthier-lab ladder materials/papers materials/varnished-brass.toml -o docs/pages/ladder.md")]
+pub(crate) struct LadderOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     #[command(flatten)]

@@ -14,6 +14,7 @@ mod five_ways;
 mod foreign;
 mod grammar;
 mod judge;
+mod ladder;
 mod layouts;
 mod lobes;
 mod maps;
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         Verb::Throughput(options) => throughput::run(options),
         Verb::Devices(options) => devices::run(options),
         Verb::Layouts(options) => layouts::run(options),
+        Verb::Ladder(options) => ladder::run(options),
         Verb::Sets(options) => sets::run(options),
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),
