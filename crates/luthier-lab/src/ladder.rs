@@ -57,7 +57,7 @@ impl Rung {
     }
 }
 
-/// What a material takes under a limit.
+/// Form, errors and costs of a material under a limit.
 struct Taken {
     rung: Rung,
     lobe: f64,
@@ -108,7 +108,7 @@ const INTRODUCTION: &str = "\nWhere a file or the command line limits the errors
     Errors are those that the bake states: the largest of five views that no fit saw, with the noise of the judge in them (.006 to .009). Costs are picoseconds of a light on one view, medians over the \
     materials; in brackets is the median over the cost of `gltf-clearcoat` for as many lights.\n";
 
-/// What a material takes under a limit; `None` where no form holds it.
+/// The cheapest form of a material under a limit; `None` where none holds it.
 fn take(material: &Material, limit: Option<f64>, device: &DeviceCost) -> Outcome<Option<Taken>> {
     let mut material = material.clone();
     material.bake.model = Some(ShadingModel::Lobes);

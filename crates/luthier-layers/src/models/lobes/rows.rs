@@ -510,7 +510,7 @@ const DARK: Lobe = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness:
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OneWidth {
-    /// What the factor grows by over the squared sine of the view.
+    /// Growth of the factor over the squared sine of the view.
     pub rise: f64,
     /// 1 over the tail, as [`Row::inverse_tails`] has it.
     pub inverse_tail: f64,
@@ -520,7 +520,7 @@ pub struct OneWidth {
 const FACTOR_MIN: f64 = 0.1;
 
 impl OneWidth {
-    /// That of rows with at most one lobe in the plane of the eye, seen at these sines: by least squares of its energies.
+    /// Rise and tail of rows with at most one lobe in the plane of the eye, seen at these sines: by least squares, weighed by energies.
     pub fn of(rows: &[Row], sines: &[f64]) -> Option<Self> {
         if rows.iter().any(|row| row.lobes.len() > 1) {
             return None;
