@@ -431,10 +431,10 @@
                     let plastic = vec3<f32>(0.2);
                     // Rows know the mean of Schlick's power, which two angles do not have at flat views.
                     let passing = (1.0 - of_facet.x / max(all, 0.02)) / max(1.0 - 0.5 * (ends.powers.x + ends.powers.y), 0.02);
-                    seen_plastic = 1.0 - saturate((1.0 - luthier_film_seen(sheet, ends, plastic)) * passing);
+                    seen_plastic = 1.0 - max((1.0 - luthier_film_seen(sheet, ends, plastic)) * passing, vec3<f32>(0.0));
                     mean_plastic = luthier_film_mean(luthier_film_over(sheet, flat, plastic), luthier_film_over(sheet, steep, plastic));
                     if metallic > 0.0 {
-                        seen_metal = 1.0 - saturate((1.0 - luthier_film_seen(sheet, ends, metal_roots)) * passing);
+                        seen_metal = 1.0 - max((1.0 - luthier_film_seen(sheet, ends, metal_roots)) * passing, vec3<f32>(0.0));
                         metal = luthier_film_mean(luthier_film_over(sheet, flat, metal_roots), luthier_film_over(sheet, steep, metal_roots));
                     }
                 }

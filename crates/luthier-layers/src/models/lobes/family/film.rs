@@ -81,7 +81,7 @@ impl FilmLight {
         let power = |cos_theta: f64, _: f64| [[schlick(0.0, cos_theta); 3]; 2];
         let steep = facet / (facet + slope).max(ALL_MIN);
         let passing = (1.0 - steep) / (1.0 - mean_of(square, spread, &power)[0][0]).max(ENTERING_MIN);
-        let passed = |found: f64| 1.0 - ((1.0 - found) * passing).clamp(0.0, 1.0);
+        let passed = |found: f64| 1.0 - ((1.0 - found) * passing).max(0.0);
         let seen = mean_of(square, spread, &reflected).map(|rgb| rgb.map(passed));
         let mut mean = [[0.0; 3]; 2];
         for (cos_theta, weight, spread) in MEANS {
