@@ -45,6 +45,8 @@ pub(crate) enum Verb {
     Varying(VaryingOptions),
     /// Fit families of lobes over slope parameters and colours of a base, and compare them with the simulation at random places: a page in Markdown
     Families(FamiliesOptions),
+    /// Compare the clear coats of engines with the simulation, and measure their energy and reciprocity: a page in Markdown
+    Coats(CoatsOptions),
     /// Show textured coats five ways, simulated and by four models: a picture, and a page in Markdown
     FiveWays(FiveWaysOptions),
     /// Fit lobes to anisotropic stacks, and compare them between the azimuths of their rows with the simulation: a page in Markdown
@@ -299,6 +301,15 @@ pub(crate) struct FamiliesOptions {
     /// Rows over the view
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(4..=64))]
     pub(crate) rows: u32,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab coats --noise 0.05 -o docs/pages/coats.md")]
+pub(crate) struct CoatsOptions {
     #[command(flatten)]
     pub(crate) precision: Precision,
     #[command(flatten)]

@@ -6,6 +6,7 @@
 mod anisotropic;
 mod budgets;
 mod cli;
+mod coats;
 mod devices;
 mod environment;
 mod families;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),
         Verb::Families(options) => families::run(options),
+        Verb::Coats(options) => coats::run(options),
         Verb::FiveWays(options) => five_ways::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),

@@ -158,7 +158,7 @@ fn cheapest(
     });
     // Rows of lobes are small, and each part of them is read at each place: the lowest cost wins, which is last.
     let is_of_lobes = found.iter().all(|kind| kind.kind == TableKind::Lobes);
-    let chosen = if is_of_lobes { within.last() } else { within.next() };
+    let chosen = if is_of_lobes { within.next_back() } else { within.next() };
     chosen.map(|(_, _, chosen)| chosen)
 }
 
