@@ -58,7 +58,7 @@ const PAIRS: usize = 200;
 /// Least cosine of those directions.
 const COS_MIN: f64 = 0.1;
 
-/// What is known of a formula on a case.
+/// Errors, energies and asymmetries of a formula on a case.
 struct Judged {
     views: Vec<ViewError>,
     /// With the base that this page proposes; empty for models of luthier and without a coat.

@@ -8,7 +8,7 @@ use super::cases::Group;
 use super::{COS_MIN, ENGINES, Judged, OWN, PAIRS, Result};
 use crate::cli::CoatsOptions;
 
-/// What of a formula is typed to the letter, and what was chosen.
+/// Sources of formulas: words that are typed to the letter, and choices.
 const SOURCES: &str = "
 ## What is to the letter
 

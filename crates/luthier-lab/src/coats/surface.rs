@@ -27,7 +27,7 @@ pub(super) struct Surface {
     /// Base colour.
     pub(super) color: Rgb,
     pub(super) metallic: f64,
-    /// What this page proposes for the base below the coat, in place of what the engine does.
+    /// The proposal of this page for the base below the coat, in place of what the engine does.
     pub(super) remedy: Option<Remedy>,
 }
 
