@@ -308,7 +308,7 @@ pub(crate) struct FamiliesOptions {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  luthier-lab coats --noise 0.05 -o docs/pages/coats.md")]
+#[command(after_help = "Examples:\n  luthier-lab coats --noise 0.005 -o docs/pages/coats.md")]
 pub(crate) struct CoatsOptions {
     #[command(flatten)]
     pub(crate) precision: Precision,
