@@ -57,8 +57,7 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
 }
 
 /// One candidate for each kind. Together they hold the budget with the fewest bytes, then with the lowest cost; of lobes alone with the lowest cost, then with the
-/// fewest bytes.
-/// `fixed_bytes` is the size of the tables that are not searched.
+/// fewest bytes. `fixed_bytes` is the size of the tables that are not searched.
 ///
 /// Without a limit on errors, the limit is the least absolute error that bytes and cost allow.
 ///

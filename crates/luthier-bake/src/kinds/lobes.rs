@@ -215,7 +215,7 @@ fn shape_of_one_width([first, _]: [i32; 2], step: usize, format: TexelFormat) ->
     shape([first, ONE_WIDTH_LAST], step, format)
 }
 
-/// Number of the last part of rows with one lobe of one width. No other rows end there.
+/// Number of the last part of rows with one lobe of one width: light takes the parts before it. No other rows end there.
 const ONE_WIDTH_LAST: i32 = 2;
 
 /// Whether rows of tiles with such parts have one lobe of one width.
@@ -268,7 +268,7 @@ pub(crate) fn decide(
         let lobes = lobes_of(&fits, Some(most));
         let parts = parts(materials, lobes);
         match has_one_width {
-            true => shape_of_one_width(parts, STEPS[i], format_of(reads(lobes) - 1)),
+            true => shape_of_one_width(parts, STEPS[i], format_of(ONE_WIDTH_LAST as usize)),
             false => shape(parts, STEPS[i], format_of(reads(lobes))),
         }
     };

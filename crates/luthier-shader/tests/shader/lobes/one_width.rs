@@ -3,10 +3,10 @@
 use glam::DVec3;
 use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
-use luthier_manifest::LobesRecord;
+use luthier_manifest::{FunctionGroup, LobesRecord};
 use luthier_shader::{Form, MaterialSet, Target, emit};
 
-use super::{lit_from_below, set};
+use super::{assert_light, lit_from_below, set};
 use crate::arithmetic::directions;
 use crate::machine::{Value, vector};
 use crate::scenes::tables;
@@ -44,10 +44,13 @@ fn one_width_gives_the_other() {
         rise: Some(RISE),
         ..record
     });
-    let text = emit(&MaterialSet::new(&materials, tables), Form::Baked, Target::Wgsl).unwrap();
+    let mut set = MaterialSet::new(&materials, tables);
+    let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
     // Light of a view takes two parts. The third is read by none of these functions.
     assert!(!text.contains("cos_theta, 2.0)"), "{text}");
     let machine = lit_from_below(&text, &materials, &image);
+    set.functions = [FunctionGroup::Sample, FunctionGroup::Albedo].into_iter().collect();
+    let drawing = lit_from_below(&emit(&set, Form::Baked, Target::Wgsl).unwrap(), &materials, &image);
     let mut brightest = 0.0_f64;
     for (wi, wo) in directions(300) {
         let [light, eye] = [wi, wo].map(DVec3::from);
@@ -70,12 +73,17 @@ fn one_width_gives_the_other() {
         let row = Row { albedo_dir: [0.9, 0.8, 0.7], lobes: vec![lobe], wide: [r, g, b], base: None };
         let frame = Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, one_width: None };
         let expected = Below::new(frame, row, eye).eval(light);
-        let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
-        let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
-        for (found, expected) in found.iter().zip(expected) {
-            let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);
-            assert!(error < 1e-4, "{wi:?} {wo:?}: {found} {expected}");
-            brightest = brightest.max(expected);
+        assert_light(&machine, [wi, wo], expected, "one width");
+        brightest = expected.into_iter().fold(brightest, f64::max);
+        // The albedo and the energy of the lobe are in the third part, with its share in A.
+        let prepared = drawing.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
+        let albedo = drawing.call("luthier_albedo_lobes", vec![prepared.clone()]).floats();
+        let below = drawing.call("luthier_lobe_below", vec![prepared, Value::U(0)]);
+        let given = albedo.iter().zip([0.9, 0.8, 0.7]);
+        for (found, expected) in
+            given.chain(below.members()[0].floats().iter().zip([red, green, blue].map(|x| 0.6 * x)))
+        {
+            assert!((f64::from(*found) - expected).abs() < 1e-5, "{wo:?}: {found} {expected}");
         }
     }
     assert!(brightest > 1.0, "{brightest}");
