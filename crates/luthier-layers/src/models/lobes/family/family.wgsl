@@ -2,24 +2,16 @@
 {
     //? lobes_metallic
     {
-        /// Light of one visit to the metal of a family, over its F0 and that of the dielectric in w: q f / (1 - R f) through the energies at .8 and 1.
-        fn luthier_family_once(energies: vec2<f32>, f0: vec4<f32>) -> vec4<f32> {
-            let beyond = max(0.8 * (energies.y - energies.x), 1e-9);
-            let pole = clamp((0.8 * energies.y - energies.x) / beyond, 0.0, 0.99);
-            return f0 * (energies.y * (1.0 - pole)) / (1.0 - pole * f0);
+        /// Light of one visit to the metal of a family, over its F0 and that of the dielectric in w: w (1 - R) f / (1 - R f) with w and R.
+        fn luthier_family_once(numbers: vec2<f32>, f0: vec4<f32>) -> vec4<f32> {
+            return f0 * (numbers.x - numbers.x * numbers.y) / (1.0 - numbers.y * f0);
         }
 
-        /// Light of more visits, f^2 (p + q f) / (1 - R f) through the energies at .5, .9 and 1.
-        fn luthier_family_more(energies: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
-            let half_light = 4.0 * energies.x;
-            let bright = energies.y / 0.81;
-            let beyond = max(0.4 * (energies.z - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half_light), 1e-9);
-            let found = clamp((0.4 * (energies.z - bright) - 0.1 * (bright - half_light)) / beyond, 0.0, 0.99);
-            // Light that grows less than with the square has no pole.
-            let pole = select(0.0, found, energies.z > half_light);
-            let low = half_light * (1.0 - 0.5 * pole);
-            let high = energies.z * (1.0 - pole);
-            return f0 * f0 * max(low + (2.0 * f0 - 1.0) * (high - low), vec3<f32>(0.0)) / (1.0 - pole * f0);
+        /// Light of more visits, f^2 (p + q f) / (1 - R f) with p + q f at .5 and at 1, and R.
+        fn luthier_family_more(numbers: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
+            let growth = 2.0 * (numbers.y - numbers.x);
+            let least = 2.0 * numbers.x - numbers.y;
+            return f0 * f0 * max(least + growth * f0, vec3<f32>(0.0)) / (1.0 - numbers.z * f0);
         }
     }
 
@@ -139,13 +131,15 @@
         let across = disc.y * sharpness.yw;
         let near = along - away;
         let far = along + away;
-        let root = sqrt((1.0 + near * near) * (1.0 + far * far));
-        // 1 + d + root and 1 - d + root, without cancellation.
+        let squares = (1.0 + near * near) * (1.0 + far * far);
+        let over_root = inverseSqrt(squares);
+        let root = squares * over_root;
+        // Where these two cancel, shares are least, or hang on the width across alone.
         let d = near * far;
-        let within = select(4.0 * away * away / max(root - 1.0 - d, vec2<f32>(1e-6)), 1.0 + d + root, d > vec2<f32>(-1.0));
-        let beyond = select(4.0 * along * along / max(root - 1.0 + d, vec2<f32>(1e-6)), 1.0 - d + root, d < vec2<f32>(1.0));
+        let within = 1.0 + d + root;
+        let beyond = 1.0 - d + root;
         let sum = 1.0 + along * along + away * away + root;
-        return max(along * across * within * inverseSqrt(sum * (beyond + 2.0 * across * across)) / root, vec2<f32>(1e-3));
+        return max(along * across * within * (inverseSqrt(sum * (beyond + 2.0 * across * across)) * over_root), vec2<f32>(1e-3));
     }
 
     //? lobes_tails
@@ -172,7 +166,7 @@
     /// Shares above the horizon of lobes of such a tail, from what rows have over these estimates.
     fn luthier_family_tail_shares(row: vec2<f32>, beside: vec2<f32>, slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
         let over = luthier_family_part(row, beside, -1.0).xy;
-        return min(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1.0));
+        return clamp(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1e-3), vec2<f32>(1.0));
     }
 
     //? anisotropic
@@ -639,9 +633,9 @@
             second_shape = luthier_family_stretched(second_shape, (4.84 * of_base + of_coat) / (4.84 * squares.y + squares.x));
             let first_left = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
             let second_left = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
-            prepared.shares = min(prepared.shares * vec2<f32>(first_left / first_level, second_left / second_level), vec2<f32>(1.0));
+            prepared.shares = clamp(prepared.shares * vec2<f32>(first_left / first_level, second_left / second_level), vec2<f32>(1e-3), vec2<f32>(1.0));
         }
-        let over_shares = (1.0 - vec2<f32>(once_wide, of_more.a)) / max(prepared.shares, vec2<f32>(1e-3));
+        let over_shares = (1.0 - vec2<f32>(once_wide, of_more.a)) / prepared.shares;
         prepared.first_strength = left * (over_shares.x * once);
         prepared.second_strength = left * (over_shares.y * more);
         //? surface
