@@ -72,7 +72,8 @@ fn points(group: &Group) -> Vec<ScatterPoint> {
     });
     let mut points: Vec<ScatterPoint> = asks.into_iter().chain(rivals).collect();
     // The line joins lobes from the cheapest on.
-    points.sort_by(|a, b| a.x.unwrap_or(f64::INFINITY).total_cmp(&b.x.unwrap_or(f64::INFINITY)));
+    let x = |point: &ScatterPoint| point.x.unwrap_or(f64::INFINITY);
+    points.sort_by(|a, b| x(a).total_cmp(&x(b)).then(b.y.total_cmp(&a.y)));
     points
 }
 

@@ -80,7 +80,7 @@ pub(super) fn page(
         writeln!(
             page,
             "No shader that was timed there has {}: their costs are assumed ([devices.md](devices.md)).",
-            device.assumed.join(" or ")
+            device.assumed.join(" or ").replace('_', " ")
         )?;
     }
     page.push_str(INTRODUCTION);
@@ -204,7 +204,7 @@ fn worst(page: &mut String, group: &Group) -> std::fmt::Result {
         AIMS[0]
     )?;
     page.push_str(
-        "\nNumbers and names of stacks are those of [lobes.md](lobes.md), which traces its worst to reasons: index and slope parameter of each interface from the top.\n\n\
+        "\nNumbers and names of stacks are those of [lobes.md](lobes.md), which traces its worst to reasons: index and slope parameter of each interface from the top. Where an error is far above what the bake states, none of the bake's five views is near the worst one: a limit does not bound the error there.\n\n\
          | stack | form with the least error | lobe error | albedo error | lobe error that the bake states | without limits |\n|---|---|--:|--:|--:|--:|\n",
     );
     let mut stacks: Vec<&Measured> = group.stacks.iter().collect();
