@@ -14,7 +14,7 @@ use crate::lobes::QUANTITIES;
 /// Random stacks with the largest errors that the page lists.
 const WORST: usize = 12;
 
-/// What errors of random stacks should be at most, at the 95th percentile and the largest, of the form with the least error.
+/// Aims for the errors of random stacks: at the 95th percentile and the largest, of the form with the least error.
 const AIMS: [f64; 2] = [0.035, 0.06];
 
 const INTRODUCTION: &str = "\nWhere a file or the command line limits the errors of `lobes` (`max_lobe_err`, `max_albedo_err`), a bake takes the form with the lowest cost that holds: no lobe, \
@@ -48,7 +48,7 @@ pub(super) fn medians<'a>(all: impl Iterator<Item = &'a Costs>) -> Costs {
 }
 
 impl Group {
-    /// What all stacks take for an [`Ask`], by its number.
+    /// Forms that all stacks take for an [`Ask`], by its number.
     pub(super) fn taken(&self, ask: usize) -> impl Iterator<Item = &Taken> + Clone {
         self.stacks.iter().map(move |stack| &stack.taken[ask])
     }

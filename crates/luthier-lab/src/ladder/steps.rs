@@ -24,7 +24,7 @@ const OF_ALBEDO: f64 = 0.4;
 /// Limits of which every form holds each.
 const ANY: f64 = 1e9;
 
-/// What a bake is asked for.
+/// A question to a bake.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ask {
     /// Nothing: no limit.
@@ -87,14 +87,14 @@ pub(super) struct Taken {
     pub(super) holds: bool,
     /// Lobe error and albedo error as the bake states them.
     pub(super) stated: [f64; QUANTITIES],
-    /// The same of the tables as they ship, by a reference, if there is one.
+    /// Errors of the tables as they ship, by a reference, if there is one.
     pub(super) judged: [f64; QUANTITIES],
     pub(super) costs: Costs,
     record: LobesRecord,
     rows: u32,
 }
 
-/// What a material takes for each of [`Ask::ALL`]; `None` where it has no rows. Forms are fitted once for all limits.
+/// Forms that a material takes, one for each of [`Ask::ALL`]; `None` where it has no rows. Fits are made once for all limits.
 pub(super) fn steps(
     material: &Material,
     reference: Option<&Reference>,

@@ -216,7 +216,7 @@ impl Frame {
         self.element(label, &scales)
     }
 
-    /// What was drawn, for another SVG element.
+    /// The elements so far, for another SVG element.
     pub(crate) fn into_body(self) -> String {
         self.body
     }
