@@ -477,13 +477,12 @@ struct Fit {
 
 impl Fit {
     fn new(varied: Varied, judge: &Judge) -> Self {
-        Self { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied, of_one_width: None }
+        Self { errors: errors(&varied, judge), varied, of_one_width: None }
     }
 
     /// With the errors of lobes of one width.
     fn and_of_one_width(self, judge: &Judge) -> Self {
-        let narrowed = self.varied.clone().of_one_width();
-        let of_one_width = narrowed.map(|varied| STEPS.map(|step| judge.error(&thinned(varied.clone(), step))));
+        let of_one_width = self.varied.clone().of_one_width().map(|varied| errors(&varied, judge));
         Self { of_one_width, ..self }
     }
 
@@ -502,6 +501,11 @@ impl Fit {
     fn lobes(&self) -> usize {
         self.varied.nodes[0].rows[0].lobes.len()
     }
+}
+
+/// Errors of lobes with each of [`STEPS`]: those of the views of a judge, and those of the rows that are left out.
+fn errors(varied: &Varied, judge: &Judge) -> [FitError; STEPS.len()] {
+    STEPS.map(|step| judge.error(&thinned(varied.clone(), step)).max(varied.error_of_thinning(step)))
 }
 
 /// Lobes with every `step`-th of [`ROWS`]. Fits with fewer get those between.
@@ -546,7 +550,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 13 } else { 8 }
+        if is_family(self.varying) { 13 } else { 9 }
     }
 
     fn inputs(&self) -> Value {

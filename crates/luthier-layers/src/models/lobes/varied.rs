@@ -7,8 +7,8 @@ use super::fit::{Found, Simulation, indices};
 use super::parameters::Basis;
 use super::tally::mean;
 use super::{
-    Axes, Cover, EXCESS, Family, FilmLight, Filmed, FirstInterface, FitSettings, Frame, Lobes, Paint, Row, Slopes,
-    ViewAxis, most_lobes, patina, shown,
+    Axes, Cover, EXCESS, Family, FilmLight, Filmed, FirstInterface, FitError, FitSettings, Frame, Lobes, Paint, Row,
+    Slopes, ViewAxis, most_lobes, patina, shown,
 };
 use crate::layers::ALPHA_MIN;
 
@@ -228,6 +228,28 @@ impl Varied {
             lobes.axis = lobes.axis.thinned(step);
         }
         self
+    }
+
+    /// Errors that [`Self::thinned`] makes where it leaves rows out: that of the albedo, and half of it over the albedo, which no lobe error is below. Rows of a
+    /// family have no albedo but in colours: 0.
+    pub fn error_of_thinning(&self, step: usize) -> FitError {
+        let mut found = FitError::default();
+        if matches!(self.varying(), Some(Varying::Family(_))) {
+            return found;
+        }
+        let tiles = self.nodes.iter().flat_map(|lobes| lobes.rows.chunks(lobes.axis.size()));
+        for ends in tiles.flat_map(|rows| rows.windows(step + 1).step_by(step)) {
+            let [first, last] = [0, step].map(|i| ends[i].albedo_dir);
+            for (i, left_out) in ends[..step].iter().enumerate().skip(1) {
+                let share = i as f64 / step as f64;
+                for (c, albedo) in left_out.albedo_dir.into_iter().enumerate() {
+                    let apart = (first[c] + share * (last[c] - first[c]) - albedo).abs();
+                    found.albedo = found.albedo.max(apart);
+                    found.lobe = found.lobe.max(0.5 * apart / albedo.max(f64::MIN_POSITIVE));
+                }
+            }
+        }
+        found
     }
 
     /// Rows between each two beside them: `parts` steps in place of one. Light read from either is the same.
@@ -529,6 +551,29 @@ mod tests {
 
     fn metal() -> Base {
         Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() }
+    }
+
+    /// Albedos are read at the eyes of the rows that are left out, as a renderer reads them.
+    #[test]
+    fn errors_of_thinning_are_those_of_the_rows_left_out() {
+        let settings = FitSettings { rows: 7, ..SETTINGS };
+        let varied = Varied::with(&coated(0.02, 2.0, metal(), 0.3), &COLOR, None, settings);
+        for step in [2, 3, 6] {
+            let thinned = varied.clone().thinned(step);
+            let [full, few] = [&varied, &thinned].map(|varied| varied.at(1.0));
+            let mut most = 0.0f64;
+            for view in 0..full.axis.size() {
+                let cos_theta = full.axis.cos_theta(view as f64);
+                let wo = DVec3::new(((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt(), 0.0, cos_theta);
+                let [own, other] = [&full, &few].map(|lobes| lobes.prepare(wo).map(|prepared| prepared.albedo_dir()));
+                let Some((own, other)) = own.zip(other) else { continue };
+                most = (0..3).fold(most, |most, c| most.max((own[c] - other[c]).abs()));
+            }
+            let found = varied.error_of_thinning(step);
+            assert!((found.albedo - most).abs() < 1e-9 && most > 1e-3, "{step}: {} {most}", found.albedo);
+            assert!(found.lobe >= 0.5 * found.albedo);
+        }
+        assert_eq!(varied.error_of_thinning(1), FitError::default());
     }
 
     #[test]
