@@ -31,6 +31,7 @@ materials() {
 # Scenes choose by these costs: they are part of the program.
 devices() { luthier-lab devices "${stacks[@]}" -o docs/pages/devices.md; }
 layouts() { luthier-lab layouts materials/papers/{car-paint,gold-paint,red-lacquer,frosted-acrylic,latex}.toml materials/varnished-brass.toml -o docs/pages/layouts.md; }
+ladder() { luthier-lab ladder "${stacks[@]}" -o docs/pages/ladder.md; }
 sets() { luthier-lab sets "${stacks[@]}" -o docs/pages/sets.md; }
 shapes() { luthier-lab shapes "${stacks[@]}" materials/scenes/still-life -o crates/luthier-scene/data/cost.json; }
 cost() {
@@ -53,6 +54,7 @@ figures() { luthier-lab figures -o docs/pages/figures; }
 models() { luthier-lab judge "${stacks[@]}" >docs/pages/models.md; }
 lobes() { luthier-lab lobes "${stacks[@]}" --random 200 -o docs/pages/lobes.md; }
 families() { luthier-lab families -o docs/pages/families.md; }
+coats() { luthier-lab coats --noise 0.005 -o docs/pages/coats.md; }
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
 anisotropic() {
@@ -117,7 +119,7 @@ assets() {
 # The test that follows the tutorial takes its outputs and pictures.
 tutorial() { LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- tutorial; }
 
-all=(materials cost shapes devices layouts sets papers budgets scenes parity places textured stability figures models lobes varying families five-ways anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes assets tutorial)
+all=(materials cost shapes devices layouts ladder sets papers budgets scenes parity places textured stability figures models lobes varying families coats five-ways anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes assets tutorial)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

@@ -31,8 +31,8 @@ pub struct Options<'a> {
     pub rows: Option<(RowBase, TexelFormat)>,
     /// Texel formats that a search may take: the formats of core WebGPU, unless the target is known.
     pub formats: FormatSet,
-    /// Layout of rows of lobes. Without one it is [`RowLayout::Steps`] where every tile is read by itself, no limit on bytes holds and `formats` has its
-    /// format, else [`RowLayout::Filtered`]. On an NVIDIA H200 a filtered read of four halves costs 1.3 ps, one of 16 bytes in a buffer .44; between two
+    /// Layout of rows of lobes. Without one it is [`RowLayout::Steps`] where every tile is read by itself, more than two parts for each view, no limit on bytes holds and
+    /// `formats` has its format, else [`RowLayout::Filtered`]. On an NVIDIA H200 a filtered read of four halves costs 1.3 ps, one of 16 bytes in a buffer .44; between two
     /// tiles a sampler reads for no more, and a shader twice in a buffer.
     pub layout: Option<RowLayout>,
     /// Whether an outline fits lobes, whose number decides tables and shaders. A fit takes seconds; a bake always fits.

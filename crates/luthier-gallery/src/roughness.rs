@@ -92,6 +92,7 @@ mod tests {
                 critical_plain_share: 0.0,
                 lobes: 2,
                 inverse_tails: [1.0; 2],
+                rise: None,
                 varying,
                 axes: None,
                 painted: None,

@@ -45,6 +45,8 @@ pub(crate) enum Verb {
     Varying(VaryingOptions),
     /// Fit families of lobes over slope parameters and colours of a base, and compare them with the simulation at random places: a page in Markdown
     Families(FamiliesOptions),
+    /// Compare the clear coats of engines with the simulation, and measure their energy and reciprocity: a page in Markdown
+    Coats(CoatsOptions),
     /// Show textured coats five ways, simulated and by four models: a picture, and a page in Markdown
     FiveWays(FiveWaysOptions),
     /// Fit lobes to anisotropic stacks, and compare them between the azimuths of their rows with the simulation: a page in Markdown
@@ -63,6 +65,8 @@ pub(crate) enum Verb {
     Devices(DevicesOptions),
     /// Count both layouts of rows of lobes and the coats of engines on chips that are not there, and predict their times: a page in Markdown
     Layouts(LayoutsOptions),
+    /// Take materials in `lobes` under several limits on errors, and predict what each costs: a page in Markdown
+    Ladder(LadderOptions),
     /// Count what the materials of one shader pay for each other, and predict times: a page in Markdown
     Sets(SetsOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
@@ -304,6 +308,15 @@ pub(crate) struct FamiliesOptions {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab coats --noise 0.005 -o docs/pages/coats.md")]
+pub(crate) struct CoatsOptions {
+    #[command(flatten)]
+    pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  luthier-lab five-ways -o docs/pages/five-ways.md")]
 pub(crate) struct FiveWaysOptions {
     /// Material files: a coat over a base of maps of base colour or metal
@@ -488,6 +501,16 @@ pub(crate) struct PapersOptions {
                   Examples:\n  luthier-lab layouts materials/papers/car-paint.toml materials/red-lacquer.toml -o docs/pages/layouts.md"
 )]
 pub(crate) struct LayoutsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Costs come from counts of the texts: no driver is needed.\n\n\
+                  Examples:\n  luthier-lab ladder materials/papers materials/varnished-brass.toml -o docs/pages/ladder.md")]
+pub(crate) struct LadderOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     #[command(flatten)]

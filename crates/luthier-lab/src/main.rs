@@ -6,6 +6,7 @@
 mod anisotropic;
 mod budgets;
 mod cli;
+mod coats;
 mod devices;
 mod environment;
 mod families;
@@ -14,6 +15,7 @@ mod five_ways;
 mod foreign;
 mod grammar;
 mod judge;
+mod ladder;
 mod layouts;
 mod lobes;
 mod maps;
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),
         Verb::Families(options) => families::run(options),
+        Verb::Coats(options) => coats::run(options),
         Verb::FiveWays(options) => five_ways::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Verb::Throughput(options) => throughput::run(options),
         Verb::Devices(options) => devices::run(options),
         Verb::Layouts(options) => layouts::run(options),
+        Verb::Ladder(options) => ladder::run(options),
         Verb::Sets(options) => sets::run(options),
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),

@@ -115,6 +115,7 @@ mod tests {
             critical_plain_share: 0.0,
             lobes: 1,
             inverse_tails: [2.0, 0.0],
+            rise: None,
             varying: None,
             axes: None,
             painted: None,

@@ -34,6 +34,9 @@ pub fn interference(film: &Ior, nodes: &[WavelengthNode], middle_nm: f64, waves:
 ///
 /// Against characteristic matrices at all wavelengths (films of 1.2 to 2, 5 to 1200 nm, F0 from .02 to .99) channels are off by .0004 in the root mean square for
 /// cosines from .5 on, and by .002 from .2 on, below a medium of 1.5 by .002 and .003. Flatter light takes more echoes.
+///
+/// A plain index of 1.3 to 1.8 in air is that of its own F0: under films of 1.3 to 2, 100 to 1000 nm, the series over it is off by .0007 at most for cosines from
+/// .02 on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmOverF0 {
     /// Real index of the film over that of the medium above.
@@ -177,6 +180,34 @@ mod tests {
                 (0..3).all(|c| (thin[c] - bare[c]).abs() < 1e-4 && (white[c] - 1.0).abs() < 2e-3),
                 "{thin:?} {white:?}"
             );
+        }
+    }
+
+    /// Oracle: the characteristic matrix of the index. In air an index is that of its own F0, so that the series over a plain index is off by its echoes alone.
+    #[test]
+    fn the_series_over_the_f0_of_an_index_is_the_film_on_that_index() {
+        for (from, [rms_max, worst_max]) in [(0.5, [2e-5, 3e-4]), (0.02, [4e-5, 8e-4])] {
+            let (mut worst, mut sum, mut count) = (0.0f64, 0.0, 0);
+            for index in [1.3, 1.4, 1.5, 1.65, 1.8] {
+                let f0 = crate::schlick::f0(1.0, Complex64::new(index, 0.0));
+                assert!((index_below_film(1.0, f0) - index).abs() < 1e-12, "{index}");
+                for ior in [1.3, 1.45, 1.6, 1.8, 2.0] {
+                    for step in 0..10 {
+                        let nm = 100.0 + 100.0 * f64::from(step);
+                        for i in 0..8 {
+                            let cos = from + (1.0 - from) * f64::from(i) / 7.0;
+                            let [a, b] = [exact, found].map(|of| of(1.0, ior, nm, f0, cos));
+                            for c in 0..3 {
+                                worst = worst.max((a[c] - b[c]).abs());
+                                sum += (a[c] - b[c]) * (a[c] - b[c]);
+                                count += 1;
+                            }
+                        }
+                    }
+                }
+            }
+            let rms = (sum / f64::from(count)).sqrt();
+            assert!(rms < rms_max && worst < worst_max, "from {from}: {rms} {worst}");
         }
     }
 }

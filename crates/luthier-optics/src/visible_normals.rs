@@ -18,7 +18,8 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
     match distribution {
         Distribution::Beckmann => {
             let sin = libm::hypot(stretched.x, stretched.y);
-            let along = invert_visible_slope(stretched.z, sin, u[0]);
+            let last = if sin > 0.0 { (stretched.z / sin).clamp(-SLOPE_LIMIT, SLOPE_LIMIT) } else { SLOPE_LIMIT };
+            let along = visible_slope(stretched.z, sin, last, u[0]);
             let across = normal_slope(u[1]);
             let (cos_phi, sin_phi) = if sin > 0.0 { (stretched.x / sin, stretched.y / sin) } else { (1.0, 0.0) };
             let x = cos_phi * along - sin_phi * across;
@@ -40,13 +41,13 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
 /// Slopes beyond this many standard widths are never drawn.
 pub const SLOPE_LIMIT: f64 = 6.0;
 
-/// The slope x with `C(x) = u C(x_max)`, where C is the cumulative visible distribution of Gaussian slopes of unit alpha,
-/// `C(x) = cos (1 + erf x)/2 + sin exp(-x^2)/(2 sqrt pi)`, for x up to cos/sin. Halley's steps, kept inside
+/// The slope x with `C(x) = u C(last)`, where C is the cumulative visible distribution of Gaussian slopes of unit alpha,
+/// `C(x) = cos (1 + erf x)/2 + sin exp(-x^2)/(2 sqrt pi)`, for x from -[`SLOPE_LIMIT`] up to `last`, at most cos/sin. Halley's steps, kept inside
 /// a bracket.
-fn invert_visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
+pub fn visible_slope(cos: f64, sin: f64, last: f64, u: f64) -> f64 {
     let scale = 0.5 / libm::sqrt(PI);
     let cumulative = |x: f64, gauss: f64| cos * 0.5 * libm::erfc(-x) + sin * scale * gauss;
-    let mut high = if sin > 0.0 { (cos / sin).clamp(-SLOPE_LIMIT, SLOPE_LIMIT) } else { SLOPE_LIMIT };
+    let mut high = last;
     let mut low = -SLOPE_LIMIT;
     let target = u * cumulative(high, libm::exp(-high * high));
     // Between a logistic guess at the normal quantile (seen from the normal) and Rayleigh's (grazing). Both are infinite at 0 or 1.

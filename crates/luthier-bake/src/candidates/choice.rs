@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use luthier_lut::TableKind;
 use luthier_manifest::{Budget, Candidate, CandidateForm, Decision, MeasuredError, Search};
 use thiserror::Error;
 
@@ -55,8 +56,8 @@ fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
     a.bytes.cmp(&b.bytes).then_with(|| a.cost.total_cmp(&b.cost).then(a.error.max_abs.total_cmp(&b.error.max_abs)))
 }
 
-/// One candidate for each kind. Together they hold the budget with the fewest bytes, then with the lowest cost.
-/// `fixed_bytes` is the size of the tables that are not searched.
+/// One candidate for each kind. Together they hold the budget with the fewest bytes, then with the lowest cost; of lobes alone with the lowest cost, then with the
+/// fewest bytes. `fixed_bytes` is the size of the tables that are not searched.
 ///
 /// Without a limit on errors, the limit is the least absolute error that bytes and cost allow.
 ///
@@ -151,10 +152,13 @@ fn cheapest(
         });
         partial = combined;
     }
-    let within = partial.into_iter().find(|(bytes, cost, _)| {
+    let mut within = partial.into_iter().filter(|(bytes, cost, _)| {
         budget.max_bytes.is_none_or(|max| *bytes <= max) && budget.max_cost.is_none_or(|max| *cost <= max)
     });
-    within.map(|(_, _, chosen)| chosen)
+    // Rows of lobes are small, and each part of them is read at each place: the lowest cost wins, which is last.
+    let is_of_lobes = found.iter().all(|kind| kind.kind == TableKind::Lobes);
+    let chosen = if is_of_lobes { within.next_back() } else { within.next() };
+    chosen.map(|(_, _, chosen)| chosen)
 }
 
 /// The reason why no combination holds, the nearest candidate, and a limit that could be met.

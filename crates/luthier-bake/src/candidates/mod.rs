@@ -3,7 +3,7 @@
 //! Every kind of table has candidates: sizes, axis mappings, texel formats, a closed form beside the texels, or a
 //! closed form alone. All are measured as a device samples them, against one fine truth per tile. The order of
 //! measurement does not depend on the budget, so a tighter budget chooses among fewer candidates and never saves bytes.
-//! Among candidates within the budget, the fewest bytes win, then the lowest cost.
+//! Among candidates within the budget, the fewest bytes win, then the lowest cost; of rows of lobes the lowest cost, then the fewest bytes.
 
 mod choice;
 pub(crate) mod grids;

@@ -11,8 +11,8 @@ use luthier_lut::{
     measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, Budget, Candidate, CandidateForm, Decision, FamilyRecord, LobesError, LobesRecord, MapSlot,
-    MeasuredError, PaintedRecord, Search, SlopesRecord, VaryingFactor, VaryingRecord,
+    AxesRecord, Budget, Candidate, CandidateForm, FamilyRecord, LobesError, LobesRecord, MapSlot, MeasuredError,
+    PaintedRecord, Search, SlopesRecord, VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
 use luthier_optics::Rgb;
@@ -201,6 +201,28 @@ fn shape([first, last]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
     Shape::grid(axes, format)
 }
 
+/// Parts of rows with so many lobes that the light of a view takes.
+fn reads(lobes: usize) -> usize {
+    [1, 3, 4][lobes.min(LOBES)]
+}
+
+/// Most reads of a texture for a view that take no time of their own: by the costs of the H100 two hide behind the arithmetic of the shader (5.7 ps, 7.2 in a buffer),
+/// and three do not (8.2 and 7.5).
+const HIDDEN_READS: usize = 2;
+
+/// The shape of tiles whose rows have one lobe of one width.
+fn shape_of_one_width([first, _]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
+    shape([first, ONE_WIDTH_LAST], step, format)
+}
+
+/// Number of the last part of rows with one lobe of one width: light takes the parts before it. No other rows end there.
+const ONE_WIDTH_LAST: i32 = 2;
+
+/// Whether rows of tiles with such parts have one lobe of one width.
+fn is_of_one_width(parts: &Axis) -> bool {
+    parts.max == f64::from(ONE_WIDTH_LAST)
+}
+
 /// The step between kept rows of an axis with this many nodes.
 fn step(size: u32) -> usize {
     (ROWS - 1) / (size as usize - 1)
@@ -224,19 +246,37 @@ pub(crate) fn decide(
     materials: &[Material],
     results: &Results,
     budget: &Budget,
-    lock: &[Decision],
+    options: &Options<'_>,
 ) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
-    let format = settings.fixed(TableKind::Lobes).format;
+    let given = settings.fixed(TableKind::Lobes).format;
+    // Few reads of textures hide behind arithmetic.
+    let format_of = |reads: usize| {
+        let hides = options.layout.is_none() && reads <= HIDDEN_READS;
+        if hides { RowLayout::Filtered.format() } else { given }
+    };
     if settings.lobes.is_none() {
-        settings.take_lobes(shape(parts(materials, lobes_of(&fits, None)), common_step(materials), format));
+        let lobes = lobes_of(&fits, None);
+        settings.take_lobes(shape(parts(materials, lobes), common_step(materials), format_of(reads(lobes))));
         return Ok(None);
     }
-    let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
-    let candidates = choices.iter().map(|&(most, i)| {
-        let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
+    let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).of_one_width.is_some());
+    let steps = (0..=LOBES).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
+    let choices: Vec<(usize, bool, usize)> =
+        steps.flat_map(|(most, has_one_width)| (0..STEPS.len()).map(move |i| (most, has_one_width, i))).collect();
+    let shape_of = |(most, has_one_width, i): (usize, bool, usize)| {
+        let lobes = lobes_of(&fits, Some(most));
+        let parts = parts(materials, lobes);
+        match has_one_width {
+            true => shape_of_one_width(parts, STEPS[i], format_of(ONE_WIDTH_LAST as usize)),
+            false => shape(parts, STEPS[i], format_of(reads(lobes))),
+        }
+    };
+    let candidates = choices.iter().map(|&(most, has_one_width, i)| {
+        let errors = fits.iter().map(|fits| fits.of(Some(most)).errors(has_one_width)[i]);
+        let error = errors.fold(FitError::default(), FitError::max);
         let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
-        let Shape { x, y, base, format } = shape(parts(materials, lobes_of(&fits, Some(most))), STEPS[i], format);
+        let Shape { x, y, base, format } = shape_of((most, has_one_width, i));
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
@@ -246,22 +286,22 @@ pub(crate) fn decide(
     });
     let found = Found::new(TableKind::Lobes, 0.0, candidates.collect());
     let found = std::slice::from_ref(&found);
-    let chosen = locked(found, lock, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
+    let chosen = locked(found, options.locked, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
-        let (most, i) = match &refusal {
+        let (most, has_one_width, i) = match &refusal {
             Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
             Refusal::Whole { .. } => choices[0],
         };
         let errors = materials.iter().enumerate().filter_map(|(number, material)| {
             let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
             let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
-            Some((number, measured(fits.map(|fits| fits.of(Some(most)).errors[i]).reduce(FitError::max)?)))
+            let errors = fits.map(|fits| fits.of(Some(most)).errors(has_one_width)[i]);
+            Some((number, measured(errors.reduce(FitError::max)?)))
         });
         (refusal, errors.collect())
     })?[0];
-    let (most, i) = choices[chosen];
-    settings.lobes = Some(most);
-    settings.take_lobes(shape(parts(materials, lobes_of(&fits, Some(most))), STEPS[i], format));
+    settings.lobes = Some(choices[chosen].0);
+    settings.take_lobes(shape_of(choices[chosen]));
     Ok(Some(candidates::report(&found[0], chosen, budget)))
 }
 
@@ -318,6 +358,7 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_plain_share: 0.0,
     lobes: 2,
     inverse_tails: [1.0; 2],
+    rise: None,
     varying: None,
     axes: None,
     painted: None,
@@ -348,10 +389,11 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         return LobesRecord { axes, painted, varying, ..UNFITTED };
     };
     let fit = fits.of(settings.lobes);
-    let Fit { varied, errors } = fit;
+    let has_one_width = shape.y.as_ref().is_some_and(is_of_one_width);
+    let varied = fit.shaped(has_one_width);
     let step = step(shape.x.size);
     let error = STEPS.iter().position(|known| *known == step).map(|i| {
-        let FitError { lobe, lobe_noise, albedo, albedo_noise } = errors[i];
+        let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.errors(has_one_width)[i];
         LobesError { lobe, lobe_noise, albedo, albedo_noise }
     });
     let lobes = &varied.nodes[0];
@@ -364,7 +406,14 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_width: width,
         critical_plain_share: plain_share,
         lobes: fit.lobes() as u32,
-        inverse_tails: texels_of(varied.stored(0, 0).inverse_tails(), shape.format),
+        inverse_tails: texels_of(
+            lobes
+                .frame
+                .one_width
+                .map_or(varied.stored(0, 0).inverse_tails(), |one_width| [one_width.inverse_tail, 0.0]),
+            shape.format,
+        ),
+        rise: lobes.frame.one_width.map(|one_width| one_width.rise),
         varying: varied.varying().map(|varying| VaryingRecord {
             factor: match varying {
                 Varying::Alpha => VaryingFactor::AlphaFactor,
@@ -422,17 +471,36 @@ fn texels_of(numbers: [f64; 2], format: TexelFormat) -> [f64; 2] {
 struct Fit {
     varied: Varied,
     errors: [FitError; STEPS.len()],
+    /// Errors with [`OneWidth`](luthier_layers::models::lobes::OneWidth), of a search where lobes have it.
+    of_one_width: Option<[FitError; STEPS.len()]>,
 }
 
 impl Fit {
+    fn new(varied: Varied, judge: &Judge) -> Self {
+        Self { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied, of_one_width: None }
+    }
+
+    /// With the errors of lobes of one width.
+    fn and_of_one_width(self, judge: &Judge) -> Self {
+        let narrowed = self.varied.clone().of_one_width();
+        let of_one_width = narrowed.map(|varied| STEPS.map(|step| judge.error(&thinned(varied.clone(), step))));
+        Self { of_one_width, ..self }
+    }
+
+    /// Errors with each of [`STEPS`].
+    fn errors(&self, has_one_width: bool) -> &[FitError; STEPS.len()] {
+        self.of_one_width.as_ref().filter(|_| has_one_width).unwrap_or(&self.errors)
+    }
+
+    /// The lobes, with one width if so.
+    fn shaped(&self, has_one_width: bool) -> Varied {
+        let narrowed = has_one_width.then(|| self.varied.clone().of_one_width()).flatten();
+        narrowed.unwrap_or_else(|| self.varied.clone())
+    }
+
     /// Number of lobes.
     fn lobes(&self) -> usize {
         self.varied.nodes[0].rows[0].lobes.len()
-    }
-
-    /// The lobes with every `step`-th of [`ROWS`].
-    fn thinned(&self, step: usize) -> Varied {
-        thinned(self.varied.clone(), step)
     }
 }
 
@@ -478,7 +546,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 11 } else { 7 }
+        if is_family(self.varying) { 12 } else { 8 }
     }
 
     fn inputs(&self) -> Value {
@@ -507,15 +575,15 @@ impl Job for FitJob {
                 let fewer = self.varying_of(Some(most));
                 let varied = whole.clone().at_nodes(fewer);
                 let judge = Judge::new(stack, color, fewer);
-                Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }
+                Fit::new(varied, &judge)
             });
             return Artefact::new(Fits(fits.collect()));
         }
         let wanted: Vec<(usize, f64)> =
             if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
         let fits = wanted.into_iter().map(|(most, excess)| {
-            let varied: Varied = traced.fit(most, excess);
-            Fit { errors: STEPS.map(|step| judge.error(&thinned(varied.clone(), step))), varied }
+            let fit = Fit::new(traced.fit(most, excess), &judge);
+            if *is_searched && most <= 1 { fit.and_of_one_width(&judge) } else { fit }
         });
         Artefact::new(Fits(fits.collect()))
     }
@@ -560,6 +628,8 @@ fn factor_name(varying: Varying) -> &'static str {
 enum Parts {
     /// With so many lobes, and the light of a base (0 if rows have none) or without its parts.
     Lobes(usize, bool),
+    /// With one lobe of one width, and the light of a base or without its parts.
+    OneWidth(bool),
     /// Of a family, with lobes of this tail.
     Family(Family, f64),
 }
@@ -571,6 +641,7 @@ impl Parts {
             Self::Lobes(most, has_base) => {
                 Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) }
             }
+            Self::OneWidth(has_base) => Self::Lobes(1, has_base).filled(row),
             Self::Family(..) => row,
         }
     }
@@ -579,6 +650,7 @@ impl Parts {
     fn of(self, row: Row) -> Vec<[f64; 4]> {
         match self {
             Self::Lobes(..) => self.filled(row).to_parts(),
+            Self::OneWidth(_) => self.filled(row).to_parts_of_one_width(),
             Self::Family(family, _) => family.to_parts(&row),
         }
     }
@@ -586,7 +658,7 @@ impl Parts {
     /// The row of parts, those that a tile has.
     fn read(self, parts: &[[f64; 4]]) -> Row {
         match self {
-            Self::Lobes(_, has_base) => Row::of_parts(parts, has_base),
+            Self::Lobes(_, has_base) | Self::OneWidth(has_base) => Row::of_parts(parts, has_base),
             Self::Family(family, tail) => family.of_parts(family.first_part(), parts, tail),
         }
     }
@@ -630,17 +702,18 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
-        let varied = fits.of(self.most).thinned(step(x.size));
+        let varied = thinned(fits.of(self.most).shaped(is_of_one_width(y)), step(x.size));
         let (lobes, tile) = varied.tile(self.tile);
         let most = (y.max as usize + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         let layout = match varied.varying() {
             Some(Varying::Family(family)) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
+            _ if is_of_one_width(y) => Parts::OneWidth(y.min < 0.0),
             _ => Parts::Lobes(most.min(LOBES), y.min < 0.0),
         };
         // Parts of families begin with their own, where those of a base have a place before it.
         let first = match layout {
             Parts::Family(family, _) => (f64::from(family.first_part()) - y.min) as u32,
-            Parts::Lobes(..) => 0,
+            Parts::Lobes(..) | Parts::OneWidth(_) => 0,
         };
         // Parts lie side by side. The first and the last node of each are repeated, so that filtering does not mix in a
         // neighbour.

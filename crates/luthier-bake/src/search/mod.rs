@@ -145,7 +145,7 @@ pub(crate) fn plan(
     if let Some(fits) = lobes::fits(&fixed.plan.graph).filter(|_| options.fits) {
         results = fits.run(observer, store, results)?;
         let limits = fixed.asked.of_lobes();
-        let decided = lobes::decide(&mut fixed.settings, &fixed.plan, materials, &results, &limits, options.locked);
+        let decided = lobes::decide(&mut fixed.settings, &fixed.plan, materials, &results, &limits, options);
         searches.extend(decided.map_err(|(refusal, errors)| {
             let worst = worst_of(&errors, &limits).map(|material| (material, None));
             refused(refusal, TableKind::Lobes, worst, materials, options)

@@ -2,7 +2,7 @@
 
 use luthier_bake::{Baked, Options, Silent, bake_with};
 use luthier_lut::{RowLayout, TableKind, WeightBits};
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{Budget, ShadingModel};
 use luthier_material::Material;
 
 use crate::materials::{STORE, atlas, conductor, dielectric, material, no_images};
@@ -60,6 +60,23 @@ fn rows_have_the_decays_of_the_record_in_both_layouts() {
     assert_eq!(last_parts, [5.0, 3.0], "two lobes and one");
 }
 
+/// A limit on the lobe error takes one lobe of one width where that holds, which costs fewer reads than two lobes in fewer bytes would. A tight limit takes two lobes.
+#[test]
+fn a_limit_takes_the_form_of_the_lowest_cost() {
+    let metal = conductor("{ n = 0.2, k = 3.0 }", 0.1);
+    let materials = [coated("two", 0.35, &metal)];
+    let last_part = |most: f64| {
+        let budget = Budget { max_lobe_err: Some(most), ..Budget::default() };
+        let baked =
+            bake_with(&materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &*STORE).unwrap();
+        let lobes = baked.materials[0].constants.lobes.unwrap();
+        assert!(lobes.error.unwrap().lobe <= most, "{lobes:?}");
+        (atlas(&baked, TableKind::Lobes).layout.y.as_ref().unwrap().max, lobes.rise.is_some())
+    };
+    assert_eq!(last_part(0.06), (2.0, true));
+    assert_eq!(last_part(0.03), (5.0, false));
+}
+
 /// Rows of a coat with a weight beside textures are those of two materials: the one without the weight, and the layers below the coat alone.
 #[test]
 fn sides_of_a_coat_have_the_rows_of_two_materials() {
@@ -68,7 +85,7 @@ fn sides_of_a_coat_have_the_rows_of_two_materials() {
     let engine =
         "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.8\nalpha = 0.4\nmaps = { base_color = \"c.png\" }\n";
     let paint = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\nmaps = { albedo = \"c.png\" }\n";
-    for (below, tiles) in [(metal.as_str(), [4, 4]), (engine, [1, 1]), (paint, [1, 0])] {
+    for (below, tiles) in [(metal.as_str(), [3, 3]), (engine, [1, 1]), (paint, [1, 0])] {
         let of = |name: &str, layers: &str| {
             let mut material = material(name, layers, "");
             material.bake.model = Some(ShadingModel::Lobes);

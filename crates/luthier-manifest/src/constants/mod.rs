@@ -81,6 +81,9 @@ pub struct LobesRecord {
     /// 1 over the tail of each of two lobes, as the texels of the rows have it; 0 for a lobe that the first tile lacks. All rows of one tile have
     /// the same. Where there are several tiles, these numbers are of the first, and shaders read the rows.
     pub inverse_tails: [f64; 2],
+    /// Where rows have one lobe of one width: its sharpness across the plane of the eye over that along it is `1 + rise sin^2` of the view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rise: Option<f64>,
     /// Tiles over a factor of a texture, if there are such tiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub varying: Option<VaryingRecord>,
@@ -272,7 +275,7 @@ impl LobesRecord {
 
     /// Numbers of tiles over the azimuth: cosine and sine of the first axis, and tiles after the first in a quarter of a circle. Of tiles over
     /// the film: the place among the tiles per unit of its factor, the place at factor 0, and -1. Of a family: the reciprocal tail of its lobes, the number of the
-    /// base among the layers, and by how much the share sent back grows over the root of the slope parameter of the coat. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0.
+    /// base among the layers, and by how much the share sent back grows over the root of the slope parameter of the coat. Of tiles over another factor: zeros. Of a single tile: the reciprocal tails, 0 for lobes that it lacks, and 0; with one width the rise in place of the second tail.
     fn sheet(&self) -> [f64; 3] {
         if let Some(family) = self.family() {
             return [self.inverse_tails[0], f64::from(family.interface), family.sent_back[1]];
@@ -282,7 +285,7 @@ impl LobesRecord {
         }
         let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.axes else {
             let [first, second] = self.inverse_tails;
-            return if self.varying.is_some() { [0.0; 3] } else { [first, second, 0.0] };
+            return if self.varying.is_some() { [0.0; 3] } else { [first, self.rise.unwrap_or(second), 0.0] };
         };
         [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
@@ -562,6 +565,7 @@ mod tests {
             critical_plain_share: 0.25,
             lobes: 2,
             inverse_tails: [2.0, 3.0],
+            rise: None,
             varying: None,
             axes: None,
             painted: None,

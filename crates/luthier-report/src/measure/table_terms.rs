@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, FilmLight, Frame, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+    Axes, Below, Critical, Family, FilmLight, Frame, OneWidth, Paint, Painted, Row, Slopes, ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -190,7 +190,9 @@ impl Lobes {
         let base = record
             .painted
             .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
-        let frame = Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None };
+        let one_width = record.rise.map(|rise| OneWidth { rise, inverse_tail: record.inverse_tails[0].max(1.0) });
+        let frame =
+            Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None, one_width };
         let tail = 1.0 / record.inverse_tails[0].max(1.0);
         Self { tile, axis, frame, varying: record.varying, tail, family: None }
     }

@@ -158,6 +158,7 @@ fn lacquered() -> (Bake, Vec<SurfaceMap>) {
         critical_plain_share: plain_share,
         lobes: 2,
         inverse_tails: [1.0; 2],
+        rise: None,
         varying: Some(VaryingRecord {
             factor: VaryingFactor::SlabFactor,
             tiles: varied.nodes.len() as u32,

@@ -169,6 +169,8 @@ luthier_lut::named! {
         Level = "level",
         /// No material of the set has more than one lobe.
         OneLobe = "one_lobe",
+        /// Rows have one lobe of one width.
+        LobesOneWidth = "lobes_one_width",
         /// No material of the set has more than two lobes.
         TwoLobes = "two_lobes",
         /// Materials of the set differ in the number of their lobes.

@@ -97,14 +97,18 @@ impl Features {
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe. Families have two lobes, whatever their parts.
+                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe, or one where it has one width. Families have two
+                // lobes, whatever their parts.
                 let (word, most) = match parts.max as u32 {
                     _ if names.contains(&Feature::LobesFamily) => (Some(Feature::TwoLobes), 2),
-                    3 => (Some(Feature::OneLobe), 1),
+                    2 | 3 => (Some(Feature::OneLobe), 1),
                     5 => (Some(Feature::TwoLobes), 2),
                     _ => (None, 0),
                 };
                 names.extend(word);
+                if parts.max == 2.0 && word.is_some() {
+                    names.insert(Feature::LobesOneWidth);
+                }
                 let sides: Vec<MaterialEntry> = set.materials.iter().filter_map(MaterialEntry::side).collect();
                 if set.materials.iter().chain(&sides).filter_map(lobes_of).any(|lobes| lobes < most) {
                     names.insert(Feature::LobesMixed);

@@ -210,6 +210,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_plain_share: 0.25,
         lobes: 2,
         inverse_tails: [1.0, 40.0],
+        rise: None,
         varying: None,
         axes: None,
         painted: None,

@@ -50,6 +50,10 @@ impl Below {
     /// The light that a row has for `wo` (unit, above the surface).
     pub fn new(frame: Frame, row: Row, wo: DVec3) -> Self {
         let sin = libm::hypot(wo.x, wo.y);
+        let mut row = row;
+        if let Some(one_width) = frame.one_width {
+            row.lobes.iter_mut().for_each(|lobe| *lobe = one_width.shaped(*lobe, sin));
+        }
         let (turn, at, shapes): ([f64; 2], DVec3, Vec<Shape>) = match frame.axes {
             None => {
                 let turn = if sin > 0.0 { [wo.x / sin, wo.y / sin] } else { [1.0, 0.0] };

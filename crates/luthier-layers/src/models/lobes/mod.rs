@@ -59,7 +59,7 @@ pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};
 pub use patina::{Cover, bare};
-pub use rows::{BaseLight, Critical, Lobe, Row, ViewAxis};
+pub use rows::{BaseLight, Critical, Lobe, OneWidth, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
 pub(crate) use varied::scaled_along;
 pub use varied::{Fit, Traced, Varied, Varying};
@@ -131,6 +131,8 @@ pub struct Frame {
     pub base: Option<Painted>,
     /// Of an anisotropic place of a family: by what its lobes are stretched.
     pub stretch: Option<Stretch>,
+    /// Of rows that have one width of a lobe: what gives the other.
+    pub one_width: Option<OneWidth>,
 }
 
 /// A diffuse base below interfaces, which places may recolour.

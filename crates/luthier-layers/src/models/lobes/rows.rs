@@ -1,9 +1,12 @@
 //! Rows over the view.
 
+use glam::DVec3;
 use luthier_optics::Rgb;
 
-use super::LOBES;
+use super::half_vector::refracted;
+use super::leaving::{LEAVING_MIN, Leaving};
 use super::shape::{Shape, TAIL_MIN};
+use super::{LOBES, Lobes};
 use crate::least_squares::solve;
 
 /// Cosine at which the row of the horizon is traced, at 89.9 degrees.
@@ -372,7 +375,16 @@ impl Row {
         [0, 1].map(|lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| 1.0 / lobe.tail.max(TAIL_MIN)))
     }
 
-    /// The row of parts. With `has_base`, the first two belong to a diffuse base. Parts beyond those of [`LOBES`] lobes are of families beside it.
+    /// The row as parts where it has [`OneWidth`]: sharpness and share of its one lobe are beside colours, so that the light of a view takes two parts.
+    pub fn to_parts_of_one_width(&self) -> Vec<[f64; 4]> {
+        let base =
+            self.base.map(|BaseLight { energy, internal, falloff: [a, b], .. }| [part(internal, b), part(energy, a)]);
+        let Lobe { strength, share, shift, sharpness: [x, _], .. } = self.lobes.first().copied().unwrap_or(DARK);
+        let own = [part(self.wide, x), part(strength, shift), part(self.albedo_dir, share)];
+        base.into_iter().flatten().chain(own).collect()
+    }
+
+    /// The row of parts. With `has_base`, the first two belong to a diffuse base. Three parts are those of [`OneWidth`]. Parts beyond those of [`LOBES`] lobes are of families beside it.
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
         let parts = &parts[..parts.len().min(Self::parts(LOBES))];
@@ -387,12 +399,14 @@ impl Row {
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
         let shears = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part[3]));
         let shaped = match *inner {
+            [strength] => vec![(strength, [shears[0], shears[0], 1.0, shears[1]])],
             [strength, shape] => vec![(strength, shape)],
             [first, second, [a, b, c, d], [first_tail, first_share, second_tail, second_share]] => {
                 vec![(first, [a, b, first_tail, first_share]), (second, [c, d, second_tail, second_share])]
             }
             _ => Vec::new(),
         };
+        let shears = if inner.len() == 1 { [0.0; 2] } else { shears };
         let lobes = shaped.into_iter().zip(shears).map(|((strength, [x, y, inverse_tail, share]), shear)| {
             let inverse_tail = inverse_tail.max(1.0);
             Lobe {
@@ -415,8 +429,7 @@ impl Row {
     /// The row with `lobes` lobes in all: those beyond its own have no light.
     #[must_use]
     pub fn filled(mut self, lobes: usize) -> Self {
-        let none = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
-        self.lobes.resize(lobes.max(self.lobes.len()), none);
+        self.lobes.resize(lobes.max(self.lobes.len()), DARK);
         self
     }
 
@@ -488,6 +501,82 @@ impl Row {
     }
 }
 
+/// A lobe without light.
+const DARK: Lobe = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
+
+/// Rows with one lobe of one width: its sharpness across the plane of the eye is that along it times `1 + rise sin^2` of the view, and all have one tail. Along
+/// the normal a lobe is round, and away from it stretched, in fits by a factor that follows the squared sine. Rows then have the sharpness along the plane
+/// over the root of the tail, in both places, and a tail of 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OneWidth {
+    /// Growth of the factor over the squared sine of the view.
+    pub rise: f64,
+    /// 1 over the tail, as [`Row::inverse_tails`] has it.
+    pub inverse_tail: f64,
+}
+
+/// Least factor at flat views.
+const FACTOR_MIN: f64 = 0.1;
+
+impl OneWidth {
+    /// Rise and tail of rows with at most one lobe in the plane of the eye, seen at these sines: by least squares, weighed by energies.
+    pub fn of(rows: &[Row], sines: &[f64]) -> Option<Self> {
+        if rows.iter().any(|row| row.lobes.len() > 1) {
+            return None;
+        }
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for (lobe, sin) in rows.iter().zip(sines).filter_map(|(row, sin)| Some((row.lobes.first()?, sin))) {
+            let (energy, square) = (lobe.strength.iter().sum::<f64>() * lobe.share, sin * sin);
+            sum += energy * square * (lobe.sharpness[1] / lobe.sharpness[0] - 1.0);
+            squares += energy * square * square;
+        }
+        let rise = if squares > 0.0 { (sum / squares).max(FACTOR_MIN - 1.0) } else { 0.0 };
+        let inverse_tail = rows.first().map_or(0.0, |row| row.inverse_tails()[0]).max(1.0);
+        Some(Self { rise, inverse_tail })
+    }
+
+    /// The lobe of a row in this form, with both widths multiplied by one factor so that it is as dense as it was.
+    fn stored(self, lobe: Lobe, sin_theta: f64) -> Lobe {
+        let [x, y] = lobe.sharpness;
+        let along = (x * y / (self.factor(sin_theta) * self.inverse_tail)).sqrt();
+        Lobe { sharpness: [along; 2], tail: 1.0, ..lobe }
+    }
+
+    /// The lobe that a stored one is at this view.
+    pub(super) fn shaped(self, stored: Lobe, sin_theta: f64) -> Lobe {
+        let along = stored.sharpness[0] * self.inverse_tail.sqrt();
+        Lobe { sharpness: [along, along * self.factor(sin_theta)], tail: 1.0 / self.inverse_tail, ..stored }
+    }
+
+    fn factor(self, sin_theta: f64) -> f64 {
+        1.0 + self.rise * sin_theta * sin_theta
+    }
+}
+
+impl Lobes {
+    /// Lobes with [`OneWidth`], each with the energy that it had. `None` with two lobes or axes.
+    #[must_use]
+    pub fn of_one_width(mut self) -> Option<Self> {
+        let place = |row: usize| self.axis.cos_theta(row as f64);
+        let sines: Vec<f64> = (0..self.rows.len()).map(place).map(|cos| ((1.0 - cos) * (1.0 + cos)).sqrt()).collect();
+        let one_width = OneWidth::of(&self.rows, &sines).filter(|_| self.frame.axes.is_none())?;
+        for (row, sin) in self.rows.iter_mut().zip(&sines) {
+            let leaving = Leaving::new(
+                refracted(DVec3::new(*sin, 0.0, (1.0 - sin * sin).max(0.0).sqrt()), self.frame.index),
+                self.frame.index,
+            );
+            for lobe in &mut row.lobes {
+                let stored = one_width.stored(*lobe, *sin);
+                let share = leaving.summed(&one_width.shaped(stored, *sin), *sin).clamp(LEAVING_MIN, 1.0);
+                *lobe = Lobe { share, strength: lobe.strength.map(|strength| strength * lobe.share / share), ..stored };
+            }
+        }
+        self.frame.one_width = Some(one_width);
+        Some(self)
+    }
+}
+
 /// A part of a row.
 fn part([r, g, b]: Rgb, w: f64) -> [f64; 4] {
     [r, g, b, w]
@@ -501,6 +590,7 @@ fn rgb(part: Option<&[f64; 4]>) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::models::lobes::{Frame, Wide};
 
     #[test]
     fn places_and_views_are_inverse() {
@@ -629,5 +719,49 @@ mod tests {
         let row = Row { albedo_dir: [4.0, 2.0, 1.0], lobes: vec![lobe], wide: [0.1; 3], base: None };
         let expected = [3.4, 0.9, 0.0];
         assert!(row.first_facet().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12));
+    }
+
+    /// Oracles: rows whose widths follow the squared sine keep them, any row its energies, and parts are those of the row.
+    #[test]
+    fn one_width_keeps_energies() {
+        let axis = ViewAxis::new(7, Critical::default());
+        let row = |place: usize| {
+            let cos = axis.cos_theta(place as f64);
+            let (x, sin_sq) = (6.0 + cos, (1.0 - cos) * (1.0 + cos));
+            let lobe = Lobe {
+                strength: [0.5, 0.4, 0.3],
+                share: 0.7,
+                shift: 0.1,
+                sharpness: [x, x * (1.0 - 0.5 * sin_sq)],
+                shear: 0.0,
+                tail: 0.25,
+            };
+            Row { albedo_dir: [0.9; 3], lobes: vec![lobe], wide: [0.1; 3], base: None }
+        };
+        let frame = Frame {
+            index: 1.5,
+            wide: Wide::new([0.2, 0.1], axis),
+            axes: None,
+            base: None,
+            stretch: None,
+            one_width: None,
+        };
+        let given = Lobes { first: None, frame, axis, rows: (0..7).map(row).collect() };
+        let narrowed = given.clone().of_one_width().unwrap();
+        let one_width = narrowed.frame.one_width.unwrap();
+        assert!((one_width.rise + 0.5).abs() < 1e-9 && one_width.inverse_tail == 4.0, "{one_width:?}");
+        for (place, (given, narrowed)) in given.rows.iter().zip(&narrowed.rows).enumerate() {
+            let cos = axis.cos_theta(place as f64);
+            let shaped = one_width.shaped(narrowed.lobes[0], ((1.0 - cos) * (1.0 + cos)).sqrt());
+            for (found, expected) in shaped.sharpness.iter().zip(given.lobes[0].sharpness) {
+                assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+            }
+            for (found, expected) in narrowed.energies().iter().flatten().zip(given.energies().iter().flatten()) {
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+            }
+            assert_eq!(&Row::of_parts(&narrowed.to_parts_of_one_width(), false), narrowed);
+        }
+        let two = Row { lobes: vec![given.rows[0].lobes[0]; 2], ..given.rows[0].clone() };
+        assert_eq!(OneWidth::of(&[two], &[0.0]), None);
     }
 }

@@ -210,6 +210,14 @@ impl Varied {
         Traced::new(stack, color, varying, settings).fit(most_lobes(stack), EXCESS)
     }
 
+    /// Lobes with one width, see [`super::OneWidth`]: where nothing varies, and there is at most one in the plane of the eye.
+    #[must_use]
+    pub fn of_one_width(mut self) -> Option<Self> {
+        let [lobes] = <[Lobes; 1]>::try_from(self.nodes).ok().filter(|_| self.varying.is_none())?;
+        self.nodes = vec![lobes.of_one_width()?];
+        Some(self)
+    }
+
     /// Every `step`-th row. `step` has to divide the number of steps between rows.
     #[must_use]
     pub fn thinned(mut self, step: usize) -> Self {

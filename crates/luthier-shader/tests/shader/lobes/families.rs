@@ -153,6 +153,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         critical_plain_share: 0.0,
         lobes: 2,
         inverse_tails: [inverse_tail(family); 2],
+        rise: None,
         varying: Some(VaryingRecord {
             factor: VaryingFactor::Family,
             tiles: family.nodes() as u32,
@@ -366,6 +367,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             axes: None,
             base: Some(Painted { albedo: ALBEDO, is_lambertian: true }),
             stretch: None,
+            one_width: None,
         };
         let mut brightest = 0.0_f64;
         for (k, (wi, wo)) in directions(160).enumerate() {

@@ -2,6 +2,7 @@
 
 mod families;
 mod normals;
+mod one_width;
 mod patina;
 mod sides;
 
@@ -80,6 +81,16 @@ fn lit_from_below(text: &str, materials: &[MaterialEntry], rows: &Image) -> Mach
     Machine::new(text, &material_buffer(materials), textures.map(|(name, image)| (name.to_owned(), image)).into())
 }
 
+/// Light from below of the first material, in two steps: light and eye, and what they give.
+fn assert_light(machine: &Machine, [wi, wo]: [[f64; 3]; 2], expected: [f64; 3], name: &str) {
+    let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
+    let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
+    for (found, expected) in found.iter().zip(expected) {
+        let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);
+        assert!(error < 1e-4, "{name} {wi:?} {wo:?}: {found} {expected}");
+    }
+}
+
 /// The light below as the twin has it, and as the function of the shader has it.
 #[test]
 fn light_from_below_is_that_of_the_twin() {
@@ -95,6 +106,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_plain_share: 0.25,
             lobes: 2,
             inverse_tails: [1.0, 40.0],
+            rise: None,
             varying: None,
             axes: None,
             painted: None,
@@ -117,16 +129,14 @@ fn light_from_below_is_that_of_the_twin() {
                 bilinear(&image, at, WeightBits::Exact)
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false);
-            let expected =
-                Below::new(Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None }, row, eye)
-                    .eval(light);
-            let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
-            let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
-            for (found, expected) in found.iter().zip(expected) {
-                let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);
-                assert!(error < 1e-4, "{name} {wi:?} {wo:?}: {found} {expected}");
-                brightest = brightest.max(expected);
-            }
+            let expected = Below::new(
+                Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, one_width: None },
+                row,
+                eye,
+            )
+            .eval(light);
+            assert_light(&machine, [wi, wo], expected, name);
+            brightest = expected.into_iter().fold(brightest, f64::max);
         }
         assert!(brightest > 1.0, "{name}: {brightest}");
     }
@@ -169,7 +179,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors, family: None });
-        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None };
+        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None, one_width: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
@@ -288,7 +298,7 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes, base: None, stretch: None };
+        let frame = Frame { index: record.index, wide, axes, base: None, stretch: None, one_width: None };
         let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
         let set = MaterialSet {
             functions: groups.iter().copied().collect(),
@@ -347,6 +357,7 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
             axes: None,
             base: has_base.then_some(Painted { albedo: [0.3, 0.5, 0.7], is_lambertian }),
             stretch: None,
+            one_width: None,
         };
         let painted = frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
             albedo,
@@ -485,6 +496,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_plain_share: 0.0,
             lobes: 2,
             inverse_tails: [1.0, 40.0],
+            rise: None,
             varying,
             axes,
             painted: None,

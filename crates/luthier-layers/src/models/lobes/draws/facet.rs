@@ -9,16 +9,15 @@
 //! Poisson's kernel: the cumulative distribution has an inverse without trigonometry. v depends on z, so that the density is one of the facet's own cosine on the
 //! real surface.
 //!
-//! Facets of Beckmann are drawn as they are seen, by which 1 / cos of the facet is lost, or by their distribution alone, on the side that is seen: with chances a
-//! mixture has some of both.
+//! Facets of Beckmann: [`GaussianDraw`].
 
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
-use luthier_optics::visible_normals::{SLOPE_LIMIT, normal_slope};
 
+use super::gaussian::GaussianDraw;
 use crate::formulas::facets::Facets;
 use crate::models::lobes::tally::mean;
 
@@ -40,9 +39,8 @@ pub(super) struct FacetDraw {
     /// The square of the slope parameter, and v of a facet at a distance of 1 from the flattest directions.
     flat: f64,
     pull: f64,
-    /// Chance of a facet of Beckmann to be drawn by the distribution alone, and the share of these on the side that is seen.
-    plain: f64,
-    seen: f64,
+    /// Facets of Beckmann.
+    gaussian: Option<GaussianDraw>,
 }
 
 impl FacetDraw {
@@ -62,7 +60,7 @@ impl FacetDraw {
         let (alpha, f0) = (libm::sqrt(x * y), mean(f0).clamp(F0[0], F0[1]));
         let rest_sq = (1.0 - f0) * (1.0 - f0);
         let sharpness = rest_sq * rest_sq * (alpha + 0.8) / (f0 * alpha * (3.6 + 13.0 * wo.z * wo.z));
-        let limit = (stretched.z / libm::hypot(stretched.x, stretched.y)).min(SLOPE_LIMIT);
+        let is_gaussian = facets.drawn_distribution() == Distribution::Beckmann;
         Self {
             facets: *facets,
             wo,
@@ -71,15 +69,14 @@ impl FacetDraw {
             lowest: bound * wo.z / size,
             flat: alpha * alpha,
             pull: 2.0 * size * sharpness,
-            plain: 0.9 * (1.0 - f0) * rest_sq,
-            seen: 0.5 * libm::erfc(-limit),
+            gaussian: is_gaussian.then(|| GaussianDraw::new(alphas, turned, f0)),
         }
     }
 
     /// A facet in the frame of the surface, for three numbers that are uniform in 0..1.
     pub(super) fn sample(&self, [way, u, v]: [f64; 3]) -> DVec3 {
-        if self.facets.drawn_distribution() == Distribution::Beckmann {
-            return if way < self.plain { self.plain([u, v]) } else { self.facets.sample(self.wo, [u, v]) };
+        if let Some(gaussian) = &self.gaussian {
+            return self.facets.unturned(gaussian.sample([way, u, v]));
         }
         let z = (1.0 - u) * (1.0 + self.lowest) - self.lowest;
         let above = z + self.eye.z;
@@ -97,14 +94,6 @@ impl FacetDraw {
         self.facets.unturned(DVec3::new(x * level.x, y * level.y, above.max(1e-300)).normalize())
     }
 
-    /// A facet of Beckmann on the side that is seen.
-    fn plain(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let away = self.azimuth();
-        let slope = normal_slope(u * self.seen) * away + normal_slope(v) * away.perp();
-        let [x, y] = self.facets.alphas();
-        self.facets.unturned(DVec3::new(-x * slope.x, -y * slope.y, 1.0).normalize())
-    }
-
     /// The azimuth of the eye.
     fn azimuth(&self) -> DVec2 {
         DVec2::new(self.eye.x, self.eye.y).try_normalize().unwrap_or(DVec2::X)
@@ -113,11 +102,10 @@ impl FacetDraw {
     /// Density in solid angle of light from `wi` (unit, above the surface) that drawn facets mirror.
     pub(super) fn pdf_solid_angle(&self, wi: DVec3) -> f64 {
         let sum = wi + self.wo;
-        if self.facets.drawn_distribution() == Distribution::Beckmann {
-            let plain = self.facets.density(sum.normalize()) * sum.z / (2.0 * self.seen * sum.length_squared());
-            return self.plain * plain + (1.0 - self.plain) * self.facets.pdf_solid_angle(wi, self.wo);
-        }
         let turned = self.facets.turned(sum);
+        if let Some(gaussian) = &self.gaussian {
+            return gaussian.pdf_solid_angle(turned);
+        }
         let [x, y] = self.facets.alphas();
         let steep_sq = DVec3::new(turned.x / x, turned.y / y, turned.z).length_squared();
         // The cosine of eye and facet times the length of the sum; unit directions have no other.
@@ -156,9 +144,13 @@ mod tests {
         let bins = [5, 8];
         let points = [60, 40];
         for distribution in [Distribution::Ggx, Distribution::Beckmann] {
-            for (alpha_x, alpha_y, f0, theta) in
-                [(0.4, 0.4, 0.04, 0.6), (0.3, 0.6, 0.02, 1.3), (0.8, 0.8, 0.04, 0.0), (0.3, 0.3, 0.9, 1.4)]
-            {
+            for (alpha_x, alpha_y, f0, theta) in [
+                (0.4, 0.4, 0.04, 0.6),
+                (0.3, 0.6, 0.02, 1.3),
+                (0.8, 0.8, 0.04, 0.0),
+                (0.3, 0.3, 0.9, 1.4),
+                (1.0, 0.7, 0.04, 1.45),
+            ] {
                 let facets = Facets::new(&Surface { distribution, alpha_x, alpha_y, rotation: 0.7 });
                 let (sin, cos) = libm::sincos(theta);
                 let draw = FacetDraw::new(&facets, DVec3::new(0.6 * sin, 0.8 * sin, cos), [f0; 3]);

@@ -11,11 +11,8 @@ struct LuthierFacetDraw {
     alpha_sq: f32,
     pull: f32,
     //? beckmann
-    {
-        /// Chance of a facet of Beckmann to be drawn by the distribution alone, and the share of these on the side that is seen.
-        plain: f32,
-        seen: f32,
-    }
+    /// The reflectance at normal incidence.
+    f0: f32,
 }
 
 fn luthier_facet_draw(prepared: LuthierPreparedLobes) -> LuthierFacetDraw {
@@ -44,11 +41,7 @@ fn luthier_facet_draw(prepared: LuthierPreparedLobes) -> LuthierFacetDraw {
     let f0 = clamp(dot(luthier_fresnel_term(prepared.coat, 1.0), vec3<f32>(1.0 / 3.0)), 1e-3, 1.0);
     let rest_sq = (1.0 - f0) * (1.0 - f0);
     //? beckmann
-    {
-        given.plain = 0.9 * (1.0 - f0) * rest_sq;
-        let limit = min(stretched.z / max(length(stretched.xy), 1e-6), 4.0);
-        given.seen = luthier_slope_share(limit, exp(-limit * limit));
-    }
+    given.f0 = f0;
     given.pull = 2.0 * given.size * rest_sq * rest_sq * (alpha + 0.8) / (f0 * alpha * (3.6 + 13.0 * wo.z * wo.z));
     return given;
 }
@@ -60,14 +53,6 @@ fn luthier_facet_pulled(given: LuthierFacetDraw, above: f32) -> vec3<f32> {
     return vec3<f32>(middle, pull, sqrt(1.0 + pull * (2.0 * middle + 0.25 * above * above * pull)));
 }
 
-//? beckmann
-/// Density in solid angle of facets of Beckmann that are drawn as they are seen, D / 4 over cos_theta_o (1 + Lambda), or by their distribution alone.
-fn luthier_gaussian_density(prepared: LuthierPreparedLobes, given: LuthierFacetDraw, sum: vec3<f32>) -> f32 {
-    let visible = (1.0 - given.plain) / (prepared.masking * prepared.wo.z);
-    let plain = given.plain * 2.0 * sum.z / (given.seen * dot(sum, sum));
-    return luthier_quarter_density(prepared.coat, sum) * (visible + plain);
-}
-
 /// Density in solid angle with which `luthier_draw_facet` draws a direction above the horizon.
 fn luthier_facet_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     let sum = vec3<f32>(wi.xy + prepared.wo.xy, max(wi.z + prepared.wo.z, 1e-16));
@@ -76,10 +61,10 @@ fn luthier_facet_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     {
         //? ggx
         if prepared.coat.distribution < 0.5 {
-            return luthier_gaussian_density(prepared, given, sum);
+            return luthier_gaussian_density(given, prepared.wo, sum);
         }
         //? else
-        return luthier_gaussian_density(prepared, given, sum);
+        return luthier_gaussian_density(given, prepared.wo, sum);
     }
     //? ggx|!beckmann
     {

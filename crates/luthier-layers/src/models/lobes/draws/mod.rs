@@ -1,6 +1,7 @@
 //! The model at a view: values, samples, densities.
 
 mod facet;
+mod gaussian;
 mod lobe;
 mod wide;
 

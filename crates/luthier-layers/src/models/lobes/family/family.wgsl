@@ -429,10 +429,12 @@
                     let flat = luthier_echoes(sheet, LUTHIER_MEAN_COSINES.x, LUTHIER_MEAN_SPREADS.x);
                     let steep = luthier_echoes(sheet, LUTHIER_MEAN_COSINES.y, LUTHIER_MEAN_SPREADS.y);
                     let plastic = vec3<f32>(0.2);
-                    seen_plastic = luthier_film_seen(sheet, ends, plastic);
+                    // Rows know the mean of Schlick's power, which two angles do not have at flat views.
+                    let passing = (1.0 - of_facet.x / max(all, 0.02)) / max(1.0 - 0.5 * (ends.powers.x + ends.powers.y), 0.02);
+                    seen_plastic = 1.0 - max((1.0 - luthier_film_seen(sheet, ends, plastic)) * passing, vec3<f32>(0.0));
                     mean_plastic = luthier_film_mean(luthier_film_over(sheet, flat, plastic), luthier_film_over(sheet, steep, plastic));
                     if metallic > 0.0 {
-                        seen_metal = luthier_film_seen(sheet, ends, metal_roots);
+                        seen_metal = 1.0 - max((1.0 - luthier_film_seen(sheet, ends, metal_roots)) * passing, vec3<f32>(0.0));
                         metal = luthier_film_mean(luthier_film_over(sheet, flat, metal_roots), luthier_film_over(sheet, steep, metal_roots));
                     }
                 }

@@ -16,7 +16,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::schlick::{DIELECTRIC_F0, schlick, schlick_average};
 use luthier_optics::stack::Stack;
 
-use super::paint::{dimmed, edge};
+use super::paint::{ALL_MIN, dimmed, edge};
 use super::{Family, Paint};
 use crate::models::lobes::Row;
 
@@ -75,8 +75,14 @@ impl FilmLight {
             }
             return Self { seen: mean_of(square, spread, &equal), mean };
         }
-        let [_, square, spread] = row.albedo_dir;
-        let seen = mean_of(square, spread, &reflected);
+        let [facet, square, spread] = row.albedo_dir;
+        // Rows know the mean of Schlick's power, which two angles do not have at flat views.
+        let slope = row.lobes.first().map_or(0.0, |lobe| lobe.strength[1]);
+        let power = |cos_theta: f64, _: f64| [[schlick(0.0, cos_theta); 3]; 2];
+        let steep = facet / (facet + slope).max(ALL_MIN);
+        let passing = (1.0 - steep) / (1.0 - mean_of(square, spread, &power)[0][0]).max(ENTERING_MIN);
+        let passed = |found: f64| 1.0 - ((1.0 - found) * passing).max(0.0);
+        let seen = mean_of(square, spread, &reflected).map(|rgb| rgb.map(passed));
         let mut mean = [[0.0; 3]; 2];
         for (cos_theta, weight, spread) in MEANS {
             let power = schlick(0.0, cos_theta);

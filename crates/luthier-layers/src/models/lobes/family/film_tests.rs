@@ -126,6 +126,30 @@ fn films_below_a_coat_are_those_of_the_simulation() {
     }
 }
 
+/// Oracle: the light of one facet by quadrature, which shaders show. What rows have below makes no more than all light of it, also where the eye is flat.
+#[test]
+fn facets_and_light_from_below_return_no_more_than_falls_in() {
+    let color = Color::Spectral;
+    let stack = filmed(1.8, 500.0);
+    for alpha in [0.1, 0.32, 0.7] {
+        let family = Family::new(&stack, [alpha; 2], [alpha; 2], true).unwrap();
+        let varied = Varied::with(&stack, &color, Some(Varying::Family(family)), SETTINGS);
+        let level = family.apply(&stack, [alpha; 2]);
+        for metallic in [0.0, 0.5, 1.0] {
+            let white = Mix { metal: [1.0; 3], tint: [1.0; 3], dielectric: [0.04; 3], matt: [1.0; 3], metallic };
+            let lobes = varied.painted([alpha; 2], &Paint::of(&level).mixed(white)).unwrap();
+            for theta in [0.0, 1.0, 1.3, 1.5, 1.553] {
+                let wo = DVec3::new(libm::sin(theta), 0.0, libm::cos(theta));
+                let (row, facet) = (lobes.row(wo), lobes.first.as_ref().unwrap().energy(wo));
+                let returned = [0, 1, 2].map(|c: usize| {
+                    facet[c] + row.wide[c] + row.lobes.iter().map(|lobe| lobe.strength[c] * lobe.share).sum::<f64>()
+                });
+                assert!(returned.iter().all(|sum| *sum < 1.004), "{alpha} {metallic} {theta}: {returned:?}");
+            }
+        }
+    }
+}
+
 /// Oracle: the film by itself at another F0. One facet of a mix reflects the mean of both surfaces, at every angle and in every channel.
 #[test]
 fn one_facet_of_a_mix_is_the_mean_of_both() {

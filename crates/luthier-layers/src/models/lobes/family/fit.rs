@@ -66,6 +66,7 @@ impl Family {
                     // Rows have a shape of the remainder each, as above a diffuse base.
                     base: Some(Painted { albedo: own, is_lambertian: true }),
                     stretch: None,
+                    one_width: None,
                 },
                 axis,
                 rows,

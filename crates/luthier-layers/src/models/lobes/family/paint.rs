@@ -341,7 +341,7 @@ pub(super) fn between_facets(known: f64, energies: Rgb, steep: f64, f: f64) -> f
 const BEYOND_MIN: f64 = 1e-9;
 
 /// Least light of one facet of a mirror by which light is divided.
-const ALL_MIN: f64 = 0.02;
+pub(super) const ALL_MIN: f64 = 0.02;
 
 /// Largest pole.
 const POLE_MAX: f64 = 0.99;

@@ -251,7 +251,7 @@ impl<'a> Problem<'a> {
         };
         Lobes {
             first: first.clone(),
-            frame: Frame { index, wide, axes: *axes, base: self.simulation.base, stretch: None },
+            frame: Frame { index, wide, axes: *axes, base: self.simulation.base, stretch: None, one_width: None },
             axis: *axis,
             rows,
         }

@@ -7,6 +7,9 @@ const LUTHIER_LOBES: u32 = 1u;
 //? else
 const LUTHIER_LOBES: u32 = 0u;
 /// The part of rows that is the albedo.
+//? lobes_one_width
+const LUTHIER_LOBES_ALBEDO: f32 = 2.0;
+//? else
 const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
 /// The part of rows of two lobes that has their decays and shares.
 const LUTHIER_LOBES_SHARES: f32 = 4.0;
@@ -549,6 +552,16 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             let first_numbers = vec3<f32>(sharpness.xy, decays.x);
             //? lobes_tilted
             let shares = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).yw;
+        }
+        //? else
+        //? lobes_one_width
+        {
+            // One width is beside the remainder, and the share beside the albedo. The other width follows from the view.
+            //? !lobes_film
+            let sheet = luthier_materials[header + $word_glitter_tilt];
+            let first_numbers = vec3<f32>(wide.a, wide.a * (1.0 + sheet.z * sin_theta_sq), sheet.y);
+            //? lobes_tilted
+            let shares = luthier_lookup_lobes(tile, cos_theta, 2.0).aa;
         }
         //? else
         //? lobes_tilted
