@@ -24,13 +24,8 @@ struct LuthierShownLobe {
     tail: f32,
     /// Whether facets of the first interface weigh the directions.
     is_coat: bool,
-    //? beckmann
-    {
-        /// Whether directions lie on a lattice, as those of Beckmann's facets do.
-        is_even: bool,
-    }
-    /// Cosine and sine by which directions of a spiral are turned about the middle, and the turn, by which those of a lattice move.
-    turn: vec3<f32>,
+    /// Cosine and sine by which directions are turned about the middle.
+    turn: vec2<f32>,
 }
 
 /// Light that was read in some directions of a lobe, and the weights of these.
@@ -44,12 +39,9 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
     return 2.0 * cos_theta_h * vec2<f32>(cos_theta_h * max(up_z, 0.0) / max(cos_theta_i, 0.02), max(cos_theta_d, 1e-3));
 }
 
-/// Directions in which each lobe is read.
-const LUTHIER_SHOWN_READS: f32 = $reads;
-
 /// Standard deviation of the blur of a direction over the widths of its lobe, for Beckmann's distribution: with less the directions are seen one by one in
-/// small bright lights. Gaussians about the points of a Gaussian are one; lobes with longer tails want narrower ones in the middle, and wider ones the farther
-/// out they are.
+/// small bright lights, with more the lobe is one of angles rather than of slopes. Gaussians about the points of a Gaussian are one; lobes with longer tails
+/// want narrower ones in the middle, and wider ones the farther out they are.
 const LUTHIER_TAP_BLUR: f32 = $tap_blur;
 
 /// Standard deviation of the blur of a direction of a lobe, an angle: not wider than the lobe where it is narrow.
@@ -84,7 +76,7 @@ fn luthier_shown_middle_stretch(lobe: LuthierShownLobe) -> vec2<f32> {
 //? lobes_axes
 /// A lobe with this middle and these squared widths, a symmetric matrix in the frame of the lobes, seen in a medium whose squared index less 1 is
 /// the excess.
-fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width_sq: vec3<f32>, tail: f32, turn: vec3<f32>) -> LuthierShownLobe {
+fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width_sq: vec3<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
     var lobe: LuthierShownLobe;
     let across = prepared.wo.xy + vec2<f32>(1e-15, 0.0);
     let inverse_sin = inverseSqrt(dot(across, across));
@@ -102,12 +94,10 @@ fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<
     );
     lobe.tail = tail;
     lobe.is_coat = false;
-    //? beckmann
-    lobe.is_even = false;
     lobe.turn = turn;
     let stretch = luthier_shown_middle_stretch(lobe);
     let blur = luthier_shown_blur(lobe, stretch);
-    let left = max(lobe.width_sq.xy - 2.0 * (blur * blur) / max(stretch * stretch, vec2<f32>(1e-12)), vec2<f32>(0.0));
+    let left = max(lobe.width_sq.xy - (2.0 + 2.0 * tail) * (blur * blur) / max(stretch * stretch, vec2<f32>(1e-12)), vec2<f32>(0.0));
     let along = sqrt(left.x);
     let between = lobe.width_sq.z / max(along, 1e-12);
     lobe.spread = vec3<f32>(along, sqrt(max(left.y - between * between, 0.0)), between);
@@ -115,25 +105,23 @@ fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<
 }
 //? else
 /// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
-fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width: vec2<f32>, tail: f32, turn: vec3<f32>) -> LuthierShownLobe {
+fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
     var lobe: LuthierShownLobe;
     lobe.eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, sqrt(prepared.wo.z * prepared.wo.z + excess));
     lobe.middle = middle;
     lobe.width = width;
     lobe.tail = tail;
     lobe.is_coat = false;
-    //? beckmann
-    lobe.is_even = false;
     lobe.turn = turn;
     let stretch = luthier_shown_middle_stretch(lobe);
     let angles = width * stretch;
     let blur = luthier_shown_blur(lobe, stretch);
-    lobe.spread = width * sqrt(max(1.0 - 2.0 * (blur * blur) / (angles * angles), vec2<f32>(0.0)));
+    lobe.spread = width * sqrt(max(1.0 - (2.0 + 2.0 * tail) * (blur * blur) / (angles * angles), vec2<f32>(0.0)));
     return lobe;
 }
 
 /// A lobe of rows.
-fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, turn: vec3<f32>) -> LuthierShownLobe {
+fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, turn: vec2<f32>) -> LuthierShownLobe {
     let middle = luthier_lobe_slope(shape, vec2<f32>(0.0));
     //? lobes_axes
     {
@@ -148,9 +136,16 @@ fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, 
     return luthier_shown_lobe(prepared, prepared.medium.x, middle, width, 1.0 / shape.decay, turn);
 }
 
-/// Light so far and that of one more direction of a lobe: its slope, the factor on its blur, and the factor on its weight. What would not leave the surface
-/// weighs nothing.
-fn luthier_shown_at(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, slope: vec2<f32>, wider: f32, chance: f32) -> LuthierShown {
+/// Light so far and that of one more direction of a lobe: where it lies over the widths of a Gaussian, the square of its distance from the middle, and its
+/// weight. Lobes with longer tails have it farther out, with a wider blur. What would not leave the surface weighs nothing.
+fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, tap: vec4<f32>) -> LuthierShown {
+    let grown = lobe.tail * tap.z;
+    let farther = sqrt(select((exp(grown) - 1.0) / max(grown, 1e-2), 1.0 + 0.5 * grown, grown < 0.02));
+    let around = farther * vec2<f32>(lobe.turn.x * tap.x - lobe.turn.y * tap.y, lobe.turn.y * tap.x + lobe.turn.x * tap.y);
+    //? lobes_axes
+    let slope = lobe.middle + lobe.spread.xy * around + vec2<f32>(0.0, lobe.spread.z * around.x);
+    //? else
+    let slope = lobe.middle + lobe.spread * around;
     let wh = vec3<f32>(slope, 1.0) * inverseSqrt(1.0 + dot(slope, slope));
     let cos_theta_d = dot(wh, lobe.eye);
     let up = 2.0 * cos_theta_d * wh - lobe.eye;
@@ -160,12 +155,8 @@ fn luthier_shown_at(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luthi
     let cos_theta_i = max(above, 1e-2);
     let across = up.xy * min(inverseSqrt(max(sin_sq, 1e-12)), 1.0);
     let stretch = luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z);
-    //? beckmann
-    let blur = select(luthier_shown_blur(lobe, stretch), luthier_coat_blur(lobe, stretch), lobe.is_even);
-    //? else
-    let blur = luthier_shown_blur(lobe, stretch);
-    let width = min(blur * wider, 1.4);
-    var weight = vec3<f32>(chance * saturate(0.5 + 0.5 * above / max(width, 0.014)));
+    let width = min(luthier_shown_blur(lobe, stretch) * exp(0.4 * grown), 1.4);
+    var weight = vec3<f32>(tap.w * saturate(0.5 + 0.5 * above / max(width, 0.014)));
     //? lobes_axes
     let azimuth = lobe.azimuth;
     //? else
@@ -187,98 +178,15 @@ fn luthier_shown_at(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luthi
     return LuthierShown(shown.light + weight * light, shown.weight + weight);
 }
 
-/// Light so far and that of one more direction of a lobe: beyond it lies this share of the lobe, and it lies towards a unit vector from the
-/// middle.
-fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, beyond: f32, towards: vec2<f32>) -> LuthierShown {
-    let fall = log2(beyond);
-    let radius = sqrt((exp2(-lobe.tail * fall) - 1.0) / lobe.tail);
-    let around = vec2<f32>(lobe.turn.x * towards.x - lobe.turn.y * towards.y, lobe.turn.y * towards.x + lobe.turn.x * towards.y);
-    //? lobes_axes
-    let slope = lobe.middle + radius * (lobe.spread.xy * around + vec2<f32>(0.0, lobe.spread.z * around.x));
-    //? else
-    let slope = lobe.middle + radius * lobe.spread * around;
-    return luthier_shown_at(shown, lobe, prepared, frame, slope, exp2(-0.56 * lobe.tail * fall), 1.0);
-}
-
-/// Mean radiance in a lobe: in directions that have equal shares of it, along a spiral that turns by the golden angle (Vogel 1979), each blurred by
-/// its share (Krivanek and Colbert 2008), but not wider than the lobe is where it is narrow.
+/// Mean radiance in a lobe: in directions with weights, each blurred. Together the blurs are nearly the lobe, if it is a Gaussian.
 fn luthier_shown_mean(lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>) -> vec3<f32> {
     var shown = LuthierShown(vec3<f32>(0.0), vec3<f32>(1e-6));
     $each_direction
     return shown.light / shown.weight;
 }
 
-//? beckmann
-{
-    /// Standard deviation of the blur of a direction over that of facets of Beckmann where these are narrow. Gaussians of angles are wide up to an angle.
-    const LUTHIER_COAT_BLUR: f32 = $coat_blur;
-    const LUTHIER_WIDEST_COAT_BLUR: f32 = 0.35;
-
-    /// Standard deviation of the blur of a direction of facets of Beckmann, an angle: less than they spread where they are narrow, but few directions along a
-    /// long lobe leave no gaps. It is that of a level, the next below: two levels mixed are no Gaussian, which small lights show.
-    fn luthier_coat_blur(lobe: LuthierShownLobe, stretch: vec2<f32>) -> f32 {
-        //? lobes_axes
-        {
-            let angle_sq = lobe.width_sq * vec3<f32>(stretch * stretch, stretch.x * stretch.y);
-            let mean = 0.5 * (angle_sq.x + angle_sq.y);
-            let half_difference = 0.5 * (angle_sq.x - angle_sq.y);
-            let apart = sqrt(half_difference * half_difference + angle_sq.z * angle_sq.z);
-            let squares = vec2<f32>(max(mean - apart, 1e-6 * mean), mean + apart);
-        }
-        //? else
-        {
-            let angles = lobe.width * stretch;
-            let ordered = vec2<f32>(min(angles.x, angles.y), max(angles.x, angles.y));
-            let squares = ordered * ordered;
-        }
-        let spread = sqrt(0.5 * squares);
-        let narrow = min(LUTHIER_COAT_BLUR * spread.x, LUTHIER_WIDEST_COAT_BLUR);
-        return luthier_environment_step(min(max(narrow, 0.4 * spread.y / LUTHIER_SHOWN_READS), spread.y));
-    }
-
-    /// Light so far and that of one more direction of facets of Beckmann, by its shares of the slopes in the plane of the eye, of those whose light leaves, and
-    /// across it. Slopes have a logistic distribution, whose shares are in closed form, and a Gaussian's weight.
-    fn luthier_shown_even_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, along: f32, across: f32) -> LuthierShown {
-        let moved = fract(lobe.turn.z + 0.5) - 0.5;
-        let leaving = (vec2<f32>(-1.0, 1.0) + lobe.eye.x) / lobe.eye.z;
-        let ends = clamp((leaving - lobe.middle.x) / max(lobe.spread.x, 1e-6), vec2<f32>(-9.0), vec2<f32>(9.0));
-        let below = 1.0 / (1.0 + exp(-2.4 * ends));
-        let inside = mix(below.x, below.y, along + moved / LUTHIER_SHOWN_READS);
-        let shares = clamp(vec2<f32>(inside, 0.01 + 0.98 * fract(across + moved * $across_turn)), vec2<f32>(1e-7), vec2<f32>(0.999999));
-        let place = log(shares / (1.0 - shares)) / 2.4;
-        let proposed = shares * (1.0 - shares);
-        let chance = (below.y - below.x) * exp(-dot(place, place)) / (proposed.x * proposed.y);
-        //? lobes_axes
-        let slope = lobe.middle + lobe.spread.xy * place + vec2<f32>(0.0, lobe.spread.z * place.x);
-        //? else
-        let slope = lobe.middle + lobe.spread * place;
-        return luthier_shown_at(shown, lobe, prepared, frame, slope, 1.0, chance);
-    }
-
-    /// Mean radiance in facets of Beckmann: in directions of a lattice over equal shares of those that show it.
-    fn luthier_shown_even(given: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>) -> vec3<f32> {
-        var lobe = given;
-        lobe.is_even = true;
-        let stretch = luthier_shown_middle_stretch(lobe);
-        let blur = luthier_coat_blur(lobe, stretch);
-        let taken = 2.0 * (blur * blur) / max(stretch * stretch, vec2<f32>(1e-12));
-        //? lobes_axes
-        {
-            let left = max(lobe.width_sq.xy - taken, vec2<f32>(0.0));
-            let along = sqrt(left.x);
-            let between = lobe.width_sq.z / max(along, 1e-12);
-            lobe.spread = vec3<f32>(along, sqrt(max(left.y - between * between, 0.0)), between);
-        }
-        //? else
-        lobe.spread = sqrt(max(lobe.width * lobe.width - taken, vec2<f32>(0.0)));
-        var shown = LuthierShown(vec3<f32>(0.0), vec3<f32>(1e-6));
-        $each_even
-        return shown.light / shown.weight;
-    }
-}
-
 /// Mean radiance in the facets of the first interface.
-fn luthier_shown_coat(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: vec3<f32>) -> vec3<f32> {
+fn luthier_shown_coat(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: vec2<f32>) -> vec3<f32> {
     //? beckmann
     //? ggx
     let tail = 0.001 + 0.998 * prepared.coat.distribution;
@@ -300,16 +208,6 @@ fn luthier_shown_coat(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: 
     let width = vec2<f32>(prepared.coat.alpha);
     var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), width, tail, turn);
     coat.is_coat = true;
-    //? beckmann
-    {
-        //? ggx
-        if prepared.coat.distribution < 0.5 {
-            return luthier_shown_even(coat, prepared, frame);
-        }
-        //? else
-        return luthier_shown_even(coat, prepared, frame);
-    }
-    //? ggx|!beckmann
     return luthier_shown_mean(coat, prepared, frame);
 }
 
@@ -350,15 +248,15 @@ fn luthier_shown_wide(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: 
 /// the world of the environment. A turn in 0..1 moves the directions: samples of a pixel with turns of their own see more of them.
 fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
     let angle = 2.0 * LUTHIER_PI * turn;
-    let turned = vec3<f32>(cos(angle), sin(angle), turn);
+    let turned = vec2<f32>(cos(angle), sin(angle));
     var rest = luthier_albedo_lobes(prepared) - prepared.wide;
     //? lobes_bare_base
     {
         var total = prepared.base * luthier_environment_diffuse(frame[2]);
-        total += (prepared.wide - prepared.base) * luthier_shown_wide(prepared, frame, turned.xy);
+        total += (prepared.wide - prepared.base) * luthier_shown_wide(prepared, frame, turned);
     }
     //? else
-    var total = prepared.wide * luthier_shown_wide(prepared, frame, turned.xy);
+    var total = prepared.wide * luthier_shown_wide(prepared, frame, turned);
     //? lobes_lean
     {
         // As if the base were outside, and leaned by less: exact where radiance is linear in the direction.

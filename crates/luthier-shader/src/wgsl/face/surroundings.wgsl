@@ -11,12 +11,6 @@ fn luthier_environment_level(width: f32) -> f32 {
     return min(whole + 1.0 + (above * above - 1.0) / 3.0, log2(size) - 2.0);
 }
 
-/// The width of the widest level that is blurred by no more than a width; what is narrower than the second level keeps its width.
-fn luthier_environment_step(width: f32) -> f32 {
-    let relative = 0.125 * f32(textureDimensions(luthier_environment_map).x) * width;
-    return select(width * exp2(floor(log2(relative))) / relative, width, relative <= 1.0);
-}
-
 /// Radiance around a direction of the world, blurred by a width in radians.
 fn luthier_environment_around(direction: vec3<f32>, width: f32) -> vec3<f32> {
     let level = luthier_environment_level(width);
