@@ -546,7 +546,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 12 } else { 8 }
+        if is_family(self.varying) { 13 } else { 8 }
     }
 
     fn inputs(&self) -> Value {
@@ -682,7 +682,7 @@ impl Job for LobesJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.fit.varying) { 8 } else { 6 }
+        if is_family(self.fit.varying) { 9 } else { 6 }
     }
 
     fn inputs(&self) -> Value {

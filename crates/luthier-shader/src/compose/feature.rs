@@ -231,12 +231,16 @@ luthier_lut::named! {
         OwnNormals = "own_normals",
         /// A map of a layer has slope parameters.
         OwnAlphas = "own_alphas",
+        /// A map of a layer has slope parameters along one direction.
+        OwnWidths = "own_widths",
         /// A map of a layer has thicknesses.
         OwnSlabs = "own_slabs",
         /// A map of a layer has colours that its slab absorbs.
         OwnTints = "own_tints",
         /// Maps of a layer have base colours and metal, or an F0.
         OwnF0 = "own_f0",
+        /// Facets of an interface have the F0 of such a place: not those of a coat in `lobes`.
+        FacetsF0 = "facets_f0",
         /// The dielectric of a base has another F0 than 0.04, by a map or by the file.
         DielectricF0 = "dielectric_f0",
         /// A film lies on the base of such a material.

@@ -197,6 +197,7 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
                 &[Feature::Layered, Feature::OwnTints, Feature::LobesTints]
             }
             MapSlot::Absorption => &[Feature::Layered, Feature::OwnTints],
+            MapSlot::AlphaX | MapSlot::AlphaY => &[Feature::Layered, Feature::OwnAlphas, Feature::OwnWidths],
             _ => &[Feature::Layered, Feature::OwnAlphas],
         });
     }
@@ -211,6 +212,10 @@ fn of_material(material: &MaterialEntry, form: Form) -> BTreeSet<Feature> {
     let interface = material.layers.len().checked_sub(2).map(|number| &material.layers[number]);
     if own.contains(&Feature::OwnF0) && interface.and_then(|layer| layer.f0).is_some_and(|f0| f0 != [ENGINE_F0; 3]) {
         own.insert(Feature::DielectricF0);
+    }
+    let is_below = family(material).is_some_and(|family| family.interface > 0);
+    if own.contains(&Feature::OwnF0) && !is_below {
+        own.insert(Feature::FacetsF0);
     }
     if own.contains(&Feature::OwnF0) && material.layers.iter().any(|layer| layer.metal_f82_tint.is_some()) {
         own.insert(Feature::OwnEdge);

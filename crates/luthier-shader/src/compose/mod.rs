@@ -16,6 +16,7 @@ mod stacks;
 mod statistics;
 mod words;
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use luthier_layers::models::path;
@@ -110,13 +111,25 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     parts.retain(|part| !part.trim().is_empty());
     // Programs around a shader read these members of a layer, whether its own functions do or not.
     let kept: &[&str] = if features.has(Feature::Interface) { &["kind", "alpha"] } else { &["kind"] };
-    let wgsl = parts.join("\n");
+    let wgsl = parts.join("\n").replace("$base_layer", &base_layer(set));
     let wgsl = match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
         Buffer::Texture => read_from_texture(set, form, &wgsl),
         Buffer::Storage | Buffer::Sized => wgsl,
     };
     Ok(reached(&wgsl, kept))
+}
+
+/// The number of the layer that is the base of families: a constant where all have the same.
+fn base_layer(set: &MaterialSet<'_>) -> String {
+    let sides: Vec<MaterialEntry> = set.materials.iter().filter_map(MaterialEntry::side).collect();
+    let materials = set.materials.iter().chain(&sides).filter(|material| material.model.is_fitted());
+    let numbers: BTreeSet<u32> =
+        materials.filter_map(|material| Some(material.constants.lobes?.family()?.interface)).collect();
+    match numbers.first().filter(|_| numbers.len() == 1) {
+        Some(number) => format!("{number}u"),
+        None => "u32(tilt_word.z)".to_owned(),
+    }
 }
 
 /// The module of places, with the number of layers that have values of their own.

@@ -160,3 +160,20 @@ fn sides_are_those_that_are_asked_for() {
     assert_eq!(both.plain, dearer.plain + 1);
     assert!(matches!(of(Sides::Of(Record { words: &words[..1], material: 1 })), Err(ShaderError::Uncounted(_))));
 }
+
+/// A text that takes a place is counted with what textures decide unknown: only normals are those of the surface.
+#[test]
+fn places_are_not_known() {
+    let of = |body: &str| {
+        let at = format!(
+            "struct LuthierPlace {{ normal: vec3<f32>, factor: f32, layers: array<f32, 2>, }}\n\
+             fn luthier_eval_at(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n\
+             fn luthier_place() -> LuthierPlace {{ return LuthierPlace(vec3<f32>(0.0, 0.0, 1.0), 1.0, array<f32, 2>(1.0, 1.0)); }}\n"
+        );
+        let eval = module_of("return luthier_eval_at(luthier_place(), material, wi, wo);");
+        count(&(at + &eval), &[], 1).unwrap()
+    };
+    assert_eq!(of("return wi * place.factor;"), StaticCounts { plain: 3, ..NONE });
+    assert_eq!(of("return wi * (place.layers[0] * place.layers[1]);"), StaticCounts { plain: 4, ..NONE });
+    assert_eq!(of("return vec3<f32>(place.normal.z / 2.0);"), NONE);
+}

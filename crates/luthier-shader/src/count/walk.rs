@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use naga::{
-    AddressSpace, ArraySize, Block, Expression, Function, Handle, Literal, Module, ScalarKind, Statement, SwitchValue,
-    Type, TypeInner,
+    AddressSpace, ArraySize, Block, Expression, Function, Handle, Literal, Module, ScalarKind, Statement, StructMember,
+    SwitchValue, Type, TypeInner,
 };
 
 use super::graph::{Graph, Id};
@@ -79,8 +79,9 @@ impl<'a> Walk<'a> {
             self.privates.insert(handle.index(), self.slots.len());
             self.slots.push(value);
         }
-        let prepared = function("luthier_prepare").zip(function("luthier_light")).filter(|_| lights > 1);
-        let eval = function("luthier_eval");
+        let at_place = |name: &str| function(&format!("{name}_at")).or_else(|| function(name));
+        let prepared = at_place("luthier_prepare").zip(function("luthier_light")).filter(|_| lights > 1);
+        let eval = at_place("luthier_eval");
         let mut results = Vec::new();
         let material = self.input(ScalarKind::Uint);
         if let Sides::Of(on) = self.sides {
@@ -89,7 +90,9 @@ impl<'a> Walk<'a> {
         let material = Value::Scalar(material);
         let wo = self.direction();
         if let Some((prepare, light)) = prepared {
-            let prepared = self.call(prepare, vec![material, wo])?.ok_or("`luthier_prepare` returns nothing")?;
+            let mut arguments = self.place(prepare, 2)?;
+            arguments.extend([material, wo]);
+            let prepared = self.call(prepare, arguments)?.ok_or("`luthier_prepare` returns nothing")?;
             for _ in 0..lights {
                 let wi = self.direction();
                 let value = self.call(light, vec![prepared.clone(), wi])?.ok_or("`luthier_light` returns nothing")?;
@@ -97,9 +100,12 @@ impl<'a> Walk<'a> {
             }
         } else {
             let eval = eval.ok_or("there is no function `luthier_eval`")?;
+            let place = self.place(eval, 3)?;
             for _ in 0..lights {
                 let wi = self.direction();
-                let value = self.call(eval, vec![material.clone(), wi, wo.clone()])?;
+                let mut arguments = place.clone();
+                arguments.extend([material.clone(), wi, wo.clone()]);
+                let value = self.call(eval, arguments)?;
                 value.ok_or("`luthier_eval` returns nothing")?.scalars(&mut results);
             }
         }
@@ -109,6 +115,50 @@ impl<'a> Walk<'a> {
     fn input(&mut self, kind: ScalarKind) -> Id {
         self.inputs += 1;
         self.graph.node(Operation::Input(self.inputs), Vec::new(), kind)
+    }
+
+    /// The place that a function takes before so many other arguments, if it takes one: what textures decide is not known, but for normals, whose frame a program
+    /// may make.
+    fn place(&mut self, function: &'a Function, others: usize) -> Result<Vec<Value>, Reason> {
+        let Some(place) = function.arguments.first().filter(|_| function.arguments.len() > others) else {
+            return Ok(Vec::new());
+        };
+        let TypeInner::Struct { members, .. } = &self.module.types[place.ty].inner else {
+            return Err("a place is a structure");
+        };
+        Ok(vec![Value::Parts(members.iter().map(|member| self.unknown(member)).collect::<Result<_, _>>()?)])
+    }
+
+    fn unknown(&mut self, member: &StructMember) -> Result<Value, Reason> {
+        let mut value = self.zero(member.ty)?;
+        if member.name.as_deref() == Some("normal") {
+            let one = self.graph.constant(Constant::float(1.0));
+            if let Value::Parts(parts) = &mut value
+                && let Some(up) = parts.last_mut()
+            {
+                *up = Value::Scalar(one);
+            }
+            return Ok(value);
+        }
+        self.of_inputs(member.ty)
+    }
+
+    /// A value of a type, of which nothing is known but normals.
+    fn of_inputs(&mut self, ty: Handle<Type>) -> Result<Value, Reason> {
+        let module = self.module;
+        Ok(match &module.types[ty].inner {
+            TypeInner::Scalar(scalar) => Value::Scalar(self.input(scalar.kind)),
+            TypeInner::Vector { size, scalar } => {
+                Value::Parts((0..*size as usize).map(|_| Value::Scalar(self.input(scalar.kind))).collect())
+            }
+            TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
+                Value::Parts((0..count.get()).map(|_| self.of_inputs(*base)).collect::<Result<_, _>>()?)
+            }
+            TypeInner::Struct { members, .. } => {
+                Value::Parts(members.iter().map(|member| self.unknown(member)).collect::<Result<_, _>>()?)
+            }
+            _ => return Err("a place with a member of another type"),
+        })
     }
 
     fn direction(&mut self) -> Value {

@@ -165,6 +165,10 @@ impl Wide {
 
     /// The integrals of `(1 - c)^5 mu / pi` and `(1 - c)^2 mu / pi` over the hemisphere.
     pub fn moments(&self) -> [f64; 2] {
+        // Over the cosine itself: 2 int (1 - mu)^k mu = 2 / ((k + 1) (k + 2)).
+        if self.axis.critical().cot_sq == 0.0 {
+            return [1.0 / 21.0, 1.0 / 6.0];
+        }
         [0, 1].map(|power: usize| self.mean(|wide, cos_theta| -wide.slopes(cos_theta)[power]))
     }
 

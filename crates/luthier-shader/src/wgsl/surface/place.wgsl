@@ -17,7 +17,7 @@
         //? own_tints
         /// Factors on what that slab absorbs, RGB.
         absorption_factors: vec3<f32>,
-        //? own_f0
+        //? facets_f0
         /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
         passing: vec3<f32>,
         //? own_edge
@@ -158,7 +158,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     layer.optical_depth_log2 *= own.slab_factor;
     //? own_tints
     layer.optical_depth_log2 *= own.absorption_factors;
-    //? own_f0
+    //? facets_f0
     layer.passing = own.passing;
     //? film_f0, own_f0
     if index == 0u && place.metal.w >= 0.0 {
@@ -166,11 +166,15 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     }
     //? own_edge
     layer.edge = own.edge;
+    //? interface
+    var alpha = layer.alpha;
     //? own_alphas
     {
         let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));
-        //? interface
-        layer = luthier_with_alpha(layer, layer.alpha * sqrt(own_alphas.x * own_alphas.y));
+        //? interface, own_widths
+        alpha *= sqrt(own_alphas.x * own_alphas.y);
+        //? interface, !own_widths
+        alpha *= own_alphas.x;
         layer.alpha_xy *= own_alphas;
     }
     //? tangents
@@ -186,13 +190,13 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         let unresolved = 2.0 * max(place.slope_variance, 0.0);
         let scale = place.alpha_factor * place.alpha_factor;
         //? interface
-        layer = luthier_with_alpha(layer, clamp(sqrt(layer.alpha * layer.alpha * scale + unresolved), 0.001, 1.0));
+        layer = luthier_with_alpha(layer, clamp(sqrt(alpha * alpha * scale + unresolved), 0.001, 1.0));
         layer.alpha_xy = clamp(sqrt(layer.alpha_xy * layer.alpha_xy * scale + unresolved), vec2<f32>(0.001), vec2<f32>(1.0));
     }
     //? else
     {
         //? interface
-        layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
+        layer = luthier_with_alpha(layer, clamp(alpha * place.alpha_factor, 0.001, 1.0));
         layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
     }
     //? absorption|film|film_f0
@@ -298,6 +302,7 @@ fn luthier_f0_place(place: LuthierPlace, material: u32, f0: vec3<f32>) -> Luthie
     let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     var next = place;
     next.dielectric_f0 = f0;
+    //? facets_f0
     if index < $layers {
         next.layers[index].passing = (1.0 - f0) / max(1.0 - luthier_materials[first + $word_ior_n].xyz, vec3<f32>(1e-6));
     }
@@ -363,6 +368,7 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
         //? own_edge
         next.metal_edge = edge;
     }
+    //? facets_f0
     if index < $layers {
         next.layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));
         //? own_edge

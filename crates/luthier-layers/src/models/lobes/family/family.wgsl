@@ -2,24 +2,16 @@
 {
     //? lobes_metallic
     {
-        /// Light of one visit to the metal of a family, over its F0 and that of the dielectric in w: q f / (1 - R f) through the energies at .8 and 1.
-        fn luthier_family_once(energies: vec2<f32>, f0: vec4<f32>) -> vec4<f32> {
-            let beyond = max(0.8 * (energies.y - energies.x), 1e-9);
-            let pole = clamp((0.8 * energies.y - energies.x) / beyond, 0.0, 0.99);
-            return f0 * (energies.y * (1.0 - pole)) / (1.0 - pole * f0);
+        /// Light of one visit to the metal of a family, over its F0 and that of the dielectric in w: w (1 - R) f / (1 - R f) with w and R.
+        fn luthier_family_once(numbers: vec2<f32>, f0: vec4<f32>) -> vec4<f32> {
+            return f0 * (numbers.x - numbers.x * numbers.y) / (1.0 - numbers.y * f0);
         }
 
-        /// Light of more visits, f^2 (p + q f) / (1 - R f) through the energies at .5, .9 and 1.
-        fn luthier_family_more(energies: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
-            let half_light = 4.0 * energies.x;
-            let bright = energies.y / 0.81;
-            let beyond = max(0.4 * (energies.z - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half_light), 1e-9);
-            let found = clamp((0.4 * (energies.z - bright) - 0.1 * (bright - half_light)) / beyond, 0.0, 0.99);
-            // Light that grows less than with the square has no pole.
-            let pole = select(0.0, found, energies.z > half_light);
-            let low = half_light * (1.0 - 0.5 * pole);
-            let high = energies.z * (1.0 - pole);
-            return f0 * f0 * max(low + (2.0 * f0 - 1.0) * (high - low), vec3<f32>(0.0)) / (1.0 - pole * f0);
+        /// Light of more visits, f^2 (p + q f) / (1 - R f) with p + q f at .5 and at 1, and R.
+        fn luthier_family_more(numbers: vec3<f32>, f0: vec3<f32>) -> vec3<f32> {
+            let growth = 2.0 * (numbers.y - numbers.x);
+            let least = 2.0 * numbers.x - numbers.y;
+            return f0 * f0 * max(least + growth * f0, vec3<f32>(0.0)) / (1.0 - numbers.z * f0);
         }
     }
 
@@ -122,6 +114,15 @@
         return here;
     }
 
+    /// Albedo of the diffuse base of a material by its header: of the place, or of the file.
+    fn luthier_family_albedo($place_parameter header: u32) -> vec3<f32> {
+        //? base_color
+        if place.base_color.x >= 0.0 {
+            return place.base_color;
+        }
+        return luthier_materials[header + $word_patina].rgb;
+    }
+
     /// A lobe of a family by its shift, its sharpness and decay, seen at an angle of this sine.
     fn luthier_family_shape(shift: f32, sharpness: vec2<f32>, decay: f32, sin_theta: f32) -> LuthierLobeShape {
         //? lobes_axes
@@ -139,13 +140,15 @@
         let across = disc.y * sharpness.yw;
         let near = along - away;
         let far = along + away;
-        let root = sqrt((1.0 + near * near) * (1.0 + far * far));
-        // 1 + d + root and 1 - d + root, without cancellation.
+        let squares = (1.0 + near * near) * (1.0 + far * far);
+        let over_root = inverseSqrt(squares);
+        let root = squares * over_root;
+        // Where these two cancel, shares are least, or hang on the width across alone.
         let d = near * far;
-        let within = select(4.0 * away * away / max(root - 1.0 - d, vec2<f32>(1e-6)), 1.0 + d + root, d > vec2<f32>(-1.0));
-        let beyond = select(4.0 * along * along / max(root - 1.0 + d, vec2<f32>(1e-6)), 1.0 - d + root, d < vec2<f32>(1.0));
+        let within = 1.0 + d + root;
+        let beyond = 1.0 - d + root;
         let sum = 1.0 + along * along + away * away + root;
-        return max(along * across * within * inverseSqrt(sum * (beyond + 2.0 * across * across)) / root, vec2<f32>(1e-3));
+        return max(along * across * within * (inverseSqrt(sum * (beyond + 2.0 * across * across)) * over_root), vec2<f32>(1e-3));
     }
 
     //? lobes_tails
@@ -172,7 +175,7 @@
     /// Shares above the horizon of lobes of such a tail, from what rows have over these estimates.
     fn luthier_family_tail_shares(row: vec2<f32>, beside: vec2<f32>, slope: f32, sharpness: vec4<f32>, decay: f32, disc: vec2<f32>) -> vec2<f32> {
         let over = luthier_family_part(row, beside, -1.0).xy;
-        return min(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1.0));
+        return clamp(over * luthier_family_leaving_tail(slope, sharpness, decay, disc), vec2<f32>(1e-3), vec2<f32>(1.0));
     }
 
     //? anisotropic
@@ -221,11 +224,8 @@
         let header = luthier_header(material);
         let base_axis = luthier_materials[header + $word_phong_diffuse];
         let coat_axis = luthier_materials[header + $word_patina_tarnish];
-        let painted = luthier_materials[header + $word_patina];
-        // Integrals of the shape of the remainder, and the number of lobes.
-        let counts = luthier_materials[header + $word_patina_diffuse_albedo];
         let tilt_word = luthier_materials[header + $word_glitter_tilt];
-        let base_layer = u32(tilt_word.z);
+        let base_layer = $base_layer;
         let first_word = luthier_whole(luthier_materials[header].x);
         let base_word = first_word + base_layer * LUTHIER_LAYER_WORDS;
         // Slope parameters of coat and base, without the variance of normals, which lobes get by themselves.
@@ -322,16 +322,12 @@
         let of_facet = luthier_family_part(prepared.row, beside, 3.0);
         // Energies of rows are over the light that crosses the coat.
         let crossing = select(luthier_family_crossing(held.x, wo.z), 1.0, base_layer == 0u);
-        var diffuse = painted.rgb;
-        //? base_color
-        if place.base_color.x >= 0.0 {
-            diffuse = place.base_color;
-        }
         // Light that the base reflected once and more often, the remainder, and one facet of the first interface.
         var once = of_once.rgb;
         var more = of_more.rgb;
         var wide = vec3<f32>(0.0);
-        var facet = 1.0 - crossing * of_facet.rgb;
+        // Light but that of one facet, over what crosses the coat.
+        var entering = of_facet.rgb;
         // The a of the remainder, and the share of the light of one visit that is wide.
         var falloff = of_facet.a;
         var once_wide = of_once.z;
@@ -347,9 +343,17 @@
         let is_metallic = false;
         //? lobes_metallic
         if is_metallic {
-            var metal = vec3<f32>(0.0);
-            var metallic = 0.0;
-            var passed = vec3<f32>(1.0);
+            //? own_f0
+            {
+                // Below 0 without a place's own: none.
+                var metal = saturate(place.metal.rgb);
+                var metallic = saturate(place.metal.w);
+            }
+            //? else
+            {
+                var metal = vec3<f32>(0.0);
+                var metallic = 0.0;
+            }
             //? film_f0
             {
                 // The film of the base, first or below a coat; a base of nothing but metal has the F0 of the file.
@@ -357,24 +361,37 @@
                 //? place
                 base.film_thickness_waves *= place.film_factor;
                 let sheet = luthier_sheet(base);
-                if base.kind == LUTHIER_CONDUCTOR {
+                //? own_f0
+                let is_of_file = base.kind == LUTHIER_CONDUCTOR && place.metal.w < 0.0;
+                //? else
+                let is_of_file = base.kind == LUTHIER_CONDUCTOR;
+                if is_of_file {
                     metal = base.ior_n;
                     metallic = 1.0;
                 }
             }
             //? dielectric_f0
             let dielectric = select(luthier_materials[base_word + $word_ior_n].xyz, place.dielectric_f0, place.dielectric_f0.x >= 0.0);
+            // The diffuse base has the albedo diffuse / passed.
             //? own_f0
-            if place.metal.w >= 0.0 {
-                metal = place.metal.rgb;
-                metallic = place.metal.w;
-                // The diffuse base, of the albedo diffuse / passed, shows the colour of the place (Saunderson 1942).
-                diffuse = place.matt;
-                //? dielectric_f0
-                let entered = (1.0 - dielectric) * (20.0 / 21.0);
-                //? else
-                let entered = LUTHIER_PLASTIC_PASSED;
-                passed = entered + diffuse * (1.0 - entered);
+            {
+                var diffuse = place.matt;
+                var passed = vec3<f32>(1.0);
+                if place.metal.w >= 0.0 {
+                    // It shows the colour of the place (Saunderson 1942).
+                    //? dielectric_f0
+                    let entered = (1.0 - dielectric) * (20.0 / 21.0);
+                    //? else
+                    let entered = LUTHIER_PLASTIC_PASSED;
+                    passed = entered + diffuse * (1.0 - entered);
+                } else {
+                    diffuse = luthier_family_albedo($place_argument header);
+                }
+            }
+            //? else
+            {
+                let diffuse = luthier_family_albedo($place_argument header);
+                let passed = vec3<f32>(1.0);
             }
             // Rows have the light of a diffuse base of the albedo 0.8.
             let back = prepared.medium.y + tilt_word.w * roots.x + prepared.medium.w * roots.y;
@@ -512,24 +529,27 @@
             wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
             //? lobes_lean
             met = (1.0 - metallic) * (light * diffuse / passed);
-            facet = vec3<f32>(1.0 - crossing * of_facet.x);
+            entering = vec3<f32>(of_facet.x);
             if base_layer == 0u {
                 // Several facets of the dielectric, and one of either.
                 once = (1.0 - metallic) * several;
                 //? dielectric_f0
-                facet = of_facet.x + of_once.y * mix(dielectric, seen_metal, metallic);
+                var facet = of_facet.x + of_once.y * mix(dielectric, seen_metal, metallic);
                 //? else
-                facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), seen_metal, metallic);
+                var facet = of_facet.x + of_once.y * mix(vec3<f32>(0.04), seen_metal, metallic);
                 //? own_edge
                 facet -= of_edge.y * metallic * place.metal_edge;
                 //? film_f0
                 if is_filmed {
                     facet = all * mix(seen_plastic, seen_metal, metallic);
                 }
+                entering = max(1.0 - facet, vec3<f32>(0.0));
             }
         }
         //? !lobes_metallic|~lobes_metallic
         if !is_metallic {
+            let painted = luthier_materials[header + $word_patina];
+            let diffuse = luthier_family_albedo($place_argument header);
             let of_wide = luthier_family_part(prepared.row, beside, 4.0);
             wide = of_wide.rgb;
             falloff = of_wide.a;
@@ -577,11 +597,16 @@
             }
         }
         prepared.medium.y = falloff;
-        prepared.medium.w = (1.0 / LUTHIER_PI) / (1.0 - dot(prepared.medium.yz, counts.xy));
-        let below = crossing * (wide + once + more);
+        // Integrals of the shape of the remainder.
+        //? critical_view
+        let moments = luthier_materials[header + $word_patina_diffuse_albedo].xy;
+        //? else
+        let moments = vec2<f32>(1.0 / 21.0, 1.0 / 6.0);
+        prepared.medium.w = (1.0 / LUTHIER_PI) / (1.0 - dot(prepared.medium.yz, moments));
+        let below = wide + once + more;
         // No more light than falls in.
-        let left = crossing * min(max(1.0 - facet, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
-        prepared.albedo = facet + left * (wide + once + more);
+        let left = crossing * min(entering / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
+        prepared.albedo = 1.0 - crossing * entering + left * below;
         // Some of the light of both lobes is wide.
         prepared.wide = left * (wide + once_wide * once + of_more.a * more);
         //? lobes_lean
@@ -639,9 +664,9 @@
             second_shape = luthier_family_stretched(second_shape, (4.84 * of_base + of_coat) / (4.84 * squares.y + squares.x));
             let first_left = luthier_lobe_leaving(first_shape, disc.xy - luthier_lobe_slope(first_shape, vec2<f32>(0.0)), disc.z);
             let second_left = luthier_lobe_leaving(second_shape, disc.xy - luthier_lobe_slope(second_shape, vec2<f32>(0.0)), disc.z);
-            prepared.shares = min(prepared.shares * vec2<f32>(first_left / first_level, second_left / second_level), vec2<f32>(1.0));
+            prepared.shares = clamp(prepared.shares * vec2<f32>(first_left / first_level, second_left / second_level), vec2<f32>(1e-3), vec2<f32>(1.0));
         }
-        let over_shares = (1.0 - vec2<f32>(once_wide, of_more.a)) / max(prepared.shares, vec2<f32>(1e-3));
+        let over_shares = (1.0 - vec2<f32>(once_wide, of_more.a)) / prepared.shares;
         prepared.first_strength = left * (over_shares.x * once);
         prepared.second_strength = left * (over_shares.y * more);
         //? surface

@@ -4,7 +4,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use super::paint::{AROUND_SPREADS, MORE_SPREAD, chain, dimmed, trapped};
+use super::paint::{AROUND_SPREADS, MORE_SPREAD, chain, chain_numbers, dimmed, trapped, trapped_numbers};
 use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES};
 use super::{Family, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
@@ -115,7 +115,14 @@ impl Family {
                 lobe.shift /= spread;
                 lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness * spread);
                 // Energies between nodes hang on neither node's share.
-                lobe.strength = energies[view][number].map(over);
+                let strength = energies[view][number].map(over);
+                // Poles are no energies.
+                let [first, second, _] = strength;
+                lobe.strength = match (self.is_metallic, number) {
+                    (true, 0) => [first, energies[view][0][1], 0.0],
+                    (true, _) => [first, second, energies[view][1][2]],
+                    (false, _) => strength,
+                };
                 // Lobes in the plane of the eye have no shear: its place has the share of the light of the other lobe that is in the remainder.
                 lobe.shear = wide_shares[1 - number][view] / lobe.tail.sqrt();
                 lobe
@@ -165,11 +172,11 @@ impl Family {
             return [once.clear, more.clear];
         }
         let once = if self.is_coated() {
-            [once.between[0], once.clear[2], 0.0]
+            chain_numbers([once.between[0], once.clear[2]])
         } else {
             [rest.plastic, slope(rest.first_facet), 0.0]
         };
-        [once, [more.clear[1], more.between[1], more.clear[2]]]
+        [once, trapped_numbers([more.clear[1], more.between[1], more.clear[2]])]
     }
 }
 

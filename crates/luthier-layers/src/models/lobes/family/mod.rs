@@ -9,15 +9,15 @@
 //!
 //! | part | x, y, z, w |
 //! |---|---|
-//! | 0 | reflected by the metal once: energies at c = .8 and 1; share of it that is wide; shift |
-//! | 1 | reflected by the metal more often: energies at c = .5, .9, 1; share of it that is wide |
+//! | 0 | reflected by the metal once: energy w at c = 1, and R; share of it that is wide; shift |
+//! | 1 | reflected by the metal more often: p + q c at c = .5 and 1, and R; share of it that is wide |
 //! | 2 | sharpness of both lobes |
 //! | 3 | light but that of one facet of the first interface; facets of the coat alone; light of a diffuse base of the albedo .8; a of the remainder |
 //! | 4, below a slab that absorbs | lengths of the light of the diffuse base, of that sent back to it, of light of one visit, and of more |
 //! | 4, under a film on the base | 0, 0, mean and standard deviation of the cosine at which facets are seen |
 //! | 5, of a metal with an edge tint | what it takes from the F0 of light of one visit below a coat, or of several facets without one; and from one facet without a coat |
 //!
-//! Between its energies light of one visit is `q c / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
+//! Light of one visit is `w (1 - R) c / (1 - R c)`, and light of more visits `c^2 (p + q c) / (1 - R c)`: reflectances are Schlick's,
 //! linear in c, and trapped light is reflected by the metal again and again. The dielectric reflects once as a metal of its F0 does. The light of the diffuse
 //! base is `t r / (1 - s r)`, where s, the share of it that is sent back to the base, is linear in the roots of both slope parameters ([`Family::sent_back`]). A slab multiplies each
 //! energy by `exp(-length depth)`, but for light of more visits c, because such light passes it again before each. Without a coat, the first lobe has the

@@ -308,23 +308,31 @@ fn trapped_dip([coat, base]: [f64; 2], cos_theta: f64) -> f64 {
 /// Least share above the horizon by which an energy is divided.
 const SHARE_MIN: f64 = 1e-3;
 
-/// Energy of light of one visit to the base at an F0: `q f / (1 - R f)` through its energies at .8 and 1. Below a coat light meets the base so steeply that
+/// Energy of light of one visit to the base at an F0, by its [`chain_numbers`]: `w (1 - R) f / (1 - R f)`. Below a coat light meets the base so steeply that
 /// without F0 it reflects nothing.
-pub(super) fn chain([bright, white, _]: Rgb, f: f64) -> f64 {
-    let beyond = (0.8 * (white - bright)).max(BEYOND_MIN);
-    let pole = ((0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX);
-    f * white * (1.0 - pole) / (1.0 - pole * f)
+pub(super) fn chain([white, pole, _]: Rgb, f: f64) -> f64 {
+    white * (1.0 - pole) * f / (1.0 - pole * f)
 }
 
-/// Energy of light of more visits at an F0: `f^2 (p + q f) / (1 - R f)` through its energies at .5, .9 and 1.
-pub(super) fn trapped([half, bright, white]: Rgb, f: f64) -> f64 {
+/// Numbers of light of one visit: its energy w at an F0 of 1, and the pole R by which that at .8 is as given.
+pub(super) fn chain_numbers([bright, white]: [f64; 2]) -> Rgb {
+    let beyond = (0.8 * (white - bright)).max(BEYOND_MIN);
+    [white, ((0.8 * white - bright) / beyond).clamp(0.0, POLE_MAX), 0.0]
+}
+
+/// Energy of light of more visits at an F0, by its [`trapped_numbers`]: `f^2 (p + q f) / (1 - R f)`.
+pub(super) fn trapped([low, high, pole]: Rgb, f: f64) -> f64 {
+    f * f * (low + (2.0 * f - 1.0) * (high - low)).max(0.0) / (1.0 - pole * f)
+}
+
+/// Numbers of light of more visits from its energies at an F0 of .5, .9 and 1: `p + q f` at .5 and at 1, and the pole R.
+pub(super) fn trapped_numbers([half, bright, white]: Rgb) -> Rgb {
     let [half, bright] = [4.0 * half, bright / 0.81];
     let beyond = 0.4 * (white - 0.9 * bright) - 0.1 * (0.9 * bright - 0.5 * half);
     let curve = 0.4 * (white - bright) - 0.1 * (bright - half);
     // Light that grows less than with the square has no pole.
     let pole = if white > half { (curve / beyond.max(BEYOND_MIN)).clamp(0.0, POLE_MAX) } else { 0.0 };
-    let [half, white] = [half * (1.0 - 0.5 * pole), white * (1.0 - pole)];
-    f * f * (half + (2.0 * f - 1.0) * (white - half)).max(0.0) / (1.0 - pole * f)
+    [half * (1.0 - 0.5 * pole), white * (1.0 - pole), pole]
 }
 
 /// Energy of light of several facets of a dielectric at an F0: that of a metal, and light that crossed some of them. `known` is all of it at the F0 that rows

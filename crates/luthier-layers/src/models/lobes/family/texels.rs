@@ -37,12 +37,12 @@ impl Family {
         let [z, w] = second.sharpness.map(|x| x * second.tail.sqrt());
         let more = with(second.strength, more_wide);
         if self.is_metallic {
-            let [bright, white, _] = first.strength;
+            let [once, pole, _] = first.strength;
             let [facet, once_length, more_length] = row.albedo_dir;
             let ([light, base_length, kept], [_, around, kept_apart]) = (base.energy, base.internal);
             let [white_light, dip, first_dip] = row.wide;
             let parts = [
-                [bright, white, once_wide, first.shift],
+                [once, pole, once_wide, first.shift],
                 more,
                 [x, y, z, w],
                 [facet, white_light, light, a],
