@@ -142,7 +142,7 @@ mod tests {
     /// A spiral with equal weights (Vogel 1979) is off by 0.17 with eight points, 0.088 with 16 and 0.045 with 32.
     #[test]
     fn blurs_about_the_points_are_nearly_a_gaussian() {
-        for (step, limit) in STEPS.iter().zip([0.9, 0.7, 0.3, 0.1, 0.03, 0.005]) {
+        for (step, limit) in STEPS.iter().zip([0.93, 0.6, 0.3, 0.1, 0.03, 0.005]) {
             let weights: f64 = step.points.iter().map(|point| point[2]).sum();
             assert!((weights - 1000.0).abs() < 1.0, "{weights}");
             let found = error(step.points, 0.6);
