@@ -10,8 +10,8 @@ struct Step {
     points: &'static [Point],
 }
 
-/// Points with weights whose blurs together come nearest to the Gaussian whose blur they share, found by descent from a spiral. Their errors are roots of the
-/// mean squared difference over the Gaussian's own root; those of a spiral with equal weights are two to five times as large.
+/// Points with weights whose blurs together come near to a Gaussian, found by descent from a spiral. With a blur of 0.6 standard deviations the test below has
+/// their errors; those of a spiral with equal weights are 1.3 times as large with two points, twice with eight and eleven times with 32.
 const STEPS: [Step; 6] = [
     Step { blur: 0.6, points: &[[0.0, 0.0, 1000.0]] },
     Step { blur: 0.5, points: &[[0.711, -0.626, 500.0], [-0.711, 0.626, 500.0]] },
