@@ -509,10 +509,22 @@ pub(crate) struct LayoutsOptions {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Costs come from counts of the texts: no driver is needed.\n\n\
-                  Examples:\n  luthier-lab ladder materials/papers materials/varnished-brass.toml -o docs/pages/ladder.md")]
+                  Examples:\n  luthier-lab ladder materials/papers materials/varnished-brass.toml -o docs/pages/ladder.md\n  \
+                  luthier-lab ladder materials/papers --stacks 20 --chart ladder.svg -o ladder.md")]
 pub(crate) struct LadderOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
+    /// Random stacks besides: those of `lobes` with two interfaces or more
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) stacks: u32,
+    /// Chart of error against time to write beside the page, as SVG. Judges coats of engines and the random stacks, with published models beside
+    #[arg(long, value_name = "FILE")]
+    pub(crate) chart: Option<PathBuf>,
+    /// Coats of engines to judge for the chart, the first of `coats`; by default all
+    #[arg(long, value_name = "N", requires = "chart")]
+    pub(crate) coats: Option<usize>,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -6,11 +6,12 @@ use luthier_export::GENERATOR;
 use luthier_gpu::Gpu;
 use luthier_lut::{RowBase, TexelFormat};
 use luthier_manifest::{Budget, ColorMode, ShadingModel};
-use luthier_material::{BakeSettings, LayerExtras, Material, SurfaceClass};
+use luthier_material::{BakeSettings, Material};
 use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
 use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open};
 
 use crate::cli::StabilityOptions;
+use crate::lobes;
 use crate::parity::subject;
 
 /// Runs every method on every stress case.
@@ -109,21 +110,8 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
 /// The n-th case as a material that the baker takes.
 fn material(n: u32, case: &StressCase, model: ShadingModel) -> Material {
     let color = if case.is_spectral { ColorMode::Spectral } else { ColorMode::ThreeWavelengths };
-    Material {
-        name: format!("case-{n}-{}", model.name()),
-        source: String::new(),
-        text: String::new(),
-        files: Vec::new(),
-        description: String::new(),
-        references: Vec::new(),
-        class: SurfaceClass::of(&case.stack),
-        layers: vec![LayerExtras::default(); case.stack.layers.len()],
-        stack: case.stack.clone(),
-        effects: luthier_material::Effects::default(),
-        budget: luthier_manifest::Budget::default(),
-        places: luthier_material::Places::default(),
-        bake: BakeSettings { model: Some(model), color: Some(color), ..BakeSettings::default() },
-    }
+    let bake = BakeSettings { model: Some(model), color: Some(color), ..BakeSettings::default() };
+    lobes::material(format!("case-{n}-{}", model.name()), case.stack.clone(), bake)
 }
 
 /// The command line that makes the page.

@@ -27,7 +27,7 @@
 //! - [`stability`] runs every method on stacks where methods fail, and finds the domain of each;
 //! - [`compare_pictures`] compares two pictures, [`render_ball`] renders one in f64, [`render_ball_of`] from values of any source, and [`sheet()`] puts
 //!   many on one;
-//! - [`Certificate`] is the page of one table, [`Plot`] draws curves, and [`Spread`] summarises times of a stopwatch.
+//! - [`Certificate`] is the page of one table, [`Plot`] draws curves, [`Scatter`] points of error over cost, and [`Spread`] summarises times of a stopwatch.
 //!
 //! A room uses the rooms above it in this list, and none below:
 //!
@@ -97,4 +97,4 @@ pub use places::{
     AtPlaces, PLACE_FLOOR, PLACES_SEED, PlaceErrors, Places, Rows, SimulatedAt, SimulatedErrors, SimulatedSettings,
     WorstPlace, at_places, simulated, simulated_by,
 };
-pub use svg::{Curve, Plot, PlotAxis, PlotColor};
+pub use svg::{Curve, Plot, PlotAxis, PlotColor, Scatter, ScatterPanel, ScatterPoint};

@@ -35,8 +35,8 @@ pub(crate) enum Refusal {
     },
 }
 
-/// The Pareto front: candidates that no other beats or equals in bytes, cost and absolute error at once. The first of
-/// equals stays.
+/// The Pareto front: candidates that no other beats or equals in bytes, cost and errors at once. The first of equals
+/// stays.
 fn front(candidates: &[Candidate]) -> Vec<usize> {
     (0..candidates.len()).filter(|&i| !is_beaten(candidates, i)).collect()
 }
@@ -48,7 +48,10 @@ fn is_beaten(candidates: &[Candidate], i: usize) -> bool {
 
 /// Whether a candidate is as good as another in each respect, or better.
 fn beats(a: &Candidate, b: &Candidate) -> bool {
-    a.bytes <= b.bytes && a.cost <= b.cost && a.error.max_abs <= b.error.max_abs
+    // Rows of lobes have errors of their own in place of an absolute one.
+    let errors = |c: &Candidate| [Some(c.error.max_abs), c.error.lobe, c.error.albedo].map(Option::unwrap_or_default);
+    let is_as_exact = errors(a).iter().zip(errors(b)).all(|(a, b)| *a <= b);
+    a.bytes <= b.bytes && a.cost <= b.cost && is_as_exact
 }
 
 /// Bytes first, then cost, then error.
@@ -286,6 +289,18 @@ mod tests {
         let candidates =
             kind(&[(10, 1.0, 0.5), (20, 1.0, 0.5), (20, 1.0, 0.1), (5, 9.0, 0.5), (20, 1.0, 0.1)]).candidates;
         assert_eq!(front(&candidates), [0, 2, 3]);
+    }
+
+    /// Rows of lobes have no absolute error: their front is by lobe error and albedo error.
+    #[test]
+    fn the_front_of_lobes_is_by_their_errors() {
+        let of = |cost, lobe, albedo| {
+            let Candidate { form, bytes, .. } = candidate(1, cost, 0.0);
+            let error = MeasuredError { lobe: Some(lobe), albedo: Some(albedo), ..MeasuredError::default() };
+            Candidate { form, bytes, cost, error }
+        };
+        let candidates = [of(1.0, 0.3, 0.01), of(2.0, 0.1, 0.01), of(3.0, 0.2, 0.02), of(4.0, 0.2, 0.001)];
+        assert_eq!(front(&candidates), [0, 1, 3]);
     }
 
     #[test]

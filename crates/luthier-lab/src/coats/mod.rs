@@ -22,6 +22,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::sampling::split_mix::SplitMix64;
 use luthier_report::{ModelSubject, Reference, Shown, ViewError};
+use luthier_shader::Yardstick;
 use luthier_terminal::{Bar, Failure, Outcome, deliver};
 use rayon::prelude::*;
 
@@ -37,16 +38,18 @@ const THETAS_DEG: [f64; 6] = [0.0, 30.0, 45.0, 60.0, 70.0, 80.0];
 struct Engine {
     name: &'static str,
     shader: fn(&Surface) -> Shader,
+    /// A shader whose cost is known.
+    yardstick: Option<Yardstick>,
 }
 
 const ENGINES: [Engine; 7] = [
-    Engine { name: "glTF KHR_materials_clearcoat", shader: gltf::shader },
-    Engine { name: "Filament", shader: filament::shader },
-    Engine { name: "Disney 2012", shader: disney::shader },
-    Engine { name: "Standard Surface in MaterialX", shader: standard_surface::shader },
-    Engine { name: "albedo scaling", shader: scaling::shader },
-    Engine { name: "OpenPBR in MaterialX", shader: open_pbr::shader },
-    Engine { name: "adobe/openpbr-bsdf", shader: adobe::shader },
+    Engine { name: "glTF KHR_materials_clearcoat", shader: gltf::shader, yardstick: Some(Yardstick::GltfClearcoat) },
+    Engine { name: "Filament", shader: filament::shader, yardstick: Some(Yardstick::FilamentClearcoat) },
+    Engine { name: "Disney 2012", shader: disney::shader, yardstick: None },
+    Engine { name: "Standard Surface in MaterialX", shader: standard_surface::shader, yardstick: None },
+    Engine { name: "albedo scaling", shader: scaling::shader, yardstick: None },
+    Engine { name: "OpenPBR in MaterialX", shader: open_pbr::shader, yardstick: None },
+    Engine { name: "adobe/openpbr-bsdf", shader: adobe::shader, yardstick: None },
 ];
 
 /// Models of luthier, after the engines.
@@ -74,6 +77,47 @@ struct Result {
     noise: f64,
 }
 
+/// A coat over a base as a stack, and as engines draw it.
+pub(crate) struct Coated {
+    pub(crate) subject: ModelSubject,
+    pub(crate) drawn: Vec<Drawn>,
+}
+
+/// A surface by the formula of an engine.
+pub(crate) struct Drawn {
+    pub(crate) engine: &'static str,
+    pub(crate) yardstick: Option<Yardstick>,
+    shader: Shader,
+}
+
+impl Drawn {
+    /// `f cos_theta_i`, of unit directions to the light and to the eye.
+    pub(crate) fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
+        value(&self.shader, wi, wo)
+    }
+}
+
+/// The coats of this page's first table.
+pub(crate) fn coated() -> Vec<Coated> {
+    let coated = cases().into_iter().filter(|case| page::COATED.contains(&case.group));
+    let coated = (0_u32..).zip(coated).map(|(n, case)| Coated {
+        subject: subject(format!("coat-{n}"), &case),
+        drawn: ENGINES
+            .iter()
+            .map(|engine| Drawn {
+                engine: engine.name,
+                yardstick: engine.yardstick,
+                shader: (engine.shader)(&case.surface),
+            })
+            .collect(),
+    });
+    coated.collect()
+}
+
+fn subject(name: String, case: &Case) -> ModelSubject {
+    ModelSubject { name, stack: case.stack(), wavelengths_nm: WAVELENGTHS_NM }
+}
+
 /// Judges, as a page.
 pub(crate) fn run(options: &CoatsOptions) -> Outcome {
     let cases = cases();
@@ -95,8 +139,8 @@ fn value(shader: &Shader, wi: DVec3, wo: DVec3) -> Rgb {
 }
 
 fn judge(case: &Case, options: &CoatsOptions) -> Result {
-    let stack = case.stack();
-    let subject = ModelSubject { name: String::new(), stack: stack.clone(), wavelengths_nm: WAVELENGTHS_NM };
+    let subject = subject(String::new(), case);
+    let stack = subject.stack.clone();
     let reference = Reference::new(&subject, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
     let shown = |surface: &Surface, engine: &Engine| {
         let shader = (engine.shader)(surface);

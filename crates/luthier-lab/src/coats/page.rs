@@ -64,7 +64,8 @@ fn cells<'a>(views: impl Iterator<Item = &'a ViewError>) -> ([f64; 5], String) {
     (all, format!("{:+.3} | {middle:.3} | {most:.3} | {lobe:.3} | {lobe_most:.3}", all[0]))
 }
 
-const COATED: [Group; 4] = [Group::Metal, Group::Plastic, Group::Mixture, Group::Place];
+/// Groups with a coat that shows in pictures.
+pub(super) const COATED: [Group; 4] = [Group::Metal, Group::Plastic, Group::Mixture, Group::Place];
 
 pub(super) fn page(results: &[Result], options: &CoatsOptions) -> std::result::Result<String, std::fmt::Error> {
     let mut out = String::new();

@@ -19,10 +19,10 @@ use rayon::prelude::*;
 use self::reasons::Reasons;
 use crate::cli::{LobesOptions, Precision};
 
-pub(crate) use self::stacks::{anisotropic, of, random};
+pub(crate) use self::stacks::{anisotropic, material, of, random};
 
 /// Angles of the judge against the normal, degrees: the angles of `luthier-lab judge`, and others between.
-const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
+pub(crate) const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
 
 /// Models of papers for comparison.
 const BESIDE: [&str; 2] = ["belcour", "elek"];
@@ -34,7 +34,7 @@ const ALBEDO_STD_ERR: f64 = 7e-4;
 pub(crate) const JUDGE_SEED: u64 = 1 << 40;
 
 /// Number of the quantities that are judged: lobe errors and albedo errors.
-const QUANTITIES: usize = 2;
+pub(crate) const QUANTITIES: usize = 2;
 
 /// Errors that a stack should not exceed, by quantity.
 const LIMITS: [f64; QUANTITIES] = [0.05, 0.003];
@@ -68,7 +68,7 @@ fn of_view(view: &ViewError) -> [f64; QUANTITIES] {
 }
 
 /// The largest errors of views by quantity.
-fn largest(views: &[ViewError]) -> [f64; QUANTITIES] {
+pub(crate) fn largest(views: &[ViewError]) -> [f64; QUANTITIES] {
     views.iter().map(of_view).fold([0.0; QUANTITIES], |most, errors| [0, 1].map(|q: usize| most[q].max(errors[q])))
 }
 

@@ -1,6 +1,7 @@
 //! Stacks to fit: materials, their twins in the other distribution, and random ones.
 
-use luthier_material::Material;
+use luthier_manifest::Budget;
+use luthier_material::{BakeSettings, Effects, LayerExtras, Material, Places, SurfaceClass};
 use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
 use luthier_optics::sampling::split_mix::SplitMix64;
@@ -64,6 +65,25 @@ pub(crate) fn of(material: &Material, is_twin: bool) -> ModelSubject {
         }
     }
     ModelSubject { name: material.name.clone(), stack, wavelengths_nm: material.bake.wavelengths_nm() }
+}
+
+/// A material without a file, for a bake of a stack.
+pub(crate) fn material(name: String, stack: Stack, bake: BakeSettings) -> Material {
+    Material {
+        name,
+        source: String::new(),
+        text: String::new(),
+        files: Vec::new(),
+        description: String::new(),
+        references: Vec::new(),
+        class: SurfaceClass::of(&stack),
+        layers: vec![LayerExtras::default(); stack.layers.len()],
+        stack,
+        effects: Effects::default(),
+        budget: Budget::default(),
+        places: Places::default(),
+        bake,
+    }
 }
 
 /// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has a lower index than the

@@ -8,6 +8,7 @@ mod foreign;
 mod golden;
 mod grammar;
 mod judge;
+mod ladder;
 mod lobes;
 mod parity;
 mod simulation;

@@ -168,6 +168,11 @@ impl Frame {
         let _ = write!(self.body, "<path class=\"span\" d=\"M{x0:.1} {y:.1}H{x1:.1}\"/>");
     }
 
+    /// A line between two pixels of a column.
+    pub(crate) fn upright(&mut self, class: &str, x: f64, [y0, y1]: [f64; 2]) {
+        let _ = write!(self.body, "<path class=\"{class}\" d=\"M{x:.1} {y0:.1}V{y1:.1}\"/>");
+    }
+
     /// Text at pixel coordinates.
     pub(crate) fn text(&mut self, x: f64, y: f64, anchor: &str, class: &str, text: &str) {
         let text = escape(text);
@@ -209,6 +214,11 @@ impl Frame {
         let [left, right, bottom, top] = ends;
         let scales = format!(" data-x=\"{x} {left:.1} {right:.1}\" data-y=\"{y} {bottom:.1} {top:.1}\"");
         self.element(label, &scales)
+    }
+
+    /// The elements so far, for another SVG element.
+    pub(crate) fn into_body(self) -> String {
+        self.body
     }
 
     /// The SVG element for a file of its own, which has no script.

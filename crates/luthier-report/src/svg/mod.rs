@@ -5,8 +5,10 @@ pub(crate) mod frame;
 mod pareto;
 mod plot;
 pub(crate) mod scale;
+mod scatter;
 
 pub(crate) use field::{Spot, field};
 pub(crate) use frame::{Mark, Series, legend};
 pub(crate) use pareto::{Choice, Price, pareto};
 pub use plot::{Curve, Plot, PlotAxis, PlotColor};
+pub use scatter::{Scatter, ScatterPanel, ScatterPoint};

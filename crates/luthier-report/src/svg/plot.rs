@@ -68,7 +68,7 @@ pub enum PlotColor {
 }
 
 impl PlotColor {
-    fn class(self) -> &'static str {
+    pub(super) fn class(self) -> &'static str {
         match self {
             Self::Ink => "p-ink",
             Self::Red => "p-red",

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use luthier_lut::{Axis, RowBase, TableKind};
-use luthier_manifest::{Budget, Candidate, CandidateForm, Form, Search};
+use luthier_manifest::{Budget, Candidate, CandidateForm, Form, MeasuredError, Search};
 
 use super::cell;
 use crate::judge::evidence::{Costs, ShaderCost};
@@ -103,51 +103,73 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
             escape(&words(form)),
             bytes(*size),
             number(*cost),
-            error(found.max_abs)
+            error(own_error(found))
         );
         return;
     }
-    charts(out, search, shipped(report, search.kind, None), &format!("{name}, all materials"));
+    let has_lobes = has_lobe_errors(search);
+    // The report measures texels of lobes, and no lobe errors.
+    let ships = shipped(report, search.kind, None).filter(|_| !has_lobes);
+    charts(out, search, ships, &format!("{name}, all materials"));
     let _ = write!(
         out,
         "<details class=\"long\"><summary>All {} candidates of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
-         class=\"n\">bytes</th><th class=\"n\">cost</th><th class=\"n\">max abs</th><th class=\"n\">max rel</th><th \
-         class=\"n\">CIEDE2000</th><th>chosen</th></tr></thead><tbody>",
-        search.front.len()
+         class=\"n\">bytes</th><th class=\"n\">cost</th>{}<th>chosen</th></tr></thead><tbody>",
+        search.front.len(),
+        if has_lobes { heads(&["lobe error", "albedo error"]) } else { heads(&["max abs", "max rel", "CIEDE2000"]) }
     );
     for (i, candidate) in search.front.iter().enumerate() {
         let Candidate { form, bytes: size, cost, error: found } = candidate;
+        let or_none = |found: Option<f64>| cell(&found.map_or_else(none, error));
+        let errors = match has_lobes {
+            true => or_none(found.lobe) + &or_none(found.albedo),
+            false => cell(&error(found.max_abs)) + &cell(&error(found.max_rel)) + &or_none(found.delta_e),
+        };
         let _ = write!(
             out,
-            "<tr><td>{}</td><td class=\"n\" data-v=\"{size}\">{}</td>{}{}{}{}<td>{}</td></tr>",
+            "<tr><td>{}</td><td class=\"n\" data-v=\"{size}\">{}</td>{}{errors}<td>{}</td></tr>",
             escape(&words(form)),
             bytes(*size),
             cell(&number(*cost)),
-            cell(&error(found.max_abs)),
-            cell(&error(found.max_rel)),
-            cell(&found.delta_e.map_or_else(none, error)),
             if i == search.chosen { "yes" } else { "" }
         );
     }
     out.push_str("</tbody></table></div></details>\n");
 }
 
+fn heads(words: &[&str]) -> String {
+    words.iter().map(|word| format!("<th class=\"n\">{word}</th>")).collect()
+}
+
+/// Whether a search is for lobes: they have errors of their own in place of absolute ones.
+fn has_lobe_errors(search: &Search) -> bool {
+    search.front.iter().any(|candidate| candidate.error.lobe.is_some())
+}
+
+/// The lobe error, or else the absolute one.
+fn own_error(found: &MeasuredError) -> f64 {
+    found.lobe.unwrap_or(found.max_abs)
+}
+
 /// Bytes and cost of a search against its errors, side by side.
 fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str) {
-    let limit = search.budget.max_abs.map(|limit| (limit, "limit"));
+    let has_lobes = has_lobe_errors(search);
+    let limit = if has_lobes { search.budget.max_lobe_err } else { search.budget.max_abs };
+    let limit = limit.map(|limit| (limit, "limit"));
+    let y_title = if has_lobes { "lobe error" } else { "largest absolute error" };
     out.push_str("<div class=\"pair\">");
     for (price, x_title, by) in
         [(Price::Bytes, "bytes of texels", "bytes"), (Price::Cost, "estimated operations of one look-up", "cost")]
     {
         let choices = search.front.iter().enumerate().map(|(i, candidate)| Choice {
             price: if price == Price::Bytes { candidate.bytes as f64 } else { candidate.cost },
-            error: candidate.error.max_abs,
+            error: own_error(&candidate.error),
             tip: format!(
                 "{}: {}, cost {}, error {}",
                 words(&candidate.form),
                 bytes(candidate.bytes),
                 number(candidate.cost),
-                error(candidate.error.max_abs)
+                error(own_error(&candidate.error))
             ),
             label: "",
             series: CANDIDATE,
@@ -163,11 +185,7 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
             choices.push(Choice { price: size, error: found, tip, label: "", series: SHIPS, is_chosen: false });
         }
         let label = format!("{of}: {by} against error");
-        let _ = write!(
-            out,
-            "<figure>{}</figure>",
-            pareto(&label, price, [x_title, "largest absolute error"], &choices, limit)
-        );
+        let _ = write!(out, "<figure>{}</figure>", pareto(&label, price, [x_title, y_title], &choices, limit));
     }
     out.push_str("</div>");
 }
@@ -354,5 +372,37 @@ fn words(form: &CandidateForm) -> String {
             let axes: Vec<String> = [Some(x), y.as_ref()].into_iter().flatten().map(|a: &Axis| axis(a)).collect();
             format!("{format}{over}; {}", axes.join("; "))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Absolute errors of lobes are zero: their charts would be flat.
+    #[test]
+    fn lobes_are_charted_by_their_lobe_error() {
+        let candidate = |bytes, lobe| {
+            let error = MeasuredError { lobe: Some(lobe), albedo: Some(1e-3), ..MeasuredError::default() };
+            Candidate { form: CandidateForm::ClosedForm, bytes, cost: bytes as f64, error }
+        };
+        let search = Search {
+            kind: TableKind::Lobes,
+            budget: Budget { max_lobe_err: Some(0.05), ..Budget::default() },
+            chosen: 1,
+            front: vec![candidate(100, 0.2), candidate(200, 0.03)],
+            measured: 8,
+        };
+        let mut out = String::new();
+        charts(&mut out, &search, None, "lobes");
+        assert_eq!(out.matches(">lobe error<").count(), 2, "{out}");
+        assert!(out.contains(">limit<") && !out.contains("absolute"), "{out}");
+        // The better choice is lower.
+        let heights: Vec<f64> = out
+            .split("<path class=\"mark")
+            .skip(1)
+            .filter_map(|mark| mark.split("d=\"M").nth(1)?.split([' ', 'l']).nth(1)?.parse().ok())
+            .collect();
+        assert!(heights.len() == 4 && heights[0] < heights[1], "{heights:?}");
     }
 }

@@ -36,6 +36,21 @@
         return sqrt(shape.decay) * shape.sharpness * slope;
     }
 
+    /// Middle and radius of the circle of the least cap about an ellipse: by the middle of the ellipse, the direction of its short axis, and its half axes. See
+    /// `Cap::about` of the f64 twin.
+    fn luthier_circle_about(middle: vec2<f32>, short: vec2<f32>, axes: vec2<f32>) -> vec3<f32> {
+        let along = dot(middle, short);
+        let excess = (axes.y - axes.x) * (axes.y + axes.x);
+        let cubic = axes.x * axes.x * excess;
+        let linear = 1.0 + dot(middle, middle) + 2.0 * axes.x * axes.x - axes.y * axes.y;
+        var u = 1.0 / max(axes.x, linear / max(2.0 * abs(along), 1e-20));
+        for (var i = 0u; i < 4u; i++) {
+            u -= (u * (cubic * u * u + linear) - 2.0 * abs(along)) / (3.0 * cubic * u * u + linear);
+        }
+        let moved = select(excess * u, -excess * u, along < 0.0);
+        return vec3<f32>(middle + moved * short, axes.y * sqrt(1.0 + excess * u * u));
+    }
+
     fn luthier_lobe_draw(prepared: LuthierPreparedLobes, shape: LuthierLobeShape) -> LuthierLobeDraw {
         var given: LuthierLobeDraw;
         given.middle = luthier_lobe_slope(shape, vec2<f32>(0.0));
@@ -48,15 +63,22 @@
             let lopsided = vec2<f32>(0.5 * (shape.sharpness.x - shape.sharpness.y), shape.shear);
             let most = sqrt(shape.decay) * (0.5 * (shape.sharpness.x + shape.sharpness.y) + length(lopsided));
             let least = shape.decay * luthier_lobe_determinant(shape) / most;
+            // The direction of the greater sharpness has half the angle.
+            let skew = length(lopsided);
+            let turned = vec2<f32>(skew + abs(lopsided.x), lopsided.y);
+            let greater = select(vec2<f32>(1.0, 0.0), normalize(select(turned.yx, turned, lopsided.x >= 0.0)), skew > 0.0);
+            let short = vec2<f32>(-greater.y, greater.x);
         }
         //? else
         {
             let most = sqrt(shape.decay) * max(shape.sharpness.x, shape.sharpness.y);
             let least = sqrt(shape.decay) * min(shape.sharpness.x, shape.sharpness.y);
+            let short = select(vec2<f32>(0.0, 1.0), vec2<f32>(1.0, 0.0), shape.sharpness.x < shape.sharpness.y);
         }
         let of_own = luthier_in_widths(shape, apart);
         let of_round = least * apart;
-        let own = luthier_cap(length(of_own), most * radius);
+        let circle = luthier_circle_about(of_own, short, vec2<f32>(least, most) * radius);
+        let own = luthier_cap(length(circle.xy), circle.z);
         let of_circle = luthier_cap(length(of_round), least * radius);
         let own_share = luthier_cap_share(own);
         let round_share = luthier_cap_share(of_circle);
@@ -64,7 +86,7 @@
         let cost = select(own_share, round_share * most / least, is_round);
         let tail = 1.0 / shape.decay;
         if cost * (1.0 + 0.47 * (1.0 - tail) * (1.0 - 0.5 * tail)) < 1.0 && radius < 19.99 {
-            let middle = select(of_own, of_round, is_round);
+            let middle = select(circle.xy, of_round, is_round);
             let away = length(middle);
             given.chance = cost;
             given.share = select(own_share, round_share, is_round);

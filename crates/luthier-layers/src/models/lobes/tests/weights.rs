@@ -21,7 +21,7 @@ const LIMIT: f64 = 1.61;
 const AIM: f64 = 1.5;
 
 /// Share of the views whose largest weight may be above [`AIM`].
-const BEYOND: f64 = 0.04;
+const BEYOND: f64 = 0.03;
 
 /// Greatest weight of the draws of a view, over the albedo.
 fn greatest(lobes: &Lobes, wo: DVec3) -> f64 {
@@ -44,11 +44,11 @@ fn of_views(name: &str, lobes: &Lobes) -> Vec<f64> {
     found
 }
 
-fn judge(found: &[f64]) {
+fn judge(found: &[f64], limit: f64, share_beyond: f64) {
     let beyond = found.iter().filter(|weight| **weight > AIM).count() as f64 / found.len() as f64;
     let most = found.iter().copied().fold(0.0, f64::max);
     eprintln!("{} views: {most:.3} at most, {beyond:.3} of them above {AIM}", found.len());
-    assert!(most < LIMIT && beyond < BEYOND, "{most} {beyond}");
+    assert!(most < limit && beyond <= share_beyond, "{most} {beyond}");
 }
 
 fn clear(index: f64) -> Base {
@@ -89,7 +89,7 @@ fn weights_of_materials_are_bounded() {
     let mut brushed = stack(vec![layer(0.2, coat([0.0; 3])), layer(0.3, metal())]);
     brushed.layers[1].surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.4, alpha_y: 0.15, rotation: 0.3 };
     found.extend(of_views("brushed", &fitted(&brushed)));
-    judge(&found);
+    judge(&found, LIMIT, BEYOND);
 }
 
 /// A family with and without metal, below coats and without.
@@ -119,5 +119,5 @@ fn weights_at_places_of_a_family_are_bounded() {
             found.extend(of_views(&format!("{:?} {shade:?} {metallic}", slopes.map(|slope| slope.along)), &lobes));
         }
     }
-    judge(&found);
+    judge(&found, AIM, 0.0);
 }

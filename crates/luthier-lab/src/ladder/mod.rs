@@ -1,0 +1,137 @@
+//! `ladder`: what limits on the errors of lobes take and cost, for materials, random stacks and coats of engines, and the chart of error against time.
+
+mod chart;
+mod page;
+mod rivals;
+mod steps;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use luthier::read_materials;
+use luthier_cost::DeviceCost;
+use luthier_manifest::ColorMode;
+use luthier_material::{BakeSettings, Material};
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::Stack;
+use luthier_report::{ModelSubject, Reference};
+use luthier_shader::{Yardstick, count};
+use luthier_terminal::{Bar, Failure, Outcome, deliver, valid};
+use rayon::prelude::*;
+
+use self::rivals::{Rival, rivals};
+use self::steps::{Taken, costs, steps};
+use crate::cli::LadderOptions;
+use crate::coats::{Drawn, coated};
+use crate::lobes::{JUDGE_SEED, THETAS_DEG, judge_settings, material, random};
+
+/// Device whose costs the page has.
+const DEVICE: &str = "h100";
+
+/// Least interfaces of random stacks, diffuse bases apart.
+const INTERFACES: usize = 2;
+
+/// A stack as a material.
+struct Subject {
+    /// Name of the stack on the page.
+    name: String,
+    material: Material,
+    /// The stack, where it is judged.
+    judged: Option<ModelSubject>,
+    /// The stack by formulas of engines.
+    drawn: Vec<Drawn>,
+}
+
+/// A stack with what it takes, and with models beside where it is judged.
+struct Measured {
+    name: String,
+    taken: Vec<Taken>,
+    rivals: Vec<Rival>,
+}
+
+/// Stacks of a kind.
+struct Group {
+    title: &'static str,
+    /// Heading on the chart; none where nothing is judged.
+    charted: Option<String>,
+    stacks: Vec<Measured>,
+}
+
+/// Outlines every material as each limit asks and prints a page; draws the chart.
+pub(crate) fn run(options: &LadderOptions) -> Outcome {
+    let materials = valid(read_materials(&options.sources.paths)?, true)?;
+    let device = DeviceCost::shipped(DEVICE).ok_or_else(|| Failure::Usage(anyhow::anyhow!("no costs of {DEVICE}")))?;
+    let yardstick = costs(&device, |lights| count(&Yardstick::GltfClearcoat.wgsl(), &[], lights))?;
+    let is_judged = options.chart.is_some();
+    let shipped = materials.into_iter().map(|material| Subject {
+        name: material.name.clone(),
+        material,
+        judged: None,
+        drawn: Vec::new(),
+    });
+    let shipped: Vec<Subject> = shipped.collect();
+    let coats = if is_judged { options.coats.unwrap_or(usize::MAX) } else { 0 };
+    let coats = coated().into_iter().take(coats).map(|coat| Subject::of(coat.subject, true, coat.drawn));
+    let coats: Vec<Subject> = coats.collect();
+    let stacks = (0..).map(random).filter(|subject| interfaces(&subject.stack) >= INTERFACES);
+    let stacks = stacks.take(options.stacks as usize).map(|subject| Subject::of(subject, is_judged, Vec::new()));
+    let stacks: Vec<Subject> = stacks.collect();
+    let of_coats = format!("{} clear coats over metals and plastics", coats.len());
+    let of_stacks =
+        format!("{} random stack{} of 2 to 5 layers", stacks.len(), if stacks.len() == 1 { "" } else { "s" });
+    let groups = [
+        ("Materials", None, shipped),
+        ("Coats of engines", Some(of_coats), coats),
+        ("Random stacks", is_judged.then_some(of_stacks), stacks),
+    ];
+    let total = groups.iter().map(|(.., subjects)| subjects.len()).sum::<usize>() as u64;
+    let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
+    let mut measured = Vec::new();
+    for (title, charted, subjects) in groups.into_iter().filter(|(.., subjects)| !subjects.is_empty()) {
+        let stacks = subjects.par_iter().map(|subject| {
+            let found = measure(subject, &device, options);
+            bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            found
+        });
+        let stacks: Vec<Measured> = stacks.collect::<Outcome<Vec<Option<Measured>>>>()?.into_iter().flatten().collect();
+        if !stacks.is_empty() {
+            measured.push(Group { title, charted, stacks });
+        }
+    }
+    drop(bar);
+    if let Some(path) = &options.chart {
+        deliver(&chart::chart(&measured, &device), Some(path))?;
+    }
+    let page = page::page(&measured, &device, &yardstick, options).map_err(Failure::input)?;
+    deliver(&page, options.destination.output.as_deref())
+}
+
+impl Subject {
+    /// A stack that no file describes.
+    fn of(subject: ModelSubject, is_judged: bool, drawn: Vec<Drawn>) -> Self {
+        let bake = BakeSettings {
+            color: Some(ColorMode::ThreeWavelengths),
+            wavelengths_nm: Some(subject.wavelengths_nm),
+            ..BakeSettings::default()
+        };
+        Self {
+            name: subject.name.clone(),
+            material: material("stack".to_owned(), subject.stack.clone(), bake),
+            judged: is_judged.then_some(subject),
+            drawn,
+        }
+    }
+}
+
+/// Number of interfaces that refract or mirror light.
+fn interfaces(stack: &Stack) -> usize {
+    (0..stack.layers.len()).filter(|layer| Interface::of(stack, *layer).is_some()).count()
+}
+
+fn measure(subject: &Subject, device: &DeviceCost, options: &LadderOptions) -> Outcome<Option<Measured>> {
+    let settings = judge_settings(&options.precision, JUDGE_SEED);
+    let reference = subject.judged.as_ref().map(|judged| Reference::new(judged, &THETAS_DEG, settings));
+    let Some(taken) = steps(&subject.material, reference.as_ref(), device)? else { return Ok(None) };
+    let rivals = reference.map(|reference| rivals(&subject.material, &subject.drawn, &reference, device));
+    let rivals = rivals.transpose()?.unwrap_or_default();
+    Ok(Some(Measured { name: subject.name.clone(), taken, rivals }))
+}

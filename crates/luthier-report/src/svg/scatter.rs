@@ -1,0 +1,229 @@
+//! Points of error over cost, in panels side by side, on a page of their own.
+
+use super::frame::{Frame, Margin, Mark, Series};
+use super::plot::PlotColor;
+use super::scale::Scale;
+use crate::text::format::escape;
+
+/// Panels of points over the same logarithmic axes, as an SVG file that stands alone.
+///
+/// ```
+/// use luthier_report::{Scatter, ScatterPanel, ScatterPoint, PlotColor};
+///
+/// let point = |name: &str, x| ScatterPoint { name: name.to_owned(), x, y: 0.1, reach: 0.2, color: PlotColor::Red };
+/// let panel = ScatterPanel { title: "coats".to_owned(), points: vec![point("a", Some(2.0)), point("b", None)] };
+/// let svg = Scatter {
+///     title: "error over time".to_owned(),
+///     axes: ["ps".to_owned(), "error".to_owned()],
+///     untimed: "no shader".to_owned(),
+///     kinds: vec![(PlotColor::Red, "engines".to_owned())],
+///     line: PlotColor::Blue,
+///     panels: vec![panel],
+/// }
+/// .to_svg();
+/// assert!(svg.starts_with("<svg xmlns=") && svg.contains(">coats<") && svg.contains(">no shader<"));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scatter {
+    /// Description of the picture, for screen readers.
+    pub title: String,
+    /// Quantities across and up.
+    pub axes: [String; 2],
+    /// Heading of the column of points without a place across.
+    pub untimed: String,
+    /// Kinds of points by their colour, for the legend.
+    pub kinds: Vec<(PlotColor, String)>,
+    /// The kind whose points a line connects, in their order.
+    pub line: PlotColor,
+    /// The panels, from left to right.
+    pub panels: Vec<ScatterPanel>,
+}
+
+/// A panel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScatterPanel {
+    /// Heading.
+    pub title: String,
+    /// Its points.
+    pub points: Vec<ScatterPoint>,
+}
+
+/// A named point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScatterPoint {
+    /// Name beside its mark; empty for none.
+    pub name: String,
+    /// Place across; `None` puts it into a column of its own at the right.
+    pub x: Option<f64>,
+    /// Place up.
+    pub y: f64,
+    /// Upper end of a thin line from the mark.
+    pub reach: f64,
+    /// Colour, which has its own mark.
+    pub color: PlotColor,
+}
+
+/// Width and height of a panel.
+const PANEL: [f64; 2] = [560.0, 470.0];
+
+const MARGIN: Margin = Margin { left: 46.0, right: 16.0, top: 52.0, bottom: 44.0 };
+
+/// Width of the column of points without a place across.
+const COLUMN: f64 = 178.0;
+
+/// Height of the legend above the panels.
+const LEGEND: f64 = 30.0;
+
+/// Half the side of the square that a mark takes, and the distance of a name from its mark.
+const MARK: f64 = 6.0;
+
+/// Height of a name, and width of a letter.
+const LETTER: [f64; 2] = [14.0, 6.8];
+
+/// A rectangle: left, top, right, bottom.
+type Area = [f64; 4];
+
+fn meet(a: &Area, b: &Area) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+fn series(color: PlotColor) -> Series {
+    let mark = match color {
+        PlotColor::Blue => Mark::Circle,
+        PlotColor::Ink => Mark::Diamond,
+        PlotColor::Red | PlotColor::Green => Mark::Square,
+    };
+    Series { class: color.class(), name: "", mark }
+}
+
+impl Scatter {
+    /// The file.
+    pub fn to_svg(&self) -> String {
+        let points = || self.panels.iter().flat_map(|panel| &panel.points);
+        let x = Scale::fine(points().filter_map(|point| point.x));
+        let y = Scale::fine(points().flat_map(|point| [point.y, point.reach]));
+        let mut body = self.legend();
+        let [mut width, height] = [0.0, PANEL[1] + LEGEND];
+        for panel in &self.panels {
+            let column = if panel.points.iter().any(|point| point.x.is_none()) { COLUMN } else { 0.0 };
+            let size = [PANEL[0] + column, PANEL[1]];
+            let inner = self.panel(panel, (size, column), (x, y));
+            let place =
+                format!("<svg x=\"{width:.0}\" y=\"{LEGEND:.0}\" width=\"{:.0}\" height=\"{:.0}\"", size[0], size[1]);
+            body += &inner.replacen("<svg", &place, 1);
+            width += size[0];
+        }
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"-10 -6 {:.0} {:.0}\" \
+             role=\"img\" aria-label=\"{}\"><style>{}</style>{body}</svg>\n",
+            width + 20.0,
+            height + 12.0,
+            escape(&self.title),
+            include_str!("scatter.css"),
+        )
+    }
+
+    fn legend(&self) -> String {
+        let whole = Scale::linear(0.0, 1.0, 1.0);
+        let margin = Margin { left: 0.0, right: 0.0, top: 0.0, bottom: 0.0 };
+        let mut frame = Frame::new([PANEL[0] * 2.0, LEGEND], margin, whole, whole);
+        let mut left = 8.0;
+        for (color, words) in &self.kinds {
+            frame.mark(series(*color), left, 10.0, words);
+            frame.text(left + 12.0, 14.5, "start", "name", words);
+            left += 36.0 + LETTER[1] * words.chars().count() as f64;
+        }
+        frame.into_body()
+    }
+
+    fn panel(&self, panel: &ScatterPanel, (size, column): ([f64; 2], f64), (x, y): (Scale, Scale)) -> String {
+        let margin = Margin { right: MARGIN.right + column, ..MARGIN };
+        let mut frame = Frame::new(size, margin, x, y);
+        frame.x_axis(&self.axes[0]);
+        frame.y_axis("");
+        frame.text(margin.left, 18.0, "start", "head", &panel.title);
+        frame.text(0.0, 40.0, "start", "title", &self.axes[1]);
+        let edge = size[0] - margin.right;
+        if panel.points.iter().any(|point| point.x.is_none()) {
+            frame.text(edge + 20.0, 40.0, "start", "title", &self.untimed);
+        }
+        let joined = panel.points.iter().filter(|point| point.color == self.line);
+        frame.line(self.line.class(), "", joined.filter_map(|point| Some(Some((point.x?, point.y)))));
+        let places: Vec<[f64; 2]> = panel
+            .points
+            .iter()
+            .map(|point| [point.x.map_or(edge + 26.0, |x| frame.px(x)), frame.py(point.y)])
+            .collect();
+        for (point, &[at, up]) in panel.points.iter().zip(&places) {
+            let class = format!("line reach {}", point.color.class());
+            frame.upright(&class, at, [up, frame.py(point.reach)]);
+            frame.mark(series(point.color), at, up, &point.name);
+        }
+        // Names keep off marks and off each other, as far as there is room.
+        let mut taken: Vec<Area> = places.iter().map(|[at, up]| [at - MARK, up - MARK, at + MARK, up + MARK]).collect();
+        for (point, &[at, up]) in panel.points.iter().zip(&places).filter(|(point, _)| !point.name.is_empty()) {
+            let room = if point.x.is_some() { [margin.left, edge] } else { [at, size[0]] };
+            let (area, anchor, place) = free(&point.name, [at, up], room, &taken);
+            frame.text(place[0], place[1], anchor, "name", &point.name);
+            taken.push(area);
+        }
+        frame.finish_still(&panel.title)
+    }
+}
+
+/// The area of a name beside a mark, the anchor of its text and the place of that: the first of some that meets nothing and is within the panel, or else the first.
+fn free(name: &str, [at, up]: [f64; 2], [left, right]: [f64; 2], taken: &[Area]) -> (Area, &'static str, [f64; 2]) {
+    let width = LETTER[1] * name.chars().count() as f64;
+    let [height, apart] = [LETTER[0], MARK + 3.0];
+    let shifts = [0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0].map(|shift| shift * height);
+    let beside = shifts.into_iter().flat_map(|shift| {
+        let reach = if shift.abs() > height { 0.5 } else { 1.0 };
+        [("start", apart * reach), ("end", -apart * reach)].map(|(anchor, x)| (anchor, [at + x, up + shift]))
+    });
+    let mut places = beside.map(|(anchor, [x, y])| {
+        let from = if anchor == "start" { x } else { x - width };
+        ([from, y - 0.5 * height, from + width, y + 0.5 * height], anchor, [x, y + 4.5])
+    });
+    let first = places.clone().next();
+    let found = places.find(|(area, ..)| area[0] >= left && area[2] <= right && !taken.iter().any(|t| meet(t, area)));
+    found.or(first).unwrap_or_else(|| unreachable!("there are places"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_off_each_other() {
+        let point =
+            |name: &str, x: Option<f64>, color| ScatterPoint { name: name.to_owned(), x, y: 0.1, reach: 0.3, color };
+        let scatter = Scatter {
+            title: "t".to_owned(),
+            axes: ["time".to_owned(), "error".to_owned()],
+            untimed: "no time".to_owned(),
+            kinds: vec![(PlotColor::Blue, "ours".to_owned())],
+            line: PlotColor::Blue,
+            panels: vec![ScatterPanel {
+                title: "p".to_owned(),
+                points: vec![
+                    point("one", Some(2.0), PlotColor::Blue),
+                    point("two", Some(2.02), PlotColor::Blue),
+                    point("three", None, PlotColor::Red),
+                ],
+            }],
+        };
+        let text = scatter.to_svg();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let place = |name: &str| {
+            let node =
+                document.descendants().find(|n| n.tag_name().name() == "text" && n.text() == Some(name)).unwrap();
+            ["x", "y"].map(|axis| node.attribute(axis).unwrap().parse::<f64>().unwrap())
+        };
+        let [one, two, three] = ["one", "two", "three"].map(place);
+        assert!(one != two, "{one:?} {two:?}");
+        assert!(three[0] > PANEL[0] - MARGIN.right && place("no time")[0] > PANEL[0] - MARGIN.right, "{three:?}");
+        // Two joined points, and no other line across.
+        assert_eq!(text.matches("class=\"line p-blue\"").count(), 1);
+        assert_eq!(text.matches("class=\"mark p-blue\"").count(), 3, "two points and the legend");
+    }
+}
