@@ -63,7 +63,7 @@ pub(crate) fn tell_misses(manifest: &Manifest, materials: &[Material], quiet: bo
 
 /// Refuses functions of the environment where no shader has them.
 pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) -> Outcome {
-    if is_shown || !functions.contains(&FunctionGroup::Environment) {
+    if is_shown || functions.iter().all(|group| group.environment_reads().is_none()) {
         return Ok(());
     }
     Err(Failure::Usage(anyhow::anyhow!(

@@ -35,7 +35,7 @@ pub(crate) struct EnvironmentOptions {
     /// Layouts to write; by default both
     #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
     pub(crate) layout: Vec<LayoutName>,
-    /// Texels along a side of a face, or rows, of the first level: a power of two from 32 to 1024; by default the rows of the picture, from 32 to 512
+    /// Texels along a side of a face, or rows, of the first level: a power of two from 32 to 1024; by default twice the rows of the picture, from 32 to 512
     #[arg(long, value_name = "N")]
     pub(crate) size: Option<u32>,
     /// Leave the texels uncompressed, for programs that decode no zstd

@@ -159,9 +159,10 @@ impl Environment {
         sum.map(|v| v / total)
     }
 
-    /// Rows of the largest level that suit this map: a power of two.
+    /// Rows of the largest level that suit this map: a power of two, and two for each row of the map, so that the second level is blurred by little more than
+    /// a row. Lobes narrower than that have no blur of their own.
     pub fn level_size(&self) -> u32 {
-        self.map().height.next_power_of_two().clamp(32, 512)
+        (2 * self.map().height).next_power_of_two().clamp(32, 512)
     }
 
     /// The map on a cube of its own fineness, and averages over ever larger texels.

@@ -122,7 +122,7 @@ fn in_a_white_furnace_lobes_show_their_albedo() {
     }
 }
 
-/// Without a first interface, whose energy is given by hand. One sample of a pixel, 32 directions of a lobe: .032 of the mean was
+/// Without a first interface, whose energy is given by hand. One sample of a pixel, 32 directions of a lobe: .021 of the mean was
 /// measured, and .038 in axes, where the directions are turned otherwise.
 #[test]
 fn lobes_show_the_environment_that_a_brute_force_finds() {
@@ -148,6 +148,6 @@ fn compare(axes: Option<Axes>) {
     }
     let error = (squares / count).sqrt() / (sum / count);
     eprintln!("blurred environment in lobes, {axes:?}: rms {error:.4} of the mean");
-    let limit = if axes.is_none() { 0.035 } else { 0.042 };
+    let limit = if axes.is_none() { 0.025 } else { 0.042 };
     assert!(error < limit, "{axes:?}: {error}");
 }

@@ -19,11 +19,36 @@ luthier_lut::named! {
         Propose = "propose",
         /// `luthier_albedo`; it brings `light`.
         Albedo = "albedo",
-        /// `luthier_environment`, which shows a prefiltered environment; it brings `light`.
+        /// `luthier_environment`, which shows a prefiltered environment; it brings `light`. Lobes of the model `lobes` have 32 reads each.
         Environment = "environment",
+        /// `environment` with 16 reads for each lobe.
+        Environment16 = "environment-16",
+        /// `environment` with eight reads for each lobe.
+        Environment8 = "environment-8",
+        /// `environment` with four reads for each lobe.
+        Environment4 = "environment-4",
+        /// `environment` with two reads for each lobe.
+        Environment2 = "environment-2",
+        /// `environment` with one read for each lobe.
+        Environment1 = "environment-1",
         /// `LuthierPlace` for every material, with the variance of slopes of the normals in a pixel, and the normal of what lies below the
         /// first interface; it brings `light`.
         Surface = "surface",
+    }
+}
+
+impl FunctionGroup {
+    /// Reads of the environment for each lobe; `None` of a group that does not show it.
+    pub fn environment_reads(self) -> Option<u32> {
+        match self {
+            Self::Environment => Some(32),
+            Self::Environment16 => Some(16),
+            Self::Environment8 => Some(8),
+            Self::Environment4 => Some(4),
+            Self::Environment2 => Some(2),
+            Self::Environment1 => Some(1),
+            Self::Eval | Self::Light | Self::Sample | Self::Propose | Self::Albedo | Self::Surface => None,
+        }
     }
 }
 
@@ -47,6 +72,19 @@ impl Functions {
         self.0.contains(&group)
     }
 
+    /// Reads of the environment for each lobe of the model `lobes`: the fewest of those that were asked for.
+    ///
+    /// ```
+    /// use luthier_manifest::{FunctionGroup, Functions};
+    ///
+    /// let functions: Functions = [FunctionGroup::Environment8].into_iter().collect();
+    /// assert!(functions.has(FunctionGroup::Environment) && functions.environment_reads() == 8);
+    /// assert_eq!(Functions::from_iter([FunctionGroup::Environment]).environment_reads(), 32);
+    /// ```
+    pub fn environment_reads(&self) -> u32 {
+        self.0.iter().filter_map(|group| group.environment_reads()).min().unwrap_or(32)
+    }
+
     /// Whether there is no other group than `eval`.
     pub fn is_eval_alone(&self) -> bool {
         self.0.len() == 1
@@ -67,6 +105,9 @@ impl FromIterator<FunctionGroup> for Functions {
         groups.insert(FunctionGroup::Eval);
         if groups.contains(&FunctionGroup::Propose) {
             groups.insert(FunctionGroup::Sample);
+        }
+        if groups.iter().any(|group| group.environment_reads().is_some()) {
+            groups.insert(FunctionGroup::Environment);
         }
         if groups.len() > 1 {
             groups.insert(FunctionGroup::Light);

@@ -10,6 +10,7 @@ mod masking;
 mod members;
 mod pick;
 mod reached;
+mod shown;
 mod slopes;
 mod stacks;
 mod statistics;
@@ -247,7 +248,7 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
         Family::Beams | Family::Coefficients | Family::Facets | Family::Lobes => vec![text(eval, features)],
     };
     if features.has(Feature::Environment) {
-        modules.push(text(environment, features));
+        modules.push(text(&shown::directions(environment, set.functions.environment_reads()), features));
     }
     modules
 }

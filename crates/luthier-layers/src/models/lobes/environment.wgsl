@@ -40,9 +40,9 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
 }
 
 /// Standard deviation of the blur of a direction over the widths of its lobe, for Beckmann's distribution: with less the directions are seen one by one in
-/// small bright lights. Gaussians about the points of a Gaussian are one; lobes with longer tails want narrower ones in the middle, and wider ones the farther
-/// out they are.
-const LUTHIER_TAP_BLUR: f32 = 0.3;
+/// small bright lights, with more the lobe is one of angles rather than of slopes. Gaussians about the points of a Gaussian are one; lobes with longer tails
+/// want narrower ones in the middle, and wider ones the farther out they are.
+const LUTHIER_TAP_BLUR: f32 = $tap_blur;
 
 /// Standard deviation of the blur of a direction of a lobe, an angle: not wider than the lobe where it is narrow.
 fn luthier_shown_blur(lobe: LuthierShownLobe, stretch: vec2<f32>) -> f32 {
@@ -97,7 +97,7 @@ fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<
     lobe.turn = turn;
     let stretch = luthier_shown_middle_stretch(lobe);
     let blur = luthier_shown_blur(lobe, stretch);
-    let left = max(lobe.width_sq.xy - 2.0 * (blur * blur) / max(stretch * stretch, vec2<f32>(1e-12)), vec2<f32>(0.0));
+    let left = max(lobe.width_sq.xy - (2.0 + 2.0 * tail) * (blur * blur) / max(stretch * stretch, vec2<f32>(1e-12)), vec2<f32>(0.0));
     let along = sqrt(left.x);
     let between = lobe.width_sq.z / max(along, 1e-12);
     lobe.spread = vec3<f32>(along, sqrt(max(left.y - between * between, 0.0)), between);
@@ -116,7 +116,7 @@ fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<
     let stretch = luthier_shown_middle_stretch(lobe);
     let angles = width * stretch;
     let blur = luthier_shown_blur(lobe, stretch);
-    lobe.spread = width * sqrt(max(1.0 - 2.0 * (blur * blur) / (angles * angles), vec2<f32>(0.0)));
+    lobe.spread = width * sqrt(max(1.0 - (2.0 + 2.0 * tail) * (blur * blur) / (angles * angles), vec2<f32>(0.0)));
     return lobe;
 }
 
@@ -136,16 +136,16 @@ fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, 
     return luthier_shown_lobe(prepared, prepared.medium.x, middle, width, 1.0 / shape.decay, turn);
 }
 
-/// Light so far and that of one more direction of a lobe: beyond it lies this share of the lobe, and it lies towards a unit vector from the
-/// middle. What would not leave the surface weighs nothing.
-fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, beyond: f32, towards: vec2<f32>) -> LuthierShown {
-    let fall = log2(beyond);
-    let radius = sqrt((exp2(-lobe.tail * fall) - 1.0) / lobe.tail);
-    let around = vec2<f32>(lobe.turn.x * towards.x - lobe.turn.y * towards.y, lobe.turn.y * towards.x + lobe.turn.x * towards.y);
+/// Light so far and that of one more direction of a lobe: where it lies over the widths of a Gaussian, the square of its distance from the middle, and its
+/// weight. Lobes with longer tails have it farther out, with a wider blur. What would not leave the surface weighs nothing.
+fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, tap: vec4<f32>) -> LuthierShown {
+    let grown = lobe.tail * tap.z;
+    let farther = sqrt(select((exp(grown) - 1.0) / max(grown, 1e-2), 1.0 + 0.5 * grown, grown < 0.02));
+    let around = farther * vec2<f32>(lobe.turn.x * tap.x - lobe.turn.y * tap.y, lobe.turn.y * tap.x + lobe.turn.x * tap.y);
     //? lobes_axes
-    let slope = lobe.middle + radius * (lobe.spread.xy * around + vec2<f32>(0.0, lobe.spread.z * around.x));
+    let slope = lobe.middle + lobe.spread.xy * around + vec2<f32>(0.0, lobe.spread.z * around.x);
     //? else
-    let slope = lobe.middle + radius * lobe.spread * around;
+    let slope = lobe.middle + lobe.spread * around;
     let wh = vec3<f32>(slope, 1.0) * inverseSqrt(1.0 + dot(slope, slope));
     let cos_theta_d = dot(wh, lobe.eye);
     let up = 2.0 * cos_theta_d * wh - lobe.eye;
@@ -154,9 +154,9 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let above = select(-1.0, 1.0, sin_sq < 1.0 && up.z > 0.0) * sqrt(abs(1.0 - sin_sq));
     let cos_theta_i = max(above, 1e-2);
     let across = up.xy * min(inverseSqrt(max(sin_sq, 1e-12)), 1.0);
-    let blur = luthier_shown_blur(lobe, luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z));
-    let width = min(blur * exp2(-0.56 * lobe.tail * fall), 1.4);
-    var weight = vec3<f32>(saturate(0.5 + 0.5 * above / max(width, 0.014)));
+    let stretch = luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z);
+    let width = min(luthier_shown_blur(lobe, stretch) * exp(0.4 * grown), 1.4);
+    var weight = vec3<f32>(tap.w * saturate(0.5 + 0.5 * above / max(width, 0.014)));
     //? lobes_axes
     let azimuth = lobe.azimuth;
     //? else
@@ -178,42 +178,10 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     return LuthierShown(shown.light + weight * light, shown.weight + weight);
 }
 
-/// Mean radiance in a lobe: in directions that have equal shares of it, along a spiral that turns by the golden angle (Vogel 1979), each blurred by
-/// its share (Krivanek and Colbert 2008), but not wider than the lobe is where it is narrow.
+/// Mean radiance in a lobe: in directions with weights, each blurred. Together the blurs are nearly the lobe, if it is a Gaussian.
 fn luthier_shown_mean(lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>) -> vec3<f32> {
     var shown = LuthierShown(vec3<f32>(0.0), vec3<f32>(1e-6));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.984375, vec2<f32>(1.000000, 0.000000));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.953125, vec2<f32>(-0.737369, 0.675490));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.921875, vec2<f32>(0.087426, -0.996171));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.890625, vec2<f32>(0.608439, 0.793601));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.859375, vec2<f32>(-0.984713, -0.174182));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.828125, vec2<f32>(0.843755, -0.536728));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.796875, vec2<f32>(-0.259604, 0.965715));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.765625, vec2<f32>(-0.460907, -0.887448));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.734375, vec2<f32>(0.939321, 0.343039));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.703125, vec2<f32>(-0.924346, 0.381556));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.671875, vec2<f32>(0.423846, -0.905734));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.640625, vec2<f32>(0.299284, 0.954164));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.609375, vec2<f32>(-0.865211, -0.501408));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.578125, vec2<f32>(0.976676, -0.214719));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.546875, vec2<f32>(-0.575129, 0.818062));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.515625, vec2<f32>(-0.128511, -0.991708));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.484375, vec2<f32>(0.764649, 0.644447));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.453125, vec2<f32>(-0.999146, 0.041318));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.421875, vec2<f32>(0.708829, -0.705380));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.390625, vec2<f32>(-0.046191, 0.998933));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.359375, vec2<f32>(-0.640709, -0.767784));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.328125, vec2<f32>(0.991069, 0.133347));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.296875, vec2<f32>(-0.820858, 0.571132));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.265625, vec2<f32>(0.219481, -0.975617));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.234375, vec2<f32>(0.497181, 0.867647));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.203125, vec2<f32>(-0.952693, -0.303935));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.171875, vec2<f32>(0.907791, -0.419423));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.140625, vec2<f32>(-0.386061, 0.922473));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.109375, vec2<f32>(-0.338452, -0.940984));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.078125, vec2<f32>(0.885189, 0.465231));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.046875, vec2<f32>(-0.966970, 0.254890));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.015625, vec2<f32>(0.540838, -0.841127));
+    $each_direction
     return shown.light / shown.weight;
 }
 
