@@ -36,6 +36,11 @@
         return sqrt(shape.decay) * shape.sharpness * slope;
     }
 
+    /// One of Newton's steps towards the least cap, see `Cap::about` of the f64 twin.
+    fn luthier_lesser_cap(u: f32, cubic: f32, linear: f32, along: f32) -> f32 {
+        return u - (u * (cubic * u * u + linear) - 2.0 * along) / (3.0 * cubic * u * u + linear);
+    }
+
     /// Middle and radius of the circle of the least cap about an ellipse: by the middle of the ellipse, the direction of its short axis, and its half axes. See
     /// `Cap::about` of the f64 twin.
     fn luthier_circle_about(middle: vec2<f32>, short: vec2<f32>, axes: vec2<f32>) -> vec3<f32> {
@@ -44,9 +49,10 @@
         let cubic = axes.x * axes.x * excess;
         let linear = 1.0 + dot(middle, middle) + 2.0 * axes.x * axes.x - axes.y * axes.y;
         var u = 1.0 / max(axes.x, linear / max(2.0 * abs(along), 1e-20));
-        for (var i = 0u; i < 4u; i++) {
-            u -= (u * (cubic * u * u + linear) - 2.0 * abs(along)) / (3.0 * cubic * u * u + linear);
-        }
+        u = luthier_lesser_cap(u, cubic, linear, abs(along));
+        u = luthier_lesser_cap(u, cubic, linear, abs(along));
+        u = luthier_lesser_cap(u, cubic, linear, abs(along));
+        u = luthier_lesser_cap(u, cubic, linear, abs(along));
         let moved = select(excess * u, -excess * u, along < 0.0);
         return vec3<f32>(middle + moved * short, axes.y * sqrt(1.0 + excess * u * u));
     }

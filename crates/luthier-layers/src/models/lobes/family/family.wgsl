@@ -132,21 +132,24 @@
     }
 
     //? !lobes_tails|~lobes_tails
-    /// Shares above the horizon of both lobes of a family in the plane of the eye, with the tail of GGX: see `Leaving` of the f64 twin. `disc` is the middle of the slopes
-    /// to light above the horizon, in that plane, and their radius; `slope` that of the middle of the first lobe.
-    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, disc: vec2<f32>) -> vec2<f32> {
-        let away = abs(disc.x - vec2<f32>(slope, 0.0)) * sharpness.xz;
-        let along = disc.y * sharpness.xz;
-        let across = disc.y * sharpness.yw;
-        let near = along - away;
-        let far = along + away;
+    /// Shares above the horizon of both lobes of a family in the plane of the eye, with the tail of GGX: see `Leaving` of the f64 twin. `radius` is that of the disc of
+    /// slopes to light above the horizon, whose middle is in that plane; `sines` are the sine of the view and 1 less it, `slope` that of the middle of the first lobe.
+    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, radius: f32, sines: vec2<f32>) -> vec2<f32> {
+        let along = radius * sharpness.xz;
+        let across = radius * sharpness.yw;
+        // From the middle of a lobe to both edges of the disc: at flat views one of them is near.
+        let near = (radius * sines.y + vec2<f32>(slope, 0.0)) * sharpness.xz;
+        let far = (radius * (1.0 + sines.x) - vec2<f32>(slope, 0.0)) * sharpness.xz;
+        let away = along - near;
         let squares = (1.0 + near * near) * (1.0 + far * far);
         let over_root = inverseSqrt(squares);
         let root = squares * over_root;
-        // Where these two cancel, shares are least, or hang on the width across alone.
+        // 1 + d + root and 1 - d + root: the one that cancels is the product of both over the other.
         let d = near * far;
-        let within = 1.0 + d + root;
-        let beyond = 1.0 - d + root;
+        let more = 1.0 + abs(d) + root;
+        let less = (2.0 + 2.0 * root + near * near + far * far) / more;
+        let within = select(less, more, d > vec2<f32>(0.0));
+        let beyond = select(more, less, d > vec2<f32>(0.0));
         let sum = 1.0 + along * along + away * away + root;
         return max(along * across * within * (inverseSqrt(sum * (beyond + 2.0 * across * across)) * over_root), vec2<f32>(1e-3));
     }
@@ -543,7 +546,7 @@
                 if is_filmed {
                     facet = all * mix(seen_plastic, seen_metal, metallic);
                 }
-                entering = max(1.0 - facet, vec3<f32>(0.0));
+                entering = 1.0 - facet;
             }
         }
         //? !lobes_metallic|~lobes_metallic
@@ -605,7 +608,7 @@
         prepared.medium.w = (1.0 / LUTHIER_PI) / (1.0 - dot(prepared.medium.yz, moments));
         let below = wide + once + more;
         // No more light than falls in.
-        let left = crossing * min(entering / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
+        let left = crossing * min(max(entering, vec3<f32>(0.0)) / max(below, vec3<f32>(1e-6)), vec3<f32>(1.0));
         prepared.albedo = 1.0 - crossing * entering + left * below;
         // Some of the light of both lobes is wide.
         prepared.wide = left * (wide + once_wide * once + of_more.a * more);
@@ -632,11 +635,13 @@
         // Rows are in the plane of the eye.
         let radius = luthier_leaving_disc(prepared).z;
         let middle = shift * sin_theta;
+        //? !lobes_tails|~lobes_tails
+        let sines = vec2<f32>(sin_theta, wo.z * wo.z / (1.0 + sin_theta));
         //? lobes_tails
         {
             //? ~lobes_tails
             if decay == 1.0 {
-                prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
+                prepared.shares = luthier_family_leaving(middle, sharp, radius, sines);
             } else {
                 prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, radius * vec2<f32>(sin_theta, 1.0));
             }
@@ -644,7 +649,7 @@
             prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, radius * vec2<f32>(sin_theta, 1.0));
         }
         //? else
-        prepared.shares = luthier_family_leaving(middle, sharp, radius * vec2<f32>(sin_theta, 1.0));
+        prepared.shares = luthier_family_leaving(middle, sharp, radius, sines);
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
             let disc = luthier_leaving_disc(prepared);
