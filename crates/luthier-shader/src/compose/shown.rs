@@ -131,7 +131,8 @@ mod tests {
         for a in points {
             crosses += 1e-3 * a[2] * gaussian(spread_sq * (a[0] * a[0] + a[1] * a[1]), 1.0 + blur * blur);
             for b in points {
-                let distance_sq = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+                let [x, y] = [a[0] - b[0], a[1] - b[1]];
+                let distance_sq = x * x + y * y;
                 pairs += 1e-6 * a[2] * b[2] * gaussian(spread_sq * distance_sq, 2.0 * blur * blur);
             }
         }
