@@ -143,8 +143,10 @@ fn unread<'t>(wgsl: &'t str, kept: &[&str]) -> BTreeSet<(&'t str, &'t str)> {
             assignments.swap_remove(i).1.iter().for_each(|member| _ = dead.remove(member));
         }
         // WGSL has no empty structures: the first member stays.
-        let empty =
-            kinds.structures.iter().find(|(name, members)| members.keys().all(|m| dead.contains(&(**name, *m))));
+        let is_empty = |name: &str, members: &BTreeMap<_, _>| {
+            !members.is_empty() && members.keys().all(|member| dead.contains(&(name, *member)))
+        };
+        let empty = kinds.structures.iter().find(|(name, members)| is_empty(name, members));
         let Some((name, members)) = empty else { return dead };
         members.keys().take(1).for_each(|member| _ = dead.remove(&(*name, *member)));
     }

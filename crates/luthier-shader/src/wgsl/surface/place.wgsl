@@ -17,7 +17,7 @@
         //? own_tints
         /// Factors on what that slab absorbs, RGB.
         absorption_factors: vec3<f32>,
-        //? facets_f0
+        //? own_f0
         /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
         passing: vec3<f32>,
         //? own_edge
