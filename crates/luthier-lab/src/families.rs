@@ -17,7 +17,7 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver};
 use rayon::prelude::*;
 
 use crate::cli::{FamiliesOptions, FamilyGroup as Group};
-use crate::lobes::{JUDGE_SEED, judge_settings};
+use crate::lobes::{JUDGE_SEED, judge_settings, ranks};
 
 /// Angles of the judge against the normal, degrees: those of `lobes`.
 const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
@@ -236,13 +236,6 @@ fn judge(place: &Place, varied: &Varied, options: &FamiliesOptions) -> Option<Ju
     })
 }
 
-/// Median, 95th percentile and largest.
-fn ranks(mut values: Vec<f64>) -> [f64; 3] {
-    values.sort_by(f64::total_cmp);
-    let Some(last) = values.len().checked_sub(1) else { return [0.0; 3] };
-    [values[values.len() / 2], values[(values.len() * 95 / 100).min(last)], values[last]]
-}
-
 fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::fmt::Error> {
     let mut out = String::new();
     writeln!(
@@ -262,13 +255,13 @@ fn page(results: &[Results], options: &FamiliesOptions) -> Result<String, std::f
     for Results { group, places, .. } in results {
         for (quantity, (name, digits)) in [("lobe", 3), ("albedo", 4)].into_iter().enumerate() {
             let [own, beside] = [false, true].map(|is_beside| {
-                ranks(places.iter().map(|place| if is_beside { place.beside } else { place.own }[quantity]).collect())
+                ranks(places.iter().map(|place| if is_beside { place.beside } else { place.own }[quantity]))
             });
             let cells = own.iter().chain(&beside).map(|value| format!(" {value:.digits$} |"));
             writeln!(out, "| {} | {name} |{}", group.title(), cells.collect::<String>())?;
         }
         for (quantity, (name, digits)) in [("lobe", 3), ("albedo", 4)].into_iter().enumerate() {
-            let views = ranks(places.iter().flat_map(|place| place.views[quantity].iter().copied()).collect());
+            let views = ranks(places.iter().flat_map(|place| place.views[quantity].iter().copied()));
             let cells = views.iter().map(|value| format!(" {value:.digits$} |"));
             writeln!(out, "| | {name}, of single views |{} | | |", cells.collect::<String>())?;
         }

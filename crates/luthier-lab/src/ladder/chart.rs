@@ -4,8 +4,9 @@ use luthier_cost::DeviceCost;
 use luthier_report::{PlotColor, Scatter, ScatterPanel, ScatterPoint};
 
 use super::Group;
-use super::page::{medians, ranks};
+use super::page::medians;
 use super::steps::Ask;
+use crate::lobes::ranks;
 
 /// Larger errors end at the edge of the chart.
 const MOST: f64 = 1.9;

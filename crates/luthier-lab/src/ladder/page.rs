@@ -9,7 +9,7 @@ use luthier_report::Spread;
 use super::steps::{Ask, Costs, LIGHTS, Rung, Taken};
 use super::{Group, Measured};
 use crate::cli::{LadderOptions, call};
-use crate::lobes::QUANTITIES;
+use crate::lobes::{QUANTITIES, ranks};
 
 /// Random stacks with the largest errors that the page lists.
 const WORST: usize = 12;
@@ -30,16 +30,6 @@ const OF_COATS: &str =
 
 const BESIDE: &str = "The tables that ship, read as a shader reads them, stand here beside published models and formulas of engines, on the same stacks. Errors are those of [lobes.md](lobes.md): against its judge, the largest of nine angles of the eye, 0 to 85 degrees, and three \
     channels. [coats.md](coats.md) has the median over its views instead. Lobes within a limit are the tables of that row above. A formula without costs has no shader here. The Filament of `coats` returns the energy that its coat loses by a table; the shader whose cost stands here does not read one.\n";
-
-/// Median, 95th percentile and largest.
-pub(super) fn ranks(values: impl Iterator<Item = f64>) -> [f64; 3] {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    [50, 95, 100].map(|share: usize| {
-        let at = (values.len() * share / 100).min(values.len().saturating_sub(1));
-        values.get(at).copied().unwrap_or(0.0)
-    })
-}
 
 /// Median of costs by number of lights.
 pub(super) fn medians<'a>(all: impl Iterator<Item = &'a Costs>) -> Costs {

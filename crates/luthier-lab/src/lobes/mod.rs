@@ -67,6 +67,16 @@ fn of_view(view: &ViewError) -> [f64; QUANTITIES] {
     [view.lobe.error, view.albedo.error]
 }
 
+/// Median, 95th percentile and largest; 0 of no values.
+pub(crate) fn ranks(values: impl Iterator<Item = f64>) -> [f64; 3] {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let Some(last) = values.len().checked_sub(1) else { return [0.0; 3] };
+    let middle = values.len() / 2;
+    let median = 0.5 * (values[last - middle] + values[middle]);
+    [median, values[(values.len() * 95 / 100).min(last)], values[last]]
+}
+
 /// The largest errors of views by quantity.
 pub(crate) fn largest(views: &[ViewError]) -> [f64; QUANTITIES] {
     views.iter().map(of_view).fold([0.0; QUANTITIES], |most, errors| [0, 1].map(|q: usize| most[q].max(errors[q])))

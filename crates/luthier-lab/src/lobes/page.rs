@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use luthier_report::ViewError;
 
 use super::reasons::Change;
-use super::{ALBEDO_STD_ERR, BESIDE, Group, Judged, LIMITS, QUANTITIES, largest, of_view};
+use super::{ALBEDO_STD_ERR, BESIDE, Group, Judged, LIMITS, QUANTITIES, largest, of_view, ranks};
 use crate::cli::{LobesOptions, call};
 
 /// Names of the quantities, and digits of their errors.
@@ -88,15 +88,6 @@ fn noise(stack: &Judged, quantity: usize) -> f64 {
     stack.errors.iter().map(|view| [view.lobe_floor, view.albedo.std_err][quantity]).fold(0.0, f64::max)
 }
 
-/// Median, 95th percentile and largest of a value of stacks.
-fn ranks(stacks: &[Judged], of: impl Fn(&Judged) -> f64) -> [f64; 3] {
-    let mut values: Vec<f64> = stacks.iter().map(of).collect();
-    values.sort_by(f64::total_cmp);
-    let (last, middle) = (values.len() - 1, values.len() / 2);
-    let median = 0.5 * (values[last - middle] + values[middle]);
-    [median, values[(values.len() * 95 / 100).min(last)], values[last]]
-}
-
 fn summary(out: &mut String, groups: &[Group], options: &LobesOptions) -> std::fmt::Result {
     writeln!(
         out,
@@ -105,10 +96,10 @@ fn summary(out: &mut String, groups: &[Group], options: &LobesOptions) -> std::f
     )?;
     for Group { title, stacks, .. } in groups {
         for (quantity, (name, digits)) in NAMES.into_iter().enumerate() {
-            let [median, most, largest] = ranks(stacks, |stack| stack.error(quantity));
+            let [median, most, largest] = ranks(stacks.iter().map(|stack| stack.error(quantity)));
             let limit = LIMITS[quantity];
             let above = stacks.iter().filter(|stack| stack.error(quantity) > limit).count();
-            let noise = ranks(stacks, |stack| noise(stack, quantity))[2];
+            let noise = ranks(stacks.iter().map(|stack| noise(stack, quantity)))[2];
             writeln!(
                 out,
                 "| {title} | {} | {name} | {median:.digits$} | {most:.digits$} | {largest:.digits$} | {limit} | {above} | {noise:.5} |",
@@ -187,7 +178,7 @@ fn stacks(out: &mut String, Group { title, stacks, .. }: &Group) -> std::fmt::Re
         )?;
     }
     for (rank, name) in ["median", "95th percentile", "largest"].into_iter().enumerate() {
-        let ranked = |of: &dyn Fn(&Judged) -> f64| ranks(stacks, of)[rank];
+        let ranked = |of: &dyn Fn(&Judged) -> f64| ranks(stacks.iter().map(of))[rank];
         write!(out, "| **{name}** | {:.3} |", ranked(&|stack| stack.error(0)))?;
         for model in 0..BESIDE.len() {
             write!(out, " {:.3} |", ranked(&|stack| largest(&stack.beside[model])[0]))?;

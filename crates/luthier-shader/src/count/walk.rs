@@ -129,18 +129,13 @@ impl<'a> Walk<'a> {
         Ok(vec![Value::Parts(members.iter().map(|member| self.unknown(member)).collect::<Result<_, _>>()?)])
     }
 
+    /// A member of a place: +z where it is a normal.
     fn unknown(&mut self, member: &StructMember) -> Result<Value, Reason> {
-        let mut value = self.zero(member.ty)?;
-        if member.name.as_deref() == Some("normal") {
-            let one = self.graph.constant(Constant::float(1.0));
-            if let Value::Parts(parts) = &mut value
-                && let Some(up) = parts.last_mut()
-            {
-                *up = Value::Scalar(one);
-            }
-            return Ok(value);
+        if member.name.as_deref() != Some("normal") {
+            return self.of_inputs(member.ty);
         }
-        self.of_inputs(member.ty)
+        let up = [0.0, 0.0, 1.0].map(|x: f32| Value::Scalar(self.graph.constant(Constant::float(x))));
+        Ok(Value::Parts(up.to_vec()))
     }
 
     /// A value of a type, of which nothing is known but normals.

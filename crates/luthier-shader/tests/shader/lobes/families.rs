@@ -503,6 +503,26 @@ fn an_anisotropic_base_alone_stretches_lobes() {
     assert!(text(&given).contains("luthier_family_stretched"));
 }
 
+/// Below a coat the F0 of a place is in no facets: a layer's place still has its member, where maps of colours and metal are all maps. WGSL has no empty
+/// structures, which the emitter did not come to an end with.
+#[test]
+fn colours_below_a_coat_are_a_place_of_their_own() {
+    let family = family(1, true, NODES);
+    let (layout, _) = rows(family);
+    let mut given = material(family);
+    let text = |given: &MaterialEntry| {
+        let materials = std::slice::from_ref(given);
+        emit(&MaterialSet::new(materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap()
+    };
+    given.maps.retain(|map| map.slot == MapSlot::Metallic);
+    let below = text(&given);
+    assert!(below.contains("fn luthier_metallic_place") && !below.contains("layer.passing = own.passing"), "{below}");
+    let first = self::family(0, true, NODES);
+    let mut bare = material(first);
+    bare.maps.retain(|map| map.slot == MapSlot::Metallic);
+    assert!(text(&bare).contains("layer.passing = own.passing"));
+}
+
 /// Drawn directions at places of a family: the mean of their weights is the integral of the light by a midpoint rule, and densities sum to at most 1.
 #[test]
 fn directions_of_a_family_are_drawn_as_their_density_says() {
