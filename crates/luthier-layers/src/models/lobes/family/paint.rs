@@ -186,7 +186,8 @@ impl Family {
             };
             let [entering, wide, once, trapped] = [entering, wide, once, trapped].map(|energy| crossing * energy);
             let (facet, below) = (1.0 - entering, wide + once + trapped);
-            let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below } else { 1.0 };
+            // A facet of a mirror may be a last bit above 1, with nothing below.
+            let kept = if facet + below > 1.0 { (1.0 - facet).max(0.0) / below.max(f64::MIN_POSITIVE) } else { 1.0 };
             met[c] *= crossing * kept;
             here.wide[c] = kept * (wide + wide_once * once + wide_trapped * trapped);
             for (lobe, energy) in here.lobes.iter_mut().zip([(1.0 - wide_once) * once, (1.0 - wide_trapped) * trapped])

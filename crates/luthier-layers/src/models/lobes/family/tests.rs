@@ -273,6 +273,24 @@ fn painted_lobes_are_the_stored_rows_down_to_the_horizon() {
     }
 }
 
+/// Nothing comes from below facets that reflect a little more than everything, as quadrature and halves of a row have it, and no number is lost.
+#[test]
+fn facets_above_one_have_nothing_below() {
+    let stack = plastic(false, [0.0; 3]);
+    let family = Family::new(&stack, [0.3; 2], [0.3; 2], false).unwrap();
+    let varied = Varied::with(&stack, &COLOR, Some(Varying::Family(family)), FitSettings { paths: 400, ..SETTINGS });
+    let mut row = varied.stored(0, 0);
+    row.albedo_dir = [-1e-4; 3];
+    for energy in [0.0, 0.1] {
+        row.wide = [energy; 3];
+        row.base = None;
+        row.lobes.iter_mut().for_each(|lobe| lobe.strength = [energy; 3]);
+        let found = family.row_in(&row, [0.3; 2], (&varied.nodes[0].frame, 0.5), &Paint::of(&stack), None);
+        assert_eq!((found.wide, found.lobes[0].strength, found.lobes[1].strength), ([0.0; 3], [0.0; 3], [0.0; 3]));
+        assert!(found.albedo_dir.iter().all(|albedo| (albedo - 1.0001).abs() < 1e-12), "{:?}", found.albedo_dir);
+    }
+}
+
 /// Oracle: paths of the stack with its dielectric at another F0, in one colour. Rows know an F0 of .04: bare, below a coat, and of an index that bends light, over
 /// the albedo of a base and as a `metallic-roughness` surface. A coat leaves out light that some facets of a rough base reflect and others let through.
 #[test]
