@@ -110,7 +110,9 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
             let away = 1.0 - saturate(cos_theta_d);
             let cubed = away * away * away;
             let kept = layer.edge * (saturate(cos_theta_d) * cubed * cubed);
-            return max(1.0 - layer.passing * (1.0 - luthier_fresnel_given(layer, cos_theta_d)) - kept, vec3<f32>(0.0));
+            // An edge tint takes no more than all. Colours outside of Rec.709 have channels below 0.
+            let whole = 1.0 - layer.passing * (1.0 - luthier_fresnel_given(layer, cos_theta_d));
+            return max(whole - kept, min(whole, vec3<f32>(0.0)));
         }
         //? else
         return 1.0 - layer.passing * (1.0 - luthier_fresnel_given(layer, cos_theta_d));
