@@ -53,7 +53,7 @@ pub use candidates::{AIM, DEFAULT_BUDGET};
 pub use check::check;
 pub use error::BakeError;
 pub use graph::{Artefact, Function, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task, kept};
-pub use kinds::lobes::{VARIED_LAYERS_MAX, fitted, is_too_deep};
+pub use kinds::lobes::{VARIED_LAYERS_MAX, fitted, has_lone_rows, is_too_deep};
 pub use maps::{MapSource, MaterialMap, height_normals, live_numbers};
 pub use options::Options;
 pub use relief::ImageReader;

@@ -183,7 +183,7 @@ impl Part {
                 let Some(shape) = settings.shape(kind) else { continue };
                 let (fixed, record) = (settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);
-                let lobes = settings.lobes;
+                let lobes = kinds::lobes::most(material, settings);
                 let site = Site { material, layer, extras, record, interface, color, shape, fixed, lobes, read_image };
                 let Some(job) = kinds::of(kind).job(&site)? else { continue };
                 let place = format!("{}/{}{i}", material.name, bare.unwrap_or_default());

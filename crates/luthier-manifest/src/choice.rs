@@ -6,6 +6,7 @@ use luthier_model::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::color::ColorMode;
+use crate::constants::LobesForm;
 use crate::search::over_limit;
 
 /// Limits on the error of a model against the reference under the light of a scene; an absent limit does not limit.
@@ -112,6 +113,9 @@ pub struct SceneCandidate {
     pub model: ShadingModel,
     /// Colour of its Fresnel terms.
     pub color: ColorMode,
+    /// Form of its rows, of a candidate of the model `lobes` that has one of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lobes: Option<LobesForm>,
     /// Names of the parts that were left out of the stack; empty for the whole stack.
     pub left_out: Vec<String>,
     /// Cost of one evaluation, in the unit of the device of the choice.
@@ -236,6 +240,7 @@ mod tests {
         let candidate = |model, verdict| SceneCandidate {
             model,
             color: ColorMode::Spectral,
+            lobes: None,
             left_out: Vec::new(),
             cost: 1.0,
             cost_is_of_similar: false,

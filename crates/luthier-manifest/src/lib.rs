@@ -44,7 +44,7 @@ pub use choice::{
 pub use color::ColorMode;
 pub use constants::{
     AxesRecord, BeamsRecord, BrighteningRecord, CoatRecord, FamilyRecord, FlakesRecord, GlitterRecord, LobesError,
-    LobesRecord, MaterialConstants, PaintedRecord, PatinaRecord, SideRecord, SlopesRecord, VaryingFactor,
+    LobesForm, LobesRecord, MaterialConstants, PaintedRecord, PatinaRecord, SideRecord, SlopesRecord, VaryingFactor,
     VaryingRecord,
 };
 pub use error::ManifestError;

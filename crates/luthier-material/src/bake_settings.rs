@@ -2,8 +2,8 @@
 
 use luthier_lut::{TableKind, TexelFormat, named};
 use luthier_manifest::{
-    ColorMode, DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LowerAlpha, LowerCosine, LowerFacets,
-    LowerReflectance, Masking, ModelPart, PathParts, Reflectance, ShadingModel,
+    ColorMode, DiffusePart, DiffuseTerm, InternalReflection, LobeHeight, LobesForm, LowerAlpha, LowerCosine,
+    LowerFacets, LowerReflectance, Masking, ModelPart, PathParts, Reflectance, ShadingModel,
 };
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
@@ -71,6 +71,8 @@ pub struct BakeSettings {
     pub diffuse_term: Option<DiffuseTerm>,
     /// Numbers of the model `granier-heidrich`.
     pub beams: Option<Beams>,
+    /// Form of rows of the model `lobes`, which no file states: a scene chooses it. Rows of a set are of one width where each of its materials has that form or no lobe.
+    pub lobes: Option<LobesForm>,
     /// Kinds of tables to bake beside those that the shader reads.
     pub tables: Vec<TableKind>,
     /// Spectral or at three wavelengths.

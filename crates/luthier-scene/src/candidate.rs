@@ -1,12 +1,13 @@
 //! Model candidates of a material, in the order of their cost.
 
 use std::f64::consts::FRAC_1_PI;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use luthier_layers::models::lobes::{FitSettings, Lobes, Traced, Varying, most_lobes};
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::Exact;
-use luthier_manifest::{ColorMode, Feature, Form, ShadingModel};
+use luthier_manifest::{ColorMode, Feature, Form, LobesForm, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -26,7 +27,7 @@ use crate::simplify::{LeaveOut, variants};
 ///
 /// let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
 /// let chalk = luthier_material::parse("chalk.toml", chalk, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap();
-/// let all = Candidate::all(&chalk.material, Form::Full, &CostTable::shipped());
+/// let all = Candidate::all(&chalk.material, Form::Full, &CostTable::shipped(), true);
 /// assert!(all.len() > 1 && all.is_sorted_by_key(|candidate| candidate.cost));
 /// ```
 #[derive(Debug)]
@@ -37,9 +38,11 @@ pub struct Candidate {
     pub form: Form,
     /// Colour of its Fresnel terms.
     pub color: ColorMode,
+    /// Form of its rows, of the model `lobes`; `None` where rows are over more than the view.
+    pub lobes: Option<LobesForm>,
     /// Parts that are left out.
     pub left_out: Vec<LeaveOut>,
-    /// The material to bake: without the parts that are left out, with model and colour as settings.
+    /// The material to bake: without the parts that are left out, with model, colour and form of rows as settings.
     pub material: Material,
     /// Cost of one evaluation, in the unit of the device of the costs.
     pub cost: f64,
@@ -48,7 +51,11 @@ pub struct Candidate {
     values: OnceLock<Vec<Rgb>>,
     /// Values without a footprint, for a model whose tables hold the nominal roughness only.
     sharp_values: OnceLock<Vec<Rgb>>,
+    fits: Arc<Fits>,
 }
+
+/// Lobes in each of [`LobesForm::ALL`], of stacks that were simulated; candidates of one material in one colour share them.
+type Fits = Mutex<Vec<(Stack, Vec<Lobes>)>>;
 
 /// The colour of a mode.
 pub(crate) fn color_of(mode: ColorMode, material: &Material) -> Color {
@@ -63,7 +70,8 @@ impl Candidate {
     /// the material.
     ///
     /// A candidate leaves out a part of the material only if it becomes cheaper. No candidate leaves out flakes, a patina or the weight of a coat.
-    pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
+    /// Where `has_forms`, rows of `lobes` have each of their forms.
+    pub fn all(material: &Material, form: Form, costs: &CostTable, has_forms: bool) -> Vec<Self> {
         let own = material.bake.color.unwrap_or_default();
         let colors: &[ColorMode] = match (form, own) {
             (Form::Baked, ColorMode::Spectral) => &[ColorMode::Spectral, ColorMode::ThreeWavelengths],
@@ -81,28 +89,35 @@ impl Candidate {
         asked.extend(effects.iter().filter(|(_, has)| *has).map(|(effect, _)| *effect));
         let mut found: Vec<Self> = Vec::new();
         for model in ShadingModel::ALL.into_iter().filter(|model| asked.iter().all(|&part| model.honours(part, form))) {
-            let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);
+            let has_forms = has_forms && form == Form::Baked && model.is_fitted();
+            let cost_of = |material: &Material, lobes| costs.cost(model, form, &shape(&material.stack), lobes);
             for (left_out, simple) in variants(material) {
-                let Some((cost, cost_is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };
-                if !left_out.is_empty() && cost >= whole {
-                    continue;
-                }
-                for &color in colors {
-                    let mut material = simple.clone();
-                    material.bake.model = Some(model);
-                    material.bake.color = Some(color);
-                    let (left_out, values, sharp_values) = (left_out.clone(), OnceLock::new(), OnceLock::new());
-                    found.push(Self {
-                        model,
-                        form,
-                        color,
-                        left_out,
-                        material,
-                        cost,
-                        cost_is_of_similar,
-                        values,
-                        sharp_values,
-                    });
+                let fits: Vec<Arc<Fits>> = colors.iter().map(|_| Arc::default()).collect();
+                for lobes in if has_forms { forms(&simple) } else { vec![None] } {
+                    let whole = cost_of(material, lobes).map_or(f64::INFINITY, |(cost, _)| cost);
+                    let Some((cost, cost_is_of_similar)) = cost_of(&simple, lobes) else { continue };
+                    if !left_out.is_empty() && cost >= whole {
+                        continue;
+                    }
+                    for (&color, fits) in colors.iter().zip(&fits) {
+                        let mut material = simple.clone();
+                        material.bake.model = Some(model);
+                        material.bake.color = Some(color);
+                        material.bake.lobes = lobes;
+                        found.push(Self {
+                            model,
+                            form,
+                            color,
+                            lobes,
+                            left_out: left_out.clone(),
+                            material,
+                            cost,
+                            cost_is_of_similar,
+                            values: OnceLock::new(),
+                            sharp_values: OnceLock::new(),
+                            fits: fits.clone(),
+                        });
+                    }
                 }
             }
         }
@@ -155,9 +170,23 @@ impl Candidate {
         values.collect()
     }
 
+    /// Lobes of a stack in a form.
+    fn fitted(&self, stack: &Stack, lobes: LobesForm) -> Lobes {
+        let mut fits = self.fits.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = fits.iter().position(|(known, _)| known == stack).unwrap_or_else(|| {
+            fits.push((stack.clone(), fits_of(stack, &color_of(self.color, &self.material))));
+            fits.len() - 1
+        });
+        fits[number].1[lobes as usize].clone()
+    }
+
     /// The exact terms: those that the tables approximate, or, for the form `full`, those that the shader computes.
     fn exact(&self, stack: &Stack) -> Exact {
-        let exact = Exact::new(stack, color_of(self.color, &self.material));
+        let color = color_of(self.color, &self.material);
+        if let Some(lobes) = self.lobes {
+            return Exact::with_lobes(stack, color, self.fitted(stack, lobes));
+        }
+        let exact = Exact::new(stack, color);
         let is_statistical = self.model.is_statistical();
         if self.form == Form::Full && is_statistical {
             let three = Color::ThreeWavelengths(self.material.bake.wavelengths_nm());
@@ -166,4 +195,30 @@ impl Candidate {
             exact
         }
     }
+}
+
+/// Forms that the rows of a material may have; `None` alone where they are over a factor beside the view, or where there are none.
+pub fn forms(material: &Material) -> Vec<Option<LobesForm>> {
+    if !luthier_bake::has_lone_rows(material) {
+        return vec![None];
+    }
+    let most = most_lobes(&material.stack);
+    let has_one_width = Varying::axes(None, &material.stack).is_none();
+    let forms = LobesForm::ALL.into_iter().filter(|form| form.most() <= most);
+    forms.filter(|form| has_one_width || *form != LobesForm::OneWidth).map(Some).collect()
+}
+
+/// Lobes of a stack in each of [`LobesForm::ALL`], as bakes fit them.
+fn fits_of(stack: &Stack, color: &Color) -> Vec<Lobes> {
+    let traced = Traced::new(stack, color, None, FitSettings::of(None));
+    let most = most_lobes(stack);
+    let fits = LobesForm::ALL.map(|form| {
+        let fit = traced.fit(form.most().min(most), 0.0);
+        match form {
+            LobesForm::OneWidth => fit.clone().of_one_width().unwrap_or(fit),
+            LobesForm::NoLobe | LobesForm::OneLobe | LobesForm::TwoLobes => fit,
+        }
+        .nominal()
+    });
+    fits.into()
 }

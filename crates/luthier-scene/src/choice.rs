@@ -3,7 +3,7 @@
 use luthier_cost::CostUnit;
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_manifest::{
-    ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, ShadingModel, Verdict,
+    ColorMode, Form, LobesForm, MaterialChoice, SceneBudget, SceneCandidate, SceneError, ShadingModel, Verdict,
 };
 use luthier_material::{Light, Material, View};
 
@@ -32,6 +32,29 @@ pub const MODEL_SHARE: f64 = 0.75;
 /// Share of every limit that is left for tables.
 pub const TABLE_SHARE: f64 = 1.0 - MODEL_SHARE;
 
+/// Rows of `lobes` that one set has together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Widths {
+    /// Lobes have one width, or there are none.
+    One,
+    /// Lobes have two.
+    Two,
+}
+
+impl Widths {
+    pub(crate) const ALL: [Self; 2] = [Self::One, Self::Two];
+
+    fn have(self, candidate: &Candidate) -> bool {
+        match candidate.lobes {
+            Some(LobesForm::NoLobe) => true,
+            Some(LobesForm::OneWidth) => self == Self::One,
+            Some(LobesForm::OneLobe | LobesForm::TwoLobes) => self == Self::Two,
+            // Rows over more than the view have two widths.
+            None => self == Self::Two || !candidate.model.is_fitted(),
+        }
+    }
+}
+
 /// One material of a scene: its candidates, and the reference at the directions of the scene. Values and samples are kept for the next
 /// choice, so that a tighter budget costs little.
 #[derive(Debug)]
@@ -43,6 +66,8 @@ pub struct Judge {
     footprint_deg: f64,
     form: Form,
     unit: CostUnit,
+    /// Model and colour of the material by itself.
+    own: (ShadingModel, ColorMode),
 }
 
 /// Candidates of a material that were judged against a budget, cheapest first.
@@ -78,8 +103,15 @@ impl Tried {
 }
 
 impl Judge {
-    /// A judge of a material under some lights; candidates are of one form.
-    pub fn new(material: &Material, form: Form, lights: &[Light], view: &View, costs: &CostTable) -> Self {
+    /// A judge of a material under some lights; candidates are of one form, see [`Candidate::all`].
+    pub fn new(
+        material: &Material,
+        form: Form,
+        lights: &[Light],
+        view: &View,
+        costs: &CostTable,
+        has_forms: bool,
+    ) -> Self {
         let stack = footprint(&material.stack, view.footprint_deg);
         let probes = probes(&stack, lights, view);
         let color = color_of(material.bake.color.unwrap_or_default(), material);
@@ -93,33 +125,41 @@ impl Judge {
         }
         Self {
             name: material.name.clone(),
-            candidates: Candidate::all(material, form, costs),
+            candidates: Candidate::all(material, form, costs, has_forms),
             reference,
             probes,
             footprint_deg: view.footprint_deg,
             form,
             unit: costs.device.unit,
+            own: (material.model(), material.bake.color.unwrap_or_default()),
         }
     }
 
-    /// The cheapest candidate that holds [`MODEL_SHARE`] of a budget. If none holds, the choice is the most accurate candidate within `max_cost`, and
-    /// the [`MaterialChoice`] says that it does not hold. Its `chosen` is an index into [`Self::candidates`], too.
-    ///
-    /// `None` if every candidate costs more than `max_cost`.
-    pub fn choose(&mut self, budget: &SceneBudget, max_cost: Option<f64>) -> Option<MaterialChoice> {
-        let tried = self.tried(budget, max_cost, 0.0);
-        let chosen = *tried.eligible()?.first()?;
-        Some(self.chosen(tried, chosen))
+    /// The candidate that a bake of the material by itself comes nearest to, with its error: the whole stack by its own model in its own colour, with the most
+    /// lobes. `None` where that model is no candidate.
+    pub(crate) fn by_itself(&mut self) -> Option<SceneCandidate> {
+        let is_own = |c: &Candidate| (c.model, c.color) == self.own && c.left_out.is_empty();
+        let own = (0..self.candidates.len()).filter(|number| is_own(&self.candidates[*number]));
+        let own = own.max_by_key(|number| self.candidates[*number].lobes)?;
+        Some(self.judge(own, &SceneBudget::default()).0)
     }
 
     /// Judges candidates, cheapest first, up to the first that holds; where neighbours differ, up to those that cannot be cheaper for a scene.
-    pub(crate) fn tried(&mut self, budget: &SceneBudget, max_cost: Option<f64>, neighbours_differ: f64) -> Tried {
+    pub(crate) fn tried(
+        &mut self,
+        budget: &SceneBudget,
+        max_cost: Option<f64>,
+        neighbours_differ: f64,
+        widths: Widths,
+    ) -> Tried {
         let budget = budget.scaled(MODEL_SHARE);
         // A material pays for every model of a scene: the dearest choice that can pay replaces all of them.
         let reach = 1.0 + neighbours_differ * ShadingModel::ALL.len() as f64;
         let mut judged: Vec<(SceneCandidate, f64)> = Vec::new();
         let mut most = f64::INFINITY;
-        for number in 0..self.candidates.len() {
+        for number in
+            (0..self.candidates.len()).filter(|number| widths.have(&self.candidates[*number])).collect::<Vec<_>>()
+        {
             let cost = self.candidates[number].cost;
             if max_cost.is_some_and(|most| cost > most) || cost >= most {
                 break;
@@ -165,13 +205,15 @@ impl Judge {
     /// Sentences on orders that other devices turn round: of the chosen candidate and the next cheaper one, and of the chosen one and the next dearer one
     /// of another model.
     pub(crate) fn disagreements(&self, choice: &MaterialChoice, own: &CostTable, others: &[CostTable]) -> Vec<String> {
-        let chosen = &self.candidates[choice.chosen];
-        let dearer = self.candidates.iter().position(|c| c.cost > chosen.cost && c.model != chosen.model);
+        let chosen = self.candidate(choice.candidate());
+        let dearer = self.candidates.iter().find(|c| c.cost > chosen.cost && c.model != chosen.model);
+        let cheaper = choice.next_cheaper.map(|i| self.candidate(&choice.tried[i]));
         let cost = |costs: &CostTable, candidate: &Candidate| {
-            costs.cost(candidate.model, self.form, &shape(&candidate.material.stack)).map(|(cost, _)| cost)
+            let shape = shape(&candidate.material.stack);
+            costs.cost(candidate.model, self.form, &shape, candidate.lobes).map(|(cost, _)| cost)
         };
         let mut found = Vec::new();
-        for other in [choice.next_cheaper, dearer].into_iter().flatten().map(|i| &self.candidates[i]) {
+        for other in [cheaper, dearer].into_iter().flatten() {
             let [cheap, dear] = if other.cost < chosen.cost { [other, chosen] } else { [chosen, other] };
             let turned: Vec<&str> = others
                 .iter()
@@ -179,7 +221,7 @@ impl Judge {
                 .map(|costs| costs.device.name.as_str())
                 .collect();
             if !turned.is_empty() {
-                let [cheap, dear] = [cheap, dear].map(|c| label_of(c.model, c.color, &names(&c.left_out)));
+                let [cheap, dear] = [cheap, dear].map(|c| label_of(c.model, c.lobes, c.color, &names(&c.left_out)));
                 let (own, turned) = (&own.device.name, turned.join(", "));
                 found.push(format!("{cheap} costs less than {dear} on {own}, and more on {turned}"));
             }
@@ -187,9 +229,23 @@ impl Judge {
         found
     }
 
-    /// Errors of a candidate on the terms of tables, against exact terms, at the directions of the scene.
-    pub fn table_error(&self, candidate: usize, terms: &(impl ShaderTerms + Sync), with_delta_e: bool) -> SceneError {
-        let candidate = &self.candidates[candidate];
+    /// The candidate that was judged, of [`Self::candidates`].
+    pub(crate) fn candidate(&self, judged: &SceneCandidate) -> &Candidate {
+        let is_it = |candidate: &&Candidate| {
+            (candidate.model, candidate.lobes, candidate.color) == (judged.model, judged.lobes, judged.color)
+                && names(&candidate.left_out) == judged.left_out
+        };
+        self.candidates.iter().find(is_it).unwrap_or_else(|| unreachable!("candidates are judged"))
+    }
+
+    /// Errors of a candidate that was judged on the terms of tables, against exact terms, at the directions of the scene.
+    pub fn table_error(
+        &self,
+        judged: &SceneCandidate,
+        terms: &(impl ShaderTerms + Sync),
+        with_delta_e: bool,
+    ) -> SceneError {
+        let candidate = self.candidate(judged);
         let (exact, found) = candidate.values_with(terms, &self.probes, self.footprint_deg);
         let exact = exact.iter().map(|&rgb| Value { rgb, std_err: [0.0; 3] });
         let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &e, with_delta_e)).collect();
@@ -229,6 +285,7 @@ impl Judge {
             let judged = SceneCandidate {
                 model: candidate.model,
                 color: candidate.color,
+                lobes: candidate.lobes,
                 left_out: names(&candidate.left_out),
                 cost: candidate.cost,
                 cost_is_of_similar: candidate.cost_is_of_similar,
@@ -240,15 +297,16 @@ impl Judge {
     }
 }
 
-/// A candidate in a few words: model, colour, parts that are left out.
+/// A candidate in a few words: model, form of its rows, colour, parts that are left out.
 pub fn label(candidate: &SceneCandidate) -> String {
-    label_of(candidate.model, candidate.color, &candidate.left_out)
+    label_of(candidate.model, candidate.lobes, candidate.color, &candidate.left_out)
 }
 
-fn label_of(model: ShadingModel, color: ColorMode, left_out: &[String]) -> String {
+fn label_of(model: ShadingModel, lobes: Option<LobesForm>, color: ColorMode, left_out: &[String]) -> String {
+    let lobes = lobes.map_or_else(String::new, |lobes| format!(" with {}", lobes.words()));
     let color = if color == ColorMode::Spectral { "" } else { " at three wavelengths" };
     let without = if left_out.is_empty() { String::new() } else { format!(" without {}", left_out.join(", ")) };
-    format!("{}{color}{without}", model.name())
+    format!("{}{lobes}{color}{without}", model.name())
 }
 
 fn names(left_out: &[LeaveOut]) -> Vec<String> {

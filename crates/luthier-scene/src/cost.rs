@@ -1,7 +1,7 @@
 //! Costs of shaders by model, form and shape, on a device.
 
 use luthier_cost::{DEFAULT_DEVICE, DeviceCost, Family, StaticCounts};
-use luthier_manifest::{CostDevice, Form, ShadingModel};
+use luthier_manifest::{CostDevice, Form, LobesForm, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::shape::{distance, shape_of};
@@ -31,6 +31,12 @@ pub struct ShapeRow {
     pub form: Form,
     /// The shape that the model sees, see [`shape_of`].
     pub shape: String,
+    /// Form of its rows, of the model `lobes`.
+    #[serde(default)]
+    pub lobes: Option<LobesForm>,
+    /// Whether its rows are in steps in a buffer, see [`RowLayout::Steps`](luthier_lut::RowLayout::Steps); else a texture that is filtered has them.
+    #[serde(default)]
+    pub in_steps: bool,
     /// Inverse throughput by the driver's compiler, cycles per wave of 64, for each family.
     pub cycles: Vec<u32>,
     /// Counts of the text for one light.
@@ -44,12 +50,12 @@ pub struct ShapeRow {
 /// use luthier_scene::CostTable;
 ///
 /// // A smooth dielectric of Beckmann slopes over a conductor.
-/// let (cost, is_of_similar) = CostTable::shipped().cost(ShadingModel::Elek, Form::Baked, "dbx/cb").unwrap();
+/// let (cost, is_of_similar) = CostTable::shipped().cost(ShadingModel::Elek, Form::Baked, "dbx/cb", None).unwrap();
 /// assert!(cost > 0.0 && !is_of_similar);
 /// // Reads of textures weigh more on a device that was timed than in the cycles that a compiler counts.
 /// let ratio = |device| {
 ///     let costs = CostTable::on(device).unwrap();
-///     let [lobes, elek] = [ShadingModel::Lobes, ShadingModel::Elek].map(|m| costs.cost(m, Form::Baked, "dbx/cb").unwrap().0);
+///     let [lobes, elek] = [ShadingModel::Lobes, ShadingModel::Elek].map(|m| costs.cost(m, Form::Baked, "dbx/cb", None).unwrap().0);
 ///     lobes / elek
 /// };
 /// assert!(ratio("h100") > 1.5 * ratio("rdna2"));
@@ -58,8 +64,10 @@ pub struct ShapeRow {
 pub struct CostTable {
     /// The device.
     pub device: DeviceCost,
-    /// One per model, form and shape, in the order of the data.
+    /// One per model, form, shape and rows, in the order of the data.
     pub rows: Vec<CostRow>,
+    /// Whether targets have room for rows in steps.
+    pub has_steps: bool,
 }
 
 /// Cost of one shader.
@@ -71,6 +79,10 @@ pub struct CostRow {
     pub form: Form,
     /// The shape that the model sees, see [`shape_of`].
     pub shape: String,
+    /// Form of its rows, of the model `lobes`.
+    pub lobes: Option<LobesForm>,
+    /// Whether its rows are in steps in a buffer.
+    pub in_steps: bool,
     /// Cost of one evaluation, in the unit of the device.
     pub cost: f64,
 }
@@ -82,13 +94,14 @@ impl CostTable {
         // A test reads the data. If it were broken all the same, no shader would have a cost, and no model would be a candidate.
         let table: Option<ShapeTable> = serde_json::from_str(COST_DATA).ok();
         let place = table.iter().flat_map(|table| &table.families).position(|family| device.family == Some(*family));
-        let rows =
-            table.into_iter().flat_map(|table| table.rows).map(|ShapeRow { model, form, shape, cycles, counts }| {
+        let rows = table.into_iter().flat_map(|table| table.rows).map(
+            |ShapeRow { model, form, shape, lobes, in_steps, cycles, counts }| {
                 let by_compiler = place.and_then(|place| cycles.get(place)).map(|cycles| f64::from(*cycles));
                 let cost = by_compiler.unwrap_or_else(|| device.cost(&StaticCounts::of_values(counts)));
-                CostRow { model, form, shape, cost }
-            });
-        Self { rows: rows.collect(), device }
+                CostRow { model, form, shape, lobes, in_steps, cost }
+            },
+        );
+        Self { rows: rows.collect(), device, has_steps: true }
     }
 
     /// The costs on a device whose costs ship; `None` for another name.
@@ -119,13 +132,22 @@ impl CostTable {
         self
     }
 
+    /// The costs for targets without room for rows in steps.
+    #[must_use]
+    pub fn filtered(self) -> Self {
+        Self { has_steps: false, ..self }
+    }
+
     /// Cost of a shader for a surface of some [`shape`](crate::shape). The flag is true if the shape was not counted and the cost is that of the most
-    /// similar one; among equally similar shapes the dearest counts.
-    pub fn cost(&self, model: ShadingModel, form: Form, shape: &str) -> Option<(f64, bool)> {
+    /// similar one; among equally similar shapes the dearest counts. `lobes` is the form of rows of that model; without one they are as dear as the dearest in a texture that is filtered.
+    pub fn cost(&self, model: ShadingModel, form: Form, shape: &str, lobes: Option<LobesForm>) -> Option<(f64, bool)> {
         let wanted = shape_of(model, shape);
+        let in_steps = self.has_steps && lobes.is_some();
         let rows = self.rows.iter().filter(|row| row.model == model && row.form == form);
-        let near = rows.map(|row| (distance(&row.shape, &wanted), row.cost));
-        let (distance, cost) = near.min_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)))?;
+        let rows = rows.filter(|row| row.lobes.is_none() || lobes.is_none() || row.lobes == lobes);
+        let rows = rows.filter(|row| in_steps || !row.in_steps);
+        let near = rows.map(|row| (distance(&row.shape, &wanted), in_steps && !row.in_steps, row.cost));
+        let (distance, _, cost) = near.min_by(|a, b| a.0.cmp(&b.0).then(a.1.cmp(&b.1)).then(b.2.total_cmp(&a.2)))?;
         Some((cost, distance > 0))
     }
 }
@@ -143,13 +165,14 @@ mod tests {
             let table = CostTable::on(device).unwrap();
             for model in ShadingModel::ALL {
                 for form in Form::ALL.into_iter().filter(|form| model.has(*form)) {
-                    let (cost, is_of_similar) = table.cost(model, form, "dbx/cb").unwrap();
+                    let (cost, is_of_similar) = table.cost(model, form, "dbx/cb", None).unwrap();
                     assert!(cost > 0.0 && !is_of_similar, "{device} {model:?} {form:?}");
                 }
             }
         }
         let table = CostTable::shipped();
-        let mut keys: Vec<_> = table.rows.iter().map(|row| (row.model.name(), row.form, &row.shape)).collect();
+        let mut keys: Vec<_> =
+            table.rows.iter().map(|row| (row.model.name(), row.form, &row.shape, row.lobes, row.in_steps)).collect();
         let count = keys.len();
         keys.sort();
         keys.dedup();
@@ -173,12 +196,13 @@ mod tests {
         assert_eq!(wrong.len(), 1);
     }
 
-    /// Why the form `full` is only looked at where tables have no room. llvmpipe filters textures in software, and is no target of scenes.
+    /// Why the form `full` is only looked at where tables have no room. Of clear interfaces alone it may be cheaper: their reflectance is a few operations, and a read of
+    /// a row takes longer. llvmpipe filters textures in software, and is no target of scenes.
     #[test]
-    fn on_no_gpu_is_a_full_form_cheaper_than_its_baked_form() {
+    fn on_no_gpu_is_a_full_form_with_metals_or_films_cheaper_than_its_baked_form() {
         for device in DeviceCost::names().filter(|name| *name != "llvmpipe") {
             let table = CostTable::on(device).unwrap();
-            for row in table.rows.iter().filter(|row| row.form == Form::Full) {
+            for row in table.rows.iter().filter(|row| row.form == Form::Full && row.shape.contains(['c', 'f', 'v'])) {
                 let same = |r: &&CostRow| (r.model, r.form, &r.shape) == (row.model, Form::Baked, &row.shape);
                 let baked = table.rows.iter().find(same);
                 assert!(baked.is_some_and(|baked| baked.cost <= row.cost), "{device}: {row:?} {baked:?}");

@@ -4,11 +4,14 @@ use luthier::{Bake, Error, Shading};
 use luthier_bake::{BakeError, Options, Store};
 use luthier_export::{Package, PackageError, sha256};
 use luthier_lut::{FormatSet, RowLayout, TexelFormat};
-use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target};
+use luthier_manifest::{
+    Budget, Functions, MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, ShadingModel, Target,
+};
 use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
 use thiserror::Error;
 
+use crate::choice::Widths;
 use crate::divergence::cheapest;
 use crate::{CostTable, DeviceCost, Form, Judge, Shaded, TABLE_SHARE, cost_text, label, scene_cost};
 
@@ -64,6 +67,22 @@ impl Made {
     }
 }
 
+/// Materials of a scene by models that no budget chose.
+#[derive(Debug, Clone)]
+pub struct Unchosen {
+    /// Model and error of each.
+    pub materials: Vec<SceneCandidate>,
+    /// Cost of all together, in the unit of the director's device.
+    pub cost: f64,
+}
+
+impl Unchosen {
+    /// The largest error, relative.
+    pub fn max_rel(&self) -> f64 {
+        self.materials.iter().map(|material| material.error.max_rel).fold(0.0, f64::max)
+    }
+}
+
 /// Failure to bake a scene.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -108,7 +127,7 @@ impl<'a> Director<'a> {
             targets,
             functions: Functions::default(),
             store,
-            costs: if has_rows { costs } else { costs.without(ShadingModel::Lobes) },
+            costs: rows_of(scene, if has_rows { costs } else { costs.without(ShadingModel::Lobes) }),
             has_rows,
             has_fits: true,
             baked: None,
@@ -119,7 +138,7 @@ impl<'a> Director<'a> {
     /// Takes the costs of a device in place of those that the scene names.
     #[must_use]
     pub fn with_costs(self, device: DeviceCost) -> Self {
-        let costs = CostTable::of(device);
+        let costs = rows_of(self.scene, CostTable::of(device));
         let has_lobes = self.has_rows && self.has_fits;
         Self { costs: if has_lobes { costs } else { costs.without(ShadingModel::Lobes) }, ..self }
     }
@@ -161,6 +180,16 @@ impl<'a> Director<'a> {
         Err(SceneFailure::Unheld { reasons: reasons.join("\n"), hint })
     }
 
+    /// What a bake of the materials without a scene comes nearest to: each by its own model, which no budget chose. `None` before a step of the form `baked`, and where
+    /// a model is no candidate.
+    pub fn without_choice(&mut self) -> Option<Unchosen> {
+        let materials: Vec<SceneCandidate> =
+            self.baked.as_mut()?.iter_mut().map(Judge::by_itself).collect::<Option<_>>()?;
+        let shaded: Vec<Shaded> =
+            materials.iter().map(|&SceneCandidate { model, cost, .. }| Shaded { model, cost }).collect();
+        Some(Unchosen { cost: scene_cost(&shaded, self.scene.neighbours_differ), materials })
+    }
+
     /// The limits of a material.
     fn budget(&self, own: &SceneBudget, max_rel: Option<f64>) -> SceneBudget {
         let given = SceneBudget { max_rel, ..SceneBudget::default() };
@@ -180,49 +209,29 @@ impl<'a> Director<'a> {
         let (scene, costs) = (self.scene, &self.costs);
         let judges = judges.get_or_insert_with(|| {
             let materials = self.materials.iter();
-            materials.map(|material| Judge::new(material, form, &scene.lights, &scene.view, costs)).collect()
+            // Materials that limit the errors of their rows have a search of their own.
+            let has_forms = !self.materials.iter().any(|material| material.budget.limits_lobes());
+            materials.map(|material| Judge::new(material, form, &scene.lights, &scene.view, costs, has_forms)).collect()
         });
-        let share = scene.neighbours_differ;
-        let mut all_tried = Vec::new();
-        for (judge, (budget, material)) in judges.iter_mut().zip(budgets.iter().zip(self.materials)) {
-            let tried = judge.tried(budget, scene.target.max_cost, share);
-            let Some(eligible) = tried.eligible() else {
-                let unit = costs.device.unit;
-                let least = judge.candidates().first().map_or(0.0, |candidate| candidate.cost);
-                let [least, most] =
-                    [least, scene.target.max_cost.unwrap_or_default()].map(|cost| cost_text(cost, unit));
-                let name = &costs.device.name;
-                let text = format!("{}: the cheapest model takes {least} on {name}, more than {most}", material.name);
-                return Ok(Err(Refusal::Model(text)));
-            };
-            all_tried.push((tried, eligible));
-        }
-        let shaded = all_tried.iter().map(|(tried, eligible)| eligible.iter().map(|&i| tried.shaded(i)).collect());
-        let shaded: Vec<Vec<Shaded>> = shaded.collect();
-        // Alone, each material takes its cheapest.
-        let places = if share == 0.0 { None } else { cheapest(&shaded, share) };
-        let places = places.unwrap_or_else(|| vec![0; shaded.len()]);
-        let taken: Vec<Shaded> = shaded.iter().zip(&places).map(|(of_one, &place)| of_one[place]).collect();
-        let cost = scene_cost(&taken, share);
-        let names = DeviceCost::names().filter(|name| *name != costs.device.name);
-        let others: Vec<CostTable> = names.filter_map(CostTable::on).collect();
-        let mut choices: Vec<MaterialChoice> = Vec::with_capacity(judges.len());
-        let mut misses = Vec::new();
-        for ((judge, (tried, eligible)), place) in judges.iter().zip(all_tried).zip(places) {
-            let mut choice = judge.chosen(tried, eligible[place]);
-            choice.disagreements = judge.disagreements(&choice, costs, &others);
-            if !choice.holds() {
-                misses.push(format!("{}: {}", choice.name, choice.reason));
+        let mut picked: Option<Picked> = None;
+        let mut refusal = None;
+        for widths in Widths::ALL {
+            match pick(judges, self.materials, budgets, scene, costs, widths) {
+                Ok(found) if picked.as_ref().is_none_or(|best| found.is_before(best)) => picked = Some(found),
+                Ok(_) => {}
+                Err(reason) => refusal = Some(reason),
             }
-            choices.push(choice);
         }
+        let Some(Picked { mut choices, cost, misses, .. }) = picked else {
+            return Ok(Err(Refusal::Model(refusal.unwrap_or_default())));
+        };
         if !misses.is_empty() && !allow_miss {
             return Ok(Err(Refusal::Model(format!("no model holds the budget\n{}", misses.join("\n")))));
         }
         let materials: Vec<Material> = judges
             .iter()
             .zip(&choices)
-            .map(|(judge, choice)| judge.candidates()[choice.chosen].material.clone())
+            .map(|(judge, choice)| judge.candidate(choice.candidate()).material.clone())
             .collect();
         // No refusals by domain: the judges have measured the error of each model.
         let (targets, functions) = (self.targets.clone(), self.functions.clone());
@@ -237,7 +246,6 @@ impl<'a> Director<'a> {
             Form::Full => bake.package(&materials, self.store)?,
             Form::Baked => {
                 let formats = scene.target.formats.unwrap_or(FormatSet::CORE);
-                // Steps double the bytes of rows.
                 let layout = scene.target.max_bytes.map(|_| RowLayout::Filtered);
                 let bake = Bake { options: Options { formats, layout, ..bake.options }, ..bake };
                 match tables(&materials, &bake, self.store, judges, &mut choices, budgets, allow_miss)? {
@@ -252,7 +260,7 @@ impl<'a> Director<'a> {
             source_hash: sha256(scene.text.as_bytes()),
             form,
             device: Some(self.costs.manifest_device()),
-            neighbours_differ: share,
+            neighbours_differ: scene.neighbours_differ,
             cost,
             materials: choices,
         };
@@ -265,10 +273,82 @@ impl<'a> Director<'a> {
     }
 }
 
+/// A choice for every material.
+struct Picked {
+    choices: Vec<MaterialChoice>,
+    /// Cost of all together.
+    cost: f64,
+    /// A line for each that misses its budget.
+    misses: Vec<String>,
+    /// The largest ratio of an error to a limit, of those that miss.
+    excess: f64,
+}
+
+impl Picked {
+    /// Whether it misses fewer budgets, or by less; or costs less.
+    fn is_before(&self, other: &Self) -> bool {
+        let order = self.misses.len().cmp(&other.misses.len());
+        order.then(self.excess.total_cmp(&other.excess)).then(self.cost.total_cmp(&other.cost)).is_lt()
+    }
+}
+
+/// Chooses for every material, of candidates whose rows one set may have together.
+///
+/// # Errors
+/// In words, where a material has no candidate within the largest cost.
+fn pick(
+    judges: &mut [Judge],
+    materials: &[Material],
+    budgets: &[SceneBudget],
+    scene: &Scene,
+    costs: &CostTable,
+    widths: Widths,
+) -> Result<Picked, String> {
+    let share = scene.neighbours_differ;
+    let mut all_tried = Vec::new();
+    for (judge, (budget, material)) in judges.iter_mut().zip(budgets.iter().zip(materials)) {
+        let tried = judge.tried(budget, scene.target.max_cost, share, widths);
+        let Some(eligible) = tried.eligible() else {
+            let unit = costs.device.unit;
+            let least = judge.candidates().first().map_or(0.0, |candidate| candidate.cost);
+            let [least, most] = [least, scene.target.max_cost.unwrap_or_default()].map(|cost| cost_text(cost, unit));
+            let name = &costs.device.name;
+            return Err(format!("{}: the cheapest model takes {least} on {name}, more than {most}", material.name));
+        };
+        all_tried.push((tried, eligible));
+    }
+    let shaded = all_tried.iter().map(|(tried, eligible)| eligible.iter().map(|&i| tried.shaded(i)).collect());
+    let shaded: Vec<Vec<Shaded>> = shaded.collect();
+    // Alone, each material takes its cheapest.
+    let places = if share == 0.0 { None } else { cheapest(&shaded, share) };
+    let places = places.unwrap_or_else(|| vec![0; shaded.len()]);
+    let taken: Vec<Shaded> = shaded.iter().zip(&places).map(|(of_one, &place)| of_one[place]).collect();
+    let names = DeviceCost::names().filter(|name| *name != costs.device.name);
+    let others: Vec<CostTable> = names.filter_map(CostTable::on).collect();
+    let mut picked = Picked { choices: Vec::new(), cost: scene_cost(&taken, share), misses: Vec::new(), excess: 0.0 };
+    for ((judge, (tried, eligible)), place) in judges.iter().zip(all_tried).zip(places) {
+        let mut choice = judge.chosen(tried, eligible[place]);
+        choice.disagreements = judge.disagreements(&choice, costs, &others);
+        if !choice.holds() {
+            picked.misses.push(format!("{}: {}", choice.name, choice.reason));
+            picked.excess = picked.excess.max(choice.budget.excess(&choice.candidate().error));
+        }
+        picked.choices.push(choice);
+    }
+    Ok(picked)
+}
+
 /// The costs that a scene asks for. A limit on cost without a device is one of cycles on RDNA2.
 fn default_costs(scene: &Scene) -> CostTable {
     let named = scene.target.device.as_deref().or(scene.target.max_cost.map(|_| "rdna2"));
     named.and_then(CostTable::on).unwrap_or_else(CostTable::shipped)
+}
+
+/// The costs with the rows that a scene's target has room for. Steps double the bytes of rows.
+fn rows_of(scene: &Scene, costs: CostTable) -> CostTable {
+    let has_steps = scene.target.max_bytes.is_none()
+        && scene.target.formats.is_none_or(|formats| formats.has(RowLayout::Steps.format()));
+    if has_steps { costs } else { costs.filtered() }
 }
 
 /// Reason why tables do not fit the target: too many bytes, or a format that it lacks.
@@ -342,7 +422,7 @@ fn table_errors(
     let subject = Subject { manifest, textures, stacks, maps: Vec::new(), films: Vec::new() };
     let errors = (0..materials.len()).map(|number| {
         let terms = TableTerms::new(&subject, number, Weights::EightBit)?;
-        Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))
+        Ok(judges[number].table_error(choices[number].candidate(), &terms, budgets[number].delta_e.is_some()))
     });
     errors.collect()
 }

@@ -24,10 +24,10 @@ mod reference;
 mod shape;
 mod simplify;
 
-pub use candidate::Candidate;
+pub use candidate::{Candidate, forms};
 pub use choice::{Judge, MAX_SAMPLES, MODEL_SHARE, TABLE_SHARE, cost_text, label};
 pub use cost::{COST_DATA, CostRow, CostTable, ShapeRow, ShapeTable};
-pub use director::{Director, Made, SceneFailure};
+pub use director::{Director, Made, SceneFailure, Unchosen};
 pub use divergence::{Shaded, scene_cost};
 pub use error::{FLOOR, Value};
 pub use luthier_cost::DeviceCost;

@@ -59,7 +59,8 @@ impl Fixed {
             settings.take_rows(rows);
         }
         let asked = budget(materials, &options.budget)?;
-        settings.lobes = (options.search && asked.limits_lobes()).then_some(LOBES);
+        let have_forms = materials.iter().any(|material| material.bake.lobes.is_some());
+        settings.lobes = (options.search && asked.limits_lobes() && !have_forms).then_some(LOBES);
         settings.take_layout(lobes::layout(materials, options, &asked));
         let plan = planner::plan(materials, settings.clone(), read_image)?;
         Ok(Self { settings, plan, asked })

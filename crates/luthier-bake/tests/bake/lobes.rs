@@ -2,7 +2,7 @@
 
 use luthier_bake::{Baked, Options, Silent, bake_with};
 use luthier_lut::{RowLayout, TableKind, WeightBits};
-use luthier_manifest::{Budget, ShadingModel};
+use luthier_manifest::{Budget, LobesForm, ShadingModel};
 use luthier_material::Material;
 
 use crate::materials::{STORE, atlas, conductor, dielectric, material, no_images};
@@ -120,5 +120,39 @@ fn sides_of_a_coat_have_the_rows_of_two_materials() {
         }
         // One axis has less than 10 KiB a side.
         assert!(rows.bytes.len() < 10 * 1024 * tiles.iter().filter(|count| **count > 0).count());
+    }
+}
+
+/// A scene chooses the form of each material: a set has one width where none has more, and as many parts as the material with the most lobes.
+#[test]
+fn forms_of_materials_decide_the_rows_of_a_set() {
+    let with = |name: &str, form| {
+        let mut coated = coated(name, 0.1, &conductor("{ n = 0.2, k = 3.0 }", 0.3));
+        coated.bake.lobes = Some(form);
+        coated
+    };
+    let [none, narrow, one, two] = LobesForm::ALL.map(|form| with(form.name(), form));
+    for (materials, last_part) in [
+        ([none.clone(), with("other", LobesForm::NoLobe)], 1.0),
+        ([none.clone(), narrow.clone()], 2.0),
+        ([narrow.clone(), one.clone()], 3.0),
+        ([none.clone(), two.clone()], 5.0),
+    ] {
+        let baked = bake_with(&materials, &Options::default(), &no_images, &Silent, &*STORE).unwrap();
+        let forms = materials.each_ref().map(|material| material.bake.lobes.unwrap());
+        assert_eq!(atlas(&baked, TableKind::Lobes).layout.y.as_ref().unwrap().max, last_part, "{forms:?}");
+        for (baked, form) in baked.materials.iter().zip(forms) {
+            let record = baked.constants.lobes.unwrap();
+            let has_one_width = last_part == 2.0;
+            assert_eq!((record.lobes as usize, record.rise.is_some()), (form.most(), has_one_width), "{forms:?}");
+            assert!(record.error.is_some_and(|error| error.lobe > 0.0));
+        }
+        // Without fits an outline has the same tables.
+        let outlined =
+            luthier_bake::outline_with(&materials, &Options { fits: false, ..Options::default() }, &no_images, &*STORE);
+        let outlined = outlined.unwrap();
+        let (_, layout, format) = outlined.tables.iter().find(|(kind, ..)| *kind == TableKind::Lobes).unwrap();
+        let baked = atlas(&baked, TableKind::Lobes);
+        assert_eq!((layout, format), (&baked.layout, &baked.format), "{forms:?}");
     }
 }

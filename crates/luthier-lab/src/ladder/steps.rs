@@ -3,7 +3,7 @@
 use luthier::{Bake, MemoryStore, Options, outline};
 use luthier_cost::{DeviceCost, Style, shader_text};
 use luthier_lut::TableKind;
-use luthier_manifest::{Budget, FunctionGroup, LobesRecord, Manifest, PlaceValues, ShadingModel};
+use luthier_manifest::{Budget, FunctionGroup, LobesForm, LobesRecord, Manifest, PlaceValues, ShadingModel};
 use luthier_material::Material;
 use luthier_report::{Reference, Rows, Shown, Weights};
 use luthier_shader::{Form, MaterialSet, StaticCounts, count};
@@ -69,12 +69,13 @@ impl Rung {
     ];
 
     fn of(record: &LobesRecord) -> Self {
-        match (record.lobes, record.rise) {
-            _ if record.varying.is_some() || record.axes.is_some() => Self::Varied,
-            (0, _) => Self::NoLobe,
-            (_, Some(_)) => Self::OneWidth,
-            (1, None) => Self::OneLobe,
-            (_, None) => Self::TwoLobes,
+        match LobesForm::of(record) {
+            None => Self::Varied,
+            Some(_) if record.axes.is_some() => Self::Varied,
+            Some(LobesForm::NoLobe) => Self::NoLobe,
+            Some(LobesForm::OneWidth) => Self::OneWidth,
+            Some(LobesForm::OneLobe) => Self::OneLobe,
+            Some(LobesForm::TwoLobes) => Self::TwoLobes,
         }
     }
 }

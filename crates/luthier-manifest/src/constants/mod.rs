@@ -1,6 +1,7 @@
 //! Constants of a whole surface, beside its layers.
 
 mod beams;
+mod lobes_form;
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -8,6 +9,7 @@ use luthier_model::DiffuseTerm;
 use serde::{Deserialize, Serialize};
 
 pub use self::beams::BeamsRecord;
+pub use self::lobes_form::LobesForm;
 use crate::record::{LayerRecord, vec4};
 
 /// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.

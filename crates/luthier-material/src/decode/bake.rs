@@ -30,6 +30,7 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
         lower_alpha: at.text("lower_alpha").and_then(LowerAlpha::from_name),
         diffuse_part: at.text("diffuse_part").and_then(DiffusePart::from_name),
         beams: at.section("granier-heidrich").map(|at| beams(&at, sink)),
+        lobes: None,
         tables: at.texts("tables").iter().filter_map(|name| TableKind::from_name(name)).collect(),
         color: at.text("color").and_then(ColorMode::from_name),
         wavelengths_nm,

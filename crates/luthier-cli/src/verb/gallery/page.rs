@@ -6,7 +6,7 @@ use luthier::refusals::of_domain;
 use luthier::{Bake, lit, read_materials};
 use luthier_export::{MANIFEST, Package, label, origin};
 use luthier_gallery::{Exhibit, Gallery, Look, Scenery, hidden_maps};
-use luthier_manifest::{Form, ShadingModel};
+use luthier_manifest::{Form, LobesForm, ShadingModel};
 use luthier_material::{CrossSection, Diagnostic, Material};
 use luthier_scene::CostTable;
 use luthier_terminal::{Failure, Outcome, complain, deliver};
@@ -115,7 +115,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
     let first = gallery.exhibits.len();
     let own = package(materials)?;
     for (number, material) in (0..).zip(materials) {
-        let mut exhibit = Exhibit::new(&material.name, vec![look(gallery, number, material, &costs)]);
+        let mut exhibit = Exhibit::new(&material.name, vec![look(gallery, &own, number, material, &costs)]);
         exhibit.description.clone_from(&material.description);
         exhibit.text = Some(material.text.clone());
         exhibit.section = Some(material.cross_section());
@@ -142,7 +142,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
         }
         let compared = package(&shaded)?;
         for (i, (number, material)) in (0..).zip(numbers.into_iter().zip(&shaded)) {
-            let look = look(gallery, i, material, &costs);
+            let look = look(gallery, &compared, i, material, &costs);
             gallery.exhibits[number].looks.push(look);
         }
         gallery.packages.push(compared);
@@ -161,10 +161,11 @@ fn package(materials: &[Material]) -> Outcome<Package> {
 }
 
 /// A look of a material of the next package, with the cycles of its shaders.
-fn look(gallery: &Gallery, number: u32, material: &Material, costs: &CostTable) -> Look {
+fn look(gallery: &Gallery, package: &Package, number: u32, material: &Material, costs: &CostTable) -> Look {
     let shape = luthier_scene::shape(&material.stack);
+    let lobes = package.manifest.materials[number as usize].constants.lobes.as_ref().and_then(LobesForm::of);
     let cycles = Form::ALL.into_iter().filter_map(|form| {
-        let (cycles, is_of_similar) = costs.cost(material.model(), form, &shape)?;
+        let (cycles, is_of_similar) = costs.cost(material.model(), form, &shape, lobes)?;
         let about = if is_of_similar { "about " } else { "" };
         Some((form, format!("{about}{cycles:.0}")))
     });

@@ -5,7 +5,7 @@ use std::path::Path;
 use luthier::{Store, outline};
 use luthier_bake::{Function, Options, kept};
 use luthier_export::{GENERATOR, sha256};
-use luthier_manifest::{Form, Manifest, ShadingModel};
+use luthier_manifest::{Form, LobesForm, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_report::stability::Stability;
 use luthier_report::{
@@ -77,8 +77,9 @@ pub(super) fn add(
         report.costs = Some(costs);
     }
     let costs = CostTable::rdna2();
-    for (judged, material) in report.materials.iter_mut().zip(materials) {
-        judged.shape_cost = shape_cost(&costs, judged.model, material);
+    for ((judged, material), entry) in report.materials.iter_mut().zip(materials).zip(&manifest.materials) {
+        let lobes = entry.constants.lobes.as_ref().and_then(LobesForm::of);
+        judged.shape_cost = shape_cost(&costs, judged.model, material, lobes);
     }
     report.stability = given.stability.as_ref().map(StabilitySummary::of);
     // Fixed sizes were not searched for, so a search has nothing to add.
@@ -123,10 +124,15 @@ fn against_reference(subject: &ModelSubject, settings: ModelSettings, store: &dy
 }
 
 /// Cost of the shader of a material, from the table that scenes choose by.
-fn shape_cost(costs: &CostTable, model: ShadingModel, material: &Material) -> Option<ShapeCost> {
+fn shape_cost(
+    costs: &CostTable,
+    model: ShadingModel,
+    material: &Material,
+    lobes: Option<LobesForm>,
+) -> Option<ShapeCost> {
     let shape = luthier_scene::shape(&material.stack);
-    let (baked, is_of_similar) = costs.cost(model, Form::Baked, &shape)?;
-    let full = costs.cost(model, Form::Full, &shape).map(|(cycles, _)| cycles as u32);
+    let (baked, is_of_similar) = costs.cost(model, Form::Baked, &shape, lobes)?;
+    let full = costs.cost(model, Form::Full, &shape, None).map(|(cycles, _)| cycles as u32);
     Some(ShapeCost { baked: baked as u32, full, is_of_similar })
 }
 

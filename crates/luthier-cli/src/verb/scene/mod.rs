@@ -112,7 +112,8 @@ fn tighten(options: &BakeOptions, scenes: Vec<TomlFile>) -> Outcome {
         let steps = budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss).map_err(failure));
         let steps = steps.collect::<Outcome<Vec<Made>>>()?;
         let device = director.device().clone();
-        tightened.push(page::Tightened { scene, device, steps });
+        let unchosen = director.without_choice();
+        tightened.push(page::Tightened { scene, device, steps, unchosen });
     }
     if options.json {
         let scenes: Value = tightened

@@ -140,6 +140,55 @@ fn the_device_of_the_costs_is_named() {
     workshop.run(&["bake", "parts/clay.toml", "--device", "h100"]).exits(0);
 }
 
+/// Coats over gold and over paint, which `lobes` alone holds.
+fn coats() -> Workshop {
+    let gold = "schema = 1\nname = \"gold\"\n\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n\n[[layer]]\ntype = \"conductor\"\n\
+                ior = \"au\"\nalpha = 0.3\n";
+    let glaze = "schema = 1\nname = \"glaze\"\n\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n\n[[layer]]\ntype = \"diffuse\"\n\
+                 albedo = [0.6, 0.2, 0.1]\n";
+    let scene = SCENE.replace("max_rel = 0.3", "max_rel = 0.15");
+    Workshop::with(&[("parts/metal.toml", gold), ("parts/clay.toml", glaze), ("shelf.toml", &scene)])
+}
+
+/// A scene takes the cheapest form of `lobes` that holds for each material.
+#[test]
+fn forms_of_lobes_are_candidates() {
+    let workshop = coats();
+    let run = workshop.run(&["bake", "shelf.toml", "--out", "a"]).exits(0);
+    let manifest = workshop.json("a/manifest.json");
+    let forms = |manifest: &Value| -> Vec<String> {
+        let of = |m: &Value| m["tried"][m["chosen"].as_u64().unwrap() as usize]["lobes"].clone();
+        let materials = manifest["choice"]["materials"].as_array().unwrap();
+        materials.iter().map(|m| of(m).as_str().unwrap_or("-").to_owned()).collect()
+    };
+    assert_eq!(forms(&manifest), ["one-width", "no-lobe"], "{}", run.stdout);
+    assert!(run.stdout.contains("gold: lobes with one lobe of one width for "), "{}", run.stdout);
+    let lobes = |i: usize| manifest["materials"][i]["constants"]["lobes"].clone();
+    assert_eq!([0, 1].map(|i| lobes(i)["lobes"].as_u64()), [Some(1), Some(0)]);
+    // A limit of a material on the errors of its rows is searched as it stands.
+    workshop.edit("parts/metal.toml", |text| format!("{text}\n[budget]\nmax_lobe_err = 0.1\n"));
+    workshop.run(&["bake", "shelf.toml", "--out", "b", "-q", "--allow-miss"]).exits(0);
+    let manifest = workshop.json("b/manifest.json");
+    assert_eq!(forms(&manifest), ["-", "-"]);
+    assert!(manifest["searches"].to_string().contains("max_lobe_err"), "{}", manifest["searches"]);
+}
+
+/// Shaders read rows of one width beside rows without a lobe as the f64 does.
+#[cfg(feature = "gpu")]
+#[test]
+fn forms_of_lobes_in_one_set_are_read_as_they_are() {
+    let workshop = coats();
+    workshop.run(&["bake", "shelf.toml", "-q"]).exits(0);
+    let run = workshop.run(&["report", "--pairs", "256"]);
+    if run.lacks_adapter() {
+        return;
+    }
+    run.exits(0);
+    let report = workshop.json("out/report/report.json");
+    let error = report["max_arithmetic_error"].as_f64().unwrap();
+    assert!(error > 0.0 && error < 1e-5, "{error}");
+}
+
 /// Where all neighbours differ, a scene takes no more models than where none does, and its cost has those of the neighbours.
 #[test]
 fn neighbours_that_differ_draw_models_together() {

@@ -1,0 +1,162 @@
+//! Lobes tiles: the simulated light from below the first interface of a material.
+//!
+//! # Rooms
+//!
+//! Each uses those before it: `rows`, `shape`, `fit`, `tile`, `record`.
+
+mod fit;
+mod record;
+mod rows;
+mod shape;
+mod tile;
+
+use std::sync::Arc;
+
+use luthier_layers::models::lobes::{FitError, LOBES, Varied};
+use luthier_lut::{AtlasLayout, RowLayout, TableKind};
+use luthier_manifest::{Budget, Candidate, CandidateForm, LobesForm, MeasuredError, Search};
+use luthier_material::Material;
+
+use self::fit::{FitJob, Fits, fit};
+use self::rows::{STEPS, of_model, side};
+use self::shape::{HIDDEN_READS, ONE_WIDTH_LAST, parts, reads, shape, shape_of_one_width, shape_with};
+use self::tile::LobesJob;
+use super::{Kind, Site};
+use crate::BakeError;
+use crate::candidates::{self, Found, Refusal, choose, cost, locked};
+use crate::graph::{Graph, Job, Results};
+use crate::options::Options;
+use crate::plan::Plan;
+use crate::settings::{Ask, Settings, Shape};
+use crate::tile::apron;
+
+pub(crate) use self::fit::FIT;
+pub use self::fit::fitted;
+pub(crate) use self::record::record;
+pub use self::rows::{VARIED_LAYERS_MAX, has_lone_rows, is_too_deep};
+pub(crate) use self::rows::{has_rows, most};
+pub(crate) use self::shape::layout;
+
+/// Lobes tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
+        let most = of_model(materials).map(|material| material.bake.lobes.map_or(LOBES, LobesForm::most)).max();
+        Ok(shape_with(materials, most.unwrap_or(LOBES), RowLayout::Filtered.format()))
+    }
+
+    /// A tile for the first layer, whose lobes contain the light of all layers below.
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let Site { material, layer, shape, .. } = site;
+        let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
+        if !is_first {
+            return Ok(None);
+        }
+        let (fit, axes, format) = (fit(material, site.lobes.is_some()), shape.axes(), shape.format);
+        Ok(Some(Arc::new(LobesJob { fit, most: site.lobes, tile: 0, axes, format })))
+    }
+
+    /// Tiles for the other nodes over the varying factor, or over the azimuth.
+    fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
+        let Site { material, shape, lobes: most, .. } = *site;
+        let fit = fit(material, most.is_some());
+        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying_of(most)), shape.format);
+        let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format });
+        jobs.map(|job| Arc::new(job) as Arc<dyn Job>).collect()
+    }
+}
+
+/// A budget that cannot be met, with the error of each material, by number, under the nearest candidate.
+pub(crate) type Broken = (Refusal, Vec<(usize, MeasuredError)>);
+
+/// The graph of the fits alone, if there are any.
+pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
+    graph.of::<FitJob>().next()?;
+    Some(graph.only(|job| job.kind() == FIT))
+}
+
+/// Decides the shape of the tiles, from the fits of a plan. Without limits on the errors of lobes, the tiles have as
+/// many parts as the material with the most lobes needs. With limits, the smallest shape that holds them is taken, and
+/// the search is reported. Families have fewer nodes where others have fewer lobes.
+///
+/// # Errors
+/// [`Broken`] where no shape holds the limits.
+pub(crate) fn decide(
+    settings: &mut Settings,
+    plan: &Plan,
+    materials: &[Material],
+    results: &Results,
+    budget: &Budget,
+    options: &Options<'_>,
+) -> Result<Option<Search>, Broken> {
+    let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
+    let given = settings.fixed(TableKind::Lobes).format;
+    // Few reads of textures hide behind arithmetic.
+    let format_of = |reads: usize| {
+        let hides = options.layout.is_none() && reads <= HIDDEN_READS;
+        if hides { RowLayout::Filtered.format() } else { given }
+    };
+    if settings.lobes.is_none() {
+        let sides: Vec<Material> = of_model(materials).filter_map(side).collect();
+        let lobes = of_model(materials).chain(&sides).filter_map(|material| {
+            let most = most(material, settings);
+            Some(results.get::<Fits>(fit(material, most.is_some()).key())?.of(most).lobes())
+        });
+        let lobes = lobes.max().unwrap_or(0);
+        settings.take_lobes(shape_with(materials, lobes, format_of(reads(lobes))));
+        return Ok(None);
+    }
+    let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).of_one_width.is_some());
+    let steps = (0..=LOBES).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
+    let choices: Vec<(usize, bool, usize)> =
+        steps.flat_map(|(most, has_one_width)| (0..STEPS.len()).map(move |i| (most, has_one_width, i))).collect();
+    let shape_of = |(most, has_one_width, i): (usize, bool, usize)| {
+        let lobes = lobes_of(&fits, most);
+        let parts = parts(materials, lobes);
+        match has_one_width {
+            true => shape_of_one_width(parts, STEPS[i], format_of(ONE_WIDTH_LAST as usize)),
+            false => shape(parts, STEPS[i], format_of(reads(lobes))),
+        }
+    };
+    let candidates = choices.iter().map(|&(most, has_one_width, i)| {
+        let errors = fits.iter().map(|fits| fits.of(Some(most)).errors(has_one_width)[i]);
+        let error = errors.fold(FitError::default(), FitError::max);
+        let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
+        let Shape { x, y, base, format } = shape_of((most, has_one_width, i));
+        let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
+        let apron = apron(std::iter::once(&x).chain(&y));
+        let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
+        let bytes = layout.size().map(u64::from).iter().product::<u64>() * u64::from(format.texel_bytes());
+        let form = CandidateForm::Table { x, y, format, base };
+        Candidate { form, bytes, cost, error: measured(error) }
+    });
+    let found = Found::new(TableKind::Lobes, 0.0, candidates.collect());
+    let found = std::slice::from_ref(&found);
+    let chosen = locked(found, options.locked, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
+    let chosen = chosen.map_err(|refusal| {
+        let (most, has_one_width, i) = match &refusal {
+            Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
+            Refusal::Whole { .. } => choices[0],
+        };
+        let errors = materials.iter().enumerate().filter_map(|(number, material)| {
+            let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
+            let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
+            let errors = fits.map(|fits| fits.of(Some(most)).errors(has_one_width)[i]);
+            Some((number, measured(errors.reduce(FitError::max)?)))
+        });
+        (refusal, errors.collect())
+    })?[0];
+    settings.lobes = Some(choices[chosen].0);
+    settings.take_lobes(shape_of(choices[chosen]));
+    Ok(Some(candidates::report(&found[0], chosen, budget)))
+}
+
+/// The most lobes of any fit, if each has at most `most`.
+fn lobes_of(fits: &[&Fits], most: usize) -> usize {
+    fits.iter().map(|fits| fits.of(Some(most)).lobes()).max().unwrap_or(0)
+}
+
+fn measured(error: FitError) -> MeasuredError {
+    MeasuredError { lobe: Some(error.lobe), albedo: Some(error.albedo), ..MeasuredError::default() }
+}

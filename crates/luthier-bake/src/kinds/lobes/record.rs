@@ -1,0 +1,140 @@
+//! The view-independent numbers of rows, for manifests.
+
+use luthier_layers::models::lobes::{Axes, Critical, Family, FitError, Painted, SlopeAxis, Varying, base_below};
+use luthier_lut::{Image, TableKind, TexelFormat};
+use luthier_manifest::{
+    AxesRecord, FamilyRecord, LobesError, LobesRecord, PaintedRecord, SlopesRecord, VaryingFactor, VaryingRecord,
+};
+use luthier_material::Material;
+
+use super::fit::{Fits, fit};
+use super::rows::{STEPS, has_base, is_family, most, varying};
+use super::shape::{have_one_width, is_of_one_width, step};
+use crate::graph::{Job, Results};
+use crate::settings::Settings;
+
+/// Placeholder numbers where nothing was fitted.
+pub(super) const UNFITTED: LobesRecord = LobesRecord {
+    index: 1.5,
+    falloff: [0.5, 0.1],
+    integral: 0.95,
+    critical_cot_sq: 0.0,
+    critical_width: 0.0,
+    critical_plain_share: 0.0,
+    lobes: 2,
+    inverse_tails: [1.0; 2],
+    rise: None,
+    varying: None,
+    axes: None,
+    painted: None,
+    error: None,
+};
+
+/// The view-independent numbers of a material's lobes; [`UNFITTED`] in an outline without fits.
+pub(crate) fn record(material: &Material, settings: &Settings, results: &Results) -> LobesRecord {
+    let axes = Varying::axes(varying(material), &material.stack).map(|Axes { turn, is_mirrored }| AxesRecord {
+        turn,
+        is_mirrored,
+        tiles: Axes::TILES as u32,
+    });
+    let most = most(material, settings);
+    let fits = results.get::<Fits>(fit(material, most.is_some()).key());
+    let Some((fits, shape)) = fits.zip(settings.shape(TableKind::Lobes)) else {
+        let base = base_below(&material.stack).filter(|_| has_base(material) || is_family(varying(material)));
+        let painted = base.map(|base| PaintedRecord { albedo: base.albedo, moments: None });
+        let varying = varying(material).and_then(|varying| match varying {
+            Varying::Family(family) => Some(VaryingRecord {
+                factor: VaryingFactor::Family,
+                tiles: family.nodes() as u32,
+                least_spread: 1.0,
+                factors: None,
+                family: Some(family_record(family)),
+            }),
+            _ => None,
+        });
+        let unfitted = LobesRecord { axes, painted, varying, ..UNFITTED };
+        return match material.bake.lobes {
+            Some(form) => {
+                let rise = have_one_width(std::slice::from_ref(material)).then_some(0.0);
+                LobesRecord { lobes: form.most() as u32, rise, ..unfitted }
+            }
+            None => unfitted,
+        };
+    };
+    let fit = fits.of(most);
+    let has_one_width = shape.y.as_ref().is_some_and(is_of_one_width);
+    let varied = fit.shaped(has_one_width);
+    let step = step(shape.x.size);
+    let error = STEPS.iter().position(|known| *known == step).map(|i| {
+        let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.errors(has_one_width)[i];
+        LobesError { lobe, lobe_noise, albedo, albedo_noise }
+    });
+    let lobes = &varied.nodes[0];
+    let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
+    LobesRecord {
+        index: lobes.frame.index,
+        falloff: wide.falloff(),
+        integral: wide.integral(),
+        critical_cot_sq: cot_sq,
+        critical_width: width,
+        critical_plain_share: plain_share,
+        lobes: fit.lobes() as u32,
+        inverse_tails: texels_of(
+            lobes
+                .frame
+                .one_width
+                .map_or(varied.stored(0, 0).inverse_tails(), |one_width| [one_width.inverse_tail, 0.0]),
+            shape.format,
+        ),
+        rise: lobes.frame.one_width.map(|one_width| one_width.rise),
+        varying: varied.varying().map(|varying| VaryingRecord {
+            factor: match varying {
+                Varying::Alpha => VaryingFactor::AlphaFactor,
+                Varying::Slab => VaryingFactor::SlabFactor,
+                Varying::Film(_) => VaryingFactor::FilmFactor,
+                Varying::Patina(_) if material.weight().is_some() => VaryingFactor::WeightFactor,
+                Varying::Patina(_) => VaryingFactor::Patina,
+                Varying::Family(_) => VaryingFactor::Family,
+            },
+            factors: match varying {
+                Varying::Film(factors) => Some(factors),
+                Varying::Alpha | Varying::Slab | Varying::Patina(_) | Varying::Family(_) => None,
+            },
+            family: match varying {
+                Varying::Family(family) => Some(family_record(family)),
+                Varying::Alpha | Varying::Slab | Varying::Film(_) | Varying::Patina(_) => None,
+            },
+            tiles: varied.nodes.len() as u32,
+            least_spread: varied.least_spread(),
+        }),
+        axes,
+        painted: lobes.frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
+            // Fits of families have any colour.
+            albedo: base_below(&material.stack).map_or(albedo, |base| base.albedo),
+            moments: varied.varying().filter(|_| is_lambertian).map(|_| wide.moments()),
+        }),
+        error,
+    }
+}
+
+/// The axes of a family for the manifest.
+pub(super) fn family_record(family: Family) -> FamilyRecord {
+    let axis = |SlopeAxis { least, most, nodes }| SlopesRecord { least, most, nodes: nodes as u32 };
+    FamilyRecord {
+        coat: family.is_coated().then(|| axis(family.coat)),
+        base: axis(family.base),
+        interface: family.interface as u32,
+        is_metallic: family.is_metallic,
+        is_tinted: family.is_tinted,
+        has_tail: family.has_tail,
+        sent_back: family.sent_back,
+        has_lengths: family.has_lengths,
+    }
+}
+
+/// Numbers as texels of a format have them.
+pub(super) fn texels_of(numbers: [f64; 2], format: TexelFormat) -> [f64; 2] {
+    let image = Image { width: 1, height: 1, channels: 2, data: numbers.map(|x| x as f32).to_vec() };
+    let texels = format.quantise(&image).data;
+    [texels[0], texels[1]].map(f64::from)
+}

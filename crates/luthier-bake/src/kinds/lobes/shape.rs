@@ -1,0 +1,120 @@
+//! Shapes of tiles of lobes: parts of rows, steps between rows, layouts.
+
+use luthier_layers::models::lobes::{Family, FitSettings, LOBES, Paint, Row, Varied, Varying, base_below, shown};
+use luthier_lut::{Axis, Mapping, RowLayout, TexelFormat};
+use luthier_manifest::{Budget, LobesForm};
+use luthier_material::Material;
+
+use super::rows::{ROWS, has_base, is_family, of_model, side, varying};
+use crate::options::Options;
+use crate::settings::{Shape, axis};
+
+/// Steps of the rows by default from row to row that suffice for all materials. Layers below a coat have the rows of the others.
+pub(super) fn common_step(materials: &[Material]) -> usize {
+    of_model(materials).map(|material| FitSettings::step(varying(material))).min().unwrap_or(1)
+}
+
+/// Numbers of the first part and of the last that rows of materials have, with at most so many lobes.
+pub(super) fn parts(materials: &[Material], lobes: usize) -> [i32; 2] {
+    let sides: Vec<Material> = of_model(materials).filter_map(side).collect();
+    let ends = of_model(materials).chain(&sides).map(|material| match varying(material) {
+        Some(Varying::Family(family)) => {
+            let parts = family.parts(
+                has_lengths(material, family),
+                base_below(&material.stack).is_some(),
+                family.is_filmed(&material.stack),
+            );
+            ([family.first_part(), parts as i32 - 1], true)
+        }
+        _ => ([if has_base(material) { -BASE_PARTS } else { 0 }, Row::parts(lobes) as i32 - 1], false),
+    });
+    let ends: Vec<([i32; 2], bool)> = ends.collect();
+    let ([mut first, mut last], _) = (ends.iter().copied())
+        .reduce(|([first, last], _), ([from, to], _)| ([first.min(from), last.max(to)], true))
+        .unwrap_or(([0, Row::parts(lobes) as i32 - 1], false));
+    let has = |of_family: bool| ends.iter().any(|(_, is_family)| *is_family == of_family);
+    if has(true) && has(false) {
+        // Beside families other rows have all parts of a base before part 0, or none, and those of two lobes.
+        first = if first < 0 { -BASE_PARTS } else { 0 };
+        last = last.max(Row::parts(LOBES) as i32 - 1);
+    }
+    [first, last]
+}
+
+/// Number of parts of a diffuse base.
+pub(super) const BASE_PARTS: i32 = Row::BASE_PARTS as i32;
+
+/// Whether rows of a family have lengths of light in a slab, or cosines at which the facets below a film are seen.
+pub(super) fn has_lengths(material: &Material, family: Family) -> bool {
+    let is_under_film = !family.is_coated() && family.is_filmed(&material.stack);
+    is_under_film || Paint::of(&material.stack).depth != [0.0; 3]
+}
+
+/// The layout of rows that options ask for, or else the cheaper one: see [`Options::layout`].
+pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budget) -> RowLayout {
+    let has_one_tile = |material: &Material| {
+        let varying = varying(material);
+        !is_family(varying) && Varied::tiles_of(&shown(&material.stack), varying) == 1
+    };
+    let is_alone =
+        |material: &Material| has_one_tile(material) && side(material).is_none_or(|side| has_one_tile(&side));
+    let reads = of_model(materials).map(|material| material.bake.lobes.map_or(LOBES, LobesForm::most)).map(reads).max();
+    let hides = have_one_width(materials) || reads.is_some_and(|reads| reads <= HIDDEN_READS);
+    options.layout.unwrap_or_else(|| {
+        let has_room = asked.max_bytes.is_none() && options.formats.has(RowLayout::Steps.format());
+        let in_steps = has_room && !hides && of_model(materials).all(is_alone);
+        if in_steps { RowLayout::Steps } else { RowLayout::Filtered }
+    })
+}
+
+/// The shape of tiles with parts from the first to the last. `step` is the distance of the rows that are kept.
+pub(super) fn shape([first, last]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
+    let rows = (ROWS - 1) / step + 1;
+    let axes = [
+        axis("cos_theta", "", [0.0, 1.0], rows as u32, Mapping::Rational { bend: 1.0 }),
+        axis("part", "", [first, last].map(f64::from), (last - first) as u32 + 1, Mapping::Apart),
+    ];
+    Shape::grid(axes, format)
+}
+
+/// Parts of rows with so many lobes that the light of a view takes.
+pub(super) fn reads(lobes: usize) -> usize {
+    [1, 3, 4][lobes.min(LOBES)]
+}
+
+/// Most reads of a texture for a view that take no time of their own: by the costs of the H100 two hide behind the arithmetic of the shader (5.7 ps, 7.2 in a buffer),
+/// and three do not (8.2 and 7.5).
+pub(super) const HIDDEN_READS: usize = 2;
+
+/// The shape of tiles whose rows have one lobe of one width.
+pub(super) fn shape_of_one_width([first, _]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
+    shape([first, ONE_WIDTH_LAST], step, format)
+}
+
+/// The shape of the tiles of materials with at most so many lobes, at the step that suffices for all.
+pub(super) fn shape_with(materials: &[Material], lobes: usize, format: TexelFormat) -> Shape {
+    let parts = parts(materials, lobes);
+    let of = if have_one_width(materials) { shape_of_one_width } else { shape };
+    of(parts, common_step(materials), format)
+}
+
+/// Whether the forms of materials give their rows one width.
+pub(super) fn have_one_width(materials: &[Material]) -> bool {
+    let mut forms = of_model(materials).map(|material| material.bake.lobes);
+    let mut known = of_model(materials).map(|material| material.bake.lobes);
+    forms.any(|form| form == Some(LobesForm::OneWidth))
+        && known.all(|form| matches!(form, Some(LobesForm::OneWidth | LobesForm::NoLobe)))
+}
+
+/// Number of the last part of rows with one lobe of one width: light takes the parts before it. No other rows end there.
+pub(super) const ONE_WIDTH_LAST: i32 = 2;
+
+/// Whether rows of tiles with such parts have one lobe of one width.
+pub(super) fn is_of_one_width(parts: &Axis) -> bool {
+    parts.max == f64::from(ONE_WIDTH_LAST)
+}
+
+/// The step between kept rows of an axis with this many nodes.
+pub(super) fn step(size: u32) -> usize {
+    (ROWS - 1) / (size as usize - 1)
+}
