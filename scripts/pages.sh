@@ -31,7 +31,7 @@ materials() {
 # Scenes choose by these costs: they are part of the program.
 devices() { luthier-lab devices "${stacks[@]}" -o docs/pages/devices.md; }
 layouts() { luthier-lab layouts materials/papers/{car-paint,gold-paint,red-lacquer,frosted-acrylic,latex}.toml materials/varnished-brass.toml -o docs/pages/layouts.md; }
-ladder() { luthier-lab ladder "${stacks[@]}" --stacks 100 --chart docs/pages/ladder.svg -o docs/pages/ladder.md; }
+ladder() { luthier-lab ladder "${stacks[@]}" materials/textured/board --stacks 200 --chart docs/pages/ladder.svg -o docs/pages/ladder.md; }
 sets() { luthier-lab sets "${stacks[@]}" -o docs/pages/sets.md; }
 shapes() { luthier-lab shapes "${stacks[@]}" materials/scenes/still-life -o crates/luthier-scene/data/cost.json; }
 cost() {

@@ -62,13 +62,15 @@ pub(crate) fn run(options: &LadderOptions) -> Outcome {
     let device = DeviceCost::shipped(DEVICE).ok_or_else(|| Failure::Usage(anyhow::anyhow!("no costs of {DEVICE}")))?;
     let yardstick = costs(&device, |lights| count(&Yardstick::GltfClearcoat.wgsl(), &[], lights))?;
     let is_judged = options.chart.is_some();
-    let shipped = materials.into_iter().map(|material| Subject {
-        name: material.name.clone(),
-        material,
-        judged: None,
-        drawn: Vec::new(),
+    let (families, shipped): (Vec<Material>, Vec<Material>) =
+        materials.into_iter().partition(|material| material.family().is_some());
+    let twins: Vec<Subject> =
+        shipped.iter().map(|material| Subject::of(crate::lobes::of(material, true), false, Vec::new())).collect();
+    let [families, shipped] = [families, shipped].map(|materials| {
+        let subject =
+            |material: Material| Subject { name: material.name.clone(), material, judged: None, drawn: Vec::new() };
+        materials.into_iter().map(subject).collect::<Vec<Subject>>()
     });
-    let shipped: Vec<Subject> = shipped.collect();
     let coats = if is_judged { options.coats.unwrap_or(usize::MAX) } else { 0 };
     let coats = coated().into_iter().take(coats).map(|coat| Subject::of(coat.subject, true, coat.drawn));
     let coats: Vec<Subject> = coats.collect();
@@ -80,6 +82,8 @@ pub(crate) fn run(options: &LadderOptions) -> Outcome {
         format!("{} random stack{} of 2 to 5 layers", stacks.len(), if stacks.len() == 1 { "" } else { "s" });
     let groups = [
         ("Materials", None, shipped),
+        ("Twins in the other distribution", None, twins),
+        ("Materials with textures", None, families),
         ("Coats of engines", Some(of_coats), coats),
         ("Random stacks", is_judged.then_some(of_stacks), stacks),
     ];

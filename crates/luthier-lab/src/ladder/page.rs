@@ -25,6 +25,10 @@ const INTRODUCTION: &str = "\nWhere a file or the command line limits the errors
 
 const OF_RANDOM: &str = "\nRandom stacks are those of [lobes.md](lobes.md), by the same numbers, as far as they have two interfaces that refract or mirror light: up to four coats over a metal, or two to four over a diffuse base.\n";
 
+const OF_TWINS: &str = "\nA twin is the stack of a material with GGX in place of Beckmann's distribution, or the reverse, and without textures.\n";
+
+const OF_FAMILIES: &str = "\nTextures vary the slope parameters of single layers: rows are those of a family, which always has two lobes. A limit takes fewer nodes over the slope parameters, which are fewer bytes at the same cost.\n";
+
 const OF_COATS: &str =
     "\nThese are the coats of [coats.md](coats.md): clear, over metals, plastics and mixtures of both.\n";
 
@@ -87,12 +91,14 @@ pub(super) fn page(
         page.push_str(match group.title {
             "Random stacks" => OF_RANDOM,
             "Coats of engines" => OF_COATS,
+            "Twins in the other distribution" => OF_TWINS,
+            "Materials with textures" => OF_FAMILIES,
             _ => "",
         });
         asked(&mut page, group, yardstick)?;
-        if group.title == "Materials" {
+        if group.title.starts_with("Materials") {
             let names: Vec<&str> = group.stacks.iter().map(|stack| stack.name.as_str()).collect();
-            writeln!(page, "\nThe materials: {}.", names.join(", "))?;
+            writeln!(page, "\nThese are {}.", names.join(", "))?;
         }
     }
     let words = LIGHTS.iter().zip(yardstick).map(|(lights, cost)| format!("{cost:.1} ps for each of {lights}"));

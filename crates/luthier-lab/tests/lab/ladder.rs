@@ -22,7 +22,7 @@ fn limits_take_cheaper_forms() {
     let page = workshop.run(&["ladder", "lacquer.toml", "matte.toml", "--stacks", "2"]).exits(0).stdout;
     assert!(page.contains("Made by `luthier-lab ladder lacquer.toml matte.toml --stacks 2`"), "{page}");
     // A diffuse base alone has no rows.
-    for (title, stacks) in [("Materials", 1.0), ("Random stacks", 2.0)] {
+    for (title, stacks) in [("Materials", 1.0), ("Twins in the other distribution", 1.0), ("Random stacks", 2.0)] {
         let found = rows(&page, title);
         assert_eq!(
             found.iter().map(|row| row[0]).collect::<Vec<_>>(),
