@@ -70,6 +70,7 @@ fn main() -> ExitCode {
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Fit(options) => verb::fit::run(options),
+        Verb::Import(options) => verb::import::run(options),
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema { scene, surface } => verb::schema::run(*scene, *surface),
         Verb::Completions(options) => verb::completions::run(options),

@@ -6,7 +6,9 @@
 //! [`soup`] reads a glTF file. [`Mesh::new`] prepares its triangles for rays: fitted into the unit sphere, with
 //! tangents, a tree of boxes and the openness of each vertex. [`model`] is a mesh of the project's own.
 //!
-//! Simplifications: textures, materials, lights and cameras of a file are not read, except the colour of parts with a
+//! [`Asset`] opens a glTF file for what it says of materials and pictures.
+//!
+//! Simplifications of triangles: textures, materials, lights and cameras of a file are not read, except the colour of parts with a
 //! material named `plain`. Openness is a number of a vertex, and linear between vertices.
 //!
 //! # Rooms
@@ -31,6 +33,6 @@ mod vector;
 
 pub use bvh::{Bvh, Meeting, Node};
 pub use error::MeshError;
-pub use gltf::{File, soup};
+pub use gltf::{Asset, File, PICTURE_BYTES_MAX, soup};
 pub use mesh::Mesh;
 pub use soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};

@@ -37,6 +37,7 @@ impl Verb {
             Self::View(options) => options.screenshot.as_deref().map_or(Ok(()), |path| file("--screenshot", path)),
             Self::Shader(options) => text("--output", options.output.as_deref()),
             Self::Environment(options) => folder("--out", &options.out),
+            Self::Import(options) => folder("--output", &options.output),
             Self::Fit(options) => text("--output", options.output.as_deref()),
             Self::Man(options) => options.out.as_deref().map_or(Ok(()), |path| folder("--out", path)),
             Self::Cache(_)

@@ -102,6 +102,8 @@ pub(crate) enum Verb {
     Eval(Box<EvalOptions>),
     /// Fit the model granier-heidrich to a lobe that a CSV file gives, and write a material file
     Fit(FitOptions),
+    /// Write material files from the materials of glTF files
+    Import(ImportOptions),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files, of scenes or of surfaces
@@ -400,6 +402,9 @@ pub(crate) use fit::{FitOptions, Thicknesses};
 
 mod gallery;
 pub(crate) use gallery::GalleryOptions;
+
+mod import;
+pub(crate) use import::ImportOptions;
 
 mod audit;
 mod destinations;

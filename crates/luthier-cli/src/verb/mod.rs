@@ -19,6 +19,7 @@ pub(crate) mod environment;
 pub(crate) mod eval;
 pub(crate) mod fit;
 pub(crate) mod gallery;
+pub(crate) mod import;
 pub(crate) mod ior;
 pub(crate) mod man;
 pub(crate) mod models;

@@ -78,7 +78,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-fn of_uri(uri: &str, files: Files<'_>) -> Result<Vec<u8>, String> {
+pub(super) fn of_uri(uri: &str, files: Files<'_>) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or("data without a comma")?;
         let bytes = percent_decoded(text);
@@ -107,7 +107,7 @@ fn beside(path: &str, files: Files<'_>) -> Result<io::Result<Vec<u8>>, String> {
 }
 
 /// A name for messages: a `data:` name may have megabytes.
-fn shortened(uri: &str) -> String {
+pub(super) fn shortened(uri: &str) -> String {
     if uri.chars().count() <= 64 { uri.to_owned() } else { uri.chars().take(61).chain("...".chars()).collect() }
 }
 

@@ -1,6 +1,7 @@
 //! glTF 2.0 files, text or binary.
 
 mod accessor;
+mod asset;
 mod buffers;
 mod container;
 mod document;
@@ -11,6 +12,7 @@ mod turn;
 
 use std::io;
 
+pub use self::asset::{Asset, PICTURE_BYTES_MAX};
 use self::buffers::Buffers;
 use self::document::Document;
 pub use self::reader::File;

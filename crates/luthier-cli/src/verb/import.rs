@@ -1,0 +1,148 @@
+//! `import`: material files from glTF.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use luthier_export::{input, label};
+use luthier_import::{Fate, Import, ImportError, Imported, Line, gltf};
+use luthier_terminal::{Failure, Outcome, files, print};
+use serde_json::{Value, json};
+
+use crate::cli::ImportOptions;
+
+/// Name of the file that says what became of each property.
+const REPORT: &str = "import.json";
+
+/// A file that was read.
+struct Read {
+    label: String,
+    import: Import,
+}
+
+/// Imports files, and writes nothing if one of them cannot be read.
+pub(crate) fn run(options: &ImportOptions) -> Outcome {
+    let mut read = Vec::new();
+    for path in &options.files {
+        let bytes = input::mesh(path).map_err(files(path, "read"))?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let label = label(path);
+        let name = path.file_name().map_or_else(|| label.clone(), |name| name.to_string_lossy().into_owned());
+        let import = gltf(&name, &bytes, &|beside| input::mesh(&folder.join(beside)));
+        let import = import.map_err(|error: ImportError| {
+            Failure::Input(anyhow::Error::new(error).context(path.display().to_string()))
+        })?;
+        read.push(Read { label, import });
+    }
+    let written = together(&mut read);
+    let report = report(&read);
+    write(options, written, &report)?;
+    print(&if options.json { format!("{report:#}") } else { text(options, &read) })
+}
+
+/// All files to write by relative path. Where several imports have files of one name and other bytes, the later ones get numbers.
+fn together(read: &mut [Read]) -> BTreeMap<String, Vec<u8>> {
+    let mut all: BTreeMap<String, Vec<u8>> = BTreeMap::new();
+    for Read { import, .. } in read {
+        for (path, bytes) in std::mem::take(&mut import.pictures) {
+            let place = free(&path, |place| all.get(place).is_none_or(|known| *known == bytes));
+            if place != path {
+                let [from, to] = [&path, &place].map(|path| format!("\"{path}\""));
+                import.materials.iter_mut().for_each(|material| material.text = material.text.replace(&from, &to));
+            }
+            all.insert(place, bytes);
+        }
+        for material in &mut import.materials {
+            let place = free(&format!("{}.toml", material.name), |place| !all.contains_key(place));
+            let name = place.trim_end_matches(".toml").to_owned();
+            let [from, to] = [&material.name, &name].map(|name| format!("\nname = \"{name}\"\n"));
+            material.text = material.text.replacen(&from, &to, 1);
+            material.name = name;
+            all.insert(place, material.text.clone().into_bytes());
+        }
+    }
+    all
+}
+
+/// A path, or the first with a number before its ending, that is free.
+fn free(path: &str, is_free: impl Fn(&str) -> bool) -> String {
+    let (stem, ending) = path.rsplit_once('.').unwrap_or((path, ""));
+    let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));
+    let found = std::iter::once(path.to_owned()).chain(numbered).find(|path| is_free(path));
+    found.unwrap_or_else(|| unreachable!("numbers do not end"))
+}
+
+/// Writes all files; none, if one is there and may not be replaced.
+fn write(options: &ImportOptions, mut written: BTreeMap<String, Vec<u8>>, report: &Value) -> Outcome {
+    written.insert(REPORT.to_owned(), format!("{report:#}\n").into_bytes());
+    let places: Vec<(PathBuf, Vec<u8>)> =
+        written.into_iter().map(|(path, bytes)| (options.output.join(path), bytes)).collect();
+    if let Some((there, _)) = places.iter().find(|(path, _)| !options.force && path.symlink_metadata().is_ok()) {
+        return Err(Failure::Usage(anyhow::anyhow!(
+            "{} is there already: choose another folder, or replace files with --force; nothing was written",
+            there.display()
+        )));
+    }
+    for (path, bytes) in places {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        std::fs::create_dir_all(folder).map_err(files(folder, "made"))?;
+        // A reader sees the old file or the new one.
+        let fresh = path.with_extension("luthier-new");
+        let moved = std::fs::write(&fresh, bytes).and_then(|()| std::fs::rename(&fresh, &path));
+        if moved.is_err() {
+            let _ = std::fs::remove_file(&fresh).or_else(|error| match error.kind() {
+                ErrorKind::NotFound => Ok(()),
+                _ => Err(error),
+            });
+        }
+        moved.map_err(files(&path, "written"))?;
+    }
+    Ok(())
+}
+
+fn report(read: &[Read]) -> Value {
+    let line =
+        |Line { property, fate, note }: &Line| json!({ "property": property, "fate": fate.name(), "note": note });
+    let material = |Imported { name, source_name, lines, .. }: &Imported| {
+        let lines: Vec<Value> = lines.iter().map(line).collect();
+        json!({ "name": name, "source_name": source_name, "file": format!("{name}.toml"), "properties": lines })
+    };
+    let sources = read.iter().map(|Read { label, import }| {
+        let materials: Vec<Value> = import.materials.iter().map(material).collect();
+        json!({ "source": label, "materials": materials, "properties": import.lines.iter().map(line).collect::<Vec<_>>() })
+    });
+    json!({ "generator": luthier_export::GENERATOR, "sources": sources.collect::<Vec<_>>() })
+}
+
+/// A line for each material, and one for each property that is not in its file as it was.
+fn text(options: &ImportOptions, read: &[Read]) -> String {
+    let mut out = String::new();
+    let say = |lines: &[Line]| {
+        let mut text = String::new();
+        for Line { property, fate, note } in lines.iter().filter(|line| line.fate != Fate::Kept) {
+            // Writing to a String does not fail.
+            let _ = writeln!(text, "  {fate}: {property}{}{note}", if note.is_empty() { "" } else { ": " });
+        }
+        text
+    };
+    for Read { label, import } in read {
+        let _ = writeln!(out, "{label}: {} materials", import.materials.len());
+        out.push_str(&say(&import.lines));
+        for Imported { name, source_name, lines, .. } in &import.materials {
+            let of = |fate: Fate| lines.iter().filter(|line| line.fate == fate).count();
+            let counts = Fate::ALL.map(|fate| (of(fate), fate));
+            let counts: Vec<String> =
+                counts.iter().filter(|(count, _)| *count > 0).map(|(count, fate)| format!("{count} {fate}")).collect();
+            let source = if source_name.is_empty() { String::new() } else { format!(" (`{source_name}`)") };
+            let _ = writeln!(
+                out,
+                "{}{source}: {}",
+                options.output.join(format!("{name}.toml")).display(),
+                counts.join(", ")
+            );
+            out.push_str(&say(lines));
+        }
+    }
+    out
+}

@@ -1,0 +1,427 @@
+//! A material of glTF as layers: a coat, a film, a base.
+
+use super::document::{Anisotropy, Clearcoat, Iridescence, Material, Metallic, Specular, Texture};
+use super::textures::{Textures, Use, set};
+use crate::draft::{Draft, Layer, Value};
+use crate::pictures::linear;
+use crate::{Fate, Line};
+
+/// Reflectance along the normal of the dielectric without extensions.
+const F0: f64 = 0.04;
+
+/// Index of coats (`KHR_materials_clearcoat`).
+const COAT_IOR: f64 = 1.5;
+
+/// Width of a repeat of a film's map, which glTF does not state, um. Shaders do not show it.
+const EXTENT_UM: f64 = 100_000.0;
+
+/// Extensions that have nothing to do with reflectances, and what the note says of them.
+const OF_HOST: [(&str, &str); 2] = [
+    ("KHR_materials_emissive_strength", "light that the surface sends out itself"),
+    ("KHR_materials_unlit", "how the material is drawn; its numbers are imported as those of a surface in light"),
+];
+
+/// Extensions that are lost, and what is lost with them.
+const LOST: [(&str, &str); 6] = [
+    ("KHR_materials_volume", "a body behind the surface: nothing goes through"),
+    ("KHR_materials_volume_scatter", "light from below the surface of a thick body"),
+    ("KHR_materials_sheen", "cloth"),
+    ("KHR_materials_diffuse_transmission", "light through the surface"),
+    ("KHR_materials_dispersion", "colours of light that goes through"),
+    ("KHR_materials_pbrSpecularGlossiness", "the older description; that of the core is read"),
+];
+
+/// The layers of a material without its name, and what became of each property.
+pub(super) fn surface(material: &Material, textures: &mut Textures<'_>) -> (Draft, Vec<Line>) {
+    let mut reading = Reading { textures, lines: Vec::new() };
+    let extensions = &material.extensions;
+    let coat = extensions.clearcoat.as_ref().filter(|coat| coat.clearcoat_factor > 0.0);
+    let film = extensions.iridescence.as_ref().filter(|film| film.iridescence_factor > 0.0);
+    let mut base = reading.base(material, coat.is_some());
+    let mut layers = Vec::new();
+    if let Some(coat) = coat {
+        let (coat, wants_map) = reading.coat(coat, material.normal_texture.as_ref());
+        if wants_map && !base.has_map("base_color") && !base.has_map("metallic") {
+            reading.white(&mut base, "base_color");
+        }
+        layers.push(coat);
+    }
+    layers.extend(film.map(|film| reading.film(film, coat.is_some())));
+    layers.push(base);
+    reading.others(material);
+    (Draft { layers, ..Draft::default() }, reading.lines)
+}
+
+struct Reading<'r, 'a> {
+    textures: &'r mut Textures<'a>,
+    lines: Vec<Line>,
+}
+
+impl Reading<'_, '_> {
+    fn say(&mut self, property: &str, fate: Fate, note: impl Into<String>) {
+        self.lines.push(Line::new(property, fate, note));
+    }
+
+    /// A picture, or a line that says why there is none.
+    fn told(&mut self, property: &str, picture: Result<String, String>) -> Option<String> {
+        picture.map_err(|reason| self.say(property, Fate::Dropped, reason)).ok()
+    }
+
+    /// Adds a picture as it is to a layer.
+    fn unchanged(&mut self, layer: &mut Layer, key: &'static str, property: &str, texture: &Texture, used: Use) {
+        let picture = self.textures.unchanged(texture, used);
+        if let Some(picture) = self.told(property, picture) {
+            layer.map(key, picture);
+            self.placed(property, texture);
+            self.say(property, Fate::Kept, "");
+        }
+    }
+
+    /// Adds a computed picture to a layer.
+    fn computed(
+        &mut self,
+        layer: &mut Layer,
+        key: &'static str,
+        property: &str,
+        texture: &Texture,
+        picture: Result<String, String>,
+        note: &str,
+    ) {
+        if let Some(picture) = self.told(property, picture) {
+            layer.map(key, picture);
+            self.placed(property, texture);
+            self.say(property, Fate::ClosedForm, note);
+        }
+    }
+
+    fn white(&mut self, layer: &mut Layer, key: &'static str) {
+        if let Ok(picture) = self.textures.white() {
+            layer.map(key, picture);
+        }
+    }
+
+    /// Lines on texture coordinates that shaders do not have.
+    fn placed(&mut self, property: &str, texture: &Texture) {
+        if set(texture) > 0 {
+            let note = format!("its texture coordinates are set {}: shaders take one set for all maps", set(texture));
+            self.say(property, Fate::Approximated, note);
+        }
+        if !self.textures.repeats(texture) {
+            self.say(property, Fate::Approximated, "the texture ends or is mirrored at its edge: maps repeat");
+        }
+    }
+
+    /// The base: colour, metal, roughness or anisotropy, F0, normals.
+    fn base(&mut self, material: &Material, has_coat: bool) -> Layer {
+        let Metallic { base_color_factor: [r, g, b, _], base_color_texture, metallic_factor, .. } =
+            &material.pbr_metallic_roughness;
+        let mut base = Layer::new("metallic-roughness");
+        base.set("base_color", Value::color([*r, *g, *b].map(|c| c.clamp(0.0, 1.0))));
+        self.say("baseColorFactor", Fate::Kept, "");
+        let metallic = metallic_factor.clamp(0.0, 1.0);
+        base.set("metallic", Value::Number(metallic));
+        let metal = material.pbr_metallic_roughness.metallic_roughness_texture.as_ref().filter(|_| metallic > 0.0);
+        if metal.is_none() && base_color_texture.is_none() && metallic > 0.0 && metallic < 1.0 {
+            let note = "one interface with an F0 between: glTF blends two surfaces";
+            self.say("metallicFactor", Fate::Approximated, note);
+        } else {
+            self.say("metallicFactor", Fate::Kept, "");
+        }
+        self.f0(material, &mut base);
+        self.facets(material, has_coat, &mut base);
+        if let Some(texture) = base_color_texture {
+            let used = Use { is_srgb: true, ..Use::default() };
+            self.unchanged(&mut base, "base_color", "baseColorTexture", texture, used);
+        }
+        if let Some(texture) = metal {
+            let used = Use { channel: Some("b"), ..Use::default() };
+            self.unchanged(&mut base, "metallic", "metallicRoughnessTexture (metal)", texture, used);
+        }
+        // The F0 of a place decides the albedo below it.
+        let has_f0 = base.has_map("f0") || base.has_map("metallic") && base.has("f0");
+        if has_f0 && !base.has_map("base_color") {
+            self.white(&mut base, "base_color");
+        }
+        if base.has_map("base_color") && metallic > 0.0 && !base.has_map("metallic") {
+            self.white(&mut base, "metallic");
+        }
+        if let Some(texture) = &material.normal_texture {
+            let coat = material.extensions.clearcoat.as_ref().filter(|_| has_coat);
+            let is_of_both = coat.is_some_and(|coat| coat.clearcoat_normal_texture.as_ref() == Some(texture));
+            if !is_of_both {
+                let key = if has_coat { "bumps" } else { "normal" };
+                let used = Use { scale: texture.scale, ..Use::default() };
+                self.unchanged(&mut base, key, "normalTexture", texture, used);
+            }
+        }
+        base
+    }
+
+    /// The reflectance of the dielectric along the normal.
+    fn f0(&mut self, material: &Material, base: &mut Layer) {
+        let extensions = &material.extensions;
+        if extensions.ior.is_none() && extensions.specular.is_none() {
+            return;
+        }
+        let of_ior = extensions.ior.as_ref().map_or(F0, |ior| match ior.ior {
+            // The index of materials that were described by specular and glossiness.
+            0.0 => 1.0,
+            ior => ((ior - 1.0) / (ior + 1.0)) * ((ior - 1.0) / (ior + 1.0)),
+        });
+        if extensions.ior.is_some() {
+            self.say("KHR_materials_ior", Fate::ClosedForm, "f0 = ((n - 1)/(n + 1))^2");
+        }
+        let Specular { specular_factor, specular_texture, specular_color_factor, specular_color_texture } =
+            extensions.specular.clone().unwrap_or_default();
+        let tinted = specular_color_factor.map(|c: f64| specular_factor * (of_ior * c).min(1.0));
+        let f0 = tinted.map(|f| f.clamp(0.0, 1.0));
+        base.set("f0", Value::color(f0));
+        if extensions.specular.is_some() {
+            let note = "f0 = min(f0 of the index times specularColor, 1) times specular; the base loses what the interface reflects of each channel, where glTF takes the brightest";
+            self.say("KHR_materials_specular", Fate::Approximated, note);
+        }
+        match [specular_color_texture, specular_texture] {
+            [None, None] => {}
+            [Some(color), None] => {
+                let used = Use { is_srgb: true, ..Use::default() };
+                self.unchanged(base, "f0", "specularColorTexture", &color, used);
+            }
+            [None, Some(weight)] => {
+                let used = Use { channel: Some("a"), ..Use::default() };
+                self.unchanged(base, "f0", "specularTexture", &weight, used);
+            }
+            [Some(color), Some(weight)] => {
+                let picture = self.textures.color("f0", "f0", [Some(&color), Some(&weight)], |color, weight| {
+                    [0, 1, 2].map(|c: usize| linear(color[c]) * weight[3])
+                });
+                let note = "the product of both textures";
+                self.computed(base, "f0", "specularColorTexture, specularTexture", &color, picture, note);
+            }
+        }
+    }
+
+    /// Slope parameters: `alpha = roughness^2`, along and across the direction of anisotropy.
+    fn facets(&mut self, material: &Material, has_coat: bool, base: &mut Layer) {
+        let Metallic { roughness_factor, metallic_roughness_texture, .. } = &material.pbr_metallic_roughness;
+        let roughness = roughness_factor.clamp(0.0, 1.0);
+        let rough = metallic_roughness_texture.as_ref().filter(|_| roughness > 0.0);
+        let anisotropy = material.extensions.anisotropy.as_ref().filter(|found| found.anisotropy_strength != 0.0);
+        if let Some(anisotropy) = anisotropy {
+            return self.anisotropic(roughness, rough, anisotropy, base);
+        }
+        self.say("roughnessFactor", Fate::Kept, "");
+        if roughness == 0.0 {
+            base.set("smooth", Value::Bool(true));
+            return;
+        }
+        let Some(texture) = rough else {
+            base.set("roughness", Value::Number(roughness));
+            return;
+        };
+        let property = "metallicRoughnessTexture (roughness)";
+        if !has_coat {
+            base.set("roughness", Value::Number(roughness));
+            let used = Use { channel: Some("g"), ..Use::default() };
+            self.unchanged(base, "roughness", property, texture, used);
+            return;
+        }
+        let most = self.textures.texels(texture).map_or(1.0, |texels| texels.most(1)).max(1e-3);
+        base.set("roughness", Value::Number(roughness * most));
+        let picture = self.squared(texture, 1, most);
+        self.computed(base, "alpha", property, texture, picture, "alpha = roughness^2, in 16 bits");
+    }
+
+    /// Squares of a channel over the square of its largest value.
+    fn squared(&mut self, texture: &Texture, channel: usize, most: f64) -> Result<String, String> {
+        let key = format!("squared {channel}");
+        self.textures.number("alpha", &key, [Some(texture), None], |texel, _| {
+            let share = texel[channel] / most;
+            share * share
+        })
+    }
+
+    fn anisotropic(&mut self, roughness: f64, rough: Option<&Texture>, given: &Anisotropy, base: &mut Layer) {
+        let strength = given.anisotropy_strength.clamp(-1.0, 1.0).abs();
+        let direction = given.anisotropy_texture.as_ref();
+        if let (Some(rough), Some(direction)) = (rough, direction)
+            && rough.extensions != direction.extensions
+        {
+            let note = "roughness and anisotropy are placed differently: both have the placement of the roughness";
+            self.say("KHR_texture_transform", Fate::Approximated, note);
+        }
+        let most = |texture: Option<&Texture>, channel: usize, textures: &mut Textures<'_>| {
+            texture.and_then(|texture| textures.texels(texture).ok()).map_or(1.0, |texels| texels.most(channel))
+        };
+        let [most_rough, most_strong] = [most(rough, 1, self.textures), most(direction, 2, self.textures)];
+        let alphas = move |roughness: f64, strength: f64| {
+            let alpha = roughness * roughness;
+            [alpha + (1.0 - alpha) * strength * strength, alpha]
+        };
+        // Both grow with roughness, and the first with the strength.
+        let [alpha_x, alpha_y] = alphas(roughness * most_rough, strength * most_strong).map(|alpha| alpha.max(1e-6));
+        base.set("alpha_x", Value::Number(alpha_x));
+        base.set("alpha_y", Value::Number(alpha_y));
+        if given.anisotropy_rotation != 0.0 {
+            base.set("rotation_deg", Value::Number(given.anisotropy_rotation.to_degrees()));
+        }
+        let note = "alpha_x = alpha + (1 - alpha) strength^2 along the direction, alpha_y = alpha = roughness^2";
+        self.say("roughnessFactor, KHR_materials_anisotropy", Fate::ClosedForm, note);
+        if let Some(first) = rough.or(direction) {
+            let key = format!("alpha-x {roughness} {strength} {most_rough} {most_strong}");
+            let picture = self.textures.number("alpha-x", &key, [rough, direction], move |rough, direction| {
+                alphas(roughness * rough[1], strength * direction[2])[0] / alpha_x
+            });
+            self.computed(base, "alpha_x", "textures of roughness and strength", first, picture, note);
+        }
+        if let Some(texture) = rough {
+            let picture = self.squared(texture, 1, most_rough.max(1e-3));
+            self.computed(
+                base,
+                "alpha_y",
+                "metallicRoughnessTexture (roughness)",
+                texture,
+                picture,
+                "alpha = roughness^2, in 16 bits",
+            );
+        }
+        if let Some(texture) = direction {
+            let picture = self.textures.color("tangent", "tangent", [Some(texture), None], |texel, _| {
+                let [x, y] = [2.0 * texel[0] - 1.0, 2.0 * texel[1] - 1.0];
+                let square = x * x + y * y;
+                if square < 1e-6 {
+                    return [0.5, 0.5, 0.0];
+                }
+                // Cosine and sine of the doubled angle.
+                [0.5 + 0.5 * (x * x - y * y) / square, 0.5 + x * y / square, 0.0]
+            });
+            self.computed(
+                base,
+                "tangent",
+                "anisotropyTexture (direction)",
+                texture,
+                picture,
+                "texels of the doubled angle",
+            );
+        }
+    }
+
+    /// The coat, and whether it wants a map of the base's colour beside it.
+    fn coat(&mut self, given: &Clearcoat, base_normals: Option<&Texture>) -> (Layer, bool) {
+        let mut coat = Layer::new("dielectric");
+        coat.set("ior", Value::Number(COAT_IOR));
+        let roughness = given.clearcoat_roughness_factor.clamp(0.0, 1.0);
+        let rough = given.clearcoat_roughness_texture.as_ref().filter(|_| roughness > 0.0);
+        match rough {
+            None if roughness == 0.0 => coat.set("smooth", Value::Bool(true)),
+            None => coat.set("roughness", Value::Number(roughness)),
+            Some(texture) => {
+                let most = self.textures.texels(texture).map_or(1.0, |texels| texels.most(1)).max(1e-3);
+                coat.set("roughness", Value::Number(roughness * most));
+                let picture = self.squared(texture, 1, most);
+                let note = "alpha = roughness^2, in 16 bits";
+                self.computed(&mut coat, "alpha", "clearcoatRoughnessTexture", texture, picture, note);
+            }
+        }
+        let weight = given.clearcoat_factor.clamp(0.0, 1.0);
+        if weight < 1.0 {
+            coat.set("weight", Value::Number(weight));
+        }
+        coat.set("darkening", Value::Bool(false));
+        self.say("clearcoatFactor, clearcoatRoughnessFactor", Fate::Kept, "");
+        let note = "the coat is layered, with light that goes to and fro below it; the base stays as bright as its colour (`darkening = false`)";
+        self.say("KHR_materials_clearcoat", Fate::Approximated, note);
+        if let Some(texture) = &given.clearcoat_texture {
+            let used = Use { channel: Some("r"), ..Use::default() };
+            self.unchanged(&mut coat, "weight", "clearcoatTexture", texture, used);
+        }
+        if let Some(texture) = &given.clearcoat_normal_texture {
+            let key = if base_normals == Some(texture) { "normal" } else { "bumps" };
+            let used = Use { scale: texture.scale, ..Use::default() };
+            self.unchanged(&mut coat, key, "clearcoatNormalTexture", texture, used);
+        }
+        let wants_map = coat.has_map("weight");
+        (coat, wants_map)
+    }
+
+    fn film(&mut self, given: &Iridescence, has_coat: bool) -> Layer {
+        let mut film = Layer::new("thin-film");
+        film.set("ior", Value::Number(given.iridescence_ior));
+        let [least, most] = [given.iridescence_thickness_minimum, given.iridescence_thickness_maximum];
+        let thick = given.iridescence_thickness_texture.as_ref().filter(|_| least != most);
+        let map = thick.and_then(|texture| {
+            // Maps go from the thinnest to the thickest, and have no placement of their own.
+            let plain = Texture { extensions: Default::default(), ..texture.clone() };
+            let picture = if least < most {
+                self.textures.unchanged(&plain, Use { channel: Some("g"), ..Use::default() })
+            } else {
+                self.textures.number("thickness", "turned over", [Some(&plain), None], |texel, _| 1.0 - texel[1])
+            };
+            let picture = self.told("iridescenceThicknessTexture", picture)?;
+            self.placed("iridescenceThicknessTexture", texture);
+            if texture.extensions.transform.is_some() {
+                self.say("iridescenceThicknessTexture", Fate::Approximated, "its placement is left out");
+            }
+            Some(picture)
+        });
+        let thickness = match map {
+            Some(map) => {
+                let [thin, thick] = [least.min(most), least.max(most)].map(crate::draft::number);
+                Value::Table(format!(
+                    "{{ min = {thin}, max = {thick}, extent_um = {}, map = {map} }}",
+                    crate::draft::number(EXTENT_UM)
+                ))
+            }
+            None => Value::Number(most),
+        };
+        film.set("thickness_nm", thickness);
+        let note = "the film interferes by the index that its base's F0 stands for, by Airy's formula: glTF has a fit of two orders";
+        self.say("KHR_materials_iridescence", Fate::Approximated, note);
+        let weight = given.iridescence_factor.clamp(0.0, 1.0);
+        if has_coat && (weight < 1.0 || given.iridescence_texture.is_some()) {
+            self.say("iridescenceFactor", Fate::Dropped, "below a coat a film covers the whole surface");
+        } else {
+            if weight < 1.0 {
+                film.set("weight", Value::Number(weight));
+            }
+            self.say("iridescenceFactor", Fate::Kept, "");
+            if let Some(texture) = &given.iridescence_texture {
+                let used = Use { channel: Some("r"), ..Use::default() };
+                self.unchanged(&mut film, "weight", "iridescenceTexture", texture, used);
+            }
+        }
+        film
+    }
+
+    /// Lines on all that is no reflectance, and on what is lost.
+    fn others(&mut self, material: &Material) {
+        let Material {
+            emissive_texture, emissive_factor, occlusion_texture, alpha_mode, double_sided, extensions, ..
+        } = material;
+        if *emissive_factor != [0.0; 3] || emissive_texture.is_some() {
+            self.say("emissiveFactor, emissiveTexture", Fate::Host, "light that the surface sends out itself");
+        }
+        if occlusion_texture.is_some() {
+            self.say("occlusionTexture", Fate::Host, "how much of the surroundings a place sees");
+        }
+        if alpha_mode.as_deref().is_some_and(|mode| mode != "OPAQUE") {
+            self.say("alphaMode, baseColorFactor.a", Fate::Host, "where the surface is cut out or blended");
+        }
+        if *double_sided {
+            self.say("doubleSided", Fate::Host, "which sides are drawn");
+        }
+        if extensions.transmission.as_ref().is_some_and(|found| found.transmission_factor > 0.0) {
+            self.say("KHR_materials_transmission", Fate::Dropped, "light that goes through: the base is opaque");
+        }
+        for (name, _) in &extensions.others {
+            let find =
+                |table: &[(&str, &'static str)]| table.iter().find(|(known, _)| known == name).map(|(_, note)| *note);
+            if let Some(note) = find(&OF_HOST) {
+                self.say(name, Fate::Host, note);
+            } else if let Some(note) = find(&LOST) {
+                self.say(name, Fate::Dropped, note);
+            } else {
+                self.say(name, Fate::Dropped, "the extension is not read");
+            }
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Textures of glTF as pictures of material files.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use luthier_mesh::Asset;
+
+use super::document::{Texture, Transform};
+use crate::draft::number;
+use crate::pictures::{Pictures, Texels};
+
+/// The wrapping mode of samplers that repeats, and the default.
+const REPEAT: u64 = 10497;
+
+/// Use of the texels of a picture as it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Use {
+    pub(super) channel: Option<&'static str>,
+    pub(super) is_srgb: bool,
+    /// Factor on slopes of normals.
+    pub(super) scale: Option<f64>,
+}
+
+/// The textures of a file, and the pictures made of them.
+pub(super) struct Textures<'a> {
+    asset: &'a Asset<'a>,
+    pictures: Pictures,
+}
+
+impl<'a> Textures<'a> {
+    pub(super) fn new(asset: &'a Asset<'a>) -> Self {
+        Self { asset, pictures: Pictures::default() }
+    }
+
+    pub(super) fn into_files(self) -> BTreeMap<String, Vec<u8>> {
+        self.pictures.into_files()
+    }
+
+    /// The picture of a texture as it is, as TOML.
+    pub(super) fn unchanged(&mut self, texture: &Texture, used: Use) -> Result<String, String> {
+        let image = self.image(texture)?;
+        let (asset, name) = (self.asset, self.name(image));
+        let path = self.pictures.unchanged(image, &name, || bytes(asset, image))?;
+        let mut words = vec![format!("image = \"{path}\"")];
+        words.extend(used.channel.map(|channel| format!("channel = \"{channel}\"")));
+        words.extend(used.is_srgb.then(|| "srgb = true".to_owned()));
+        words.extend(used.scale.filter(|scale| *scale != 1.0).map(|scale| format!("scale = {}", number(scale))));
+        words.extend(transform(texture));
+        Ok(format!("{{ {} }}", words.join(", ")))
+    }
+
+    /// The texels of a texture.
+    pub(super) fn texels(&mut self, texture: &Texture) -> Result<Rc<Texels>, String> {
+        let image = self.image(texture)?;
+        let asset = self.asset;
+        self.pictures.texels(image, || bytes(asset, image))
+    }
+
+    /// A computed picture of one number a texel, as TOML; `key` says by what it was computed, and `name` what it is.
+    pub(super) fn number(
+        &mut self,
+        name: &str,
+        key: &str,
+        sources: [Option<&Texture>; 2],
+        of: impl Fn([f64; 4], [f64; 4]) -> f64,
+    ) -> Result<String, String> {
+        let (name, key, texels) = self.named(name, key, sources)?;
+        let path = self.pictures.number(&name, &key, texels.each_ref().map(Option::as_deref), of)?;
+        Ok(table(&path, sources))
+    }
+
+    /// A computed picture of three numbers a texel, as TOML.
+    pub(super) fn color(
+        &mut self,
+        name: &str,
+        key: &str,
+        sources: [Option<&Texture>; 2],
+        of: impl Fn([f64; 4], [f64; 4]) -> [f64; 3],
+    ) -> Result<String, String> {
+        let (name, key, texels) = self.named(name, key, sources)?;
+        let path = self.pictures.color(&name, &key, texels.each_ref().map(Option::as_deref), of)?;
+        Ok(table(&path, sources))
+    }
+
+    /// One white texel, as TOML.
+    pub(super) fn white(&mut self) -> Result<String, String> {
+        let path = self.pictures.number("white", "white", [None, None], |_, _| 1.0)?;
+        Ok(format!("{{ image = \"{path}\" }}"))
+    }
+
+    #[expect(clippy::type_complexity, reason = "a name, a key, and texels of up to two pictures")]
+    fn named(
+        &mut self,
+        name: &str,
+        key: &str,
+        sources: [Option<&Texture>; 2],
+    ) -> Result<(String, String, [Option<Rc<Texels>>; 2]), String> {
+        let mut texels = [None, None];
+        let (mut stem, mut full_key) = (String::new(), key.to_owned());
+        for (source, place) in sources.into_iter().zip(&mut texels) {
+            let Some(texture) = source else { continue };
+            let image = self.image(texture)?;
+            if stem.is_empty() {
+                stem = self.name(image);
+            }
+            full_key.push_str(&format!(" {image}"));
+            *place = Some(self.texels(texture)?);
+        }
+        Ok((format!("{stem}-{name}"), full_key, texels))
+    }
+
+    /// Whether a texture is repeated where coordinates leave 0 to 1.
+    pub(super) fn repeats(&self, texture: &Texture) -> bool {
+        let sampler = self.asset.json["textures"][texture.index]["sampler"].as_u64();
+        let sampler = sampler.map(|number| &self.asset.json["samplers"][number as usize]);
+        let wraps = |name: &str| sampler.and_then(|sampler| sampler[name].as_u64()).is_none_or(|mode| mode == REPEAT);
+        wraps("wrapS") && wraps("wrapT")
+    }
+
+    fn image(&self, texture: &Texture) -> Result<usize, String> {
+        let found = &self.asset.json["textures"][texture.index];
+        let webp = found["extensions"]["EXT_texture_webp"]["source"].as_u64();
+        let source = found["source"].as_u64().or(webp);
+        source.map(|source| source as usize).ok_or_else(|| {
+            match found["extensions"].as_object().and_then(|names| names.keys().next()) {
+                Some(name) => format!("its picture is there as {name} alone, which is not read"),
+                None => "it names no picture".to_owned(),
+            }
+        })
+    }
+
+    fn name(&self, image: usize) -> String {
+        self.asset.picture_name(image).map_or_else(|| format!("picture-{image}"), str::to_owned)
+    }
+}
+
+fn bytes(asset: &Asset<'_>, image: usize) -> Result<Vec<u8>, String> {
+    asset.picture(image).map_err(|error| error.to_string())
+}
+
+fn table(path: &str, sources: [Option<&Texture>; 2]) -> String {
+    let placed = sources.into_iter().flatten().find_map(transform);
+    let words: Vec<String> = std::iter::once(format!("image = \"{path}\"")).chain(placed).collect();
+    format!("{{ {} }}", words.join(", "))
+}
+
+/// The placement of a texture over texture coordinates, as TOML. glTF turns by the same angle the other way round: from v towards u.
+fn transform(texture: &Texture) -> Option<String> {
+    let Transform { offset, rotation, scale, .. } = texture.extensions.transform.as_ref()?;
+    let pair = |[u, v]: [f64; 2]| format!("[{}, {}]", number(u), number(v));
+    let mut words = Vec::new();
+    if *offset != [0.0; 2] {
+        words.push(format!("offset = {}", pair(*offset)));
+    }
+    if *rotation != 0.0 {
+        words.push(format!("rotation_deg = {}", number(-rotation.to_degrees())));
+    }
+    if *scale != [1.0; 2] {
+        words.push(format!("scale = {}", pair(*scale)));
+    }
+    (!words.is_empty()).then(|| format!("transform = {{ {} }}", words.join(", ")))
+}
+
+/// The set of texture coordinates of a texture.
+pub(super) fn set(texture: &Texture) -> u32 {
+    texture.extensions.transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(texture.tex_coord)
+}

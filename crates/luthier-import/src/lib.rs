@@ -1,0 +1,68 @@
+//! Material files from materials of other formats.
+//!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
+//! ```
+//! let text = br#"{
+//!     "asset": {"version": "2.0"},
+//!     "materials": [{
+//!         "name": "Red Lacquer",
+//!         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.1, 0.1, 1], "metallicFactor": 0},
+//!         "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}
+//!     }]
+//! }"#;
+//! let none = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+//! let import = luthier_import::gltf("lacquer.gltf", text, &none).unwrap();
+//! let lacquer = &import.materials[0];
+//! assert_eq!(lacquer.name, "red-lacquer");
+//! assert!(lacquer.text.contains("darkening = false"));
+//! ```
+//!
+//! Simplifications: a surface is a coat, a film and a base, of which each may be absent. Light that goes through the surface, cloth and light from below the surface of a thick body are dropped, and told.
+//!
+//! # Rooms
+//!
+//! Each uses those above it, none below.
+//!
+//! - `error`, `fate`, `name`: refusals, what becomes of a property, names of materials and of pictures.
+//! - `draft`: a material file as layers with keys, and its text.
+//! - `pictures`: pictures of a source, unchanged or computed.
+//! - `gltf`: materials of glTF.
+
+mod draft;
+mod error;
+mod fate;
+mod gltf;
+mod name;
+mod pictures;
+
+use std::collections::BTreeMap;
+
+pub use error::ImportError;
+pub use fate::{Fate, Line};
+pub use gltf::gltf;
+
+/// Materials of a file, with their pictures.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Import {
+    /// The materials, in the order of the file.
+    pub materials: Vec<Imported>,
+    /// Bytes of the pictures by path, relative to the material files.
+    pub pictures: BTreeMap<String, Vec<u8>>,
+    /// Properties of the file that belong to no material.
+    pub lines: Vec<Line>,
+}
+
+/// A material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// Its name, valid and unique in the import.
+    pub name: String,
+    /// Its name in the source.
+    pub source_name: String,
+    /// The material file.
+    pub text: String,
+    /// What became of each property.
+    pub lines: Vec<Line>,
+}

@@ -1,0 +1,3 @@
+//! Imports of whole files.
+
+mod gltf;
