@@ -10,7 +10,10 @@ use crate::{GpuError, LiveValue, Map, Scene};
 pub(crate) const MAP_WORDS: usize = 10;
 
 /// Texels of a map that a picture is made with: 2048 x 2048 take 64 MiB of the buffer.
-const TEXELS_MAX: usize = 1 << 22;
+const TEXELS_MAX: u64 = 1 << 22;
+
+/// Texels of all maps of a picture: 96 MiB of the 128 MiB that every adapter binds. Surroundings and a mesh take the rest.
+const TEXELS_OF_ALL_MAX: u64 = 3 << 21;
 
 /// Words of each layer that has maps of its own, behind those.
 const OWN_WORDS: usize = 10;
@@ -29,12 +32,38 @@ impl Scene {
         is_color.then(|| [0, 1, 2].map(value))
     }
 
-    /// The words of a material's maps, then their texels. `first` is the number of the first word.
-    pub(crate) fn map_words(&self, material: usize, entry: &MaterialEntry, first: usize) -> Vec<[u32; 4]> {
+    /// How often each map of a scene is halved for a picture of some materials: maps have at most [`TEXELS_MAX`], and all together [`TEXELS_OF_ALL_MAX`], of which
+    /// the largest give way. Normals of flakes are never averaged: texels are different flakes.
+    pub(crate) fn halvings(&self, materials: &[u32]) -> Vec<u32> {
+        let mut texels: Vec<u64> = Vec::with_capacity(self.maps.len());
+        for map in &self.maps {
+            let [width, height] = map.picture.size().map(u64::from);
+            texels.push(if materials.contains(&map.material) { width * height } else { 0 });
+        }
+        let mut halvings = vec![0; texels.len()];
+        loop {
+            let can = (0..texels.len()).filter(|&i| self.maps[i].slot != MapSlot::FlakeNormal && texels[i] > 1);
+            let Some(largest) = can.max_by_key(|&i| texels[i]) else { return halvings };
+            if texels[largest] <= TEXELS_MAX && texels.iter().sum::<u64>() <= TEXELS_OF_ALL_MAX {
+                return halvings;
+            }
+            texels[largest] = texels[largest].div_ceil(4);
+            halvings[largest] += 1;
+        }
+    }
+
+    /// The words of a material's maps, then their texels. `first` is the number of the first word, and maps are halved so often.
+    pub(crate) fn map_words(
+        &self,
+        material: usize,
+        entry: &MaterialEntry,
+        first: usize,
+        halvings: &[u32],
+    ) -> Vec<[u32; 4]> {
         let mut headers = self.no_map_words();
         let mut texels = Vec::new();
         let behind = first + headers.len();
-        for map in self.maps.iter().filter(|map| map.material as usize == material) {
+        for (map, &halvings) in self.maps.iter().zip(halvings).filter(|(map, _)| map.material as usize == material) {
             let own = map.layer.filter(|&layer| map.slot.is_of_layer_place(layer));
             let number = match own {
                 None => slot_word(map.slot),
@@ -52,7 +81,7 @@ impl Scene {
                     .into_iter()
                     .flatten(),
             );
-            let image = shrunk(map);
+            let image = shrunk(map, halvings);
             let [width, height] = image.size();
             *header = [(behind + texels.len()) as u32, width, height, transform.map_or(0, |_| at)];
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]).map(|factor| factor as f32);
@@ -285,13 +314,9 @@ fn texel_of(live: &LiveValue) -> [f32; 3] {
     }
 }
 
-/// The texels of a map, RGBA, averaged down to at most [`TEXELS_MAX`]. Normals of flakes are never averaged: texels are different flakes.
-fn shrunk(map: &Map) -> Image {
-    let mut image = map.picture.image();
-    while map.slot != MapSlot::FlakeNormal && image.texel_count() > TEXELS_MAX {
-        image = image.halved();
-    }
-    image
+/// The texels of a map, RGBA, averaged down to half its sides so often.
+fn shrunk(map: &Map, halvings: u32) -> Image {
+    (0..halvings).fold(map.picture.image(), |image, _| image.halved())
 }
 
 fn slot_word(slot: MapSlot) -> usize {

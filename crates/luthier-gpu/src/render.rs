@@ -395,11 +395,12 @@ impl Scene {
             // Maps: the environment, irradiance, then a chain for each distribution in use.
             words.extend(layer_words(layer, first_map(&used, blur_of(layer)) as f32).map(bits));
         }
+        let halvings = self.halvings(materials);
         for (i, entry) in entries.iter().enumerate() {
             let first = words.len();
             words[headers + i][2] = first as u32;
             let used = materials.contains(&(i as u32));
-            words.extend(if used { self.map_words(i, entry, first) } else { self.no_map_words() });
+            words.extend(if used { self.map_words(i, entry, first, &halvings) } else { self.no_map_words() });
         }
 
         let prefiltered = settings.environment_samples == 0;

@@ -57,6 +57,11 @@ impl Layer {
         self.maps.push((key, picture));
     }
 
+    /// Whether the value of a key is a table.
+    pub(crate) fn has_table(&self, key: &str) -> bool {
+        self.keys.iter().any(|(known, value)| *known == key && matches!(value, Value::Table(_)))
+    }
+
     pub(crate) fn has(&self, key: &str) -> bool {
         self.keys.iter().any(|(known, _)| *known == key)
     }

@@ -52,6 +52,11 @@ impl Texels {
         [0, 1, 2, 3].map(|i: usize| (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i]))
     }
 
+    /// Whether alpha is 1 everywhere.
+    pub(crate) fn is_opaque(&self) -> bool {
+        self.data.iter().all(|texel| texel[3] == 1.0)
+    }
+
     /// The largest value of a channel.
     pub(crate) fn most(&self, channel: usize) -> f64 {
         f64::from(self.data.iter().map(|texel| texel[channel]).fold(0.0, f32::max))

@@ -15,6 +15,21 @@ const COAT_IOR: f64 = 1.5;
 /// Width of a repeat of a film's map, which glTF does not state, um. Shaders do not show it.
 const EXTENT_UM: f64 = 100_000.0;
 
+/// Shares, strengths and roughness.
+const UNIT: [f64; 2] = [0.0, 1.0];
+
+/// The largest F0 below which texels scale the light of a base.
+const MAPPED_F0_MAX: f64 = 0.9;
+
+/// Factors on the slope of normals.
+const NORMAL_SCALE: [f64; 2] = [0.0, 100.0];
+
+/// Indices of films.
+const FILM_IOR: [f64; 2] = [1.0, 10.0];
+
+/// Thicknesses of films, nm.
+const FILM_NM: [f64; 2] = [0.0, 1e5];
+
 /// Extensions that have nothing to do with reflectances, and what the note says of them.
 const OF_HOST: [(&str, &str); 2] = [
     ("KHR_materials_emissive_strength", "light that the surface sends out itself"),
@@ -37,16 +52,13 @@ pub(super) fn surface(material: &Material, textures: &mut Textures<'_>) -> (Draf
     let extensions = &material.extensions;
     let coat = extensions.clearcoat.as_ref().filter(|coat| coat.clearcoat_factor > 0.0);
     let film = extensions.iridescence.as_ref().filter(|film| film.iridescence_factor > 0.0);
-    let mut base = reading.base(material, coat.is_some());
+    let film = film.and_then(|film| reading.film(film, coat.is_some()));
+    let base = reading.base(material, coat.is_some(), film.as_ref());
     let mut layers = Vec::new();
     if let Some(coat) = coat {
-        let (coat, wants_map) = reading.coat(coat, material.normal_texture.as_ref());
-        if wants_map && !base.has_map("base_color") && !base.has_map("metallic") {
-            reading.white(&mut base, "base_color");
-        }
-        layers.push(coat);
+        layers.push(reading.coat(coat, material.normal_texture.as_ref()));
     }
-    layers.extend(film.map(|film| reading.film(film, coat.is_some())));
+    layers.extend(film);
     layers.push(base);
     reading.others(material);
     (Draft { layers, ..Draft::default() }, reading.lines)
@@ -60,6 +72,23 @@ struct Reading<'r, 'a> {
 impl Reading<'_, '_> {
     fn say(&mut self, property: &str, fate: Fate, note: impl Into<String>) {
         self.lines.push(Line::new(property, fate, note));
+    }
+
+    /// A number held to a range, with a line where that changes it.
+    fn held(&mut self, property: &str, value: f64, [least, most]: [f64; 2]) -> f64 {
+        let held = value.clamp(least, most);
+        if held != value {
+            self.say(property, Fate::Approximated, format!("{value} is beyond the format: held to {least} to {most}"));
+        }
+        held
+    }
+
+    /// Adds a normal map; none where its scale leaves the surface flat.
+    fn normals(&mut self, layer: &mut Layer, key: &'static str, property: &str, texture: &Texture) {
+        let scale = self.held(property, texture.scale.unwrap_or(1.0), NORMAL_SCALE);
+        if scale > 0.0 {
+            self.unchanged(layer, key, property, texture, Use { scale: Some(scale), ..Use::default() });
+        }
     }
 
     /// A picture, or a line that says why there is none.
@@ -112,22 +141,39 @@ impl Reading<'_, '_> {
     }
 
     /// The base: colour, metal, roughness or anisotropy, F0, normals.
-    fn base(&mut self, material: &Material, has_coat: bool) -> Layer {
+    fn base(&mut self, material: &Material, has_coat: bool, film: Option<&Layer>) -> Layer {
         let Metallic { base_color_factor: [r, g, b, _], base_color_texture, metallic_factor, .. } =
             &material.pbr_metallic_roughness;
         let mut base = Layer::new("metallic-roughness");
-        base.set("base_color", Value::color([*r, *g, *b].map(|c| c.clamp(0.0, 1.0))));
+        let color = [*r, *g, *b].map(|c| self.held("baseColorFactor", c, UNIT));
+        base.set("base_color", Value::color(color));
         self.say("baseColorFactor", Fate::Kept, "");
-        let metallic = metallic_factor.clamp(0.0, 1.0);
+        let metallic = self.held("metallicFactor", *metallic_factor, UNIT);
         base.set("metallic", Value::Number(metallic));
         let metal = material.pbr_metallic_roughness.metallic_roughness_texture.as_ref().filter(|_| metallic > 0.0);
-        if metal.is_none() && base_color_texture.is_none() && metallic > 0.0 && metallic < 1.0 {
-            let note = "one interface with an F0 between: glTF blends two surfaces";
-            self.say("metallicFactor", Fate::Approximated, note);
+        self.say("metallicFactor", Fate::Kept, "");
+        // A number between 0 and 1 means one interface, and a texel a blend of two surfaces, as in glTF.
+        let is_blend = metallic > 0.0 && metallic < 1.0;
+        let specular = material.extensions.specular.as_ref();
+        let has_specular = specular.is_some_and(|s| s.specular_texture.is_some() || s.specular_color_texture.is_some());
+        // A weight of the coat that varies brightens the base by place.
+        let coat = material.extensions.clearcoat.as_ref().filter(|_| has_coat);
+        let has_weights = coat.is_some_and(|coat| coat.clearcoat_texture.is_some());
+        // Below a coat, or beside slopes that vary, a film varies on surfaces with maps of colour or metal alone.
+        let has_rough = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
+        let has_directions = material.extensions.anisotropy.as_ref().is_some_and(|a| a.anisotropy_texture.is_some());
+        let has_uneven_film =
+            film.is_some_and(|film| film.has_table("thickness_nm")) && (has_coat || has_rough || has_directions);
+        let wants_maps = has_weights || has_uneven_film;
+        let varies = base_color_texture.is_some() || metal.is_some() || is_blend || has_specular || wants_maps;
+        if film.is_some() && varies {
+            if specular.is_some() || material.extensions.ior.is_some() {
+                let note = "a film on a surface with maps interferes by an F0 of .04 where the surface is no metal";
+                self.say("KHR_materials_ior, KHR_materials_specular", Fate::Dropped, note);
+            }
         } else {
-            self.say("metallicFactor", Fate::Kept, "");
+            self.f0(material, &mut base);
         }
-        self.f0(material, &mut base);
         self.facets(material, has_coat, &mut base);
         if let Some(texture) = base_color_texture {
             let used = Use { is_srgb: true, ..Use::default() };
@@ -137,21 +183,25 @@ impl Reading<'_, '_> {
             let used = Use { channel: Some("b"), ..Use::default() };
             self.unchanged(&mut base, "metallic", "metallicRoughnessTexture (metal)", texture, used);
         }
+        if wants_maps && !base.has_map("base_color") && !base.has_map("metallic") {
+            self.white(&mut base, "base_color");
+        }
+        if (base.has_map("base_color") && metallic > 0.0 || is_blend) && !base.has_map("metallic") {
+            self.white(&mut base, "metallic");
+        }
         // The F0 of a place decides the albedo below it.
         let has_f0 = base.has_map("f0") || base.has_map("metallic") && base.has("f0");
         if has_f0 && !base.has_map("base_color") {
             self.white(&mut base, "base_color");
-        }
-        if base.has_map("base_color") && metallic > 0.0 && !base.has_map("metallic") {
-            self.white(&mut base, "metallic");
+            if metallic > 0.0 && !base.has_map("metallic") {
+                self.white(&mut base, "metallic");
+            }
         }
         if let Some(texture) = &material.normal_texture {
-            let coat = material.extensions.clearcoat.as_ref().filter(|_| has_coat);
             let is_of_both = coat.is_some_and(|coat| coat.clearcoat_normal_texture.as_ref() == Some(texture));
             if !is_of_both {
                 let key = if has_coat { "bumps" } else { "normal" };
-                let used = Use { scale: texture.scale, ..Use::default() };
-                self.unchanged(&mut base, key, "normalTexture", texture, used);
+                self.normals(&mut base, key, "normalTexture", texture);
             }
         }
         base
@@ -163,28 +213,38 @@ impl Reading<'_, '_> {
         if extensions.ior.is_none() && extensions.specular.is_none() {
             return;
         }
-        let of_ior = extensions.ior.as_ref().map_or(F0, |ior| match ior.ior {
-            // The index of materials that were described by specular and glossiness.
-            0.0 => 1.0,
-            ior => ((ior - 1.0) / (ior + 1.0)) * ((ior - 1.0) / (ior + 1.0)),
-        });
+        let ior = extensions.ior.as_ref().map(|ior| self.held("KHR_materials_ior", ior.ior, [0.0, 1e6]));
+        // An index of 0 is that of materials that were described by specular and glossiness: they reflect all of their specular colour.
+        let of_ior = ior.map_or(F0, |ior| ((ior - 1.0) / (ior + 1.0)) * ((ior - 1.0) / (ior + 1.0)));
         if extensions.ior.is_some() {
             self.say("KHR_materials_ior", Fate::ClosedForm, "f0 = ((n - 1)/(n + 1))^2");
         }
         let Specular { specular_factor, specular_texture, specular_color_factor, specular_color_texture } =
             extensions.specular.clone().unwrap_or_default();
         let tinted = specular_color_factor.map(|c: f64| specular_factor * (of_ior * c).min(1.0));
-        let f0 = tinted.map(|f| f.clamp(0.0, 1.0));
+        let is_mapped = specular_texture.is_some() || specular_color_texture.is_some();
+        let most = if is_mapped { MAPPED_F0_MAX } else { 1.0 };
+        let f0 = tinted.map(|f| self.held("KHR_materials_specular", f, [0.0, most]));
         base.set("f0", Value::color(f0));
         if extensions.specular.is_some() {
-            let note = "f0 = min(f0 of the index times specularColor, 1) times specular; the base loses what the interface reflects of each channel, where glTF takes the brightest";
-            self.say("KHR_materials_specular", Fate::Approximated, note);
+            let rule = "f0 = min(f0 of the index times specularColor, 1) times specular";
+            let is_grey = specular_color_texture.is_none() && f0[0] == f0[1] && f0[1] == f0[2];
+            if is_grey {
+                self.say("KHR_materials_specular", Fate::ClosedForm, rule);
+            } else {
+                let note = "the base loses what the interface reflects of each channel, where glTF takes the brightest";
+                self.say("KHR_materials_specular", Fate::Approximated, format!("{rule}; {note}"));
+            }
         }
         match [specular_color_texture, specular_texture] {
             [None, None] => {}
             [Some(color), None] => {
                 let used = Use { is_srgb: true, ..Use::default() };
                 self.unchanged(base, "f0", "specularColorTexture", &color, used);
+            }
+            // A picture without alpha says 1 everywhere.
+            [None, Some(weight)] if self.textures.texels(&weight).is_ok_and(|texels| texels.is_opaque()) => {
+                self.say("specularTexture", Fate::Kept, "");
             }
             [None, Some(weight)] => {
                 let used = Use { channel: Some("a"), ..Use::default() };
@@ -203,9 +263,9 @@ impl Reading<'_, '_> {
     /// Slope parameters: `alpha = roughness^2`, along and across the direction of anisotropy.
     fn facets(&mut self, material: &Material, has_coat: bool, base: &mut Layer) {
         let Metallic { roughness_factor, metallic_roughness_texture, .. } = &material.pbr_metallic_roughness;
-        let roughness = roughness_factor.clamp(0.0, 1.0);
+        let roughness = self.held("roughnessFactor", *roughness_factor, UNIT);
         let rough = metallic_roughness_texture.as_ref().filter(|_| roughness > 0.0);
-        let anisotropy = material.extensions.anisotropy.as_ref().filter(|found| found.anisotropy_strength != 0.0);
+        let anisotropy = material.extensions.anisotropy.as_ref().filter(|found| found.anisotropy_strength > 0.0);
         if let Some(anisotropy) = anisotropy {
             return self.anisotropic(roughness, rough, anisotropy, base);
         }
@@ -241,7 +301,7 @@ impl Reading<'_, '_> {
     }
 
     fn anisotropic(&mut self, roughness: f64, rough: Option<&Texture>, given: &Anisotropy, base: &mut Layer) {
-        let strength = given.anisotropy_strength.clamp(-1.0, 1.0).abs();
+        let strength = self.held("anisotropyStrength", given.anisotropy_strength, UNIT);
         let direction = given.anisotropy_texture.as_ref();
         if let (Some(rough), Some(direction)) = (rough, direction)
             && rough.extensions != direction.extensions
@@ -261,8 +321,9 @@ impl Reading<'_, '_> {
         let [alpha_x, alpha_y] = alphas(roughness * most_rough, strength * most_strong).map(|alpha| alpha.max(1e-6));
         base.set("alpha_x", Value::Number(alpha_x));
         base.set("alpha_y", Value::Number(alpha_y));
-        if given.anisotropy_rotation != 0.0 {
-            base.set("rotation_deg", Value::Number(given.anisotropy_rotation.to_degrees()));
+        let turn = libm::fmod(given.anisotropy_rotation, std::f64::consts::TAU);
+        if turn != 0.0 {
+            base.set("rotation_deg", Value::Number(turn.to_degrees()));
         }
         let note = "alpha_x = alpha + (1 - alpha) strength^2 along the direction, alpha_y = alpha = roughness^2";
         self.say("roughnessFactor, KHR_materials_anisotropy", Fate::ClosedForm, note);
@@ -305,11 +366,10 @@ impl Reading<'_, '_> {
         }
     }
 
-    /// The coat, and whether it wants a map of the base's colour beside it.
-    fn coat(&mut self, given: &Clearcoat, base_normals: Option<&Texture>) -> (Layer, bool) {
+    fn coat(&mut self, given: &Clearcoat, base_normals: Option<&Texture>) -> Layer {
         let mut coat = Layer::new("dielectric");
         coat.set("ior", Value::Number(COAT_IOR));
-        let roughness = given.clearcoat_roughness_factor.clamp(0.0, 1.0);
+        let roughness = self.held("clearcoatRoughnessFactor", given.clearcoat_roughness_factor, UNIT);
         let rough = given.clearcoat_roughness_texture.as_ref().filter(|_| roughness > 0.0);
         match rough {
             None if roughness == 0.0 => coat.set("smooth", Value::Bool(true)),
@@ -322,7 +382,7 @@ impl Reading<'_, '_> {
                 self.computed(&mut coat, "alpha", "clearcoatRoughnessTexture", texture, picture, note);
             }
         }
-        let weight = given.clearcoat_factor.clamp(0.0, 1.0);
+        let weight = self.held("clearcoatFactor", given.clearcoat_factor, UNIT);
         if weight < 1.0 {
             coat.set("weight", Value::Number(weight));
         }
@@ -336,17 +396,22 @@ impl Reading<'_, '_> {
         }
         if let Some(texture) = &given.clearcoat_normal_texture {
             let key = if base_normals == Some(texture) { "normal" } else { "bumps" };
-            let used = Use { scale: texture.scale, ..Use::default() };
-            self.unchanged(&mut coat, key, "clearcoatNormalTexture", texture, used);
+            self.normals(&mut coat, key, "clearcoatNormalTexture", texture);
         }
-        let wants_map = coat.has_map("weight");
-        (coat, wants_map)
+        coat
     }
 
-    fn film(&mut self, given: &Iridescence, has_coat: bool) -> Layer {
+    /// The film; none without thickness.
+    fn film(&mut self, given: &Iridescence, has_coat: bool) -> Option<Layer> {
+        let least = self.held("iridescenceThicknessMinimum", given.iridescence_thickness_minimum, FILM_NM);
+        let most = self.held("iridescenceThicknessMaximum", given.iridescence_thickness_maximum, FILM_NM);
+        let is_even = given.iridescence_thickness_texture.is_none() || least == most;
+        if most == 0.0 && (is_even || least == 0.0) {
+            return None;
+        }
         let mut film = Layer::new("thin-film");
-        film.set("ior", Value::Number(given.iridescence_ior));
-        let [least, most] = [given.iridescence_thickness_minimum, given.iridescence_thickness_maximum];
+        let ior = self.held("iridescenceIor", given.iridescence_ior, FILM_IOR);
+        film.set("ior", Value::Number(ior));
         let thick = given.iridescence_thickness_texture.as_ref().filter(|_| least != most);
         let map = thick.and_then(|texture| {
             // Maps go from the thinnest to the thickest, and have no placement of their own.
@@ -376,7 +441,7 @@ impl Reading<'_, '_> {
         film.set("thickness_nm", thickness);
         let note = "the film interferes by the index that its base's F0 stands for, by Airy's formula: glTF has a fit of two orders";
         self.say("KHR_materials_iridescence", Fate::Approximated, note);
-        let weight = given.iridescence_factor.clamp(0.0, 1.0);
+        let weight = self.held("iridescenceFactor", given.iridescence_factor, UNIT);
         if has_coat && (weight < 1.0 || given.iridescence_texture.is_some()) {
             self.say("iridescenceFactor", Fate::Dropped, "below a coat a film covers the whole surface");
         } else {
@@ -389,7 +454,7 @@ impl Reading<'_, '_> {
                 self.unchanged(&mut film, "weight", "iridescenceTexture", texture, used);
             }
         }
-        film
+        Some(film)
     }
 
     /// Lines on all that is no reflectance, and on what is lost.

@@ -12,6 +12,9 @@ use crate::pictures::{Pictures, Texels};
 /// The wrapping mode of samplers that repeats, and the default.
 const REPEAT: u64 = 10497;
 
+/// Largest scale and offset of a placement, and 1 over the smallest scale. Others show no picture, and are left out.
+const PLACED_MAX: f64 = 1e6;
+
 /// Use of the texels of a picture as it is.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Use {
@@ -149,14 +152,17 @@ fn transform(texture: &Texture) -> Option<String> {
     let Transform { offset, rotation, scale, .. } = texture.extensions.transform.as_ref()?;
     let pair = |[u, v]: [f64; 2]| format!("[{}, {}]", number(u), number(v));
     let mut words = Vec::new();
-    if *offset != [0.0; 2] {
-        words.push(format!("offset = {}", pair(*offset)));
+    let [offset, scale] = [offset, scale].map(|pair| pair.map(|v| if v.abs() < PLACED_MAX { v } else { 0.0 }));
+    let scale = scale.map(|v| if v.abs() * PLACED_MAX > 1.0 { v } else { 1.0 });
+    let rotation = libm::fmod(*rotation, std::f64::consts::TAU);
+    if offset != [0.0; 2] {
+        words.push(format!("offset = {}", pair(offset)));
     }
-    if *rotation != 0.0 {
+    if rotation != 0.0 {
         words.push(format!("rotation_deg = {}", number(-rotation.to_degrees())));
     }
-    if *scale != [1.0; 2] {
-        words.push(format!("scale = {}", pair(*scale)));
+    if scale != [1.0; 2] {
+        words.push(format!("scale = {}", pair(scale)));
     }
     (!words.is_empty()).then(|| format!("transform = {{ {} }}", words.join(", ")))
 }

@@ -10,7 +10,7 @@ use luthier_material::{Material, parse};
 use serde_json::{Value, json};
 
 /// Two texels, as a data URI.
-fn picture(texels: [[u8; 3]; 2]) -> Value {
+pub(crate) fn picture(texels: [[u8; 3]; 2]) -> Value {
     let picture = ImageBuffer::<Rgb<u8>, _>::from_raw(2, 1, texels.concat()).unwrap();
     let mut bytes = Vec::new();
     picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).unwrap();
@@ -180,6 +180,18 @@ fn reflectances_follow_index_and_specular() {
     let both = of(json!({ "KHR_materials_specular": {
         "specularColorTexture": { "index": 0 }, "specularTexture": { "index": 0 } } }));
     assert!(both.contains("f0 = { image = \"maps/texels-f0.png\" }"), "{both}");
+}
+
+/// A surface that is half a metal is a blend of two, as in glTF, and not one interface between.
+#[test]
+fn half_a_metal_is_a_blend() {
+    let found = import(GREY, json!({ "pbrMetallicRoughness": { "metallicFactor": 0.5 } }));
+    let text = &read(&found).0.text;
+    assert!(text.contains("metallic = 0.5") && text.contains("metallic = { image = \"maps/white.png\" }"), "{text}");
+    let ior = json!({ "KHR_materials_ior": { "ior": 1.8 } });
+    let found = import(GREY, json!({ "pbrMetallicRoughness": { "metallicFactor": 0.5 }, "extensions": ior }));
+    let text = &read(&found).0.text;
+    assert!(text.contains("base_color = { image = \"maps/white.png\" }"), "{text}");
 }
 
 /// Films of one thickness and of a texture, whose range may be turned over; a weight below a coat is lost, and told.

@@ -1,3 +1,4 @@
 //! Imports of whole files.
 
 mod gltf;
+mod odd;
