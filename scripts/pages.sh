@@ -53,7 +53,8 @@ stability() {
 figures() { luthier-lab figures -o docs/pages/figures; }
 models() { luthier-lab judge "${stacks[@]}" >docs/pages/models.md; }
 lobes() { luthier-lab lobes "${stacks[@]}" --random 200 -o docs/pages/lobes.md; }
-families() { luthier-lab families -o docs/pages/families.md; }
+# An hour of two cores; with the noise of other pages (.005) six.
+families() { luthier-lab families --noise 0.012 -o docs/pages/families.md; }
 coats() { luthier-lab coats --noise 0.005 -o docs/pages/coats.md; }
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }

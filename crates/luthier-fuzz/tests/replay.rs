@@ -205,6 +205,7 @@ tests_of_targets!(
     picture,
     radiance,
     gltf,
+    import,
     table,
     raw
 );

@@ -1,7 +1,7 @@
-//! What becomes of a property of a source.
+//! Fates of the properties of a source.
 
 luthier_lut::named! {
-    /// What becomes of a property.
+    /// Fate of a property on its way into a material file.
     pub enum Fate("fate") {
         /// It means the same, and the file says it.
         Kept = "kept",
@@ -21,7 +21,7 @@ luthier_lut::named! {
 pub struct Line {
     /// The property, as the source names it.
     pub property: String,
-    /// What became of it.
+    /// Its fate.
     pub fate: Fate,
     /// How, or why.
     pub note: String,

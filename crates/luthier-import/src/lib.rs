@@ -63,6 +63,6 @@ pub struct Imported {
     pub source_name: String,
     /// The material file.
     pub text: String,
-    /// What became of each property.
+    /// Properties of the source with their fates.
     pub lines: Vec<Line>,
 }

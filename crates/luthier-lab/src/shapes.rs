@@ -10,7 +10,7 @@ use luthier_terminal::{Failure, Outcome, deliver, valid};
 
 use crate::cli::ShapesOptions;
 
-/// What a row of the table is of.
+/// A shader that a row of the table is of.
 struct Key {
     model: ShadingModel,
     form: Form,

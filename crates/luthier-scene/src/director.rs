@@ -180,7 +180,7 @@ impl<'a> Director<'a> {
         Err(SceneFailure::Unheld { reasons: reasons.join("\n"), hint })
     }
 
-    /// What a bake of the materials without a scene comes nearest to: each by its own model, which no budget chose. `None` before a step of the form `baked`, and where
+    /// The materials by their own models, which no budget chose: a bake without a scene comes near to it. `None` before a step of the form `baked`, and where
     /// a model is no candidate.
     pub fn without_choice(&mut self) -> Option<Unchosen> {
         let materials: Vec<SceneCandidate> =

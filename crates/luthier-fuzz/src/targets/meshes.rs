@@ -1,4 +1,7 @@
-//! Meshes.
+//! glTF: meshes and materials.
+
+use std::collections::BTreeSet;
+use std::io::ErrorKind;
 
 use luthier_mesh::{Mesh, TRIANGLES_MAX, soup};
 
@@ -28,4 +31,23 @@ pub(super) fn gltf(bytes: &[u8]) {
         assert!(mesh.vertices()[corner as usize].position.iter().all(|value| value.abs() < 1.001));
     }
     assert!(mesh.bvh().nodes().iter().all(|node| node.next as usize <= mesh.bvh().nodes().len()));
+}
+
+/// Materials of a glTF file; files beside it are missing.
+pub(super) fn import(bytes: &[u8]) {
+    let import = match luthier_import::gltf("input.gltf", bytes, &|_| Err(ErrorKind::NotFound.into())) {
+        Ok(import) => import,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    let names: BTreeSet<&str> = import.materials.iter().map(|material| material.name.as_str()).collect();
+    assert!(names.len() == import.materials.len() && !names.is_empty());
+    for material in &import.materials {
+        let parsed = luthier_material::parse("input.toml", &material.text, &|_| Err(ErrorKind::NotFound.into()));
+        let parsed = parsed.unwrap_or_else(|errors| panic!("{errors:?} in {}", material.text));
+        assert_eq!(parsed.material.name, material.name);
+        for line in material.text.lines().filter_map(|line| line.split_once("image = \"")) {
+            let path = line.1.split('"').next().unwrap_or_default();
+            assert!(import.pictures.contains_key(path), "{path} of {}", material.text);
+        }
+    }
 }

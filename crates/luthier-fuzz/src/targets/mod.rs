@@ -33,7 +33,7 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 21] = [
+pub const TARGETS: [Target; 22] = [
     Target {
         name: "material",
         parser: "luthier_material::parse, FileKind::of",
@@ -185,6 +185,14 @@ pub const TARGETS: [Target; 21] = [
         holds: "corners are numbers of vertices, and these are finite; a mesh made of them lies in the unit sphere, its openness in 0..1",
         folders: &[],
         run: meshes::gltf,
+    },
+    Target {
+        name: "import",
+        parser: "luthier_import::gltf",
+        reads: "`import`: glTF files, text and binary",
+        holds: "every material is a file that parses, with a name of its own; the pictures that it names are there",
+        folders: &["crates/luthier-fuzz/corpus/gltf"],
+        run: meshes::import,
     },
     Target {
         name: "table",

@@ -1,9 +1,10 @@
 //! A material of glTF as layers: a coat, a film, a base.
 
+use luthier_lut::srgb;
+
 use super::document::{Anisotropy, Clearcoat, Iridescence, Material, Metallic, Specular, Texture};
 use super::textures::{Textures, Use, set};
 use crate::draft::{Draft, Layer, Value};
-use crate::pictures::linear;
 use crate::{Fate, Line};
 
 /// Reflectance along the normal of the dielectric without extensions.
@@ -252,7 +253,7 @@ impl Reading<'_, '_> {
             }
             [Some(color), Some(weight)] => {
                 let picture = self.textures.color("f0", "f0", [Some(&color), Some(&weight)], |color, weight| {
-                    [0, 1, 2].map(|c: usize| linear(color[c]) * weight[3])
+                    [0, 1, 2].map(|c: usize| f64::from(srgb::linear(color[c] as f32)) * weight[3])
                 });
                 let note = "the product of both textures";
                 self.computed(base, "f0", "specularColorTexture, specularTexture", &color, picture, note);

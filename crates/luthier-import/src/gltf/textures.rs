@@ -68,7 +68,7 @@ impl<'a> Textures<'a> {
         of: impl Fn([f64; 4], [f64; 4]) -> f64,
     ) -> Result<String, String> {
         let (name, key, texels) = self.named(name, key, sources)?;
-        let path = self.pictures.number(&name, &key, texels.each_ref().map(Option::as_deref), of)?;
+        let path = self.pictures.computed(&name, &key, texels.each_ref().map(Option::as_deref), |a, b| [of(a, b)])?;
         Ok(table(&path, sources))
     }
 
@@ -81,13 +81,13 @@ impl<'a> Textures<'a> {
         of: impl Fn([f64; 4], [f64; 4]) -> [f64; 3],
     ) -> Result<String, String> {
         let (name, key, texels) = self.named(name, key, sources)?;
-        let path = self.pictures.color(&name, &key, texels.each_ref().map(Option::as_deref), of)?;
+        let path = self.pictures.computed(&name, &key, texels.each_ref().map(Option::as_deref), of)?;
         Ok(table(&path, sources))
     }
 
     /// One white texel, as TOML.
     pub(super) fn white(&mut self) -> Result<String, String> {
-        let path = self.pictures.number("white", "white", [None, None], |_, _| 1.0)?;
+        let path = self.pictures.computed("white", "white", [None, None], |_, _| [1.0])?;
         Ok(format!("{{ image = \"{path}\" }}"))
     }
 

@@ -1,19 +1,16 @@
 //! Materials of glTF 2.0: every property, the round numbers of the formats, and broken files.
 
-use std::io::{self, Cursor, ErrorKind};
+use std::io::{self, ErrorKind};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use image::{ImageBuffer, ImageFormat, Rgb};
 use luthier_import::{Fate, Import, ImportError, Imported, gltf};
 use luthier_material::{Material, parse};
 use serde_json::{Value, json};
 
 /// Two texels, as a data URI.
 pub(crate) fn picture(texels: [[u8; 3]; 2]) -> Value {
-    let picture = ImageBuffer::<Rgb<u8>, _>::from_raw(2, 1, texels.concat()).unwrap();
-    let mut bytes = Vec::new();
-    picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).unwrap();
+    let bytes = luthier_texture::png::encode_rgb(2, 1, &texels.concat()).unwrap();
     json!({ "name": "texels", "uri": format!("data:image/png;base64,{}", STANDARD.encode(bytes)) })
 }
 
@@ -49,8 +46,14 @@ fn fate(imported: &Imported, property: &str) -> Vec<Fate> {
 /// Values of a computed picture, from 0 to 1.
 fn values(import: &Import, path: &str) -> Vec<[f64; 3]> {
     let bytes = import.pictures.get(path).unwrap_or_else(|| panic!("no {path} in {:?}", import.pictures.keys()));
-    let picture = image::load_from_memory(bytes).unwrap().into_rgb16();
-    picture.pixels().map(|texel| texel.0.map(|value| f64::from(value) / 65535.0)).collect()
+    let picture = luthier_texture::picture::decode(bytes).unwrap().picture;
+    let [width, height] = picture.size();
+    let texel = |x, y| picture.texel(x, y).map(f64::from);
+    (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .map(|(x, y)| texel(x, y))
+        .map(|[r, g, b, _]| [r, g, b])
+        .collect()
 }
 
 fn close(found: f64, expected: f64) {

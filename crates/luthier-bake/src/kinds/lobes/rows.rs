@@ -1,4 +1,4 @@
-//! What rows of a material are over, and how many lobes they may have.
+//! Factors that rows of a material are over, and how many lobes they may have.
 
 use luthier_layers::models::lobes::{Cover, Family, FitSettings, Varied, Varying, base_below, shown};
 use luthier_manifest::{LobesForm, MapSlot};

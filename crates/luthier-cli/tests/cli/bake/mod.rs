@@ -2,6 +2,7 @@
 
 mod containers;
 mod folder;
+mod import;
 mod lobes;
 mod many;
 mod maps;

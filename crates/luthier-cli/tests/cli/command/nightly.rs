@@ -185,9 +185,13 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("crates/luthier-optics/tests/all.rs", &["packages"]),
         ("crates/luthier-gpu/tests/all.rs", &["gpu", "packages"]),
         ("crates/luthier-lut/tests/all.rs", &["packages", "random"]),
-        // The window is a feature of the command; meshes are for pictures.
+        // The window is a feature of the command.
         ("crates/luthier-view/src/lib.rs", &["packages", "release"]),
-        ("crates/luthier-mesh/src/lib.rs", &["fuzz", "gpu", "kind", "packages", "release", "tests"]),
+        // Meshes are for pictures, and their files for imports, which are a part of the command.
+        (
+            "crates/luthier-mesh/src/lib.rs",
+            &["crash", "examples", "farm", "fuzz", "gpu", "kind", "packages", "release", "scale", "tests"],
+        ),
         ("crates/luthier-fuzz/corpus/a", &["fuzz", "packages"]),
         (
             "crates/luthier-gallery/src/lib.rs",
