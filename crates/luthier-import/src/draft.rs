@@ -35,6 +35,16 @@ pub(crate) fn number(value: f64) -> String {
     if text.contains(['.', 'e']) || !rounded.is_finite() { text } else { format!("{text}.0") }
 }
 
+/// A text without control characters.
+pub(crate) fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// A string of TOML, in one line.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", plain(text).replace('\\', "\\\\").replace('"', "\\\""))
+}
+
 /// A layer.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layer {
@@ -77,6 +87,8 @@ pub(crate) struct Draft {
     /// Lines before the first key.
     pub(crate) comments: Vec<String>,
     pub(crate) name: String,
+    pub(crate) description: Option<String>,
+    pub(crate) references: Vec<String>,
     pub(crate) layers: Vec<Layer>,
 }
 
@@ -85,9 +97,17 @@ impl Draft {
         let mut out = String::new();
         // Writing to a String does not fail.
         for comment in &self.comments {
-            let _ = writeln!(out, "# {}", comment.replace(['\n', '\r'], " "));
+            let _ = writeln!(out, "# {}", plain(comment));
         }
         let _ = writeln!(out, "\nschema = 1\nname = \"{}\"", self.name);
+        if let Some(description) = &self.description {
+            let _ = writeln!(out, "description = {}", quoted(description));
+        }
+        if !self.references.is_empty() {
+            let lines: String =
+                self.references.iter().map(|reference| format!("    {},\n", quoted(reference))).collect();
+            let _ = writeln!(out, "references = [\n{lines}]");
+        }
         for Layer { kind, keys, maps } in &self.layers {
             let _ = writeln!(out, "\n[[layer]]\ntype = \"{kind}\"");
             for (key, value) in keys {

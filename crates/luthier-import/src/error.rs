@@ -19,6 +19,9 @@ pub enum ImportError {
         /// The mistake in it.
         reason: String,
     },
+    /// A text that is not what its format asks for.
+    #[error("{0}")]
+    Json(#[source] serde_json::Error),
     /// A file without materials.
     #[error("the file has no materials")]
     Empty,

@@ -28,20 +28,23 @@
 //! - `error`, `fate`, `name`: refusals, what becomes of a property, names of materials and of pictures.
 //! - `draft`: a material file as layers with keys, and its text.
 //! - `pictures`: pictures of a source, unchanged or computed.
-//! - `gltf`: materials of glTF.
+//! - `gltf`, `physically_based`: materials of glTF, and of a database.
 
 mod draft;
 mod error;
 mod fate;
 mod gltf;
 mod name;
+mod physically_based;
 mod pictures;
 
 use std::collections::BTreeMap;
+use std::io;
 
 pub use error::ImportError;
 pub use fate::{Fate, Line};
 pub use gltf::gltf;
+pub use physically_based::physically_based;
 
 /// Materials of a file, with their pictures.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -65,4 +68,23 @@ pub struct Imported {
     pub text: String,
     /// Properties of the source with their fates.
     pub lines: Vec<Line>,
+}
+
+/// The materials of a file of any of the formats, told by its content: see [`gltf`] and [`physically_based`].
+///
+/// # Errors
+/// Those of the format; of glTF where it is none of them.
+pub fn import(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Import, ImportError> {
+    let is_text = bytes.trim_ascii_start().starts_with(b"{");
+    let text = is_text.then(|| serde_json::from_slice(bytes).ok()).flatten();
+    if text.is_some_and(|text| physically_based::is_database(&text)) {
+        return physically_based(label, bytes);
+    }
+    gltf(label, bytes, files)
+}
+
+/// Comments on what a file does not say as its source does.
+pub(crate) fn told(lines: &[Line]) -> impl Iterator<Item = String> {
+    let changed = lines.iter().filter(|line| matches!(line.fate, Fate::Approximated | Fate::Dropped));
+    changed.map(|Line { property, fate, note }| format!("{property}, {fate}: {note}"))
 }

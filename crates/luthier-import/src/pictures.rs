@@ -101,8 +101,8 @@ impl Pictures {
         decoded.or_insert_with(|| bytes().and_then(|bytes| Texels::decode(&bytes)).map(Rc::new)).clone()
     }
 
-    /// The path of a computed picture of one or three numbers a texel, in 16 bits: `of` the texels of up to two pictures, 1 where there is none. The size is
-    /// that of the larger.
+    /// The path of a computed picture of one or three numbers a texel, in 16 bits: `of` the texels of up to two pictures, 1 where there is none. It is as wide
+    /// and as high as the largest.
     pub(crate) fn computed<const CHANNELS: usize>(
         &mut self,
         name: &str,
@@ -114,8 +114,7 @@ impl Pictures {
             return Ok(path.clone());
         }
         let sizes = sources.iter().flatten().map(|texels| texels.0.size());
-        let size = sizes.max_by_key(|size| size.map(u64::from).iter().product::<u64>());
-        let [width, height] = size.unwrap_or([1; 2]);
+        let [width, height] = sizes.fold([1; 2], |most, size| [0, 1].map(|i: usize| most[i].max(size[i])));
         let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
         let samples = places.flat_map(|[x, y]| {
             let [a, b] = sources.map(|texels| {

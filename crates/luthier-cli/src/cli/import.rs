@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 const EXAMPLES: &str = "\
-Files are glTF 2.0, text or binary. Every material becomes a file of its own, NAME.toml, with the pictures that it needs in FOLDER/maps, and FOLDER/import.json says of each property what became of it: \
+Files are glTF 2.0, text or binary, or the JSON of the database physicallybased.info; their content tells which. Every material becomes a file of its own, NAME.toml, with the pictures that it needs in FOLDER/maps, and FOLDER/import.json says of each property what became of it: \
 kept; closed form, where a formula leads from one to the other; approximated, with what differs; dropped; or the host's, which are no reflectances, such as opacity and emission. Pictures are copied as they are, or \
 computed where luthier's maps mean something else, such as slope parameters in place of roughness.
 
@@ -15,12 +15,13 @@ Several files share one folder: their materials have one set of names.
 Examples:
   luthier import car.glb -o materials/car
   luthier import chess/*.gltf -o materials/chess --json
+  luthier import materials.json -o materials/measured
   luthier import car.glb -o materials/car --force && luthier check materials/car";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct ImportOptions {
-    /// glTF files, .gltf or .glb
+    /// glTF files, .gltf or .glb, or JSON of physicallybased.info
     #[arg(value_name = "FILE", required = true)]
     pub(crate) files: Vec<PathBuf>,
     /// Folder for the material files

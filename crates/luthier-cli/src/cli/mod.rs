@@ -102,7 +102,7 @@ pub(crate) enum Verb {
     Eval(Box<EvalOptions>),
     /// Fit the model granier-heidrich to a lobe that a CSV file gives, and write a material file
     Fit(FitOptions),
-    /// Write material files from the materials of glTF files
+    /// Write material files from the materials of other formats: glTF, physicallybased.info
     Import(ImportOptions),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),

@@ -1,12 +1,13 @@
-//! `import`: material files from glTF.
+//! `import`: material files from other formats.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::ErrorKind;
+use std::fs::OpenOptions;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use luthier_export::{input, label};
-use luthier_import::{Fate, Import, ImportError, Imported, Line, gltf};
+use luthier_import::{Fate, Import, ImportError, Imported, Line, import};
 use luthier_terminal::{Failure, Outcome, files, print};
 use serde_json::{Value, json};
 
@@ -29,7 +30,7 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let label = label(path);
         let name = path.file_name().map_or_else(|| label.clone(), |name| name.to_string_lossy().into_owned());
-        let import = gltf(&name, &bytes, &|beside| input::mesh(&folder.join(beside)));
+        let import = import(&name, &bytes, &|beside| input::mesh(&folder.join(beside)));
         let import = import.map_err(|error: ImportError| {
             Failure::Input(anyhow::Error::new(error).context(path.display().to_string()))
         })?;
@@ -74,29 +75,34 @@ fn free(path: &str, is_free: impl Fn(&str) -> bool) -> String {
 }
 
 /// Writes all files; none, if one is there and may not be replaced.
-fn write(options: &ImportOptions, mut written: BTreeMap<String, Vec<u8>>, report: &Value) -> Outcome {
-    written.insert(REPORT.to_owned(), format!("{report:#}\n").into_bytes());
-    let places: Vec<(PathBuf, Vec<u8>)> =
-        written.into_iter().map(|(path, bytes)| (options.output.join(path), bytes)).collect();
+fn write(options: &ImportOptions, written: BTreeMap<String, Vec<u8>>, report: &Value) -> Outcome {
+    // The report comes last: it names files that are there.
+    let written = written.into_iter().chain([(REPORT.to_owned(), format!("{report:#}\n").into_bytes())]);
+    let places: Vec<(PathBuf, Vec<u8>)> = written.map(|(path, bytes)| (options.output.join(path), bytes)).collect();
     if let Some((there, _)) = places.iter().find(|(path, _)| !options.force && path.symlink_metadata().is_ok()) {
         return Err(Failure::Usage(anyhow::anyhow!(
             "{} is there already: choose another folder, or replace files with --force; nothing was written",
             there.display()
         )));
     }
-    for (path, bytes) in places {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        std::fs::create_dir_all(folder).map_err(files(folder, "made"))?;
-        // A reader sees the old file or the new one.
-        let fresh = path.with_extension("luthier-new");
-        let moved = std::fs::write(&fresh, bytes).and_then(|()| std::fs::rename(&fresh, &path));
-        if moved.is_err() {
-            let _ = std::fs::remove_file(&fresh).or_else(|error| match error.kind() {
-                ErrorKind::NotFound => Ok(()),
-                _ => Err(error),
-            });
+    // All that can be seen to fail fails before the first file.
+    for (path, _) in &places {
+        if path.is_dir() {
+            return Err(Failure::Files(anyhow::anyhow!("{} is a folder; nothing was written", path.display())));
         }
-        moved.map_err(files(&path, "written"))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
+    }
+    for (path, bytes) in places {
+        // A reader sees the old file or the new one.
+        let fresh = path.with_extension(format!("luthier-new-{}", std::process::id()));
+        let written = OpenOptions::new().write(true).create_new(true).open(&fresh);
+        let moved = written.and_then(|mut file| file.write_all(&bytes)).and_then(|()| std::fs::rename(&fresh, &path));
+        moved.map_err(|error| {
+            // Its reason counts, and not that of what is cleared away.
+            let _ = std::fs::remove_file(&fresh);
+            files(&path, "write")(error)
+        })?;
     }
     Ok(())
 }

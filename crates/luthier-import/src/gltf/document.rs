@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use serde_json::Value;
 
+/// Members by name that the specification of a structure does not have.
+pub(super) type Unknown = BTreeMap<String, Value>;
+
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Material {
@@ -17,6 +20,9 @@ pub(super) struct Material {
     pub(super) alpha_mode: Option<String>,
     pub(super) double_sided: bool,
     pub(super) extensions: Extensions,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 #[derive(Debug, Deserialize)]
@@ -27,6 +33,9 @@ pub(super) struct Metallic {
     pub(super) metallic_factor: f64,
     pub(super) roughness_factor: f64,
     pub(super) metallic_roughness_texture: Option<Texture>,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 impl Default for Metallic {
@@ -37,17 +46,21 @@ impl Default for Metallic {
             metallic_factor: 1.0,
             roughness_factor: 1.0,
             metallic_roughness_texture: None,
+            unknown: Unknown::new(),
         }
     }
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
+#[serde(rename_all = "camelCase")]
 pub(super) struct Texture {
     pub(super) index: usize,
+    #[serde(default)]
     pub(super) tex_coord: u32,
     /// Of normals.
+    #[serde(default)]
     pub(super) scale: Option<f64>,
+    #[serde(default)]
     pub(super) extensions: TextureExtensions,
 }
 
@@ -56,6 +69,8 @@ pub(super) struct Texture {
 pub(super) struct TextureExtensions {
     #[serde(rename = "KHR_texture_transform")]
     pub(super) transform: Option<Transform>,
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -89,7 +104,18 @@ pub(super) struct Extensions {
     #[serde(rename = "KHR_materials_transmission")]
     pub(super) transmission: Option<Transmission>,
     #[serde(flatten)]
-    pub(super) others: BTreeMap<String, Value>,
+    pub(super) others: Unknown,
+}
+
+/// The first member that should be an object, and is none; serde reads arrays as structures, too.
+pub(super) fn misplaced(value: &Value) -> Option<&str> {
+    let members = value.as_object()?;
+    members.iter().find_map(|(name, member)| {
+        let wants_object = name.ends_with("Texture")
+            || ["KHR_", "EXT_"].iter().any(|beginning| name.starts_with(beginning))
+            || ["extensions", "pbrMetallicRoughness"].contains(&name.as_str());
+        if wants_object && !member.is_object() { Some(name.as_str()) } else { misplaced(member) }
+    })
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -100,17 +126,23 @@ pub(super) struct Clearcoat {
     pub(super) clearcoat_roughness_factor: f64,
     pub(super) clearcoat_roughness_texture: Option<Texture>,
     pub(super) clearcoat_normal_texture: Option<Texture>,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(default)]
 pub(super) struct Ior {
     pub(super) ior: f64,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 impl Default for Ior {
     fn default() -> Self {
-        Self { ior: 1.5 }
+        Self { ior: 1.5, unknown: Unknown::new() }
     }
 }
 
@@ -121,6 +153,9 @@ pub(super) struct Specular {
     pub(super) specular_texture: Option<Texture>,
     pub(super) specular_color_factor: [f64; 3],
     pub(super) specular_color_texture: Option<Texture>,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 impl Default for Specular {
@@ -130,6 +165,7 @@ impl Default for Specular {
             specular_texture: None,
             specular_color_factor: [1.0; 3],
             specular_color_texture: None,
+            unknown: Unknown::new(),
         }
     }
 }
@@ -140,6 +176,9 @@ pub(super) struct Anisotropy {
     pub(super) anisotropy_strength: f64,
     pub(super) anisotropy_rotation: f64,
     pub(super) anisotropy_texture: Option<Texture>,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 #[derive(Debug, Deserialize)]
@@ -151,6 +190,9 @@ pub(super) struct Iridescence {
     pub(super) iridescence_thickness_minimum: f64,
     pub(super) iridescence_thickness_maximum: f64,
     pub(super) iridescence_thickness_texture: Option<Texture>,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }
 
 impl Default for Iridescence {
@@ -162,6 +204,7 @@ impl Default for Iridescence {
             iridescence_thickness_minimum: 100.0,
             iridescence_thickness_maximum: 400.0,
             iridescence_thickness_texture: None,
+            unknown: Unknown::new(),
         }
     }
 }
@@ -170,4 +213,7 @@ impl Default for Iridescence {
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Transmission {
     pub(super) transmission_factor: f64,
+    /// Members that are not known.
+    #[serde(flatten)]
+    pub(super) unknown: Unknown,
 }

@@ -9,11 +9,16 @@ use std::io;
 use luthier_mesh::Asset;
 use serde::Deserialize;
 
-use self::document::Material;
+use self::document::{Material, misplaced};
 use self::surface::surface;
 use self::textures::Textures;
+use crate::draft::plain;
 use crate::name::Names;
 use crate::{Fate, Import, ImportError, Imported, Line};
+
+/// Beginnings of extensions that materials tell themselves, or that change none.
+const HARMLESS: [&str; 6] =
+    ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_mesh_", "KHR_draco_", "EXT_meshopt_"];
 
 /// The materials of a glTF 2.0 file, binary or text. `label` names it in the texts. `files` reads what lies beside it by relative paths; paths that leave its folder are refused.
 ///
@@ -29,20 +34,26 @@ pub fn gltf(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8
     let mut names = Names::default();
     let mut import = Import::default();
     for (number, value) in found.iter().enumerate() {
-        let source_name = value["name"].as_str().unwrap_or_default();
-        let material = Material::deserialize(value).map_err(|error| ImportError::Material {
+        let source_name = plain(value["name"].as_str().unwrap_or_default());
+        let fail = |reason: String| ImportError::Material {
             number,
             name: if source_name.is_empty() { String::new() } else { format!(" `{source_name}`") },
-            reason: with_line(&asset, &error),
-        })?;
-        let name = names.unique(source_name, &format!("material-{number}"));
+            reason,
+        };
+        if !value.is_object() {
+            return Err(fail("it is no object".to_owned()));
+        }
+        if let Some(name) = misplaced(value) {
+            return Err(fail(format!("`{name}` is no object")));
+        }
+        let material = Material::deserialize(value).map_err(|error| fail(with_line(&asset, &error)))?;
+        let name = names.unique(&source_name, &format!("material-{number}"));
         let (mut draft, lines) = surface(&material, &mut textures);
         draft.name.clone_from(&name);
         let of = if source_name.is_empty() { format!("material {number}") } else { format!("`{source_name}`") };
         draft.comments.push(format!("Source: {label}, {of}"));
-        let changed = lines.iter().filter(|line| matches!(line.fate, Fate::Approximated | Fate::Dropped));
-        draft.comments.extend(changed.map(|line| format!("{}, {}: {}", line.property, line.fate, line.note)));
-        import.materials.push(Imported { name, source_name: source_name.to_owned(), text: draft.toml(), lines });
+        draft.comments.extend(crate::told(&lines));
+        import.materials.push(Imported { name, source_name, text: draft.toml(), lines });
     }
     if asset.json["extensions"]["KHR_materials_variants"].is_object() {
         import.lines.push(Line::new(
@@ -50,6 +61,12 @@ pub fn gltf(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8
             Fate::Host,
             "every material of a variant is imported; which part has which is with the meshes",
         ));
+    }
+    for name in asset.json["extensionsRequired"].as_array().into_iter().flatten().filter_map(|name| name.as_str()) {
+        if !HARMLESS.iter().any(|beginning| name.starts_with(beginning)) {
+            let note = "the file requires this extension, which is not read: materials may be others than it means";
+            import.lines.push(Line::new(name, Fate::Dropped, note));
+        }
     }
     import.pictures = textures.into_files();
     Ok(import)

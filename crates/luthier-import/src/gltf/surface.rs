@@ -3,7 +3,7 @@
 use luthier_lut::srgb;
 
 use super::document::{Anisotropy, Clearcoat, Iridescence, Material, Metallic, Specular, Texture};
-use super::textures::{Textures, Use, set};
+use super::textures::{Textures, Use, is_odd, set};
 use crate::draft::{Draft, Layer, Value};
 use crate::{Fate, Line};
 
@@ -44,7 +44,10 @@ const LOST: [(&str, &str); 6] = [
     ("KHR_materials_sheen", "cloth"),
     ("KHR_materials_diffuse_transmission", "light through the surface"),
     ("KHR_materials_dispersion", "colours of light that goes through"),
-    ("KHR_materials_pbrSpecularGlossiness", "the older description; that of the core is read"),
+    (
+        "KHR_materials_pbrSpecularGlossiness",
+        "the older description is not read: the surface is that of the core, white rough metal where the file has none",
+    ),
 ];
 
 /// The layers of a material without its name, and what became of each property.
@@ -62,6 +65,7 @@ pub(super) fn surface(material: &Material, textures: &mut Textures<'_>) -> (Draf
     layers.extend(film);
     layers.push(base);
     reading.others(material);
+    reading.unknown(material);
     (Draft { layers, ..Draft::default() }, reading.lines)
 }
 
@@ -79,15 +83,25 @@ impl Reading<'_, '_> {
     fn held(&mut self, property: &str, value: f64, [least, most]: [f64; 2]) -> f64 {
         let held = value.clamp(least, most);
         if held != value {
-            self.say(property, Fate::Approximated, format!("{value} is beyond the format: held to {least} to {most}"));
+            let [value, least, most] = [value, least, most].map(crate::draft::number);
+            self.say(
+                property,
+                Fate::Approximated,
+                format!("{value} is beyond what is read: held to {least} to {most}"),
+            );
         }
         held
     }
 
     /// Adds a normal map; none where its scale leaves the surface flat.
     fn normals(&mut self, layer: &mut Layer, key: &'static str, property: &str, texture: &Texture) {
-        let scale = self.held(property, texture.scale.unwrap_or(1.0), NORMAL_SCALE);
-        if scale > 0.0 {
+        let scale = texture.scale.unwrap_or(1.0);
+        if scale < 0.0 {
+            self.say(property, Fate::Dropped, "normals of a negative scale are not read");
+        } else if scale == 0.0 {
+            self.say(property, Fate::Kept, "");
+        } else {
+            let scale = self.held(property, scale, NORMAL_SCALE);
             self.unchanged(layer, key, property, texture, Use { scale: Some(scale), ..Use::default() });
         }
     }
@@ -113,14 +127,20 @@ impl Reading<'_, '_> {
         layer: &mut Layer,
         key: &'static str,
         property: &str,
-        texture: &Texture,
+        sources: [Option<&Texture>; 2],
         picture: Result<String, String>,
         note: &str,
     ) {
         if let Some(picture) = self.told(property, picture) {
             layer.map(key, picture);
-            self.placed(property, texture);
+            sources.into_iter().flatten().for_each(|texture| self.placed(property, texture));
             self.say(property, Fate::ClosedForm, note);
+            if let [Some(first), Some(second)] = sources
+                && (&first.extensions, first.tex_coord) != (&second.extensions, second.tex_coord)
+            {
+                let note = "its two textures are placed differently: both have the placement of the first";
+                self.say(property, Fate::Approximated, note);
+            }
         }
     }
 
@@ -132,9 +152,19 @@ impl Reading<'_, '_> {
 
     /// Lines on texture coordinates that shaders do not have.
     fn placed(&mut self, property: &str, texture: &Texture) {
+        for name in texture.extensions.unknown.keys() {
+            self.say(property, Fate::Dropped, format!("the extension {name} of its texture is not read"));
+        }
         if set(texture) > 0 {
             let note = format!("its texture coordinates are set {}: shaders take one set for all maps", set(texture));
             self.say(property, Fate::Approximated, note);
+        }
+        if is_odd(texture) {
+            self.say(
+                property,
+                Fate::Approximated,
+                "a placement that shows no picture is left out: a scale of 0, or numbers of a million",
+            );
         }
         if !self.textures.repeats(texture) {
             self.say(property, Fate::Approximated, "the texture ends or is mirrored at its edge: maps repeat");
@@ -200,7 +230,9 @@ impl Reading<'_, '_> {
         }
         if let Some(texture) = &material.normal_texture {
             let is_of_both = coat.is_some_and(|coat| coat.clearcoat_normal_texture.as_ref() == Some(texture));
-            if !is_of_both {
+            if is_of_both {
+                self.say("normalTexture", Fate::Kept, "");
+            } else {
                 let key = if has_coat { "bumps" } else { "normal" };
                 self.normals(&mut base, key, "normalTexture", texture);
             }
@@ -220,7 +252,7 @@ impl Reading<'_, '_> {
         if extensions.ior.is_some() {
             self.say("KHR_materials_ior", Fate::ClosedForm, "f0 = ((n - 1)/(n + 1))^2");
         }
-        let Specular { specular_factor, specular_texture, specular_color_factor, specular_color_texture } =
+        let Specular { specular_factor, specular_texture, specular_color_factor, specular_color_texture, .. } =
             extensions.specular.clone().unwrap_or_default();
         let tinted = specular_color_factor.map(|c: f64| specular_factor * (of_ior * c).min(1.0));
         let is_mapped = specular_texture.is_some() || specular_color_texture.is_some();
@@ -256,7 +288,14 @@ impl Reading<'_, '_> {
                     [0, 1, 2].map(|c: usize| f64::from(srgb::linear(color[c] as f32)) * weight[3])
                 });
                 let note = "the product of both textures";
-                self.computed(base, "f0", "specularColorTexture, specularTexture", &color, picture, note);
+                self.computed(
+                    base,
+                    "f0",
+                    "specularColorTexture, specularTexture",
+                    [Some(&color), Some(&weight)],
+                    picture,
+                    note,
+                );
             }
         }
     }
@@ -289,7 +328,7 @@ impl Reading<'_, '_> {
         let most = self.textures.texels(texture).map_or(1.0, |texels| texels.most(1)).max(1e-3);
         base.set("roughness", Value::Number(roughness * most));
         let picture = self.squared(texture, 1, most);
-        self.computed(base, "alpha", property, texture, picture, "alpha = roughness^2, in 16 bits");
+        self.computed(base, "alpha", property, [Some(texture), None], picture, "alpha = roughness^2, in 16 bits");
     }
 
     /// Squares of a channel over the square of its largest value.
@@ -304,12 +343,6 @@ impl Reading<'_, '_> {
     fn anisotropic(&mut self, roughness: f64, rough: Option<&Texture>, given: &Anisotropy, base: &mut Layer) {
         let strength = self.held("anisotropyStrength", given.anisotropy_strength, UNIT);
         let direction = given.anisotropy_texture.as_ref();
-        if let (Some(rough), Some(direction)) = (rough, direction)
-            && rough.extensions != direction.extensions
-        {
-            let note = "roughness and anisotropy are placed differently: both have the placement of the roughness";
-            self.say("KHR_texture_transform", Fate::Approximated, note);
-        }
         let most = |texture: Option<&Texture>, channel: usize, textures: &mut Textures<'_>| {
             texture.and_then(|texture| textures.texels(texture).ok()).map_or(1.0, |texels| texels.most(channel))
         };
@@ -328,12 +361,12 @@ impl Reading<'_, '_> {
         }
         let note = "alpha_x = alpha + (1 - alpha) strength^2 along the direction, alpha_y = alpha = roughness^2";
         self.say("roughnessFactor, KHR_materials_anisotropy", Fate::ClosedForm, note);
-        if let Some(first) = rough.or(direction) {
+        if rough.or(direction).is_some() {
             let key = format!("alpha-x {roughness} {strength} {most_rough} {most_strong}");
             let picture = self.textures.number("alpha-x", &key, [rough, direction], move |rough, direction| {
                 alphas(roughness * rough[1], strength * direction[2])[0] / alpha_x
             });
-            self.computed(base, "alpha_x", "textures of roughness and strength", first, picture, note);
+            self.computed(base, "alpha_x", "textures of roughness and strength", [rough, direction], picture, note);
         }
         if let Some(texture) = rough {
             let picture = self.squared(texture, 1, most_rough.max(1e-3));
@@ -341,7 +374,7 @@ impl Reading<'_, '_> {
                 base,
                 "alpha_y",
                 "metallicRoughnessTexture (roughness)",
-                texture,
+                [Some(texture), None],
                 picture,
                 "alpha = roughness^2, in 16 bits",
             );
@@ -360,7 +393,7 @@ impl Reading<'_, '_> {
                 base,
                 "tangent",
                 "anisotropyTexture (direction)",
-                texture,
+                [Some(texture), None],
                 picture,
                 "texels of the doubled angle",
             );
@@ -380,7 +413,7 @@ impl Reading<'_, '_> {
                 coat.set("roughness", Value::Number(roughness * most));
                 let picture = self.squared(texture, 1, most);
                 let note = "alpha = roughness^2, in 16 bits";
-                self.computed(&mut coat, "alpha", "clearcoatRoughnessTexture", texture, picture, note);
+                self.computed(&mut coat, "alpha", "clearcoatRoughnessTexture", [Some(texture), None], picture, note);
             }
         }
         let weight = self.held("clearcoatFactor", given.clearcoat_factor, UNIT);
@@ -424,6 +457,7 @@ impl Reading<'_, '_> {
             };
             let picture = self.told("iridescenceThicknessTexture", picture)?;
             self.placed("iridescenceThicknessTexture", texture);
+            self.say("iridescenceThicknessTexture", Fate::Kept, "");
             if texture.extensions.transform.is_some() {
                 self.say("iridescenceThicknessTexture", Fate::Approximated, "its placement is left out");
             }
@@ -437,8 +471,10 @@ impl Reading<'_, '_> {
                     crate::draft::number(EXTENT_UM)
                 ))
             }
+            None if most == 0.0 => return None,
             None => Value::Number(most),
         };
+        self.say("iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum", Fate::Kept, "");
         film.set("thickness_nm", thickness);
         let note = "the film interferes by the index that its base's F0 stands for, by Airy's formula: glTF has a fit of two orders";
         self.say("KHR_materials_iridescence", Fate::Approximated, note);
@@ -458,6 +494,31 @@ impl Reading<'_, '_> {
         Some(film)
     }
 
+    /// Lines on members that are not known.
+    fn unknown(&mut self, material: &Material) {
+        let extensions = &material.extensions;
+        let all = [
+            ("", Some(&material.unknown)),
+            ("pbrMetallicRoughness.", Some(&material.pbr_metallic_roughness.unknown)),
+            ("KHR_materials_clearcoat.", extensions.clearcoat.as_ref().map(|found| &found.unknown)),
+            ("KHR_materials_ior.", extensions.ior.as_ref().map(|found| &found.unknown)),
+            ("KHR_materials_specular.", extensions.specular.as_ref().map(|found| &found.unknown)),
+            ("KHR_materials_anisotropy.", extensions.anisotropy.as_ref().map(|found| &found.unknown)),
+            ("KHR_materials_iridescence.", extensions.iridescence.as_ref().map(|found| &found.unknown)),
+            ("KHR_materials_transmission.", extensions.transmission.as_ref().map(|found| &found.unknown)),
+        ];
+        for (of, name) in
+            all.into_iter().flat_map(|(of, unknown)| unknown.into_iter().flatten().map(move |(n, _)| (of, n)))
+        {
+            match name.as_str() {
+                "extras" => self.say(&format!("{of}extras"), Fate::Host, "notes of a program"),
+                "alphaCutoff" => self.say(name, Fate::Host, "where the surface is cut out"),
+                "transmissionTexture" => {}
+                _ => self.say(&format!("{of}{name}"), Fate::Dropped, "the member is not known"),
+            }
+        }
+    }
+
     /// Lines on all that is no reflectance, and on what is lost.
     fn others(&mut self, material: &Material) {
         let Material {
@@ -474,6 +535,16 @@ impl Reading<'_, '_> {
         }
         if *double_sided {
             self.say("doubleSided", Fate::Host, "which sides are drawn");
+        }
+        for (property, value) in [
+            ("clearcoatFactor", extensions.clearcoat.as_ref().map(|found| found.clearcoat_factor)),
+            ("iridescenceFactor", extensions.iridescence.as_ref().map(|found| found.iridescence_factor)),
+            ("anisotropyStrength", extensions.anisotropy.as_ref().map(|found| found.anisotropy_strength)),
+            ("transmissionFactor", extensions.transmission.as_ref().map(|found| found.transmission_factor)),
+        ] {
+            if value.is_some_and(|value| value < 0.0) {
+                self.say(property, Fate::Approximated, "a negative number is read as 0");
+            }
         }
         if extensions.transmission.as_ref().is_some_and(|found| found.transmission_factor > 0.0) {
             self.say("KHR_materials_transmission", Fate::Dropped, "light that goes through: the base is opaque");

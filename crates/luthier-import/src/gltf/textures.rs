@@ -101,7 +101,10 @@ impl<'a> Textures<'a> {
         let mut texels = [None, None];
         let (mut stem, mut full_key) = (String::new(), key.to_owned());
         for (source, place) in sources.into_iter().zip(&mut texels) {
-            let Some(texture) = source else { continue };
+            let Some(texture) = source else {
+                full_key.push_str(" -");
+                continue;
+            };
             let image = self.image(texture)?;
             if stem.is_empty() {
                 stem = self.name(image);
@@ -122,6 +125,9 @@ impl<'a> Textures<'a> {
 
     fn image(&self, texture: &Texture) -> Result<usize, String> {
         let found = &self.asset.json["textures"][texture.index];
+        if found.is_null() {
+            return Err(format!("there is no texture {}", texture.index));
+        }
         let webp = found["extensions"]["EXT_texture_webp"]["source"].as_u64();
         let source = found["source"].as_u64().or(webp);
         source.map(|source| source as usize).ok_or_else(|| {
@@ -142,7 +148,7 @@ fn bytes(asset: &Asset<'_>, image: usize) -> Result<Vec<u8>, String> {
 }
 
 fn table(path: &str, sources: [Option<&Texture>; 2]) -> String {
-    let placed = sources.into_iter().flatten().find_map(transform);
+    let placed = sources.into_iter().flatten().next().and_then(transform);
     let words: Vec<String> = std::iter::once(format!("image = \"{path}\"")).chain(placed).collect();
     format!("{{ {} }}", words.join(", "))
 }
@@ -165,6 +171,14 @@ fn transform(texture: &Texture) -> Option<String> {
         words.push(format!("scale = {}", pair(scale)));
     }
     (!words.is_empty()).then(|| format!("transform = {{ {} }}", words.join(", ")))
+}
+
+/// Whether a placement has numbers that are left out: see [`PLACED_MAX`].
+pub(super) fn is_odd(texture: &Texture) -> bool {
+    texture.extensions.transform.as_ref().is_some_and(|Transform { offset, scale, .. }| {
+        offset.iter().any(|v| v.abs() >= PLACED_MAX)
+            || scale.iter().any(|v| v.abs() >= PLACED_MAX || v.abs() * PLACED_MAX <= 1.0)
+    })
 }
 
 /// The set of texture coordinates of a texture.

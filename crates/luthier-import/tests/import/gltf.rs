@@ -217,6 +217,56 @@ fn films_are_layers() {
     assert_eq!(fate(read(&found).0, "iridescenceFactor"), [Fate::Dropped]);
 }
 
+/// Pictures of two materials that are computed from one picture in two places are two.
+#[test]
+fn a_picture_in_another_place_is_another_picture() {
+    let of = |place: &str, member: &str| {
+        let mut material = json!({
+            "pbrMetallicRoughness": { "roughnessFactor": 0.5 },
+            "extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": 0.5 } },
+        });
+        material[place][member] = json!({ "index": 0 });
+        material
+    };
+    let rough = of("pbrMetallicRoughness", "metallicRoughnessTexture");
+    let mut strong = of("pbrMetallicRoughness", "none");
+    strong["extensions"]["KHR_materials_anisotropy"]["anisotropyTexture"] = json!({ "index": 0 });
+    let text = json!({
+        "asset": { "version": "2.0" }, "images": [picture([[0, 255, 51], [0, 51, 255]])], "textures": [{ "source": 0 }],
+        "materials": [rough, strong],
+    });
+    let found = gltf("test.gltf", text.to_string().as_bytes(), &none).unwrap();
+    let first: Vec<f64> = values(&found, "maps/texels-alpha-x.png").iter().map(|texel| texel[0]).collect();
+    let second: Vec<f64> = values(&found, "maps/texels-alpha-x-2.png").iter().map(|texel| texel[0]).collect();
+    // Roughness .5 and .1 with the strength .5; then the strengths .1 and .5 with the roughness .5.
+    let alpha_x = |roughness: f64, strength: f64| {
+        let alpha = roughness * roughness;
+        alpha + (1.0 - alpha) * strength * strength
+    };
+    let most = alpha_x(0.5, 0.5);
+    close(first[0], 1.0);
+    close(first[1], alpha_x(0.1, 0.5) / most);
+    close(second[0], alpha_x(0.5, 0.1) / most);
+    close(second[1], 1.0);
+}
+
+/// Textures that lie differently have the placement of the first, and that is told; names of any letters are comments of one line.
+#[test]
+fn placements_and_names_are_told() {
+    let placed = json!({ "index": 0, "extensions": { "KHR_texture_transform": { "scale": [5, 5] } } });
+    let material = json!({
+        "name": "nul\u{0}\u{1b}[31m\u{b}",
+        "pbrMetallicRoughness": { "metallicFactor": 0 },
+        "extensions": { "KHR_materials_specular": { "specularColorTexture": { "index": 0 }, "specularTexture": placed } },
+    });
+    let found = import(GREY, material);
+    let (imported, _) = read(&found);
+    assert!(!imported.text.contains("transform"), "{}", imported.text);
+    let fates = fate(imported, "specularColorTexture, specularTexture");
+    assert!(fates.contains(&Fate::Approximated), "{fates:?}");
+    assert!(!imported.text.contains('\u{1b}') && !imported.source_name.contains('\u{0}'), "{}", imported.text);
+}
+
 /// Nothing is lost without a line: light through the surface, unknown extensions, pictures that cannot be read.
 #[test]
 fn losses_are_told() {
@@ -226,7 +276,9 @@ fn losses_are_told() {
         "extensions": {
             "KHR_materials_transmission": { "transmissionFactor": 1 },
             "KHR_materials_volume": {}, "KHR_materials_sheen": {}, "KHR_materials_unlit": {}, "VENDOR_new": {},
+            "KHR_materials_clearcoat": { "clearcoatFactor": -1, "clearcoatColor": 3 },
         },
+        "extras": {},
     });
     let found = import(GREY, material);
     let (imported, _) = read(&found);
@@ -238,6 +290,9 @@ fn losses_are_told() {
         ("KHR_materials_sheen", Fate::Dropped),
         ("KHR_materials_unlit", Fate::Host),
         ("VENDOR_new", Fate::Dropped),
+        ("KHR_materials_clearcoat.clearcoatColor", Fate::Dropped),
+        ("clearcoatFactor", Fate::Approximated),
+        ("extras", Fate::Host),
     ] {
         assert_eq!(fate(imported, property), [expected], "{property}");
     }
@@ -252,4 +307,17 @@ fn broken_files_have_one_error() {
     let text = "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [\n{},\n{\"name\": \"clay\", \"pbrMetallicRoughness\": {\"metallicFactor\": \"no\"}}]}";
     let error = of(text).to_string();
     assert!(error.starts_with("material 1 `clay`: invalid type: string \"no\"") && error.contains("line 3"), "{error}");
+    // Arrays are no objects, and a texture has a number.
+    for (material, expected) in [
+        ("[]", "it is no object"),
+        ("{\"normalTexture\": [0]}", "`normalTexture` is no object"),
+        ("{\"normalTexture\": {}}", "missing field `index`"),
+        ("{\"extensions\": {\"KHR_materials_ior\": [1.5]}}", "`KHR_materials_ior` is no object"),
+    ] {
+        let error = of(&format!("{{\"asset\": {{\"version\": \"2.0\"}}, \"materials\": [{material}]}}")).to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    let text = "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [{}], \"extensionsRequired\": [\"FOO_bar\", \"KHR_texture_transform\"]}";
+    let lines = gltf("x.gltf", text.as_bytes(), &none).unwrap().lines;
+    assert_eq!(lines.iter().map(|line| line.property.as_str()).collect::<Vec<_>>(), ["FOO_bar"]);
 }

@@ -2,3 +2,4 @@
 
 mod gltf;
 mod odd;
+mod physically_based;

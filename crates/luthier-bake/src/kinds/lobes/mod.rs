@@ -98,8 +98,9 @@ pub(crate) fn decide(
         if hides { RowLayout::Filtered.format() } else { given }
     };
     if settings.lobes.is_none() {
-        let sides: Vec<Material> = of_model(materials).filter_map(side).collect();
-        let lobes = of_model(materials).chain(&sides).filter_map(|material| {
+        // Materials of other models may ask for rows, too.
+        let sides: Vec<Material> = materials.iter().filter_map(side).collect();
+        let lobes = materials.iter().chain(&sides).filter_map(|material| {
             let most = most(material, settings);
             Some(results.get::<Fits>(fit(material, most.is_some()).key())?.of(most).lobes())
         });

@@ -196,6 +196,9 @@ impl FitSettings {
     }
 }
 
+/// The least albedo over which the error of rows that are left out counts.
+const ALBEDO_MIN: f64 = 0.02;
+
 /// A function that fits lobes as [`Varied::of`] does. It may return lobes that it has kept from before.
 pub type Fit<'a> = dyn Fn(&Stack, &Color, Option<Varying>) -> Varied + Send + Sync + 'a;
 
@@ -230,7 +233,7 @@ impl Varied {
         self
     }
 
-    /// Errors that [`Self::thinned`] makes where it leaves rows out: that of the albedo, and half of it over the albedo, which no lobe error is below. Rows of a
+    /// Errors that [`Self::thinned`] makes where it leaves rows out: that of the albedo, and half of it over the albedo (at least .02: channels beyond Rec.709 are below 0), which no lobe error is below. Rows of a
     /// family have no albedo but in colours: 0.
     pub fn error_of_thinning(&self, step: usize) -> FitError {
         let mut found = FitError::default();
@@ -245,7 +248,7 @@ impl Varied {
                 for (c, albedo) in left_out.albedo_dir.into_iter().enumerate() {
                     let apart = (first[c] + share * (last[c] - first[c]) - albedo).abs();
                     found.albedo = found.albedo.max(apart);
-                    found.lobe = found.lobe.max(0.5 * apart / albedo.max(f64::MIN_POSITIVE));
+                    found.lobe = found.lobe.max(0.5 * apart / albedo.max(ALBEDO_MIN));
                 }
             }
         }
