@@ -549,7 +549,7 @@ impl Reading<'_, '_> {
         if extensions.transmission.as_ref().is_some_and(|found| found.transmission_factor > 0.0) {
             self.say("KHR_materials_transmission", Fate::Dropped, "light that goes through: the base is opaque");
         }
-        for (name, _) in &extensions.others {
+        for name in extensions.others.keys() {
             let find =
                 |table: &[(&str, &'static str)]| table.iter().find(|(known, _)| known == name).map(|(_, note)| *note);
             if let Some(note) = find(&OF_HOST) {
