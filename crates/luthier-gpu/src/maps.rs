@@ -35,21 +35,12 @@ impl Scene {
     /// How often each map of a scene is halved for a picture of some materials: maps have at most [`TEXELS_MAX`], and all together [`TEXELS_OF_ALL_MAX`], of which
     /// the largest give way. Normals of flakes are never averaged: texels are different flakes.
     pub(crate) fn halvings(&self, materials: &[u32]) -> Vec<u32> {
-        let mut texels: Vec<u64> = Vec::with_capacity(self.maps.len());
-        for map in &self.maps {
+        let texels = self.maps.iter().map(|map| {
             let [width, height] = map.picture.size().map(u64::from);
-            texels.push(if materials.contains(&map.material) { width * height } else { 0 });
-        }
-        let mut halvings = vec![0; texels.len()];
-        loop {
-            let can = (0..texels.len()).filter(|&i| self.maps[i].slot != MapSlot::FlakeNormal && texels[i] > 1);
-            let Some(largest) = can.max_by_key(|&i| texels[i]) else { return halvings };
-            if texels[largest] <= TEXELS_MAX && texels.iter().sum::<u64>() <= TEXELS_OF_ALL_MAX {
-                return halvings;
-            }
-            texels[largest] = texels[largest].div_ceil(4);
-            halvings[largest] += 1;
-        }
+            let is_seen = materials.contains(&map.material);
+            (if is_seen { width * height } else { 0 }, map.slot != MapSlot::FlakeNormal)
+        });
+        fitting(texels.collect())
     }
 
     /// The words of a material's maps, then their texels. `first` is the number of the first word, and maps are halved so often.
@@ -297,6 +288,21 @@ impl Scene {
     }
 }
 
+/// How often each of some pictures is halved, of their texels and whether they may be.
+fn fitting(mut texels: Vec<(u64, bool)>) -> Vec<u32> {
+    let mut halvings = vec![0; texels.len()];
+    loop {
+        let can = (0..texels.len()).filter(|&i| texels[i].1 && texels[i].0 > 1);
+        let Some(largest) = can.max_by_key(|&i| texels[i].0) else { return halvings };
+        let all: u64 = texels.iter().map(|(texels, _)| texels).sum();
+        if texels[largest].0 <= TEXELS_MAX && all <= TEXELS_OF_ALL_MAX {
+            return halvings;
+        }
+        texels[largest].0 = texels[largest].0.div_ceil(4);
+        halvings[largest] += 1;
+    }
+}
+
 /// The texel that gives a place this value.
 fn texel_of(live: &LiveValue) -> [f32; 3] {
     let [x, y, z] = live.value;
@@ -355,5 +361,25 @@ fn own_word(slot: MapSlot) -> usize {
         MapSlot::Absorption => 8,
         MapSlot::F0 => 9,
         _ => 5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sides of pictures; those of flakes stay.
+    #[test]
+    fn the_largest_maps_give_way() {
+        let of = |sides: &[u64]| fitting(sides.iter().map(|side| (side * side, true)).collect());
+        assert_eq!(of(&[2048, 512, 512]), [0, 0, 0]);
+        assert_eq!(of(&[4096]), [1]);
+        // Two of 2048 are 8.4 million texels.
+        assert_eq!(of(&[2048, 2048]).iter().sum::<u32>(), 1);
+        let many = of(&[1024; 20]);
+        let left: u64 = many.iter().map(|halvings| (1 << 20) >> (2 * halvings)).sum();
+        assert!(left <= TEXELS_OF_ALL_MAX && many.iter().all(|halvings| *halvings <= 1), "{many:?}");
+        assert_eq!(fitting(vec![(1 << 24, false), (1 << 20, true)])[0], 0);
+        assert!(of(&[]).is_empty());
     }
 }
