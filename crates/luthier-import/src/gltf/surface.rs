@@ -260,14 +260,17 @@ impl Reading<'_, '_> {
         let f0 = tinted.map(|f| self.held("KHR_materials_specular", f, [0.0, most]));
         base.set("f0", Value::color(f0));
         if extensions.specular.is_some() {
-            let rule = "f0 = min(f0 of the index times specularColor, 1) times specular";
             let is_grey = specular_color_texture.is_none() && f0[0] == f0[1] && f0[1] == f0[2];
-            if is_grey {
-                self.say("KHR_materials_specular", Fate::ClosedForm, rule);
-            } else {
-                let note = "the base loses what the interface reflects of each channel, where glTF takes the brightest";
-                self.say("KHR_materials_specular", Fate::Approximated, format!("{rule}; {note}"));
+            let mut note = "f0 = min(f0 of the index times specularColor, 1) times specular".to_owned();
+            if !is_grey {
+                note += "; the base loses what the interface reflects of each channel, where glTF takes the brightest";
             }
+            let is_whole = specular_factor == 1.0 && specular_texture.is_none();
+            if !is_whole {
+                note += "; glTF scales what the edge reflects by specular, too, which is all here";
+            }
+            let fate = if is_grey && is_whole { Fate::ClosedForm } else { Fate::Approximated };
+            self.say("KHR_materials_specular", fate, note);
         }
         match [specular_color_texture, specular_texture] {
             [None, None] => {}

@@ -24,11 +24,11 @@ const SOURCES: &str = "
 ";
 
 const INTRODUCTION: &str = "\
-Engines draw a clear coat by formulas. This page types seven of them from their sources (`luthier-lab/src/coats`, one file for each, which says what is to the letter, what the source leaves open, and where a choice had to be
+Engines draw a clear coat by formulas. This page types six of them from their sources and one from memory, which it says (`crates/luthier-lab/src/coats`, one file for each, which says what is to the letter, what the source leaves open, and where a choice had to be
 taken), and compares them with the simulation, as [lobes.md](lobes.md) compares fits: with the errors of that page, at six angles of the eye, 0, 30, 45, 60, 70 and 80 degrees, and three channels.
 
 The coat is clear, of index 1.5, with slope parameter .05, .2 or .4. Bases have slope parameter .1 or .3: grey metal of F0 .7 and copper of (.95, .6, .4); plastics of colour .8 and (.4, .25, .12), with F0 .04; copper with `metallic` .5. Bases reflect by
-that F0 also below the coat, and their colour is what they show without one: the last two tables have the errors of formulas there, which are no fault of the coat. A mixture is one interface with an F0 half way, as a number `metallic = 0.5` means it. Random places are six of
+that F0 also below the coat, and their colour is what they show without one: the last two tables have the errors of formulas there, which are no fault of the coat. A mixture is one interface with an F0 half way, as luthier reads a number `metallic = 0.5`: glTF, Standard Surface and OpenPBR blend two surfaces, so that this group measures that difference, too. Random places are six of
 other colours and slope parameters, metals and plastics by turns, as texels have them; `lobes` is fitted to each.
 
 The simulation refracts at every facet, so that a smooth coat makes the lobe of a metal wider by its index, and light that meets the coat from below beyond 41.8 degrees goes back. Formulas that have neither are too sharp and too bright.
@@ -98,7 +98,8 @@ fn laws(out: &mut String, results: &[Result]) -> std::fmt::Result {
     writeln!(
         out,
         "\n## Energy and reciprocity\n\nA clear coat over a metal that absorbs nothing returns all light: the *white furnace* is the range of directional albedos there, which should be 1. \
-         *Largest albedo* is that over all other coats. *Asymmetry* is the largest difference of f when light and eye change places, over the larger value, among {PAIRS} random pairs a case with cosines from {COS_MIN}.\n\n\
+         *Largest albedo* is that over all other coats. *Asymmetry* is the largest difference of f when light and eye change places, over the larger value, among {PAIRS} random pairs a case with cosines from {COS_MIN}. \
+         `lobes` is not reciprocal, because its rows follow the angle of the eye: it is not for methods that trace light from both ends.\n\n\
          | formula | white furnace: least | most | largest albedo | asymmetry |\n|---|--:|--:|--:|--:|"
     )?;
     for (number, name) in names().enumerate() {

@@ -23,8 +23,8 @@ pub(super) fn chart(groups: &[Group], device: &DeviceCost) -> String {
     let scatter = Scatter {
         title: format!("lobe error against predicted time on {}", device.device),
         axes: [
-            format!("predicted picoseconds for one light on an {}", device.device),
-            "light in the wrong direction, as a share of all, at the worst view".to_owned(),
+            format!("predicted, not timed: picoseconds for one light on an {}", device.device),
+            "lobe error at the worst view (a black surface has 0.5)".to_owned(),
         ],
         untimed: "no shader here".to_owned(),
         kinds: vec![
