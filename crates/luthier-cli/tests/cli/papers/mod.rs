@@ -4,8 +4,10 @@ mod element;
 mod measured;
 mod out_of_scope;
 
+use std::any::Any;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use element::{Element, Paper, Standing, papers};
 use luthier_gpu::Gpu;
@@ -97,13 +99,24 @@ fn page(papers: &[Paper], gpu: &Gpu, step: usize) -> String {
             "| element | where | in a file | model | function | table | figure | with | without | device | by hand |\n\
              |---|---|---|---|---|---|---|--:|--:|---|---|\n",
         );
-        let measured = |(i, element)| if i % step == 0 { measured(element, gpu) } else { Number::Unmeasured };
-        let numbers: Vec<Number> = paper.elements.par_iter().enumerate().map(measured).collect();
+        // A thread of the pool says why it failed to the test that began the pool: the reason is told again here.
+        let measured = |(i, element): (usize, &Element)| {
+            let measured = || if i % step == 0 { measured(element, gpu) } else { Number::Unmeasured };
+            catch_unwind(AssertUnwindSafe(measured)).map_err(|fault| format!("{}: {}", element.name(), reason(&*fault)))
+        };
+        let numbers: Vec<Result<Number, String>> = paper.elements.par_iter().enumerate().map(measured).collect();
+        let numbers = numbers.into_iter().map(|number| number.unwrap_or_else(|reason| panic!("{reason}")));
         for (element, number) in paper.elements.iter().zip(numbers) {
             row(&mut page, element, number);
         }
     }
     page + &out_of_scope::section()
+}
+
+/// The message of a panic.
+fn reason(fault: &(dyn Any + Send)) -> String {
+    let text = fault.downcast_ref::<String>().cloned();
+    text.or_else(|| fault.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_default()
 }
 
 /// How many elements there are, and how they stand.
