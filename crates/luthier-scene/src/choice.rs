@@ -144,6 +144,23 @@ impl Judge {
         Some(self.judge(own, &SceneBudget::default()).0)
     }
 
+    /// The cheapest candidate that holds [`MODEL_SHARE`] of a budget. If none holds, the choice is the most accurate candidate within `max_cost`, and
+    /// the [`MaterialChoice`] says that it does not hold.
+    ///
+    /// `None` if every candidate costs more than `max_cost`.
+    pub fn choose(&mut self, budget: &SceneBudget, max_cost: Option<f64>) -> Option<MaterialChoice> {
+        let choices = Widths::ALL.into_iter().filter_map(|widths| {
+            let tried = self.tried(budget, max_cost, 0.0, widths);
+            let chosen = *tried.eligible()?.first()?;
+            Some(self.chosen(tried, chosen))
+        });
+        let excess = |choice: &MaterialChoice| choice.budget.excess(&choice.candidate().error).max(1.0);
+        choices.min_by(|a, b| {
+            let cost = |choice: &MaterialChoice| choice.candidate().cost;
+            b.holds().cmp(&a.holds()).then(excess(a).total_cmp(&excess(b))).then(cost(a).total_cmp(&cost(b)))
+        })
+    }
+
     /// Judges candidates, cheapest first, up to the first that holds; where neighbours differ, up to those that cannot be cheaper for a scene.
     pub(crate) fn tried(
         &mut self,

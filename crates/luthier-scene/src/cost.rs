@@ -58,7 +58,7 @@ pub struct ShapeRow {
 ///     let [lobes, elek] = [ShadingModel::Lobes, ShadingModel::Elek].map(|m| costs.cost(m, Form::Baked, "dbx/cb", None).unwrap().0);
 ///     lobes / elek
 /// };
-/// assert!(ratio("h100") > 1.5 * ratio("rdna2"));
+/// assert!(ratio("h100") > 1.2 * ratio("rdna2"));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostTable {

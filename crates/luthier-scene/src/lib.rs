@@ -4,7 +4,7 @@
 //! # In detail
 //!
 //! [`Judge`] holds one material: its candidates (model, colour, parts of the stack that are left out) in the order of their cost, the
-//! directions of the scene, and the reference there. A [`Director`] takes the cheapest candidates that hold.
+//! directions of the scene, and the reference there. [`Judge::choose`] takes the cheapest candidate that holds, and a [`Director`] those of all materials together.
 //!
 //! Models are compared with `layered-mc`, the Monte Carlo simulation of the whole stack. Errors of tables and of single precision are not part of
 //! these errors; they have budgets of their own. Costs are those of a device ([`CostTable`]), from data that `luthier-lab shapes` and `luthier-lab devices`
