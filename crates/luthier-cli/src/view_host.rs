@@ -123,10 +123,8 @@ impl Host for ViewHost {
         };
         let bytes =
             png::encode_rgb(screenshot.width, screenshot.height, &screenshot.rgb8).map_err(|e| e.to_string())?;
-        // The file is renamed when it is complete, so that a program that waits for it never reads a part.
-        let part = path.with_extension("png.part");
-        let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, &path));
-        match written {
+        // A program that waits for the file never reads a part.
+        match luthier_export::replace(&path, &bytes) {
             Ok(()) => Ok(path.display().to_string()),
             Err(source) => Err(format!("cannot write {}: {source}", path.display())),
         }

@@ -6,7 +6,7 @@
 //! [`Package::write`] encodes a package and publishes it as a whole; [`Package::read`] reads it back, and [`Folder`] reads parts of one. Neither this
 //! crate nor the runtime, `luthier-gpu`, depends on a crate that bakes. The crate `luthier` makes packages.
 //!
-//! Modules, each of which uses only earlier ones: hash, input, origins, error, publish, package, encode, folder.
+//! Modules, each of which uses only earlier ones: hash, input, replace, origins, error, publish, package, encode, folder.
 
 mod encode;
 mod error;
@@ -16,6 +16,7 @@ pub mod input;
 mod origins;
 mod package;
 mod publish;
+mod replace;
 
 pub use encode::{Compression, Encoded};
 pub use error::PackageError;
@@ -24,6 +25,7 @@ pub use hash::sha256;
 pub use origins::{label, origin, plain};
 pub use package::{Map, Package, Shader, Table};
 pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_beside, shared, wait};
+pub use replace::replace;
 
 /// File name of the manifest.
 pub const MANIFEST: &str = "manifest.json";

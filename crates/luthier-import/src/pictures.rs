@@ -1,9 +1,9 @@
 //! Pictures of a source: unchanged, or computed from one or two.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
-use luthier_lut::{Picture, PictureSamples};
+use luthier_lut::{Picture, PictureSamples, repeated};
 use luthier_texture::{Container, picture, png};
 
 use crate::name::Names;
@@ -22,44 +22,40 @@ impl Texels {
         self.0.texel(x, y).map(f64::from)
     }
 
-    fn all(&self) -> impl Iterator<Item = [f64; 4]> {
-        let [width, height] = self.0.size();
-        (0..height).flat_map(move |y| (0..width).map(move |x| self.texel(x, y)))
-    }
-
     /// The texels at the place of one of another size: bilinear, and repeated.
     fn at(&self, [u, v]: [f64; 2]) -> [f64; 4] {
-        let place = |at: f64, size: u32| {
-            let at = at * f64::from(size) - 0.5;
-            let first = at.floor();
-            let wrapped = |i: f64| i.rem_euclid(f64::from(size)) as u32;
-            ([wrapped(first), wrapped(first + 1.0)], at - first)
+        let [(columns, s), (rows, t)] = [repeated(u, self.0.width), repeated(v, self.0.height)];
+        let line = |y: u32| {
+            let [a, b] = columns.map(|x| self.texel(x, y));
+            [0, 1, 2, 3].map(|c: usize| a[c] + (b[c] - a[c]) * s)
         };
-        let ([x0, x1], s) = place(u, self.0.width);
-        let ([y0, y1], t) = place(v, self.0.height);
-        let [a, b, c, d] = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| self.texel(x, y));
-        [0, 1, 2, 3].map(|i: usize| (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i]))
+        let [top, bottom] = rows.map(line);
+        [0, 1, 2, 3].map(|c: usize| top[c] + (bottom[c] - top[c]) * t)
     }
 
     /// Whether alpha is 1 everywhere.
     pub(crate) fn is_opaque(&self) -> bool {
-        self.all().all(|texel| texel[3] == 1.0)
+        self.0.texels().all(|texel| texel[3] == 1.0)
     }
 
     /// The largest value of a channel.
     pub(crate) fn most(&self, channel: usize) -> f64 {
-        self.all().map(|texel| texel[channel]).fold(0.0, f64::max)
+        f64::from(self.0.texels().map(|texel| texel[channel]).fold(0.0, f32::max))
     }
 }
+
+/// Decoded pictures that are kept: a material computes from few, and a file may have many large ones.
+const DECODED: usize = 4;
 
 /// The pictures of an import.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures {
     files: BTreeMap<String, Vec<u8>>,
     names: Names,
-    /// Paths of unchanged pictures by number, and texels of those that were decoded.
+    /// Paths of unchanged pictures by number.
     unchanged: BTreeMap<usize, Result<String, String>>,
-    decoded: BTreeMap<usize, Result<Rc<Texels>, String>>,
+    /// Texels of the last pictures that were decoded, by number: at most [`DECODED`].
+    decoded: VecDeque<(usize, Result<Rc<Texels>, String>)>,
     /// Paths of computed pictures by what they were computed from.
     computed: BTreeMap<String, String>,
 }
@@ -97,8 +93,13 @@ impl Pictures {
         number: usize,
         bytes: impl FnOnce() -> Result<Vec<u8>, String>,
     ) -> Result<Rc<Texels>, String> {
-        let decoded = self.decoded.entry(number);
-        decoded.or_insert_with(|| bytes().and_then(|bytes| Texels::decode(&bytes)).map(Rc::new)).clone()
+        if let Some((_, known)) = self.decoded.iter().find(|(known, _)| *known == number) {
+            return known.clone();
+        }
+        let found = bytes().and_then(|bytes| Texels::decode(&bytes)).map(Rc::new);
+        self.decoded.truncate(DECODED - 1);
+        self.decoded.push_front((number, found.clone()));
+        found
     }
 
     /// The path of a computed picture of one or three numbers a texel, in 16 bits: `of` the texels of up to two pictures, 1 where there is none. It is as wide

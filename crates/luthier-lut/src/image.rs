@@ -76,6 +76,22 @@ impl Image {
     }
 }
 
+/// The two texels beside a coordinate of a picture that repeats, along one side of so many texels, and the share of the second: as samplers filter, with centres
+/// of texels at (i + 1/2) / size.
+///
+/// ```
+/// use luthier_lut::repeated;
+///
+/// assert_eq!(repeated(0.375, 4), ([1, 2], 0.0));
+/// // Across the edge: the last texel and the first.
+/// assert_eq!(repeated(3.0, 4), ([3, 0], 0.5));
+/// ```
+pub fn repeated(at: f64, size: u32) -> ([u32; 2], f64) {
+    let at = (at - at.floor()) * f64::from(size) - 0.5;
+    let low = at.floor();
+    ([low, low + 1.0].map(|i| i.rem_euclid(f64::from(size)) as u32), at - low)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -34,7 +34,7 @@ pub use critical::{incident_cosine, refracted_cosine};
 pub use encoding::Encoding;
 pub use error::LutError;
 pub use format::{FormatSet, TexelFormat};
-pub use image::Image;
+pub use image::{Image, repeated};
 pub use kind::{KindFacts, Served, TableKind, Values};
 pub use layout::RowLayout;
 pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_at, measure_scan};

@@ -1,7 +1,7 @@
 //! Costs of shaders by model, form and shape, on a device.
 
 use luthier_cost::{DEFAULT_DEVICE, DeviceCost, Family, StaticCounts};
-use luthier_manifest::{CostDevice, Form, LobesForm, ShadingModel};
+use luthier_manifest::{CostDevice, Form, LobesForm, Manifest, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::shape::{distance, shape_of};
@@ -136,6 +136,13 @@ impl CostTable {
     #[must_use]
     pub fn filtered(self) -> Self {
         Self { has_steps: false, ..self }
+    }
+
+    /// The costs of the rows that a bake has.
+    #[must_use]
+    pub fn reading(self, manifest: &Manifest) -> Self {
+        let has_steps = manifest.tables.iter().any(|table| table.format.has_steps());
+        Self { has_steps, ..self }
     }
 
     /// Cost of a shader for a surface of some [`shape`](crate::shape). The flag is true if the shape was not counted and the cost is that of the most

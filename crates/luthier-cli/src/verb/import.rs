@@ -1,9 +1,7 @@
 //! `import`: material files from other formats.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use std::fs::OpenOptions;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use luthier_export::{input, label};
@@ -46,8 +44,12 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
 fn together(read: &mut [Read]) -> BTreeMap<String, Vec<u8>> {
     let mut all: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     for Read { import, .. } in read {
-        for (path, bytes) in std::mem::take(&mut import.pictures) {
-            let place = free(&path, |place| all.get(place).is_none_or(|known| *known == bytes));
+        let pictures = std::mem::take(&mut import.pictures);
+        let own: BTreeSet<String> = pictures.keys().cloned().collect();
+        for (path, bytes) in pictures {
+            // No picture takes the name of another one of its import, which texts still have.
+            let is_free = |place: &str| all.get(place).is_none_or(|known| *known == bytes);
+            let place = free(&path, |place| is_free(place) && (place == path || !own.contains(place)));
             if place != path {
                 let [from, to] = [&path, &place].map(|path| format!("\"{path}\""));
                 import.materials.iter_mut().for_each(|material| material.text = material.text.replace(&from, &to));
@@ -94,15 +96,7 @@ fn write(options: &ImportOptions, written: BTreeMap<String, Vec<u8>>, report: &V
         std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
     }
     for (path, bytes) in places {
-        // A reader sees the old file or the new one.
-        let fresh = path.with_extension(format!("luthier-new-{}", std::process::id()));
-        let written = OpenOptions::new().write(true).create_new(true).open(&fresh);
-        let moved = written.and_then(|mut file| file.write_all(&bytes)).and_then(|()| std::fs::rename(&fresh, &path));
-        moved.map_err(|error| {
-            // Its reason counts, and not that of what is cleared away.
-            let _ = std::fs::remove_file(&fresh);
-            files(&path, "write")(error)
-        })?;
+        luthier_export::replace(&path, &bytes).map_err(files(&path, "write"))?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use luthier_cost::DeviceCost;
 use luthier_export::GENERATOR;
 use luthier_report::Spread;
 
-use super::steps::{Ask, Costs, LIGHTS, Rung, Taken};
+use super::steps::{Ask, Costs, FORMS, LIGHTS, Taken, words};
 use super::{Group, Measured};
 use crate::cli::{LadderOptions, call};
 use crate::lobes::{QUANTITIES, ranks};
@@ -121,15 +121,15 @@ fn asked(page: &mut String, group: &Group, yardstick: &Costs) -> std::fmt::Resul
         page,
         "\n| limit | stacks that hold it | {} | lobe error: median | 95th percentile | largest | albedo error: median | 95th percentile | largest | one light | each of 4 | each of 16 |\n\
          |--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|",
-        Rung::ALL.map(|(_, words)| words).join(" | "),
-        "--:|".repeat(Rung::ALL.len())
+        FORMS.map(words).join(" | "),
+        "--:|".repeat(FORMS.len())
     )?;
     for (number, ask) in Ask::ALL.into_iter().enumerate() {
         let taken = || group.taken(number);
         let held = taken().filter(|taken| taken.holds).count();
         write!(page, "| {} | {held} of {} |", ask.words(), group.stacks.len())?;
-        for (rung, _) in Rung::ALL {
-            write!(page, " {} |", taken().filter(|taken| taken.rung == rung).count())?;
+        for form in FORMS {
+            write!(page, " {} |", taken().filter(|taken| taken.form == form).count())?;
         }
         errors(page, |quantity| ranks(taken().map(|taken| taken.stated[quantity])))?;
         for (median, yardstick) in medians(taken().map(|taken| &taken.costs)).iter().zip(yardstick) {
@@ -207,7 +207,7 @@ fn worst(page: &mut String, group: &Group) -> std::fmt::Result {
     stacks.sort_by(|a, b| of(b).total_cmp(&of(a)));
     for stack in stacks.into_iter().take(WORST) {
         let taken = &stack.taken[least];
-        let form = Rung::ALL.iter().find(|(rung, _)| *rung == taken.rung).map_or("", |(_, words)| words);
+        let form = words(taken.form);
         writeln!(
             page,
             "| {} | {form} | {:.3} | {:.4} | {:.3} | {:.3} |",

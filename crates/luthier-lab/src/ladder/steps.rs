@@ -48,42 +48,23 @@ impl Ask {
     }
 }
 
-/// A form of lobes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Rung {
-    NoLobe,
-    OneWidth,
-    OneLobe,
-    TwoLobes,
-    /// Rows over something beside the view.
-    Varied,
-}
+/// Forms of rows in the order of the page: those over the view alone, and any over something beside it.
+pub(super) const FORMS: [Option<LobesForm>; 5] =
+    [Some(LobesForm::NoLobe), Some(LobesForm::OneWidth), Some(LobesForm::OneLobe), Some(LobesForm::TwoLobes), None];
 
-impl Rung {
-    pub(super) const ALL: [(Self, &'static str); 5] = [
-        (Self::NoLobe, "no lobe"),
-        (Self::OneWidth, "one of one width"),
-        (Self::OneLobe, "one lobe"),
-        (Self::TwoLobes, "two lobes"),
-        (Self::Varied, "rows over more than the view"),
-    ];
-
-    fn of(record: &LobesRecord) -> Self {
-        match LobesForm::of(record) {
-            None => Self::Varied,
-            Some(_) if record.axes.is_some() => Self::Varied,
-            Some(LobesForm::NoLobe) => Self::NoLobe,
-            Some(LobesForm::OneWidth) => Self::OneWidth,
-            Some(LobesForm::OneLobe) => Self::OneLobe,
-            Some(LobesForm::TwoLobes) => Self::TwoLobes,
-        }
+/// A form of [`FORMS`] in words.
+pub(super) const fn words(form: Option<LobesForm>) -> &'static str {
+    match form {
+        Some(form) => form.words(),
+        None => "rows over more than the view",
     }
 }
 
 /// Form, errors and costs of a material as a bake was asked for it.
 #[derive(Debug, Clone)]
 pub(super) struct Taken {
-    pub(super) rung: Rung,
+    /// One of [`FORMS`].
+    pub(super) form: Option<LobesForm>,
     /// Whether it is within the limit.
     pub(super) holds: bool,
     /// Lobe error and albedo error as the bake states them.
@@ -150,7 +131,7 @@ fn form(outlined: &Manifest, device: &DeviceCost) -> Outcome<Option<Taken>> {
     let tables = outlined.tables.iter();
     let rows = tables.filter(|table| table.kind == TableKind::Lobes).map(|table| table.layout.x.size).sum();
     Ok(Some(Taken {
-        rung: Rung::of(&record),
+        form: LobesForm::of(&record).filter(|_| record.axes.is_none()),
         holds: true,
         stated: [error.lobe, error.albedo],
         judged: [0.0; QUANTITIES],

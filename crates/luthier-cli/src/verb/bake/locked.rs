@@ -76,9 +76,7 @@ impl LockFile {
     pub(super) fn write(&self, manifest: &Manifest) -> Outcome<Option<String>> {
         let Some(next) = self.next(manifest) else { return Ok(None) };
         let text = next.to_json().map_err(|reason| Failure::Input(anyhow::anyhow!("{reason}")))?;
-        let part = self.path.with_extension(format!("lock.{}", std::process::id()));
-        let written = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &self.path));
-        written.map_err(files(&self.path, "write"))?;
+        luthier_export::replace(&self.path, text.as_bytes()).map_err(files(&self.path, "write"))?;
         let path = self.path.display();
         Ok(Some(if self.is_asked {
             format!("wrote {path}")

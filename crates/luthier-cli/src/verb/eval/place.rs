@@ -9,7 +9,7 @@ use luthier_layers::effects::patina::Patina;
 use luthier_layers::models::lobes::Mix;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::twins::shaded::{Growth, Place};
-use luthier_lut::{Image, Picture};
+use luthier_lut::{Image, Picture, repeated};
 use luthier_manifest::{MapSlot, ShadingModel};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::Rgb;
@@ -205,12 +205,7 @@ fn filtered(map: &Image, uv: DVec2) -> f64 {
 
 /// A channel of a map that repeats, filtered as samplers do; centres of texels are at (i + 1/2) / size.
 fn filtered_channel(map: &Image, uv: DVec2, channel: usize) -> f64 {
-    let axes = [(uv.x, map.width), (uv.y, map.height)].map(|(x, size)| {
-        let at = (x - x.floor()) * f64::from(size) - 0.5;
-        let low = at.floor();
-        ([low, low + 1.0].map(|i| i.rem_euclid(f64::from(size)) as u32), at - low)
-    });
-    let [(columns, s), (rows, t)] = axes;
+    let [(columns, s), (rows, t)] = [(uv.x, map.width), (uv.y, map.height)].map(|(at, size)| repeated(at, size));
     let [top, bottom] = rows.map(|y| {
         let [a, b] = columns.map(|x| f64::from(map.texel(x, y)[channel]));
         a + (b - a) * s

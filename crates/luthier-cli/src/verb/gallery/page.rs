@@ -164,6 +164,7 @@ fn package(materials: &[Material]) -> Outcome<Package> {
 fn look(gallery: &Gallery, package: &Package, number: u32, material: &Material, costs: &CostTable) -> Look {
     let shape = luthier_scene::shape(&material.stack);
     let lobes = package.manifest.materials[number as usize].constants.lobes.as_ref().and_then(LobesForm::of);
+    let costs = costs.clone().reading(&package.manifest);
     let cycles = Form::ALL.into_iter().filter_map(|form| {
         let (cycles, is_of_similar) = costs.cost(material.model(), form, &shape, lobes)?;
         let about = if is_of_similar { "about " } else { "" };

@@ -76,7 +76,7 @@ pub(super) fn add(
         costs.rows.retain(|row| !row.constant && report.materials.iter().any(|m| m.name == row.material));
         report.costs = Some(costs);
     }
-    let costs = CostTable::rdna2();
+    let costs = CostTable::rdna2().reading(manifest);
     for ((judged, material), entry) in report.materials.iter_mut().zip(materials).zip(&manifest.materials) {
         let lobes = entry.constants.lobes.as_ref().and_then(LobesForm::of);
         judged.shape_cost = shape_cost(&costs, judged.model, material, lobes);

@@ -56,3 +56,36 @@ fn files_are_replaced_by_force_alone() {
     workshop.run(&["import", "none.gltf", "-o", "x"]).fails(3, &["none.gltf"]);
     workshop.run(&["import", "car.gltf", "-o", "car.gltf"]).fails(3, &["car.gltf"]);
 }
+
+/// Pictures of several files that have one name get numbers, none of which is the name of another picture of their file.
+#[test]
+fn renamed_pictures_are_those_of_their_materials() {
+    let workshop = Workshop::new();
+    for (name, grey) in [("first/a.png", 10), ("second/a.png", 20), ("second/a-2.png", 30)] {
+        let path = workshop.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        image::RgbImage::from_pixel(2, 2, image::Rgb([grey; 3])).save(path).unwrap();
+    }
+    let file = |pictures: &[&str]| {
+        let all = |text: &dyn Fn(usize) -> String| (0..pictures.len()).map(text).collect::<Vec<_>>().join(", ");
+        let images = all(&|i| format!("{{\"uri\": \"{}\"}}", pictures[i]));
+        let textures = all(&|i| format!("{{\"source\": {i}}}"));
+        let materials = all(&|i| {
+            format!(
+                "{{\"name\": \"m{i}\", \"pbrMetallicRoughness\": {{\"metallicFactor\": 0, \"baseColorTexture\": {{\"index\": {i}}}}}}}"
+            )
+        });
+        format!(
+            "{{\"asset\": {{\"version\": \"2.0\"}}, \"images\": [{images}], \"textures\": [{textures}], \"materials\": [{materials}]}}"
+        )
+    };
+    workshop.write("first/x.gltf", file(&["a.png"]));
+    workshop.write("second/x.gltf", file(&["a.png", "a-2.png"]));
+    workshop.run(&["import", "first/x.gltf", "second/x.gltf", "-o", "m"]).exits(0);
+    for (material, grey) in [("m0", 10), ("m0-2", 20), ("m1", 30)] {
+        let text = workshop.text(&format!("m/{material}.toml"));
+        let path = text.split("image = \"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+        let picture = image::open(workshop.path(&format!("m/{path}"))).unwrap().into_rgb8();
+        assert_eq!(picture.get_pixel(0, 0).0, [grey; 3], "{material}: {path}");
+    }
+}

@@ -577,6 +577,14 @@ mod tests {
             assert!(found.lobe >= 0.5 * found.albedo);
         }
         assert_eq!(varied.error_of_thinning(1), FitError::default());
+        // Albedos of colours beyond Rec.709 are below 0: rows of 0, -.05 and 0 are off by .05, which is 1.25 times the least albedo of .02.
+        let mut odd = varied.thinned(3);
+        let [first, left_out, last] = &mut odd.nodes[0].rows[..] else { panic!() };
+        first.albedo_dir = [0.0; 3];
+        left_out.albedo_dir = [-0.05, 0.0, 0.0];
+        last.albedo_dir = [0.0; 3];
+        let found = odd.error_of_thinning(2);
+        assert!((found.lobe - 1.25).abs() < 1e-12 && (found.albedo - 0.05).abs() < 1e-12, "{found:?}");
     }
 
     #[test]
