@@ -30,7 +30,8 @@ impl Value {
 
 /// A number with at most six digits that count, in its shortest form.
 pub(crate) fn number(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    // Of 0 with a sign, too.
+    let rounded: f64 = format!("{:.5e}", value + 0.0).parse().unwrap_or(value);
     let text = rounded.to_string();
     if text.contains(['.', 'e']) || !rounded.is_finite() { text } else { format!("{text}.0") }
 }
@@ -78,6 +79,31 @@ impl Layer {
 
     pub(crate) fn has_map(&self, key: &str) -> bool {
         self.maps.iter().any(|(known, _)| *known == key)
+    }
+
+    /// Adds to a `metallic-roughness` layer the white maps that its other maps need: see the maps of layers in docs/materials.md. `wants_maps` says that something above it needs one.
+    pub(crate) fn complete(&mut self, metallic: f64, wants_maps: bool, white: &mut dyn FnMut() -> Option<String>) {
+        let mut add = |layer: &mut Self, key: &'static str| {
+            if !layer.has_map(key)
+                && let Some(picture) = white()
+            {
+                layer.map(key, picture);
+            }
+        };
+        if wants_maps && !self.has_map("metallic") {
+            add(self, "base_color");
+        }
+        let is_blend = metallic > 0.0 && metallic < 1.0;
+        if self.has_map("base_color") && metallic > 0.0 || is_blend {
+            add(self, "metallic");
+        }
+        // The F0 of a place decides the albedo below it.
+        if self.has_map("f0") || self.has_map("metallic") && self.has("f0") {
+            add(self, "base_color");
+            if metallic > 0.0 {
+                add(self, "metallic");
+            }
+        }
     }
 }
 

@@ -22,7 +22,15 @@ pub enum ImportError {
     /// A text that is not what its format asks for.
     #[error("{0}")]
     Json(#[source] serde_json::Error),
-    /// A file without materials.
-    #[error("the file has no materials")]
-    Empty,
+    /// A file without materials that are read, and why after a colon.
+    #[error("the file has no materials that are read{0}")]
+    Empty(String),
+    /// A MaterialX file that is none, or one of its includes.
+    #[error("{place}: {reason}")]
+    Xml {
+        /// Its file, where it is an include, and its line.
+        place: String,
+        /// The mistake in it.
+        reason: String,
+    },
 }

@@ -28,12 +28,13 @@
 //! - `error`, `fate`, `name`: refusals, what becomes of a property, names of materials and of pictures.
 //! - `draft`: a material file as layers with keys, and its text.
 //! - `pictures`: pictures of a source, unchanged or computed.
-//! - `gltf`, `physically_based`: materials of glTF, and of a database.
+//! - `gltf`, `mtlx`, `physically_based`: materials of glTF, of MaterialX, and of a database.
 
 mod draft;
 mod error;
 mod fate;
 mod gltf;
+mod mtlx;
 mod name;
 mod physically_based;
 mod pictures;
@@ -44,6 +45,7 @@ use std::io;
 pub use error::ImportError;
 pub use fate::{Fate, Line};
 pub use gltf::gltf;
+pub use mtlx::materialx;
 pub use physically_based::physically_based;
 
 /// Materials of a file, with their pictures.
@@ -70,11 +72,14 @@ pub struct Imported {
     pub lines: Vec<Line>,
 }
 
-/// The materials of a file of any of the formats, told by its content: see [`gltf`] and [`physically_based`].
+/// The materials of a file of any of the formats, told by its content: see [`gltf`], [`materialx`] and [`physically_based`].
 ///
 /// # Errors
 /// Those of the format; of glTF where it is none of them.
 pub fn import(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Import, ImportError> {
+    if mtlx::is_xml(bytes) {
+        return materialx(label, bytes, files);
+    }
     let is_text = bytes.trim_ascii_start().starts_with(b"{");
     let text = is_text.then(|| serde_json::from_slice(bytes).ok()).flatten();
     if text.is_some_and(|text| physically_based::is_database(&text)) {

@@ -90,7 +90,7 @@ pub(crate) fn is_database(text: &Value) -> bool {
 pub fn physically_based(label: &str, bytes: &[u8]) -> Result<Import, ImportError> {
     let Database { data } = serde_json::from_slice(bytes).map_err(ImportError::Json)?;
     if data.is_empty() {
-        return Err(ImportError::Empty);
+        return Err(ImportError::Empty(String::new()));
     }
     let mut names = Names::default();
     let materials = data.into_iter().enumerate().map(|(number, entry)| {

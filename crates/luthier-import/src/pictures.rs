@@ -1,7 +1,7 @@
 //! Pictures of a source: unchanged, or computed from one or two.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::rc::Rc;
+use std::sync::Arc;
 
 use luthier_lut::{Picture, PictureSamples, repeated};
 use luthier_texture::{Container, picture, png};
@@ -18,12 +18,13 @@ impl Texels {
         Ok(Self(Picture { is_srgb: false, ..decoded.picture }))
     }
 
-    fn texel(&self, x: u32, y: u32) -> [f64; 4] {
+    /// The stored numbers of a texel.
+    pub(crate) fn texel(&self, x: u32, y: u32) -> [f64; 4] {
         self.0.texel(x, y).map(f64::from)
     }
 
     /// The texels at the place of one of another size: bilinear, and repeated.
-    fn at(&self, [u, v]: [f64; 2]) -> [f64; 4] {
+    pub(crate) fn at(&self, [u, v]: [f64; 2]) -> [f64; 4] {
         let [(columns, s), (rows, t)] = [repeated(u, self.0.width), repeated(v, self.0.height)];
         let line = |y: u32| {
             let [a, b] = columns.map(|x| self.texel(x, y));
@@ -31,6 +32,11 @@ impl Texels {
         };
         let [top, bottom] = rows.map(line);
         [0, 1, 2, 3].map(|c: usize| top[c] + (bottom[c] - top[c]) * t)
+    }
+
+    /// Width and height.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.0.size()
     }
 
     /// Whether alpha is 1 everywhere.
@@ -55,7 +61,7 @@ pub(crate) struct Pictures {
     /// Paths of unchanged pictures by number.
     unchanged: BTreeMap<usize, Result<String, String>>,
     /// Texels of the last pictures that were decoded, by number: at most [`DECODED`].
-    decoded: VecDeque<(usize, Result<Rc<Texels>, String>)>,
+    decoded: VecDeque<(usize, Result<Arc<Texels>, String>)>,
     /// Paths of computed pictures by what they were computed from.
     computed: BTreeMap<String, String>,
 }
@@ -92,11 +98,11 @@ impl Pictures {
         &mut self,
         number: usize,
         bytes: impl FnOnce() -> Result<Vec<u8>, String>,
-    ) -> Result<Rc<Texels>, String> {
+    ) -> Result<Arc<Texels>, String> {
         if let Some((_, known)) = self.decoded.iter().find(|(known, _)| *known == number) {
             return known.clone();
         }
-        let found = bytes().and_then(|bytes| Texels::decode(&bytes)).map(Rc::new);
+        let found = bytes().and_then(|bytes| Texels::decode(&bytes)).map(Arc::new);
         self.decoded.truncate(DECODED - 1);
         self.decoded.push_front((number, found.clone()));
         found
@@ -129,12 +135,27 @@ impl Pictures {
             });
             of(a, b).map(quantised)
         });
-        let samples = PictureSamples::Bits16(samples.collect());
-        let picture = Picture { width, height, channels: CHANNELS as u32, is_srgb: false, samples };
+        let path = self.drawn(name, [width, height], CHANNELS as u32, samples.collect())?;
+        self.computed.insert(key.to_owned(), path.clone());
+        Ok(path)
+    }
+
+    /// The path of a picture of 16 bits; that of an equal one where there is one.
+    pub(crate) fn drawn(
+        &mut self,
+        name: &str,
+        [width, height]: [u32; 2],
+        channels: u32,
+        samples: Vec<u16>,
+    ) -> Result<String, String> {
+        let samples = PictureSamples::Bits16(samples);
+        let picture = Picture { width, height, channels, is_srgb: false, samples };
         let bytes = png::encode_picture(&picture).map_err(|error| error.to_string())?;
+        if let Some((path, _)) = self.files.iter().find(|(_, known)| **known == bytes) {
+            return Ok(path.clone());
+        }
         let path = format!("maps/{}.png", self.names.unique(name, "computed"));
         self.files.insert(path.clone(), bytes);
-        self.computed.insert(key.to_owned(), path.clone());
         Ok(path)
     }
 
@@ -143,6 +164,7 @@ impl Pictures {
     }
 }
 
-fn quantised(value: f64) -> u16 {
+/// A number from 0 to 1 in 16 bits.
+pub(crate) fn quantised(value: f64) -> u16 {
     libm::round(value.clamp(0.0, 1.0) * f64::from(u16::MAX)) as u16
 }

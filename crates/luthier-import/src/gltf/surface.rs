@@ -144,12 +144,6 @@ impl Reading<'_, '_> {
         }
     }
 
-    fn white(&mut self, layer: &mut Layer, key: &'static str) {
-        if let Ok(picture) = self.textures.white() {
-            layer.map(key, picture);
-        }
-    }
-
     /// Lines on texture coordinates that shaders do not have.
     fn placed(&mut self, property: &str, texture: &Texture) {
         for name in texture.extensions.unknown.keys() {
@@ -214,20 +208,7 @@ impl Reading<'_, '_> {
             let used = Use { channel: Some("b"), ..Use::default() };
             self.unchanged(&mut base, "metallic", "metallicRoughnessTexture (metal)", texture, used);
         }
-        if wants_maps && !base.has_map("base_color") && !base.has_map("metallic") {
-            self.white(&mut base, "base_color");
-        }
-        if (base.has_map("base_color") && metallic > 0.0 || is_blend) && !base.has_map("metallic") {
-            self.white(&mut base, "metallic");
-        }
-        // The F0 of a place decides the albedo below it.
-        let has_f0 = base.has_map("f0") || base.has_map("metallic") && base.has("f0");
-        if has_f0 && !base.has_map("base_color") {
-            self.white(&mut base, "base_color");
-            if metallic > 0.0 && !base.has_map("metallic") {
-                self.white(&mut base, "metallic");
-            }
-        }
+        base.complete(metallic, wants_maps, &mut || self.textures.white().ok());
         if let Some(texture) = &material.normal_texture {
             let is_of_both = coat.is_some_and(|coat| coat.clearcoat_normal_texture.as_ref() == Some(texture));
             if is_of_both {

@@ -1,7 +1,7 @@
 //! Textures of glTF as pictures of material files.
 
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use luthier_mesh::Asset;
 
@@ -53,7 +53,7 @@ impl<'a> Textures<'a> {
     }
 
     /// The texels of a texture.
-    pub(super) fn texels(&mut self, texture: &Texture) -> Result<Rc<Texels>, String> {
+    pub(super) fn texels(&mut self, texture: &Texture) -> Result<Arc<Texels>, String> {
         let image = self.image(texture)?;
         let asset = self.asset;
         self.pictures.texels(image, || bytes(asset, image))
@@ -97,7 +97,7 @@ impl<'a> Textures<'a> {
         name: &str,
         key: &str,
         sources: [Option<&Texture>; 2],
-    ) -> Result<(String, String, [Option<Rc<Texels>>; 2]), String> {
+    ) -> Result<(String, String, [Option<Arc<Texels>>; 2]), String> {
         let mut texels = [None, None];
         let (mut stem, mut full_key) = (String::new(), key.to_owned());
         for (source, place) in sources.into_iter().zip(&mut texels) {

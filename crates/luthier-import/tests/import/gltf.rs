@@ -302,7 +302,7 @@ fn losses_are_told() {
 #[test]
 fn broken_files_have_one_error() {
     let of = |text: &str| gltf("x.gltf", text.as_bytes(), &none).unwrap_err();
-    assert!(matches!(of("{\"asset\": {\"version\": \"2.0\"}}"), ImportError::Empty));
+    assert!(matches!(of("{\"asset\": {\"version\": \"2.0\"}}"), ImportError::Empty(_)));
     assert!(matches!(of("nothing"), ImportError::Gltf(_)));
     let text = "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [\n{},\n{\"name\": \"clay\", \"pbrMetallicRoughness\": {\"metallicFactor\": \"no\"}}]}";
     let error = of(text).to_string();

@@ -1,0 +1,134 @@
+//! Inputs of a shader, and what became of each.
+
+use std::sync::Arc;
+
+use super::document::Element;
+use super::expression::Expression;
+use super::graph::{Graph, Scope};
+use super::value::{Value, count};
+use crate::{Fate, Line};
+
+/// What a format's words become where nothing else is said: an input, its fate, and how.
+pub(super) type Note = (&'static str, Fate, &'static str);
+
+/// Inputs of a shader.
+pub(super) struct Inputs<'g> {
+    graph: &'g mut Graph,
+    shader: Arc<Element>,
+    scope: Arc<Scope>,
+    pub(super) lines: Vec<Line>,
+    read: Vec<&'static str>,
+    /// Inputs whose value is the default, which changes nothing.
+    inert: Vec<&'static str>,
+}
+
+impl<'g> Inputs<'g> {
+    pub(super) fn new(graph: &'g mut Graph, shader: &Arc<Element>, scope: &Arc<Scope>) -> Self {
+        Self { graph, shader: Arc::clone(shader), scope: Arc::clone(scope), lines: Vec::new(), read: Vec::new(), inert: Vec::new() }
+    }
+
+    fn say(&mut self, property: &str, fate: Fate, note: impl Into<String>) {
+        self.lines.push(Line::new(property, fate, note));
+    }
+
+    /// Whether the shader has an input with a value.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.shader.input(name).is_some_and(|input| is_given(input))
+    }
+
+    fn value(&mut self, name: &'static str, absent: Value) -> Arc<Expression> {
+        self.read.push(name);
+        let constant = || Arc::new(Expression::Constant(absent));
+        let Some(input) = self.shader.input(name).filter(|input| is_given(input)).cloned() else { return constant() };
+        let found = self.graph.input(&input, &self.scope);
+        for note in std::mem::take(&mut self.graph.notes) {
+            self.say(name, Fate::Approximated, note);
+        }
+        match found {
+            Ok(found) => {
+                if found.constant().is_some_and(|value| value.three() == absent.three()) {
+                    self.inert.push(name);
+                }
+                found
+            }
+            Err(reason) => {
+                let value = absent.all().iter().map(|v| crate::draft::number(*v)).collect::<Vec<_>>().join(", ");
+                self.say(name, Fate::Dropped, format!("{reason}: the default is taken, {value}"));
+                constant()
+            }
+        }
+    }
+
+    /// A number that may vary.
+    pub(super) fn number(&mut self, name: &'static str, absent: f64) -> Arc<Expression> {
+        self.value(name, Value::number(absent))
+    }
+
+    /// A colour that may vary.
+    pub(super) fn color(&mut self, name: &'static str, absent: [f64; 3]) -> Arc<Expression> {
+        self.value(name, Value::rgb(absent))
+    }
+
+    /// Normals, where they are given.
+    pub(super) fn normal(&mut self, name: &'static str) -> Option<Arc<Expression>> {
+        let found = self.has(name).then(|| self.value(name, Value::rgb([0.0, 0.0, 1.0])))?;
+        found.constant().is_none().then_some(found)
+    }
+
+    /// A number that is the same everywhere. One that varies has its default.
+    pub(super) fn fixed(&mut self, name: &'static str, absent: f64) -> f64 {
+        self.fixed_color(name, [absent; 3])[0]
+    }
+
+    /// A colour that is the same everywhere.
+    pub(super) fn fixed_color(&mut self, name: &'static str, absent: [f64; 3]) -> [f64; 3] {
+        let found = self.color(name, absent).constant();
+        found.map_or_else(
+            || {
+                self.say(name, Fate::Dropped, "it varies here, where a file has one number: the default is taken");
+                absent
+            },
+            Value::three,
+        )
+    }
+
+    /// A share that a surface does not show: whether there is any of it.
+    pub(super) fn lost(&mut self, name: &'static str, note: &str) -> bool {
+        let found = self.color(name, [0.0; 3]);
+        let is_there = found.constant().is_none_or(|value| value.three().iter().any(|v| *v > 0.0));
+        if is_there {
+            self.say(name, Fate::Dropped, note);
+        }
+        is_there
+    }
+
+    /// A line for each input that has none yet. `details` belong to what was dropped, or is not there.
+    pub(super) fn finish(mut self, notes: &[Note], details: &[&str]) -> Vec<Line> {
+        let shader = Arc::clone(&self.shader);
+        for input in shader.children.iter().filter(|child| child.category == "input") {
+            let name = input.name();
+            if self.lines.iter().any(|line| line.property == name) {
+                continue;
+            }
+            if self.inert.contains(&name) {
+                self.say(name, Fate::Kept, "");
+            } else if let Some((_, fate, note)) = notes.iter().find(|(known, ..)| *known == name) {
+                self.say(name, *fate, *note);
+            } else if self.read.contains(&name) {
+                self.say(name, Fate::Kept, "");
+            } else if details.iter().any(|known| name.starts_with(known)) {
+                self.say(name, Fate::Kept, "it says how something is that is dropped or not there");
+            } else {
+                let number = input.attribute("type").and_then(count).is_some();
+                self.say(name, Fate::Dropped, if number { "the input is not known" } else { "the input is not read" });
+            }
+        }
+        self.lines
+    }
+}
+
+/// Whether an input has a value or a connection.
+fn is_given(input: &Element) -> bool {
+    let is_connected = ["nodename", "nodegraph", "interfacename", "output"].iter().any(|name| input.attribute(name).is_some());
+    is_connected || input.attribute("value").is_some_and(|value| !value.trim().is_empty())
+}
