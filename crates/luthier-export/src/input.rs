@@ -3,7 +3,7 @@
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// Bytes of the longest text that is read: materials, scenes, indices, directions, reports.
 pub const TEXT_MAX: u64 = 64 << 20;
@@ -28,6 +28,32 @@ pub fn image(path: &Path) -> io::Result<Vec<u8>> {
 /// Those of the system, and what is no regular file of bounded size.
 pub fn mesh(path: &Path) -> io::Result<Vec<u8>> {
     read(path, MESH_MAX)
+}
+
+/// The bytes of a file that another one in `folder` names, if it lies below `root`: `..` is taken out by the letters of the path, as links are followed.
+///
+/// # Errors
+/// Those of the system, what is no regular file of bounded size, and a file outside of `root`.
+pub fn beside(root: &Path, folder: &Path, path: &str) -> io::Result<Vec<u8>> {
+    let here = |path: &Path| if path.as_os_str().is_empty() { PathBuf::from(".") } else { path.to_owned() };
+    let place = plain(&here(folder).join(path))?;
+    if place.starts_with(plain(&here(root))?) {
+        return mesh(&place);
+    }
+    Err(io::Error::other("it is outside of the folder of the file: name a folder that has both by --root"))
+}
+
+/// An absolute path without `..`.
+fn plain(path: &Path) -> io::Result<PathBuf> {
+    let mut plain = PathBuf::new();
+    for part in std::path::absolute(path)?.components() {
+        if part == Component::ParentDir {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
+    }
+    Ok(plain)
 }
 
 /// The bytes of what should be a text.

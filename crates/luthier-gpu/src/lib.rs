@@ -40,7 +40,7 @@ pub use light::Light;
 pub use luthier_environment::{Blur, Environment, EnvironmentError, Scenery, Sky, SoftLight};
 pub use luthier_export::{Map, Package, PackageError, Shader, Table};
 pub use luthier_manifest::{LayerValues, PlaceValues};
-pub use luthier_mesh::{Mesh, MeshError, model, soup};
+pub use luthier_mesh::{Mesh, MeshError, model, scene, soup};
 pub use places::Spot;
 pub use render::{Backdrop, RenderSettings};
 pub use scene::{LiveValue, Scene};

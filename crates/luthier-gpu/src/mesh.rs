@@ -1,10 +1,13 @@
 //! Meshes for the renderer: their words, and the kernel that meets them.
 
-use luthier_mesh::Mesh;
+use luthier_mesh::{Mesh, Triangle};
 
 use crate::Shape;
 use crate::context::word;
 use crate::floor::FADE;
+
+/// The first number of plain parts: `MESH_PLAIN` in `mesh.wgsl`. Those below are shown materials.
+const PLAIN: u32 = 1 << 31;
 
 /// Markers in `shading.wgsl`, `around` and `render.wgsl`, with the text that replaces each for closed shapes and for meshes.
 const MARKERS: [(&str, &str, &str); 9] = [
@@ -14,7 +17,7 @@ const MARKERS: [(&str, &str, &str); 9] = [
     ("$sees", "", " * mesh_sees(place, to_light, light.w, seed)"),
     ("$here", "", ", place"),
     ("$open", "", " * mesh_open(material, place, turned, wo_there, seed)"),
-    ("$shown", "", " && hit.part == 0u"),
+    ("$shown", "", " && hit.part < MESH_PLAIN"),
     ("$behind_environment", "environment_radiance(ray)", "render_behind(hit, ray, environment_radiance(ray), seed)"),
     (
         "$behind_plain",
@@ -59,7 +62,8 @@ pub(crate) fn words(mesh: &Mesh, light_angular_radius: f32, first: usize) -> Vec
         let corners = [(node.low, node.next), (node.high, 8 * node.first + node.count)];
         words.extend(corners.map(|([x, y, z], w)| [x.to_bits(), y.to_bits(), z.to_bits(), w]));
     }
-    words.extend(mesh.triangles().iter().map(|t| [t.corners[0], t.corners[1], t.corners[2], t.part]));
+    let part = |t: &Triangle| if t.part == 0 { t.material } else { PLAIN + t.part - 1 };
+    words.extend(mesh.triangles().iter().map(|t| [t.corners[0], t.corners[1], t.corners[2], part(t)]));
     for (vertex, open) in mesh.vertices().iter().zip(mesh.openness()) {
         let [x, y, z, sign] = vertex.tangent;
         let own =

@@ -534,7 +534,8 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
 
 impl RenderSettings {
     pub(crate) fn check(&self, parts: &[Shown]) -> Result<(), GpuError> {
-        if parts.len() != self.shape.materials() {
+        let of_mesh = self.mesh.as_ref().filter(|_| self.shape == Shape::Mesh).map(|mesh| mesh.materials());
+        if parts.len() != of_mesh.unwrap_or(self.shape.materials()) {
             return Err(setting("materials", parts.len().to_string(), "one for each part of the shape"));
         }
         if self.shape == Shape::Mesh && self.mesh.is_none() {

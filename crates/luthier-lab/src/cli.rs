@@ -601,6 +601,8 @@ pub(crate) enum ForeignKind {
     Picture,
     /// Tables of indices: CSV, and the YAML of refractiveindex.info
     Index,
+    /// Materials of glTF and MaterialX: imported, checked and baked
+    Material,
 }
 
 #[derive(Debug, Args)]

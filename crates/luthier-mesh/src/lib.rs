@@ -33,6 +33,6 @@ mod vector;
 
 pub use bvh::{Bvh, Meeting, Node};
 pub use error::MeshError;
-pub use gltf::{Asset, File, PICTURE_BYTES_MAX, soup};
+pub use gltf::{Asset, File, PICTURE_BYTES_MAX, scene, soup};
 pub use mesh::Mesh;
 pub use soup::{Soup, TRIANGLES_MAX, Triangle, Vertex};

@@ -66,6 +66,12 @@ impl Mesh {
         &self.plain
     }
 
+    /// How many materials are shown: numbers of triangles are less.
+    pub fn materials(&self) -> usize {
+        let shown = self.triangles.iter().filter(|triangle| triangle.part == 0);
+        shown.map(|triangle| triangle.material as usize + 1).max().unwrap_or(0)
+    }
+
     /// Whether the shown part has texture coordinates.
     pub fn has_uv(&self) -> bool {
         self.has_uv

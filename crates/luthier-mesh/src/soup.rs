@@ -22,8 +22,10 @@ pub struct Vertex {
 pub struct Triangle {
     /// Numbers of the vertices.
     pub corners: [u32; 3],
-    /// 0 takes the shown material; numbers from 1 on are colours of [`Soup::plain`].
+    /// 0 takes a shown material; numbers from 1 on are colours of [`Soup::plain`].
     pub part: u32,
+    /// Which of the shown materials it takes: 0 but in [`scene`](crate::scene).
+    pub material: u32,
 }
 
 /// Triangles before they are prepared for pictures.
@@ -34,7 +36,7 @@ pub struct Triangle {
 /// let corners = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]];
 /// let blank = Vertex { position: [0.0; 3], normal: [0.0, 0.0, 1.0], tangent: [0.0; 4], uv: [0.0; 2] };
 /// let vertices = corners.map(|position| Vertex { position, ..blank }).to_vec();
-/// let triangles = vec![Triangle { corners: [0, 1, 2], part: 0 }];
+/// let triangles = vec![Triangle { corners: [0, 1, 2], part: 0, material: 0 }];
 /// let mesh = Mesh::new(Soup { vertices, triangles, ..Soup::default() })?;
 /// assert!(mesh.vertices().iter().all(|vertex| vertex.position[0].abs() < 1.0)); // fitted into the unit sphere
 /// # Ok::<(), luthier_mesh::MeshError>(())

@@ -88,7 +88,7 @@ mod tests {
         };
         Soup {
             vertices: corners.into_iter().zip(uvs).map(vertex).collect(),
-            triangles: [[0, 1, 2], [0, 2, 3]].map(|corners| Triangle { corners, part: 0 }).to_vec(),
+            triangles: [[0, 1, 2], [0, 2, 3]].map(|corners| Triangle { corners, part: 0, material: 0 }).to_vec(),
             has_uv: true,
             ..Soup::default()
         }

@@ -74,8 +74,8 @@ fn sphere(radius: f64, rows: u32, soup: &mut Soup, part: u32) {
     let columns = 2 * rows + 1;
     for (row, column) in (0..rows).flat_map(|row| (0..2 * rows).map(move |column| (row, column))) {
         let [a, b] = [first + row * columns + column, first + (row + 1) * columns + column];
-        soup.triangles.push(Triangle { corners: [a, b, b + 1], part });
-        soup.triangles.push(Triangle { corners: [a, b + 1, a + 1], part });
+        soup.triangles.push(Triangle { corners: [a, b, b + 1], part, material: 0 });
+        soup.triangles.push(Triangle { corners: [a, b + 1, a + 1], part, material: 0 });
     }
 }
 
@@ -95,7 +95,7 @@ fn openness_under_a_sphere_is_lamberts() {
         }
     }
     soup.triangles
-        .extend((0..places.len() as u32).map(|i| Triangle { corners: [0, 1, 2].map(|k| first + 3 * i + k), part: 1 }));
+        .extend((0..places.len() as u32).map(|i| Triangle { corners: [0, 1, 2].map(|k| first + 3 * i + k), part: 1, material: 0 }));
     let mesh = Mesh::new(soup).unwrap();
     for (x, i) in places.into_iter().zip((first..).step_by(3)) {
         let distance_sq = f64::from(1.0 + x * x);

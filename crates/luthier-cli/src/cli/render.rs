@@ -79,7 +79,7 @@ pub(crate) struct Look {
 #[derive(Debug, Args)]
 #[command(after_help = PREVIEW_EXAMPLES)]
 pub(crate) struct PreviewOptions {
-    /// A material file or a surface file, or the name of either in the bake
+    /// A material file or a surface file, or the name of either in the bake; or a glTF file, whose parts show their own materials as `import` reads them
     #[arg(value_name = "MATERIAL")]
     pub(crate) material: Option<String>,
     #[command(flatten)]

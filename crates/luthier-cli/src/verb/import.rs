@@ -2,8 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use luthier_export::{input, label};
 use luthier_import::{Fate, Import, ImportError, Imported, Line, import};
@@ -30,7 +29,7 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
         let label = label(path);
         let name = path.file_name().map_or_else(|| label.clone(), |name| name.to_string_lossy().into_owned());
         let root = options.root.as_deref().unwrap_or(&folder);
-        let import = import(&name, &bytes, &|beside| input::mesh(&within(root, &folder, beside)?));
+        let import = import(&name, &bytes, &|beside| input::beside(root, &folder, beside));
         let import = import.map_err(|error: ImportError| {
             Failure::Input(anyhow::Error::new(error).context(path.display().to_string()))
         })?;
@@ -40,23 +39,6 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
     let report = report(&read);
     write(options, written, &report)?;
     print(&if options.json { format!("{report:#}") } else { text(options, &read) })
-}
-
-/// The place of a file beside another, which is in a folder; `..` is taken out by the letters of the path, as links are followed.
-fn within(root: &Path, folder: &Path, beside: &str) -> io::Result<PathBuf> {
-    let plain = |path: &Path| {
-        let mut plain = PathBuf::new();
-        for part in std::path::absolute(path)?.components() {
-            if part == Component::ParentDir { plain.pop().then_some(()).unwrap_or_default() } else { plain.push(part) }
-        }
-        Ok::<PathBuf, io::Error>(plain)
-    };
-    let here = |path: &Path| if path.as_os_str().is_empty() { PathBuf::from(".") } else { path.to_owned() };
-    let place = plain(&here(folder).join(beside))?;
-    if place.starts_with(plain(&here(root))?) {
-        return Ok(place);
-    }
-    Err(io::Error::other("it is outside of the folder of the file: name a folder that has both by --root"))
 }
 
 /// All files to write by relative path. Where several imports have files of one name and other bytes, the later ones get numbers.

@@ -33,9 +33,9 @@ pub(super) fn gltf(bytes: &[u8]) {
     assert!(mesh.bvh().nodes().iter().all(|node| node.next as usize <= mesh.bvh().nodes().len()));
 }
 
-/// Materials of a glTF file; files beside it are missing.
+/// Materials of a file; files beside it are missing.
 pub(super) fn import(bytes: &[u8]) {
-    let import = match luthier_import::gltf("input.gltf", bytes, &|_| Err(ErrorKind::NotFound.into())) {
+    let import = match luthier_import::import("input", bytes, &|_| Err(ErrorKind::NotFound.into())) {
         Ok(import) => import,
         Err(error) => return assert!(!error.to_string().is_empty()),
     };

@@ -188,8 +188,8 @@ pub const TARGETS: [Target; 22] = [
     },
     Target {
         name: "import",
-        parser: "luthier_import::gltf",
-        reads: "`import`: glTF files, text and binary",
+        parser: "luthier_import::import",
+        reads: "`import`: glTF files, text and binary, MaterialX, and the JSON of a database",
         holds: "every material is a file that parses, with a name of its own; the pictures that it names are there",
         folders: &["crates/luthier-fuzz/corpus/gltf"],
         run: meshes::import,

@@ -32,6 +32,9 @@ struct MeshMeeting {
     weights: vec2<f32>,
 }
 
+// The first number of plain parts; those below are shown materials.
+const MESH_PLAIN = 0x80000000u;
+
 const MESH_FAR: f32 = 1e30;
 // Distance of the begin of a ray from the surface that it leaves.
 const MESH_LIFT: f32 = 4e-4;
@@ -226,7 +229,7 @@ fn mesh_open(material: u32, place: Place, frame: mat3x3<f32>, wo: vec3<f32>, see
 // What a plain part sends out in the direction -ray: it is matte. A floor fades into what is behind.
 fn mesh_plain(hit: Hit, ray: vec3<f32>, behind: vec3<f32>, seed: u32) -> vec3<f32> {
     let rest = mesh_rest();
-    let albedo = kernel_inputs.words[bitcast<u32>(rest.x) + hit.part - 1u].rgb;
+    let albedo = kernel_inputs.words[bitcast<u32>(rest.x) + hit.part - MESH_PLAIN].rgb;
     let place = hit.place;
     var light = environment_diffuse(place.normal) * mesh_openness(place);
     for (var i = 0u; i < kernel_inputs.light_count; i++) {
@@ -250,7 +253,7 @@ fn mesh_radiance(place: Place, ray: vec3<f32>, seed: u32) -> vec3<f32> {
         return radiance;
     }
     let hit = mesh_place(place.lifted, ray, meeting);
-    if hit.part > 0u {
+    if hit.part >= MESH_PLAIN {
         return mesh_plain(hit, ray, radiance, seed);
     }
     return environment_diffuse(hit.place.normal) * (MESH_RETURNED * mesh_openness(hit.place));

@@ -1,10 +1,13 @@
 //! Kinds of foreign files, and the readers that bakes and pictures use for them.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
+use luthier::{Bake, MemoryStore, Severity, Shading, Sources};
 use luthier_environment::Environment;
 use luthier_export::input;
 use luthier_gpu::{Mesh, soup};
+use luthier_import::Fate;
 use luthier_optics::index_file::{csv, yaml};
 use luthier_texture::{picture as pictures, radiance};
 
@@ -23,7 +26,7 @@ pub(super) enum Read {
 type Outcome = Result<Vec<String>, String>;
 
 impl ForeignKind {
-    pub(super) const ALL: [Self; 4] = [Self::Mesh, Self::Sky, Self::Picture, Self::Index];
+    pub(super) const ALL: [Self; 5] = [Self::Mesh, Self::Sky, Self::Picture, Self::Index, Self::Material];
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -31,6 +34,7 @@ impl ForeignKind {
             Self::Sky => "sky",
             Self::Picture => "picture",
             Self::Index => "index",
+            Self::Material => "material",
         }
     }
 
@@ -41,18 +45,20 @@ impl ForeignKind {
             Self::Sky => &["hdr", "exr"],
             Self::Picture => &["png", "jpg", "jpeg", "webp"],
             Self::Index => &["csv", "yml"],
+            Self::Material => &["gltf", "glb", "mtlx"],
         };
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         ending.is_some_and(|ending| endings.contains(&ending.as_str()))
     }
 
-    /// Reads a file as a bake or a picture would.
-    pub(super) fn read(self, path: &Path) -> Outcome {
+    /// Reads a file of a collection in a folder as a bake or a picture would.
+    pub(super) fn read(self, path: &Path, folder: &Path) -> Outcome {
         match self {
             Self::Mesh => mesh(path),
             Self::Sky => sky(path),
             Self::Picture => picture(path),
             Self::Index => index(path),
+            Self::Material => material(path, folder),
         }
     }
 }
@@ -86,6 +92,35 @@ fn index(path: &Path) -> Outcome {
     let text = input::text(path).map_err(words)?;
     let file = if is_page { yaml(&text) } else { csv(&text) };
     Ok(file.map_err(words)?.notes)
+}
+
+/// Imports, checks and bakes the materials of a file. Notes are what is not as it was, and the model of each material.
+fn material(path: &Path, folder: &Path) -> Outcome {
+    let bytes = input::mesh(path).map_err(words)?;
+    let own = path.parent().unwrap_or(Path::new(""));
+    let label = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let import = luthier_import::import(&label, &bytes, &|beside| input::beside(folder, own, beside)).map_err(words)?;
+    let place = tempfile::tempdir().map_err(words)?;
+    let texts = import.materials.iter().map(|of| (format!("{}.toml", of.name), of.text.as_bytes()));
+    let pictures = import.pictures.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
+    for (path, bytes) in texts.chain(pictures) {
+        let path = place.path().join(path);
+        std::fs::create_dir_all(path.parent().unwrap_or(place.path())).map_err(words)?;
+        std::fs::write(path, bytes).map_err(words)?;
+    }
+    let mut sources = Sources::read([place.path()]).map_err(words)?;
+    sources.check(&Shading::default());
+    if !sources.is_usable() {
+        let faults = sources.diagnostics().filter(|found| found.severity == Severity::Error);
+        return Err(faults.map(|fault| fault.message.clone()).collect::<Vec<_>>().join("; "));
+    }
+    let package = Bake::default().of(&sources, &MemoryStore::default()).map_err(words)?;
+    let models = package.manifest.materials.iter().map(|baked| format!("model {}", baked.model.name()));
+    let changed = import.lines.iter().chain(import.materials.iter().flat_map(|of| &of.lines));
+    let changed = changed.filter(|line| matches!(line.fate, Fate::Approximated | Fate::Dropped));
+    let notes: BTreeSet<String> =
+        changed.map(|line| format!("{}: {}: {}", line.fate, line.property, line.note)).chain(models).collect();
+    Ok(notes.into_iter().collect())
 }
 
 /// An error with its causes.

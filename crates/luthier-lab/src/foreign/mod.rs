@@ -54,14 +54,14 @@ fn tried(kind: ForeignKind, folders: &[PathBuf]) -> Outcome<Vec<Tried>> {
         let mut found = Vec::new();
         below(folder, kind, &mut found)?;
         found.sort();
-        all.extend(found.into_iter().map(|path| (label(path.strip_prefix(folder).unwrap_or(&path)), path)));
+        all.extend(found.into_iter().map(|path| (label(path.strip_prefix(folder).unwrap_or(&path)), path, folder)));
     }
     let bar = Bar::new(kind.name());
     let hook = take_hook();
     set_hook(Box::new(|_| {}));
-    let tried = all.iter().zip(1..).map(|((name, path), number)| {
+    let tried = all.iter().zip(1..).map(|((name, path, folder), number)| {
         let started = Instant::now();
-        let read = caught(|| kind.read(path));
+        let read = caught(|| kind.read(path, folder));
         bar.set(number, all.len() as u64);
         Tried { name: name.clone(), seconds: started.elapsed().as_secs_f64(), read }
     });

@@ -9,7 +9,8 @@ const INTRODUCTION: &str = "\
 # Files that others wrote
 
 `luthier-lab foreign` makes this page, from `docs/measurements/foreign.json`. It tries every file of a public collection with the reader that bakes and pictures
-use: meshes with that of `--mesh`, skies with that of `--environment`, pictures with that of maps, and tables of indices with that of `ior`. No file of these
+use: meshes with that of `--mesh`, skies with that of `--environment`, pictures with that of maps, and tables of indices with that of `ior`. Materials of glTF and
+MaterialX are imported, checked and baked: notes are what is approximated or dropped, and the models that their materials take. No file of these
 collections is part of this repository: fetch one by hand, and run
 
     luthier-lab foreign --collection NAME --data docs/measurements/foreign.json --page docs/pages/foreign.md FOLDER

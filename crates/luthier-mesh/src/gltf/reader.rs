@@ -47,6 +47,8 @@ pub(super) struct Reader<'a> {
     left_out: Vec<Cow<'static, str>>,
     nodes: usize,
     looks: usize,
+    /// Whether triangles keep the numbers of their materials, none of which is plain.
+    keeps_materials: bool,
     /// Normals and tangents without a direction, and texture coordinates that are not finite.
     mended: [usize; 3],
 }
@@ -59,12 +61,14 @@ struct Piece {
     /// Every triangle has corners of its own and is flat.
     flat: bool,
     part: u32,
+    material: u32,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'a>) -> Self {
+    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'a>, keeps_materials: bool) -> Self {
         let soup = Soup { has_uv: true, ..Soup::default() };
-        Self { numbers: Numbers { document, buffers }, soup, left_out: Vec::new(), nodes: 0, looks: 0, mended: [0; 3] }
+        let numbers = Numbers { document, buffers };
+        Self { numbers, soup, left_out: Vec::new(), nodes: 0, looks: 0, keeps_materials, mended: [0; 3] }
     }
 
     pub(super) fn leave_out(&mut self, what: impl Into<Cow<'static, str>>) {
@@ -224,7 +228,12 @@ impl<'a> Reader<'a> {
             }
             self.mended[1] += has_tangent.iter().filter(|has| !**has).count();
         }
-        let part = self.part(primitive)?;
+        let (part, material) = if self.keeps_materials {
+            let count = self.numbers.document.materials.len();
+            (0, primitive.material.filter(|&index| index < count).unwrap_or(count) as u32)
+        } else {
+            (self.part(primitive)?, 0)
+        };
         if let Some(accessor) = primitive.attributes.uvs {
             let all = numbers.floats::<2>(accessor, owner("texture coordinates"))?;
             owner("texture coordinates").check_count(all.len(), count)?;
@@ -236,13 +245,17 @@ impl<'a> Reader<'a> {
                 self.mended[2] += usize::from(!is_finite);
             }
         } else {
-            self.soup.has_uv &= part > 0;
+            self.soup.has_uv &= part > 0 || self.keeps_materials;
         }
-        self.add(&Piece { vertices, has_tangent, triangles, flat, part })
+        self.add(&Piece { vertices, has_tangent, triangles, flat, part, material })
     }
 
     /// The placement of textures, if texture coordinates are whole numbers: such a placement contains their scale.
     fn placement(&mut self, primitive: &Primitive, uvs: usize) -> Option<Placement> {
+        if self.keeps_materials {
+            // Maps of the materials have their own.
+            return None;
+        }
         let document = self.numbers.document;
         let placement = Placement::of(document.materials.get(primitive.material?)?)?;
         if document.accessors.get(uvs)?.component_type == FLOAT {
@@ -265,7 +278,7 @@ impl<'a> Reader<'a> {
     }
 
     fn add(&mut self, piece: &Piece) -> Result<(), MeshError> {
-        let Piece { vertices, has_tangent, triangles, flat, part } = piece;
+        let &Piece { ref vertices, ref has_tangent, ref triangles, flat, part, material } = piece;
         let all = &mut self.soup;
         let count = all.triangles.len() + triangles.len();
         if count > TRIANGLES_MAX || all.vertices.len() + vertices.len() > 3 * TRIANGLES_MAX {
@@ -275,7 +288,7 @@ impl<'a> Reader<'a> {
         if !flat {
             all.vertices.extend(vertices);
             all.has_tangents.extend(has_tangent);
-            all.triangles.extend(triangles.iter().map(|t| Triangle { corners: t.map(|i| first + i), part: *part }));
+            all.triangles.extend(triangles.iter().map(|t| Triangle { corners: t.map(|i| first + i), part, material }));
             return Ok(());
         }
         for triangle in triangles {
@@ -285,7 +298,7 @@ impl<'a> Reader<'a> {
             let first = all.vertices.len() as u32;
             all.vertices.extend(corners.map(|vertex| Vertex { normal, ..vertex }));
             all.has_tangents.extend(triangle.map(|i| has_tangent[i as usize]));
-            all.triangles.push(Triangle { corners: [first, first + 1, first + 2], part: *part });
+            all.triangles.push(Triangle { corners: [first, first + 1, first + 2], part, material });
         }
         Ok(())
     }

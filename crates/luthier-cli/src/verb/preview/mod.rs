@@ -1,4 +1,8 @@
-//! `preview`: a picture of one material, or of the grid.
+//! `preview`: a picture of one material, of the grid, or of a glTF file with its own materials.
+
+mod scene;
+
+use std::path::Path;
 
 use luthier::{Bake, lit};
 use luthier_gpu::{RenderSettings, Scene, Shape, Shown};
@@ -12,14 +16,20 @@ use crate::store::store;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
 use crate::{grid, memory_bake, simulated};
 
-/// Renders one material, or the grid.
+/// Renders one material, the grid, or a glTF file.
 pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
     if let Some(samples) = options.simulated {
         return simulate(options, samples, format);
     }
     let shape = options.shape.unwrap_or(ShapeName::Model);
+    let mut own = None;
     let (package, parts) = match named(options, shape)? {
+        Some(file) if scene::is_scene(file) => {
+            let (package, parts, mesh) = scene::read(Path::new(file), &options.shading)?;
+            own = Some(mesh);
+            (package, parts)
+        }
         Some(material) => {
             let (package, shown) = memory_bake::shown(material, &options.shading, &options.out)?;
             (package, vec![shown])
@@ -27,7 +37,16 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         None => (Bake::lit().package(&lit(&grid::materials()?), store()?)?, all_of_grid()),
     };
     let look = &options.look;
-    let mut settings = settings(look, shape, options.mesh.as_deref(), options.size)?;
+    let closed = if own.is_some() { ShapeName::Sphere } else { shape };
+    let mut settings = settings(look, closed, options.mesh.as_deref(), options.size)?;
+    if own.is_some() {
+        settings.shape = Shape::Mesh;
+        settings.camera = Shape::Mesh.camera();
+        if let Some(eye) = look.camera {
+            settings.camera.eye = eye.0;
+        }
+        settings.mesh = own;
+    }
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
@@ -76,10 +95,17 @@ fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
     write(options, format, picture.image)
 }
 
+/// Why a file with triangles and materials of its own is refused.
+const SCENE: &str = "a glTF file has its own shape and materials: leave out --shape, --mesh and --simulated, or name a material file and the glTF file by --mesh";
+
 /// The material that is named; `None` for the grid, which needs none.
 fn named(options: &PreviewOptions, shape: ShapeName) -> Outcome<Option<&String>> {
     let text = match (&options.material, shape) {
         (None, ShapeName::Grid) => return Ok(None),
+        (Some(file), _) if scene::is_scene(file) => {
+            let has_own = options.shape.is_none() && options.mesh.is_none() && options.simulated.is_none();
+            return if has_own { Ok(options.material.as_ref()) } else { Err(Failure::Usage(anyhow::anyhow!(SCENE))) };
+        }
         (Some(_), ShapeName::Grid) => "the grid makes its own materials; name none",
         (Some(material), _) => return Ok(Some(material)),
         (None, _) => "name a material, or take --shape grid",
