@@ -94,8 +94,11 @@ fn openness_under_a_sphere_is_lamberts() {
             soup.vertices.push(Vertex { position: [x, -1.0, z], normal, tangent: [0.0; 4], uv: [0.0; 2] });
         }
     }
-    soup.triangles
-        .extend((0..places.len() as u32).map(|i| Triangle { corners: [0, 1, 2].map(|k| first + 3 * i + k), part: 1, material: 0 }));
+    soup.triangles.extend((0..places.len() as u32).map(|i| Triangle {
+        corners: [0, 1, 2].map(|k| first + 3 * i + k),
+        part: 1,
+        material: 0,
+    }));
     let mesh = Mesh::new(soup).unwrap();
     for (x, i) in places.into_iter().zip((first..).step_by(3)) {
         let distance_sq = f64::from(1.0 + x * x);

@@ -26,7 +26,11 @@ fn sphere(rows: u32) -> Soup {
     let columns = 2 * rows + 1;
     for (row, column) in (0..rows).flat_map(|row| (0..2 * rows).map(move |column| (row, column))) {
         let [a, b] = [row * columns + column, (row + 1) * columns + column];
-        soup.triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]].map(|corners| Triangle { corners, part: 0, material: 0 }));
+        soup.triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]].map(|corners| Triangle {
+            corners,
+            part: 0,
+            material: 0,
+        }));
     }
     soup
 }
@@ -39,7 +43,11 @@ fn over_floor(height: f32) -> Soup {
         let (position, normal) = ([x, height, z], [0.0, 1.0, 0.0]);
         soup.vertices.push(Vertex { position, normal, tangent: [0.0; 4], uv: [0.0; 2] });
     }
-    soup.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t| Triangle { corners: t.map(|i| first + i), part: 1, material: 0 }));
+    soup.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t| Triangle {
+        corners: t.map(|i| first + i),
+        part: 1,
+        material: 0,
+    }));
     soup
 }
 

@@ -29,7 +29,10 @@ const HARMLESS: [&str; 6] =
 /// [`ImportError`] for bytes that are not glTF, a material that is none, and a file without materials. A picture that cannot be read is a [`Line`] that says so.
 pub fn gltf(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Import, ImportError> {
     let asset = Asset::open(bytes, files)?;
-    let found = asset.json["materials"].as_array().filter(|found| !found.is_empty()).ok_or(ImportError::Empty(String::new()))?;
+    let found = asset.json["materials"]
+        .as_array()
+        .filter(|found| !found.is_empty())
+        .ok_or(ImportError::Empty(String::new()))?;
     let mut textures = Textures::new(&asset);
     let mut names = Names::default();
     let mut import = Import::default();

@@ -117,7 +117,9 @@ impl Reading<'_> {
         }
         let attributes: BTreeMap<String, String> =
             node.attributes().map(|found| (found.name().to_owned(), found.value().to_owned())).collect();
-        let own = |name: &str, outer: &Arc<str>| attributes.get(name).map_or_else(|| outer.clone(), |own| own.as_str().into());
+        let own = |name: &str, outer: &Arc<str>| {
+            attributes.get(name).map_or_else(|| outer.clone(), |own| own.as_str().into())
+        };
         let inherited = Inherited {
             folder: inherited.folder.clone(),
             file_prefix: own("fileprefix", &inherited.file_prefix),
@@ -132,7 +134,10 @@ impl Reading<'_> {
                     continue;
                 }
                 if self.read.len() > FILES_MAX {
-                    return Err(ImportError::Xml { place: place(child), reason: format!("more than {FILES_MAX} files are included") });
+                    return Err(ImportError::Xml {
+                        place: place(child),
+                        reason: format!("more than {FILES_MAX} files are included"),
+                    });
                 }
                 let bytes = (self.files)(&path)
                     .map_err(|error| ImportError::Xml { place: place(child), reason: format!("`{href}`: {error}") })?;

@@ -93,10 +93,7 @@ impl Expression {
     }
 
     /// A function of others that is none of the special ones.
-    pub(super) fn of(
-        inputs: &[&Arc<Self>],
-        of: impl Fn(&[Value]) -> Value + Send + Sync + 'static,
-    ) -> Arc<Self> {
+    pub(super) fn of(inputs: &[&Arc<Self>], of: impl Fn(&[Value]) -> Value + Send + Sync + 'static) -> Arc<Self> {
         Self::apply(Op::Other(Arc::new(of)), inputs.iter().map(|input| Arc::clone(input)).collect())
     }
 
@@ -170,11 +167,7 @@ impl Program {
         Some(program)
     }
 
-    fn add(
-        &mut self,
-        expression: &Arc<Expression>,
-        known: &mut BTreeMap<*const Expression, usize>,
-    ) -> Option<usize> {
+    fn add(&mut self, expression: &Arc<Expression>, known: &mut BTreeMap<*const Expression, usize>) -> Option<usize> {
         let address = Arc::as_ptr(expression);
         if let Some(step) = known.get(&address) {
             return Some(*step);

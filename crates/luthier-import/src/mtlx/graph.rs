@@ -158,13 +158,15 @@ impl Graph {
         let of_type = element.attribute("type");
         match element.category.as_str() {
             "input" => return self.input(element, scope),
-            "image" | "tiledimage" | "hextiledimage" | "gltf_image" | "gltf_colorimage" | "gltf_normalmap" | "UsdUVTexture" => {
+            "image" | "tiledimage" | "hextiledimage" | "gltf_image" | "gltf_colorimage" | "gltf_normalmap"
+            | "UsdUVTexture" => {
                 return self.image(element, scope, output);
             }
             "texcoord" | "UsdPrimvarReader" => return Ok(Arc::new(Expression::Texcoord)),
             "geompropvalue" if of_type == Some("vector2") => return Ok(Arc::new(Expression::Texcoord)),
             "multiply" => {
-                let [a, b] = [("in1", 0.0), ("in2", 1.0)].map(|(name, absent)| self.given(element, scope, name, absent));
+                let [a, b] =
+                    [("in1", 0.0), ("in2", 1.0)].map(|(name, absent)| self.given(element, scope, name, absent));
                 return Ok(fitted(&a?.times(&b?), of_type));
             }
             "extract" => {
@@ -174,7 +176,10 @@ impl Graph {
             }
             "separate2" | "separate3" | "separate4" => {
                 let value = self.given(element, scope, "in", 0.0)?;
-                return Ok(channel_of(&value, channel(output.unwrap_or("outx").trim_start_matches("out")).unwrap_or(0)));
+                return Ok(channel_of(
+                    &value,
+                    channel(output.unwrap_or("outx").trim_start_matches("out")).unwrap_or(0),
+                ));
             }
             "swizzle" => {
                 let value = self.given(element, scope, "in", 0.0)?;
@@ -204,7 +209,9 @@ impl Graph {
                 && definition.attribute("node") == Some(&element.category)
                 && element.attribute("nodedef").is_none_or(|name| definition.name() == name)
         };
-        let graph = |name: &str| all.iter().find(|found| found.category == "nodegraph" && found.attribute("nodedef") == Some(name));
+        let graph = |name: &str| {
+            all.iter().find(|found| found.category == "nodegraph" && found.attribute("nodedef") == Some(name))
+        };
         if let Some((definition, graph)) =
             all.iter().filter(is_given).find_map(|definition| Some((definition, graph(definition.name())?)))
         {
@@ -247,7 +254,10 @@ impl Graph {
             return Err(format!("{}: `{}` names no picture", element.place, element.category));
         };
         if name.contains(['<', '>']) {
-            return Err(format!("{}: the picture `{name}` is one of many tiles or frames, which are not read", element.place));
+            return Err(format!(
+                "{}: the picture `{name}` is one of many tiles or frames, which are not read",
+                element.place
+            ));
         }
         let is_usd = element.category == "UsdUVTexture";
         let is_gltf_color = element.category == "gltf_colorimage";
@@ -276,7 +286,13 @@ impl Graph {
     }
 
     /// A picture times its factor, and the output that is asked for.
-    fn image_value(&mut self, element: &Arc<Element>, scope: &Arc<Scope>, output: Option<&str>, image: Arc<Expression>) -> Found {
+    fn image_value(
+        &mut self,
+        element: &Arc<Element>,
+        scope: &Arc<Scope>,
+        output: Option<&str>,
+        image: Arc<Expression>,
+    ) -> Found {
         Ok(match element.category.as_str() {
             "gltf_image" => image.times(&self.given(element, scope, "factor", 1.0)?),
             "gltf_normalmap" => normals(&image, &Expression::number(1.0)),
@@ -289,7 +305,8 @@ impl Graph {
                 }
             }
             "UsdUVTexture" => {
-                let [scale, bias] = [("scale", 1.0), ("bias", 0.0)].map(|(name, absent)| self.fixed(element, scope, name, absent));
+                let [scale, bias] =
+                    [("scale", 1.0), ("bias", 0.0)].map(|(name, absent)| self.fixed(element, scope, name, absent));
                 let (scale, bias) = (scale?, bias?);
                 let shifted = if bias.all().iter().all(|v| *v == 0.0) {
                     image.times(&Arc::new(Expression::Constant(scale)))
@@ -348,7 +365,13 @@ impl Graph {
                 let (_, place) = node("place2d").unwrap_or_else(|| unreachable!("the node is known"));
                 Expression::of(&[&Arc::new(Expression::Texcoord)], move |v| {
                     let scale = Value::new(&[1.0 / s, 1.0 / t]);
-                    let numbers = [Value::new(&[x, y]), scale, Value::number(-turn), Value::new(&[-ox, oy]), Value::number(order)];
+                    let numbers = [
+                        Value::new(&[x, y]),
+                        scale,
+                        Value::number(-turn),
+                        Value::new(&[-ox, oy]),
+                        Value::number(order),
+                    ];
                     let all: Vec<Value> = v.iter().copied().chain(numbers).collect();
                     place(&all)
                 })
@@ -365,7 +388,8 @@ impl Graph {
 
     fn space(&mut self, name: &str, at: &Element) -> Space {
         Space::named(name).unwrap_or_else(|| {
-            self.notes.push(format!("{}: the space of colours `{name}` is not known: read as linear Rec.709", at.place));
+            self.notes
+                .push(format!("{}: the space of colours `{name}` is not known: read as linear Rec.709", at.place));
             Space::LINEAR
         })
     }
@@ -376,13 +400,14 @@ fn constant(input: &Element) -> Found {
     let of_type = input.attribute("type").unwrap_or("float");
     let text = input.attribute("value").ok_or_else(|| format!("{}: `{}` has no value", input.place, input.name()))?;
     let count = count(of_type).ok_or_else(|| format!("{}: the type `{of_type}` is not read", input.place))?;
-    let value = parse(text, count)
-        .ok_or_else(|| format!("{}: `{text}` is no value of the type {of_type}", input.place))?;
+    let value =
+        parse(text, count).ok_or_else(|| format!("{}: `{text}` is no value of the type {of_type}", input.place))?;
     if !of_type.starts_with("color") {
         return Ok(Arc::new(Expression::Constant(value)));
     }
     let name = input.attribute("colorspace").unwrap_or(&input.color_space);
-    let space = Space::named(name).ok_or_else(|| format!("{}: the space of colours `{name}` is not known", input.place))?;
+    let space =
+        Space::named(name).ok_or_else(|| format!("{}: the space of colours `{name}` is not known", input.place))?;
     Ok(Arc::new(Expression::Constant(Value { channels: space.linear(value.channels), ..value })))
 }
 

@@ -24,7 +24,14 @@ pub(super) struct Inputs<'g> {
 
 impl<'g> Inputs<'g> {
     pub(super) fn new(graph: &'g mut Graph, shader: &Arc<Element>, scope: &Arc<Scope>) -> Self {
-        Self { graph, shader: Arc::clone(shader), scope: Arc::clone(scope), lines: Vec::new(), read: Vec::new(), inert: Vec::new() }
+        Self {
+            graph,
+            shader: Arc::clone(shader),
+            scope: Arc::clone(scope),
+            lines: Vec::new(),
+            read: Vec::new(),
+            inert: Vec::new(),
+        }
     }
 
     fn say(&mut self, property: &str, fate: Fate, note: impl Into<String>) {
@@ -129,6 +136,7 @@ impl<'g> Inputs<'g> {
 
 /// Whether an input has a value or a connection.
 fn is_given(input: &Element) -> bool {
-    let is_connected = ["nodename", "nodegraph", "interfacename", "output"].iter().any(|name| input.attribute(name).is_some());
+    let is_connected =
+        ["nodename", "nodegraph", "interfacename", "output"].iter().any(|name| input.attribute(name).is_some());
     is_connected || input.attribute("value").is_some_and(|value| !value.trim().is_empty())
 }

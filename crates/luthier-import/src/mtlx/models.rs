@@ -21,8 +21,7 @@ const SENT: &str = "light that the surface sends out itself";
 const CUT: &str = "where the surface is cut out or blended";
 const F0: &str = "f0 = ((n - 1)/(n + 1))^2";
 const TURN: &str = "turned from the surface's tangent, counter-clockwise";
-const UNDARKENED: &str =
-    "the coat is layered, with light that goes to and fro below it; the base stays as bright as its colour (`darkening = false`)";
+const UNDARKENED: &str = "the coat is layered, with light that goes to and fro below it; the base stays as bright as its colour (`darkening = false`)";
 const EDGE_TOO: &str = "the format scales what the edge reflects, too, which is all here";
 
 /// The function of a shader; `None` where it is none that is read.
@@ -167,7 +166,11 @@ fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     of.lost("sheen", CLOTH);
     const NOTES: &[Note] = &[
         ("specular", Approximated, EDGE_TOO),
-        ("specular_color", Approximated, "tints the F0 of a dielectric; of a metal the edge tint that meets the format's at 82 degrees"),
+        (
+            "specular_color",
+            Approximated,
+            "tints the F0 of a dielectric; of a metal the edge tint that meets the format's at 82 degrees",
+        ),
         ("specular_IOR", ClosedForm, F0),
         ("specular_anisotropy", ClosedForm, "alpha = roughness^2 over and times sqrt(1 - anisotropy)"),
         ("specular_rotation", ClosedForm, TURN),
@@ -254,9 +257,17 @@ fn open_pbr(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     of.lost("fuzz_weight", CLOTH);
     const NOTES: &[Note] = &[
         ("specular_weight", ClosedForm, "scales F0"),
-        ("specular_color", Approximated, "the edge tint of a metal; of a dielectric it tints F0, where the format tints what the edge reflects, too"),
+        (
+            "specular_color",
+            Approximated,
+            "the edge tint of a metal; of a dielectric it tints F0, where the format tints what the edge reflects, too",
+        ),
         ("specular_ior", ClosedForm, "f0 = ((n - 1)/(n + 1))^2, below a coat of the index over that of the coat"),
-        ("specular_roughness_anisotropy", ClosedForm, "alpha_x = r^2 sqrt(2/(1 + (1 - a)^2)), alpha_y = (1 - a) alpha_x"),
+        (
+            "specular_roughness_anisotropy",
+            ClosedForm,
+            "alpha_x = r^2 sqrt(2/(1 + (1 - a)^2)), alpha_y = (1 - a) alpha_x",
+        ),
         ("base_diffuse_roughness", Approximated, "the nearest slope deviation of Oren and Nayar"),
         ("coat_color", ClosedForm, "a slab that absorbs -ln(colour)/2 along the normal"),
         ("subsurface_weight", Approximated, BENEATH),
@@ -312,7 +323,11 @@ fn gltf(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     const NOTES: &[Note] = &[
         ("ior", ClosedForm, F0),
         ("specular", Approximated, EDGE_TOO),
-        ("specular_color", Approximated, "the base loses what the interface reflects of each channel, where glTF takes the brightest"),
+        (
+            "specular_color",
+            Approximated,
+            "the base loses what the interface reflects of each channel, where glTF takes the brightest",
+        ),
         ("anisotropy_strength", ClosedForm, "alpha_x = alpha + (1 - alpha) strength^2, alpha_y = alpha = roughness^2"),
         ("anisotropy_rotation", ClosedForm, TURN),
         ("clearcoat", Approximated, UNDARKENED),
@@ -396,7 +411,11 @@ fn disney(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
         ("specular", Approximated, "f0 = .08 specular; the edge reflects all here, and 0.08 specular in MaterialX"),
         ("specularTint", ClosedForm, "F0 times the mix of white and the colour"),
         ("anisotropic", ClosedForm, "alpha = roughness^2 over and times sqrt(1 - anisotropic)"),
-        ("roughness", Approximated, "facets are its square; the diffuse part is Lambert's, where the format brightens its edge by roughness"),
+        (
+            "roughness",
+            Approximated,
+            "facets are its square; the diffuse part is Lambert's, where the format brightens its edge by roughness",
+        ),
         ("clearcoat", Approximated, UNDARKENED),
         ("clearcoatGloss", Approximated, "alpha = (1 - gloss)^2 of GGX"),
         ("subsurface", Approximated, BENEATH),

@@ -86,25 +86,36 @@ fn color(of: impl Fn([f64; 3]) -> [f64; 3], value: Value) -> Value {
 }
 
 fn saturated(value: Value, amount: f64, luma: [f64; 3]) -> Value {
-    color(|rgb| {
-        let grey: f64 = rgb.iter().zip(luma).map(|(c, l)| c * l).sum();
-        rgb.map(|c| grey + (c - grey) * amount)
-    }, value)
+    color(
+        |rgb| {
+            let grey: f64 = rgb.iter().zip(luma).map(|(c, l)| c * l).sum();
+            rgb.map(|c| grey + (c - grey) * amount)
+        },
+        value,
+    )
 }
 
 fn corrected(v: &[Value]) -> Value {
     let [hue, saturation, gamma, lift, gain, contrast, pivot, exposure] =
         [1, 2, 3, 4, 5, 6, 7, 8].map(|c: usize| v[c].first());
-    let turned = color(|c| {
-        let [h, s, v] = hsv(c);
-        rgb([h + hue, s, v])
-    }, v[0]);
+    let turned = color(
+        |c| {
+            let [h, s, v] = hsv(c);
+            rgb([h + hue, s, v])
+        },
+        v[0],
+    );
     let value = saturated(turned, saturation, LUMA);
-    color(|rgb| rgb.map(|c| {
-        let c = c.signum() * libm::pow(c.abs(), divided(1.0, gamma));
-        let c = (c * (1.0 - lift) + lift) * gain;
-        ((c - pivot) * contrast + pivot) * libm::exp2(exposure)
-    }), value)
+    color(
+        |rgb| {
+            rgb.map(|c| {
+                let c = c.signum() * libm::pow(c.abs(), divided(1.0, gamma));
+                let c = (c * (1.0 - lift) + lift) * gain;
+                ((c - pivot) * contrast + pivot) * libm::exp2(exposure)
+            })
+        },
+        value,
+    )
 }
 
 fn turned(v: &[Value]) -> Value {
@@ -147,9 +158,7 @@ pub(super) fn node(category: &str) -> Option<Node> {
             v[0].zip(v[1], |a, b| if b == 0.0 { 0.0 } else { a - b * (a / b).floor() })
         }),
         "power" => (&[("in1", 0.0), ("in2", 1.0)], |v| v[0].zip(v[1], libm::pow)),
-        "safepower" => {
-            (&[("in1", 0.0), ("in2", 1.0)], |v| v[0].zip(v[1], |a, b| a.signum() * libm::pow(a.abs(), b)))
-        }
+        "safepower" => (&[("in1", 0.0), ("in2", 1.0)], |v| v[0].zip(v[1], |a, b| a.signum() * libm::pow(a.abs(), b))),
         "min" => (PAIR, |v| v[0].zip(v[1], f64::min)),
         "max" => (PAIR, |v| v[0].zip(v[1], f64::max)),
         "invert" => (&[("in", 0.0), ("amount", 1.0)], |v| v[1].zip(v[0], |amount, v| amount - v)),
@@ -170,10 +179,7 @@ pub(super) fn node(category: &str) -> Option<Node> {
         "atan2" => (&[("iny", 0.0), ("inx", 1.0)], |v| v[0].zip(v[1], libm::atan2)),
         "clamp" => (&[("in", 0.0), ("low", 0.0), ("high", 1.0)], |v| v[0].zip(v[1], f64::max).zip(v[2], f64::min)),
         "mix" => (&[("bg", 0.0), ("fg", 0.0), ("mix", 0.0)], |v| mix(v[0], v[1], v[2])),
-        "remap" => (
-            &[("in", 0.0), ("inlow", 0.0), ("inhigh", 1.0), ("outlow", 0.0), ("outhigh", 1.0)],
-            remapped,
-        ),
+        "remap" => (&[("in", 0.0), ("inlow", 0.0), ("inhigh", 1.0), ("outlow", 0.0), ("outhigh", 1.0)], remapped),
         "range" => (
             &[
                 ("in", 0.0),
@@ -211,10 +217,13 @@ pub(super) fn node(category: &str) -> Option<Node> {
         "hsvtorgb" => (IN, |v| color(rgb, v[0])),
         "hsvadjust" => (&[("in", 0.0), ("amount", 1.0)], |v| {
             let [turn, saturation, value] = v[1].three();
-            color(|c| {
-                let [h, s, v] = hsv(c);
-                rgb([h + turn, s * saturation, v * value])
-            }, v[0])
+            color(
+                |c| {
+                    let [h, s, v] = hsv(c);
+                    rgb([h + turn, s * saturation, v * value])
+                },
+                v[0],
+            )
         }),
         "colorcorrect" => (
             &[
@@ -291,23 +300,21 @@ pub(super) fn node(category: &str) -> Option<Node> {
         "ramptb" => (&[("valuet", 0.0), ("valueb", 0.0), ("texcoord", 0.0)], |v| {
             mix(v[1], v[0], Value::number(v[2].channels[1].clamp(0.0, 1.0)))
         }),
-        "ramp4" => (
-            &[("valuetl", 0.0), ("valuetr", 0.0), ("valuebl", 0.0), ("valuebr", 0.0), ("texcoord", 0.0)],
-            |v| {
+        "ramp4" => {
+            (&[("valuetl", 0.0), ("valuetr", 0.0), ("valuebl", 0.0), ("valuebr", 0.0), ("texcoord", 0.0)], |v| {
                 let [x, y] = [0, 1].map(|c: usize| Value::number(v[4].channels[c].clamp(0.0, 1.0)));
                 mix(mix(v[2], v[3], x), mix(v[0], v[1], x), y)
-            },
-        ),
+            })
+        }
         "splitlr" => (&[("valuel", 0.0), ("valuer", 0.0), ("center", 0.5), ("texcoord", 0.0)], |v| {
             if v[3].channels[0] < v[2].first() { v[0] } else { v[1] }
         }),
         "splittb" => (&[("valuet", 0.0), ("valueb", 0.0), ("center", 0.5), ("texcoord", 0.0)], |v| {
             if v[3].channels[1] > v[2].first() { v[0] } else { v[1] }
         }),
-        "checkerboard" => (
-            &[("color1", 1.0), ("color2", 0.0), ("texcoord", 0.0), ("uvtiling", 8.0), ("uvoffset", 0.0)],
-            checkered,
-        ),
+        "checkerboard" => {
+            (&[("color1", 1.0), ("color2", 0.0), ("texcoord", 0.0), ("uvtiling", 8.0), ("uvoffset", 0.0)], checkered)
+        }
         _ => return None,
     })
 }
@@ -335,7 +342,8 @@ mod tests {
         let [a, b] = [Value::rgb([0.2, 0.4, 0.6]), Value::number(0.5)];
         assert_eq!(apply("mix", &[a, Value::rgb([1.0; 3]), b]).three(), [0.6, 0.7, 0.8]);
         assert_eq!(apply("invert", &[a, Value::number(1.0)]).three(), [0.8, 0.6, 0.4]);
-        let remapped = apply("remap", &[b, Value::number(0.25), Value::number(0.75), Value::number(2.0), Value::number(4.0)]);
+        let remapped =
+            apply("remap", &[b, Value::number(0.25), Value::number(0.75), Value::number(2.0), Value::number(4.0)]);
         assert_eq!(remapped.first(), 3.0);
         assert_eq!(apply("switch", &[Value::number(1.0), a, b]), b);
         // A quarter turn takes the first axis to minus the second.

@@ -66,7 +66,12 @@ impl<'a> Pictured<'a> {
     }
 
     /// One or three numbers that may vary. A picture stays as it is where the file can say what is done to it; else it is computed in 16 bits, over its largest value.
-    pub(super) fn scaled(&mut self, name: &str, expression: &Arc<Expression>, channels: usize) -> Result<Scaled, String> {
+    pub(super) fn scaled(
+        &mut self,
+        name: &str,
+        expression: &Arc<Expression>,
+        channels: usize,
+    ) -> Result<Scaled, String> {
         if let Some(factor) = expression.constant() {
             return Ok(Scaled { factor: factor.fitted(channels), map: None, notes: Vec::new(), is_computed: false });
         }
@@ -132,7 +137,8 @@ impl<'a> Pictured<'a> {
         let Some((factor, image, channel)) = expression.scaled() else { return Ok(None) };
         let is_known = image.space.is_linear() || image.space.is_srgb();
         let is_held = factor.all().iter().all(|v| (0.0..=1.0).contains(v));
-        let fits = if channels == 1 { image.count == 1 || channel.is_some() } else { image.count >= 3 && channel.is_none() };
+        let fits =
+            if channels == 1 { image.count == 1 || channel.is_some() } else { image.count >= 3 && channel.is_none() };
         let Some(transform) = transform(&image.placement).filter(|_| is_known && is_held && fits) else {
             return Ok(None);
         };
@@ -171,7 +177,8 @@ impl<'a> Pictured<'a> {
             notes.insert(ENDS);
         }
         let first = program.images.first().map(|image| image.placement);
-        let shared = first.filter(|first| !program.has_texcoord && program.images.iter().all(|image| image.placement == *first));
+        let shared =
+            first.filter(|first| !program.has_texcoord && program.images.iter().all(|image| image.placement == *first));
         let shared = shared.and_then(|shared| transform(&shared));
         let extent = |axis: usize| {
             let sizes = program.images.iter().zip(&texels).map(|(image, texels)| {
@@ -192,7 +199,10 @@ impl<'a> Pictured<'a> {
         }
         if shared.is_none() {
             let is_whole = |v: f64| (v - libm::round(v)).abs() < 1e-9;
-            let repeats = program.images.iter().all(|image| image.placement.iter().all(|row| is_whole(row[0]) && is_whole(row[1])));
+            let repeats = program
+                .images
+                .iter()
+                .all(|image| image.placement.iter().all(|row| is_whole(row[0]) && is_whole(row[1])));
             if !repeats {
                 notes.insert("it is computed for texture coordinates from 0 to 1, and repeats beyond them");
             }
@@ -227,7 +237,10 @@ impl<'a> Pictured<'a> {
         channels: usize,
         of: impl Fn(usize, f32) -> f64,
     ) -> Result<Option<String>, String> {
-        let samples = grid.values.iter().flat_map(|texel| texel.iter().take(channels).enumerate().map(|(c, v)| quantised(of(c, *v))));
+        let samples = grid
+            .values
+            .iter()
+            .flat_map(|texel| texel.iter().take(channels).enumerate().map(|(c, v)| quantised(of(c, *v))));
         let samples: Vec<u16> = samples.collect();
         let path = self.pictures.drawn(name, [grid.width, grid.height], channels as u32, samples)?;
         Ok(Some(table(&path, [grid.transform.clone()])))
@@ -252,7 +265,8 @@ fn stem(path: &str) -> &str {
 }
 
 fn table(path: &str, words: impl IntoIterator<Item = Option<String>>) -> String {
-    let words: Vec<String> = std::iter::once(format!("image = \"{path}\"")).chain(words.into_iter().flatten()).collect();
+    let words: Vec<String> =
+        std::iter::once(format!("image = \"{path}\"")).chain(words.into_iter().flatten()).collect();
     format!("{{ {} }}", words.join(", "))
 }
 
@@ -318,8 +332,10 @@ mod tests {
     }
 
     fn of_text(text: &str) -> ([f64; 2], f64, [f64; 2]) {
-        let numbers: Vec<f64> =
-            text.split(|c: char| !(c.is_ascii_digit() || ".-".contains(c))).filter_map(|word| word.parse().ok()).collect();
+        let numbers: Vec<f64> = text
+            .split(|c: char| !(c.is_ascii_digit() || ".-".contains(c)))
+            .filter_map(|word| word.parse().ok())
+            .collect();
         ([numbers[0], numbers[1]], numbers[2], [numbers[3], numbers[4]])
     }
 }

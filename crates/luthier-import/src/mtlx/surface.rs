@@ -138,7 +138,8 @@ impl Writer<'_, '_> {
     fn held(&mut self, property: &str, value: f64, [least, most]: [f64; 2]) -> f64 {
         let held = value.clamp(least, most);
         if (held - value).abs() > 1e-6 {
-            let note = format!("{} is beyond what is read: held to {} to {}", number(value), number(least), number(most));
+            let note =
+                format!("{} is beyond what is read: held to {} to {}", number(value), number(least), number(most));
             self.say(property, Fate::Approximated, note);
         }
         held

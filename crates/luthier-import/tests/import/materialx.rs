@@ -105,16 +105,20 @@ fn fates(material: &Imported, property: &str) -> Vec<Fate> {
 
 #[test]
 fn pictures_stay_as_they_are_where_a_file_can_say_so() {
-    let inputs = of_graph("base_color", "color3", "half") + &of_graph("specular_roughness", "float", "rough")
+    let inputs = of_graph("base_color", "color3", "half")
+        + &of_graph("specular_roughness", "float", "rough")
         + &of_graph("normal", "vector3", "bumps");
     let (material, import) = shader("standard_surface", &inputs, PICTURES);
-    has(&material.text, &[
-        "name = \"red-paint\"",
-        "base_color = 0.5",
-        "base_color = { image = \"maps/color.png\", srgb = true, transform = { scale = [2.0, 3.0] } }",
-        "roughness = { image = \"maps/rough.png\", channel = \"r\", transform = { scale = [2.0, 3.0] } }",
-        "normal = { image = \"maps/color.png\", scale = 0.5 }",
-    ]);
+    has(
+        &material.text,
+        &[
+            "name = \"red-paint\"",
+            "base_color = 0.5",
+            "base_color = { image = \"maps/color.png\", srgb = true, transform = { scale = [2.0, 3.0] } }",
+            "roughness = { image = \"maps/rough.png\", channel = \"r\", transform = { scale = [2.0, 3.0] } }",
+            "normal = { image = \"maps/color.png\", scale = 0.5 }",
+        ],
+    );
     assert_eq!(import.pictures.len(), 2);
     assert_eq!(import.pictures["maps/rough.png"], files("maps/rough.png").unwrap());
 }
@@ -122,10 +126,20 @@ fn pictures_stay_as_they_are_where_a_file_can_say_so() {
 #[test]
 fn pictures_are_computed_where_not() {
     // Below a coat slopes are squares; a graph is evaluated for each texel.
-    let inputs = value("coat", "float", "1") + &of_graph("specular_roughness", "float", "gloss")
-        + &of_graph("coat_color", "color3", "color") + &value("base_color", "color3", "0.5, 0.5, 0.5") + &value("metalness", "float", "1");
+    let inputs = value("coat", "float", "1")
+        + &of_graph("specular_roughness", "float", "gloss")
+        + &of_graph("coat_color", "color3", "color")
+        + &value("base_color", "color3", "0.5, 0.5, 0.5")
+        + &value("metalness", "float", "1");
     let (material, import) = shader("standard_surface", &inputs, PICTURES);
-    has(&material.text, &["darkening = false", "alpha = 0.64", "alpha = { image = \"maps/alpha.png\", transform = { scale = [2.0, 3.0] } }"]);
+    has(
+        &material.text,
+        &[
+            "darkening = false",
+            "alpha = 0.64",
+            "alpha = { image = \"maps/alpha.png\", transform = { scale = [2.0, 3.0] } }",
+        ],
+    );
     let alphas = values(&import, "maps/alpha.png");
     close(alphas[0][0], 1.0);
     close(alphas[1][0], 0.04 / 0.64);
@@ -133,7 +147,8 @@ fn pictures_are_computed_where_not() {
     let linear = |code: f64| if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) };
     let colors = values(&import, "maps/base-color.png");
     has(&material.text, &["base_color = [0.5, ", "image = \"maps/base-color.png\""]);
-    let over = [[255.0, 0.0, 128.0], [51.0, 102.0, 204.0]].map(|texel: [f64; 3]| texel.map(|code| linear(code / 255.0)));
+    let over =
+        [[255.0, 0.0, 128.0], [51.0, 102.0, 204.0]].map(|texel: [f64; 3]| texel.map(|code| linear(code / 255.0)));
     for (found, wanted) in colors.iter().zip(over) {
         for (c, (found, wanted)) in found.iter().zip(wanted).enumerate() {
             close(*found, wanted / over[0][c].max(over[1][c]));
@@ -144,26 +159,33 @@ fn pictures_are_computed_where_not() {
 /// Numbers with published values: F0 of an index, the coat of OpenPBR, its edge tint and its anisotropy.
 #[test]
 fn open_pbr_is_what_its_specification_says() {
-    let inputs = value("base_color", "color3", "0.9, 0.6, 0.3") + &value("base_metalness", "float", "1")
-        + &value("specular_color", "color3", "0.97, 0.98, 0.99") + &value("specular_roughness", "float", "0.4")
-        + &value("specular_roughness_anisotropy", "float", "0.5") + &value("coat_weight", "float", "0.5")
+    let inputs = value("base_color", "color3", "0.9, 0.6, 0.3")
+        + &value("base_metalness", "float", "1")
+        + &value("specular_color", "color3", "0.97, 0.98, 0.99")
+        + &value("specular_roughness", "float", "0.4")
+        + &value("specular_roughness_anisotropy", "float", "0.5")
+        + &value("coat_weight", "float", "0.5")
         + &value("coat_color", "color3", "0.25, 1, 1");
     let (material, _) = shader("open_pbr_surface", &inputs, "");
     // -ln(.25)/2 = .693147; alphas .202 and .101.
-    has(&material.text, &[
-        "ior = 1.6",
-        "weight = 0.5",
-        "absorption_per_um = [0.693147, 0.0, 0.0]",
-        "f82_tint = [0.97, 0.98, 0.99]",
-        "alpha_x = 0.202386",
-        "alpha_y = 0.101193",
-    ]);
+    has(
+        &material.text,
+        &[
+            "ior = 1.6",
+            "weight = 0.5",
+            "absorption_per_um = [0.693147, 0.0, 0.0]",
+            "f82_tint = [0.97, 0.98, 0.99]",
+            "alpha_x = 0.202386",
+            "alpha_y = 0.101193",
+        ],
+    );
     assert!(!material.text.contains("darkening"), "{}", material.text);
     let (plain, _) = shader("open_pbr_surface", &value("specular_ior", "float", "1.6"), "");
     // ((1.6 - 1)/(1.6 + 1))^2
     has(&plain.text, &["f0 = 0.0532544", "roughness = 0.3"]);
     // Below a coat of the same index nothing reflects: the base is diffuse.
-    let (coated, _) = shader("open_pbr_surface", &(value("specular_ior", "float", "1.6") + &value("coat_weight", "float", "1")), "");
+    let (coated, _) =
+        shader("open_pbr_surface", &(value("specular_ior", "float", "1.6") + &value("coat_weight", "float", "1")), "");
     has(&coated.text, &["type = \"diffuse\"", "albedo = 0.8"]);
 }
 
@@ -172,14 +194,30 @@ fn other_shaders_are_read() {
     let (gltf, _) = shader("gltf_pbr", &(value("metallic", "float", "0.25") + &value("ior", "float", "2")), "");
     // A number of metal is a blend, as a map.
     has(&gltf.text, &["f0 = 0.111111", "metallic = { image = \"maps/white.png\" }"]);
-    let (usd, _) = shader("UsdPreviewSurface", &(value("clearcoat", "float", "1") + &value("clearcoatRoughness", "float", "0.5")), "");
+    let (usd, _) = shader(
+        "UsdPreviewSurface",
+        &(value("clearcoat", "float", "1") + &value("clearcoatRoughness", "float", "0.5")),
+        "",
+    );
     has(&usd.text, &["base_color = 0.18", "ior = 1.5\nroughness = 0.5"]);
-    let (disney, _) = shader("disney_principled", &(value("specular", "float", "1") + &value("anisotropic", "float", "0.5")), "");
+    let (disney, _) =
+        shader("disney_principled", &(value("specular", "float", "1") + &value("anisotropic", "float", "0.5")), "");
     has(&disney.text, &["f0 = 0.08", "alpha_x = 0.353553", "alpha_y = 0.176777"]);
-    let (film, _) = shader("standard_surface", &(value("thin_film_thickness", "float", "400") + &value("metalness", "float", "1")), "");
+    let (film, _) = shader(
+        "standard_surface",
+        &(value("thin_film_thickness", "float", "400") + &value("metalness", "float", "1")),
+        "",
+    );
     has(&film.text, &["thickness_nm = 400.0", "metallic = 1.0"]);
-    let (lost, _) = shader("standard_surface", &(value("transmission", "float", "1") + &value("sheen", "float", "0") + &value("odd", "float", "1")), "");
-    assert_eq!([fates(&lost, "transmission"), fates(&lost, "sheen"), fates(&lost, "odd")], [[Fate::Dropped], [Fate::Kept], [Fate::Dropped]]);
+    let (lost, _) = shader(
+        "standard_surface",
+        &(value("transmission", "float", "1") + &value("sheen", "float", "0") + &value("odd", "float", "1")),
+        "",
+    );
+    assert_eq!(
+        [fates(&lost, "transmission"), fates(&lost, "sheen"), fates(&lost, "odd")],
+        [[Fate::Dropped], [Fate::Kept], [Fate::Dropped]]
+    );
 }
 
 #[test]
@@ -217,7 +255,10 @@ fn graphs_are_followed() {
     // Names that lead nowhere, circles and nodes that are not read are told with their line.
     for (beside, said) in [
         ("", "there is no node graph `G`"),
-        ("<nodegraph name=\"G\"><output name=\"out\" type=\"color3\" nodename=\"x\"/></nodegraph>", "line 3: there is no node `x`"),
+        (
+            "<nodegraph name=\"G\"><output name=\"out\" type=\"color3\" nodename=\"x\"/></nodegraph>",
+            "line 3: there is no node `x`",
+        ),
         (
             "<nodegraph name=\"G\">\n<noise3d name=\"n\" type=\"color3\"/><output name=\"out\" type=\"color3\" nodename=\"n\"/></nodegraph>",
             "line 4: the node `noise3d` is not read",
@@ -267,7 +308,8 @@ fn a_picture_that_is_missing_is_told() {
     let (material, import) = shader("gltf_pbr", &input("base_color", "color3", "nodename=\"c\""), graph);
     assert_eq!(fates(&material, "picture of base_color"), [Fate::Dropped]);
     assert!(import.pictures.is_empty());
-    let tiles = r#"<image name="c" type="color3"><input name="file" type="filename" value="a.&lt;UDIM&gt;.png"/></image>"#;
+    let tiles =
+        r#"<image name="c" type="color3"><input name="file" type="filename" value="a.&lt;UDIM&gt;.png"/></image>"#;
     let (material, _) = shader("gltf_pbr", &input("base_color", "color3", "nodename=\"c\""), tiles);
     assert!(material.lines[0].note.contains("one of many tiles"), "{:?}", material.lines);
 }
@@ -275,7 +317,10 @@ fn a_picture_that_is_missing_is_told() {
 #[test]
 fn broken_files_say_where() {
     let said = |text: &str| materialx("x.mtlx", text.as_bytes(), &files).unwrap_err().to_string();
-    assert_eq!(said("<materialx version=\"1.37\"/>"), "line 1: version 1.37 is older than 1.38: write the file anew with MaterialX");
+    assert_eq!(
+        said("<materialx version=\"1.37\"/>"),
+        "line 1: version 1.37 is older than 1.38: write the file anew with MaterialX"
+    );
     assert_eq!(said("\n<html/>"), "line 2: the root is `html`: a MaterialX file has `materialx`");
     assert!(said("<materialx version=\"1.39\">\n<a>\n</b></materialx>").starts_with("line 3: no well-formed XML: "));
     assert!(said("<!DOCTYPE x [<!ENTITY a \"b\">]><materialx version=\"1.39\"/>").starts_with("line 1: "));
@@ -288,7 +333,10 @@ fn broken_files_say_where() {
     assert!(said(&document(&deep)).contains("more than 64"));
     let hair = "<hair name=\"S\" type=\"surfaceshader\"/>".to_owned() + MATERIAL;
     let error = materialx("x.mtlx", document(&hair).as_bytes(), &files).unwrap_err();
-    assert!(matches!(&error, ImportError::Empty(_)) && error.to_string().contains("the shader `hair` is not read"), "{error}");
+    assert!(
+        matches!(&error, ImportError::Empty(_)) && error.to_string().contains("the shader `hair` is not read"),
+        "{error}"
+    );
     // The format is told by its content.
     let body = format!("<gltf_pbr name=\"S\" type=\"surfaceshader\"/>{MATERIAL}");
     assert_eq!(import("x", document(&body).as_bytes(), &files).unwrap().materials.len(), 1);
@@ -299,34 +347,105 @@ const INPUTS: [(&str, &[&str]); 5] = [
     (
         "standard_surface",
         &[
-            "base", "base_color", "diffuse_roughness", "metalness", "specular", "specular_color", "specular_roughness",
-            "specular_IOR", "specular_anisotropy", "specular_rotation", "subsurface", "subsurface_color", "coat",
-            "coat_color", "coat_roughness", "coat_anisotropy", "coat_rotation", "coat_IOR", "coat_affect_color",
-            "coat_affect_roughness", "thin_film_thickness", "thin_film_IOR", "normal", "coat_normal",
+            "base",
+            "base_color",
+            "diffuse_roughness",
+            "metalness",
+            "specular",
+            "specular_color",
+            "specular_roughness",
+            "specular_IOR",
+            "specular_anisotropy",
+            "specular_rotation",
+            "subsurface",
+            "subsurface_color",
+            "coat",
+            "coat_color",
+            "coat_roughness",
+            "coat_anisotropy",
+            "coat_rotation",
+            "coat_IOR",
+            "coat_affect_color",
+            "coat_affect_roughness",
+            "thin_film_thickness",
+            "thin_film_IOR",
+            "normal",
+            "coat_normal",
         ],
     ),
     (
         "open_pbr_surface",
         &[
-            "base_weight", "base_color", "base_diffuse_roughness", "base_metalness", "specular_weight", "specular_color",
-            "specular_roughness", "specular_ior", "specular_roughness_anisotropy", "subsurface_weight", "coat_weight",
-            "coat_color", "coat_roughness", "coat_roughness_anisotropy", "coat_ior", "coat_darkening", "thin_film_weight",
-            "thin_film_thickness", "thin_film_ior", "geometry_normal", "geometry_coat_normal",
+            "base_weight",
+            "base_color",
+            "base_diffuse_roughness",
+            "base_metalness",
+            "specular_weight",
+            "specular_color",
+            "specular_roughness",
+            "specular_ior",
+            "specular_roughness_anisotropy",
+            "subsurface_weight",
+            "coat_weight",
+            "coat_color",
+            "coat_roughness",
+            "coat_roughness_anisotropy",
+            "coat_ior",
+            "coat_darkening",
+            "thin_film_weight",
+            "thin_film_thickness",
+            "thin_film_ior",
+            "geometry_normal",
+            "geometry_coat_normal",
         ],
     ),
     (
         "gltf_pbr",
         &[
-            "base_color", "metallic", "roughness", "ior", "specular", "specular_color", "anisotropy_strength",
-            "anisotropy_rotation", "clearcoat", "clearcoat_roughness", "iridescence", "iridescence_thickness",
-            "iridescence_ior", "normal", "clearcoat_normal",
+            "base_color",
+            "metallic",
+            "roughness",
+            "ior",
+            "specular",
+            "specular_color",
+            "anisotropy_strength",
+            "anisotropy_rotation",
+            "clearcoat",
+            "clearcoat_roughness",
+            "iridescence",
+            "iridescence_thickness",
+            "iridescence_ior",
+            "normal",
+            "clearcoat_normal",
         ],
     ),
     (
         "UsdPreviewSurface",
-        &["diffuseColor", "metallic", "roughness", "ior", "useSpecularWorkflow", "specularColor", "clearcoat", "clearcoatRoughness", "normal"],
+        &[
+            "diffuseColor",
+            "metallic",
+            "roughness",
+            "ior",
+            "useSpecularWorkflow",
+            "specularColor",
+            "clearcoat",
+            "clearcoatRoughness",
+            "normal",
+        ],
     ),
-    ("disney_principled", &["baseColor", "metallic", "roughness", "specular", "specularTint", "anisotropic", "clearcoat", "clearcoatGloss"]),
+    (
+        "disney_principled",
+        &[
+            "baseColor",
+            "metallic",
+            "roughness",
+            "specular",
+            "specularTint",
+            "anisotropic",
+            "clearcoat",
+            "clearcoatGloss",
+        ],
+    ),
 ];
 
 const NUMBERS: [&str; 10] = ["0", "1", "0.5", "-1", "1e30", "1e-30", "2.4", "0.04", "400", "0.999999"];

@@ -41,11 +41,7 @@ pub fn scene(bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Resul
     read(bytes, files, true)
 }
 
-fn read(
-    bytes: &[u8],
-    files: &dyn Fn(&str) -> io::Result<Vec<u8>>,
-    keeps_materials: bool,
-) -> Result<File, MeshError> {
+fn read(bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>, keeps_materials: bool) -> Result<File, MeshError> {
     let container = container::split(bytes)?;
     let document = Document::parse(container.json)?;
     let passed_over = extensions::passed_over(&document)?;

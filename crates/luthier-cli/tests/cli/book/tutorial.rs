@@ -114,7 +114,7 @@ fn every_command_prints_what_the_page_says() {
     let workshop = Workshop::new();
     let (text, wrong) = follow(page, &workshop);
     let pictures: Vec<&str> = page.links().into_iter().filter(|link| link.starts_with("images/tutorial/")).collect();
-    assert_eq!(pictures.len(), 3);
+    assert_eq!(pictures.len(), 4);
     let made = |picture: &str| workshop.path("bowl").join(Path::new(picture).file_name().unwrap());
     if std::env::var_os("LUTHIER_ACCEPT").is_some() {
         std::fs::write(&page.path, text).unwrap();

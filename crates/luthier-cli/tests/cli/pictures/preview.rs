@@ -15,7 +15,7 @@ fn baked() -> Workshop {
 fn preview(workshop: &Workshop, material: &str, picture: &str, more: &[&str]) -> Option<RgbImage> {
     let size = ["preview", material, "-o", picture, "--size", "48", "--samples", "2"];
     // Most look at places of a ball.
-    let chosen = more.iter().any(|option| ["--shape", "--mesh"].contains(option));
+    let chosen = more.iter().any(|option| ["--shape", "--mesh"].contains(option)) || material.ends_with(".gltf");
     let shape: &[&str] = if chosen { &[] } else { &["--shape", "sphere"] };
     let run: Run = workshop.run(&[&size[..], shape, more].concat());
     if run.lacks_adapter() {
@@ -368,4 +368,25 @@ fn lights_and_tone_curves() {
     for bad in ["1,2", "0,0,0", "a,b,c", "inf,0,0"] {
         workshop.run(&["preview", "matte.toml", "-o", "no.png", "--light", bad]).fails(2, &["--light", bad]);
     }
+}
+
+/// A glTF file shows each part in its own material; parts without one in that of glTF.
+#[test]
+fn a_scene_in_its_own_materials() {
+    let page = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let tiles = page
+        .split("```json\n")
+        .find_map(|block| block.split_once("```").map(|(text, _)| text).filter(|text| text.contains("Gilded")));
+    let workshop = Workshop::with(&[("tiles.gltf", tiles.unwrap())]);
+    let Some(picture) = preview(&workshop, "tiles.gltf", "tiles.png", &["--no-fit"]) else { return };
+    let at = |x: u32| picture.get_pixel(x, 24).0.map(i32::from);
+    let ([_, _, blue], [red, _, dim]) = (at(14), at(34));
+    assert!(blue > at(14)[0] && red > dim + 20, "{:?} {:?}", at(14), at(34));
+    workshop.write("bare.gltf", tiles.unwrap().replace(", \"material\": 1}", "}"));
+    let bare = preview(&workshop, "bare.gltf", "bare.png", &["--no-fit"]).unwrap();
+    let [red, green, blue] = bare.get_pixel(34, 24).0.map(i32::from);
+    assert!((red - green).abs() < 8 && (green - blue).abs() < 8, "{red} {green} {blue}");
+    workshop
+        .run(&["preview", "tiles.gltf", "-o", "x.png", "--shape", "sphere"])
+        .fails(2, &["its own shape and materials"]);
 }
