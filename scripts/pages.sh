@@ -46,6 +46,8 @@ places() { luthier-lab places -o docs/pages/places.md; }
 textured() { luthier-lab textured "${stacks[@]}" -o docs/pages/textured.md; }
 # The page of foreign files, from the outcomes that are kept: `luthier-lab foreign --help` says how a collection at hand is tried.
 foreign() { luthier-lab foreign --data docs/measurements/foreign.json --page docs/pages/foreign.md; }
+# By its name only: wants Blender as a module (`pip install bpy==5.0.1`) in the Python that BPY_PYTHON names, and the program by LUTHIER.
+furnaces() { "${BPY_PYTHON:-python3}" scripts/furnaces.py "${LUTHIER:?names the program}" docs/pages/cycles.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
