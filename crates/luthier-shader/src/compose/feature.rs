@@ -199,6 +199,8 @@ luthier_lut::named! {
         LobesFamily = "lobes_family",
         /// Rows of a family are over the slope parameters of both coat and base.
         LobesCoats = "lobes_coats",
+        /// The coat of a family has other slope parameters than the one of its layer.
+        LobesCoatSlopes = "lobes_coat_slopes",
         /// The base of a family is metallic in places.
         LobesMetallic = "lobes_metallic",
         /// Light of such a family is absorbed below the coat.

@@ -560,6 +560,7 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
     let words = [
         (Feature::LobesFamily, true),
         (Feature::LobesCoats, family.has_two_axes()),
+        (Feature::LobesCoatSlopes, has_coat_slopes(material, family)),
         (Feature::LobesMetallic, family.is_metallic),
         (Feature::LobesTinted, is_tinted),
         (Feature::LobesLengths, has_lengths),
@@ -568,6 +569,16 @@ fn of_family(material: &MaterialEntry) -> Vec<Feature> {
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
 }
+
+/// Whether the coat of a family has slope parameters other than the one of its layer, or numbers over them.
+fn has_coat_slopes(material: &MaterialEntry, family: FamilyRecord) -> bool {
+    let (Some(coat), Some(first)) = (family.coat, material.layers.first()) else { return false };
+    let is_one = coat.nodes == 1 && family.sent_back[1] == 0.0;
+    !is_one || (coat.most - first.alpha).abs() > SLOPES_ALIKE * coat.most
+}
+
+/// Relative difference of slope parameters that single precision does not tell.
+const SLOPES_ALIKE: f64 = 1e-7;
 
 /// F0 of the dielectric of a `metallic-roughness` surface whose file names no other.
 const ENGINE_F0: f64 = 0.04;

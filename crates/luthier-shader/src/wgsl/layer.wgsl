@@ -195,9 +195,27 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
 /// A layer of another slope parameter.
 fn luthier_with_alpha(layer: LuthierLayer, alpha: f32) -> LuthierLayer {
     var next = layer;
-    let sharper = layer.alpha / alpha;
     next.alpha = alpha;
-    next.falloff = layer.falloff * (sharper * sharper);
-    next.peak = layer.peak * (sharper * sharper);
+    //? lobes_family, !free_slopes
+    {
+        // Not over those of the layer: then its word of them need not be read.
+        let sharpness = 1.0 / (alpha * alpha);
+        next.peak = sharpness * (0.25 / LUTHIER_PI);
+        //? beckmann
+        {
+            //? ggx
+            next.falloff = sharpness * select(1.442695, 1.0, layer.distribution > 0.5);
+            //? else
+            next.falloff = sharpness * 1.442695;
+        }
+        //? else
+        next.falloff = sharpness;
+    }
+    //? else
+    {
+        let sharper = layer.alpha / alpha;
+        next.falloff = layer.falloff * (sharper * sharper);
+        next.peak = layer.peak * (sharper * sharper);
+    }
     return next;
 }

@@ -24,15 +24,48 @@ fn luthier_half_slope_density(shape: LuthierLobeShape, slope: vec2<f32>) -> f32 
 /// The half vector with light from wi between refracted directions: its slopes in the frame of the lobes, and the factor from half
 /// densities of slopes to densities of solid angle outside.
 fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
-    // Directions inside times the index.
+    //? !lobes_family|~lobes_family|lobes_tails
+    {
+        // Directions inside times the index.
+        let sum = wi.xy + prepared.wo.xy;
+        let across = luthier_in_frame(prepared.azimuth, sum);
+        let inside_cos_sq = luthier_inside_cos_sq(prepared.medium, wi.z);
+        let inverse_cos = inverseSqrt(inside_cos_sq);
+        let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
+        let inverse_z = 1.0 / z;
+        let factor = (dot(sum, sum) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
+        return vec3<f32>(across * inverse_z, factor);
+    }
+    //? else
+    {
+        let sum = luthier_sum_below(prepared, wi);
+        let inverse_z = 1.0 / sum.z;
+        let inverse_sq = inverse_z * inverse_z;
+        return vec3<f32>(sum.xy * inverse_z, sum.w * inverse_sq * inverse_sq);
+    }
+}
+
+/// The sum of refracted directions times the index, in the frame of the lobes, and the factor of `luthier_place_below` times its z to the fourth.
+fn luthier_sum_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec4<f32> {
     let sum = wi.xy + prepared.wo.xy;
-    let across = luthier_in_frame(prepared.azimuth, sum);
     let inside_cos_sq = luthier_inside_cos_sq(prepared.medium, wi.z);
     let inverse_cos = inverseSqrt(inside_cos_sq);
     let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
-    let inverse_z = 1.0 / z;
-    let factor = (dot(sum, sum) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
-    return vec3<f32>(across * inverse_z, factor);
+    let factor = (dot(sum, sum) + z * z) * z * (inverse_cos * wi.z);
+    return vec4<f32>(luthier_in_frame(prepared.azimuth, sum), z, factor);
+}
+
+/// Density in solid angle of a lobe with the tail of GGX, at a sum of `luthier_sum_below`: `luthier_half_slope_density` of its slope without that quotient.
+fn luthier_density_below(shape: LuthierLobeShape, sum: vec4<f32>) -> f32 {
+    //? lobes_axes
+    let apart = shape.sharpness * sum.xy + shape.shear * sum.yx - shape.middle * sum.z;
+    //? else
+    //? lobes_tilted
+    let apart = shape.sharpness * sum.xy - shape.middle * sum.z;
+    //? else
+    let apart = vec2<f32>(sum.x * shape.sharpness.x - sum.z * shape.middle, sum.y * shape.sharpness.y);
+    let falloff = 1.0 / (sum.z * sum.z + dot(apart, apart));
+    return falloff * falloff * shape.peak * sum.w;
 }
 
 /// f cos_theta_i of the layer that is bare where the first is not, without lobes; `sum` is that of the directions.
@@ -103,15 +136,26 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
         if prepared.first_shape.peak == 0.0 {
             return value;
         }
-        let place = luthier_place_below(prepared, wi);
-        value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);
+        //? !lobes_family|~lobes_family|lobes_tails
+        {
+            let place = luthier_place_below(prepared, wi);
+            value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);
+        }
+        //? else
+        {
+            let sum_below = luthier_sum_below(prepared, wi);
+            value += prepared.first_strength * luthier_density_below(prepared.first_shape, sum_below);
+        }
     }
     //? lobes_mixed, two_lobes
     if prepared.second_shape.peak == 0.0 {
         return value;
     }
     //? two_lobes
+    //? !lobes_family|~lobes_family|lobes_tails
     value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, place.xy) * place.z);
+    //? else
+    value += prepared.second_strength * luthier_density_below(prepared.second_shape, sum_below);
     return value;
 }
 

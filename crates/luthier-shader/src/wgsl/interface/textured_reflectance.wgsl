@@ -115,7 +115,10 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
             return max(whole - kept, min(whole, vec3<f32>(0.0)));
         }
         //? else
+        //? facets_f0
         return 1.0 - layer.passing * (1.0 - luthier_fresnel_given(layer, cos_theta_d));
+        //? else
+        return luthier_fresnel_given(layer, cos_theta_d);
     }
     //? else
     return vec3<f32>(0.0);

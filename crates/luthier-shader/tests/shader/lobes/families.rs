@@ -98,7 +98,9 @@ pub(super) fn family(interface: usize, is_metallic: bool, nodes: [u32; 2]) -> Fa
         SlopeAxis { least: if nodes[i] > 1 { least } else { most }, most, nodes: nodes[i] as usize }
     });
     let coat = if interface > 0 { coat } else { SlopeAxis { least: 0.0, most: 0.0, nodes: 1 } };
-    let sent_back = if is_metallic { SENT_BACK } else { [0.0; 3] };
+    let [least, by_coat, by_base] = SENT_BACK;
+    let by_coat = if coat.nodes > 1 { by_coat } else { 0.0 };
+    let sent_back = if is_metallic { [least, by_coat, by_base] } else { [0.0; 3] };
     let (is_tinted, has_lengths, has_tail) = (false, false, false);
     Family { coat, base, interface, is_metallic, is_tinted, has_lengths, has_tail, sent_back }
 }
@@ -310,6 +312,10 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         // And a base that keeps its colours lies below a slab that varies.
         (family(1, false, NODES).below_varied_slab(true), &surface[..], vec![plain.clone()]),
         (family(1, false, NODES).below_varied_slab(true), &surface[1..], vec![material(family(1, true, NODES))]),
+        // And coats have the one slope parameter of their layer, which shaders then take from there.
+        (family(1, true, [1, 3]), &surface[1..], vec![]),
+        (family(1, false, [1, 3]), &surface[..], vec![plain.clone()]),
+        (family(1, true, [1, 3]), &surface[1..], vec![material(family(0, true, [1, 3]))]),
     ]
     .into_iter()
     .enumerate()
@@ -326,6 +332,9 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let mut materials: Vec<MaterialEntry> = [first].into_iter().chain(others).collect();
         for (number, material) in materials.iter_mut().enumerate() {
             material.name = format!("m{number}");
+        }
+        if number >= 24 {
+            materials[0].layers[0].alpha = family.coat.most;
         }
         let (layout, image) = rows(family);
         let tables = tables_with(&layout);
@@ -348,6 +357,9 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             ("luthier_phase", echoes),
         ];
         let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        if number >= 24 {
+            assert!(!text.contains("coat_axis"), "{text}");
+        }
         let machine = Machine::new(&text, &material_buffer(&materials), textures);
         let neutral = machine.call("luthier_place", Vec::new());
         let member = |name: &str| {

@@ -133,13 +133,13 @@
 
     //? !lobes_tails|~lobes_tails
     /// Shares above the horizon of both lobes of a family in the plane of the eye, with the tail of GGX: see `Leaving` of the f64 twin. `radius` is that of the disc of
-    /// slopes to light above the horizon, whose middle is in that plane; `sines` are the sine of the view and 1 less it, `slope` that of the middle of the first lobe.
-    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, radius: f32, sines: vec2<f32>) -> vec2<f32> {
+    /// slopes to light above the horizon, whose middle is in that plane; `less_sine` is 1 less the sine of the view, `slope` that of the middle of the first lobe.
+    fn luthier_family_leaving(slope: f32, sharpness: vec4<f32>, radius: f32, less_sine: f32) -> vec2<f32> {
         let along = radius * sharpness.xz;
         let across = radius * sharpness.yw;
         // From the middle of a lobe to both edges of the disc: at flat views one of them is near.
-        let near = (radius * sines.y + vec2<f32>(slope, 0.0)) * sharpness.xz;
-        let far = (radius * (1.0 + sines.x) - vec2<f32>(slope, 0.0)) * sharpness.xz;
+        let near = (radius * less_sine + vec2<f32>(slope, 0.0)) * sharpness.xz;
+        let far = 2.0 * along - near;
         let away = along - near;
         let squares = (1.0 + near * near) * (1.0 + far * far);
         let over_root = inverseSqrt(squares);
@@ -226,6 +226,7 @@
     fn luthier_prepare_family($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
         let header = luthier_header(material);
         let base_axis = luthier_materials[header + $word_phong_diffuse];
+        //? lobes_coat_slopes|~lobes_metallic
         let coat_axis = luthier_materials[header + $word_patina_tarnish];
         let tilt_word = luthier_materials[header + $word_glitter_tilt];
         let base_layer = $base_layer;
@@ -269,14 +270,23 @@
             //? place
             alphas *= place.alpha_factor;
         }
-        let least = vec2<f32>(coat_axis.x, base_axis.x);
-        let roots = clamp(sqrt(max(alphas, vec2<f32>(0.0))), least, vec2<f32>(coat_axis.y, base_axis.y));
-        let nodes = (roots - least) * vec2<f32>(coat_axis.z, base_axis.z);
-        let held = roots * roots;
+        //? lobes_coat_slopes
+        {
+            let least = vec2<f32>(coat_axis.x, base_axis.x);
+            let roots = clamp(sqrt(max(alphas, vec2<f32>(0.0))), least, vec2<f32>(coat_axis.y, base_axis.y));
+            let nodes = (roots - least) * vec2<f32>(coat_axis.z, base_axis.z);
+            let held = roots * roots;
+        }
+        //? else
+        {
+            // Every coat has the one slope parameter of its layer, and none where the base is the first interface.
+            let root = clamp(sqrt(max(alphas.y, 0.0)), base_axis.x, base_axis.y);
+            let held = vec2<f32>(select(luthier_materials[first_word + $word_numbers].y, 0.0, base_layer == 0u), root * root);
+        }
         // Tiles over the base follow each other, and make a sheet for each node of the coat. One tile makes no sheet: then tiles follow the coat.
-        let sheet = abs(coat_axis.w);
         //? lobes_coats
         {
+            let sheet = abs(coat_axis.w);
             let share = select(0.0, fract(nodes.x), sheet > 1.5);
             let beside = vec2<f32>(sheet, share);
             let tile = luthier_materials[header].w + (nodes.x - share) * sheet + nodes.y;
@@ -284,7 +294,10 @@
         //? else
         {
             let beside = vec2<f32>(0.0);
+            //? lobes_coat_slopes
             let tile = luthier_materials[header].w + nodes.x + nodes.y;
+            //? else
+            let tile = luthier_materials[header].w + (root - base_axis.x) * base_axis.z;
         }
         // Along the normal the azimuth is 0.
         let across = vec2<f32>(wo.x + 1e-15, wo.y);
@@ -397,7 +410,10 @@
                 let passed = vec3<f32>(1.0);
             }
             // Rows have the light of a diffuse base of the albedo 0.8.
+            //? lobes_coat_slopes
             let back = prepared.medium.y + tilt_word.w * roots.x + prepared.medium.w * roots.y;
+            //? else
+            let back = prepared.medium.y + prepared.medium.w * root;
             var light = vec3<f32>(of_facet.z * (1.25 - back));
             var sent_back = vec3<f32>(back);
             //? lobes_tinted|film_f0
@@ -529,9 +545,10 @@
             if base_layer > 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0 {
                 more += (1.0 - metallic) * luthier_family_more(of_more.rgb, dielectric * again);
             }
-            wide = of_facet.y + (1.0 - metallic) * (light * diffuse / (passed - sent_back * diffuse));
+            let of_base = (1.0 - metallic) * light;
+            wide = of_facet.y + of_base * diffuse / (passed - sent_back * diffuse);
             //? lobes_lean
-            met = (1.0 - metallic) * (light * diffuse / passed);
+            met = of_base * diffuse / passed;
             entering = vec3<f32>(of_facet.x);
             if base_layer == 0u {
                 // Several facets of the dielectric, and one of either.
@@ -621,9 +638,10 @@
             prepared.wide -= (1.0 - base_normal.z) * prepared.leaning;
         }
         let squares = held * held;
-        let once_spread = sqrt(squares.y + 0.09 * squares.x);
-        let more_spread = min(sqrt(4.84 * squares.y + squares.x), 1.0);
-        let sharp = sharpness / vec2<f32>(once_spread, more_spread).xxyy;
+        let once_square = squares.y + 0.09 * squares.x;
+        let over_spreads = vec2<f32>(inverseSqrt(once_square), max(inverseSqrt(4.84 * squares.y + squares.x), 1.0));
+        let once_spread = once_square * over_spreads.x;
+        let sharp = sharpness * over_spreads.xxyy;
         //? lobes_tails
         let decay = tilt_word.y;
         //? else
@@ -636,12 +654,12 @@
         let radius = luthier_leaving_disc(prepared).z;
         let middle = shift * sin_theta;
         //? !lobes_tails|~lobes_tails
-        let sines = vec2<f32>(sin_theta, wo.z * wo.z / (1.0 + sin_theta));
+        let less_sine = wo.z * wo.z / (1.0 + sin_theta);
         //? lobes_tails
         {
             //? ~lobes_tails
             if decay == 1.0 {
-                prepared.shares = luthier_family_leaving(middle, sharp, radius, sines);
+                prepared.shares = luthier_family_leaving(middle, sharp, radius, less_sine);
             } else {
                 prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, radius * vec2<f32>(sin_theta, 1.0));
             }
@@ -649,7 +667,7 @@
             prepared.shares = luthier_family_tail_shares(prepared.row, beside, middle, sharp, decay, radius * vec2<f32>(sin_theta, 1.0));
         }
         //? else
-        prepared.shares = luthier_family_leaving(middle, sharp, radius, sines);
+        prepared.shares = luthier_family_leaving(middle, sharp, radius, less_sine);
         //? anisotropic
         if coat_alphas.x != coat_alphas.y || base_alphas.x != base_alphas.y {
             let disc = luthier_leaving_disc(prepared);
