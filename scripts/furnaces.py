@@ -24,9 +24,9 @@ WHY = """
 Metals and plastics mean the same in both, and the other kinds do not:
 
 - **Edges of dielectrics.** glTF has Schlick's formula, and luthier takes it. Cycles takes Fresnel's equations of the index: .036 less at 85 degrees for an F0 of .04.
-- **Rough dielectrics at grazing angles.** An F0 without an index bends no light. Light that a facet lets through therefore goes on as slantingly as it came, and the simulation lets it meet more facets, each of
-  which reflects some. Over a black base, a roughness of .8 and an F0 of .04 return {0[3]:.3f} of the light at 75 degrees and {0[4]:.3f} at 85; with `ior = 1.5` in place of the F0 {1[3]:.3f} and {1[4]:.3f}. This is a weakness of
-  the layer `metallic-roughness`, to whose simulation `lobes` is fitted.
+- **Rough dielectrics at grazing angles.** The interface of `metallic-roughness` bends no light. Light that a facet lets through therefore goes on as slantingly as it came, and the simulation lets it meet more
+  facets, each of which reflects some. With a black base and a roughness of .8 it returns {0[3]:.3f} of the light at 75 degrees and {0[4]:.3f} at 85; a `dielectric` of the same F0 over black, which bends light, {1[3]:.3f} and {1[4]:.3f}. This is a weakness
+  of that layer, to whose simulation `lobes` is fitted.
 - **Mixtures.** Blender mixes a metal and a dielectric under one interface; glTF blends two surfaces, and so does luthier.
 - **Coats.** In Cycles a coat dims what lies below and sends nothing back to it. Here light goes to and fro, and a smooth coat keeps slanted light from a metal: gold under lacquer is darker at 75 degrees.
 
@@ -147,12 +147,15 @@ def simulated(luthier, path):
 
 
 def edges(luthier, folder):
-    """Albedos of a rough interface over black, by an F0 and by an index."""
+    """Albedos of a rough interface over black, that bends no light and that does."""
     out = []
-    for word in ("f0 = 0.04", "ior = 1.5"):
+    tail = "roughness = 0.8\n"
+    whole = "type = \"metallic-roughness\"\nbase_color = 0\n" + tail
+    parts = "type = \"dielectric\"\nf0 = 0.04\n" + tail + "[[layer]]\ntype = \"diffuse\"\nalbedo = 0\n"
+    for layers in (whole, parts):
         path = os.path.join(folder, "edge.toml")
         with open(path, "w") as file:
-            file.write(f"schema = 1\nname = \"edge\"\n[[layer]]\ntype = \"dielectric\"\n{word}\nroughness = 0.8\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0\n")
+            file.write("schema = 1\nname = \"edge\"\n[[layer]]\n" + layers)
         out.append([row[0] for row in simulated(luthier, path)])
     return out
 
