@@ -24,8 +24,11 @@ const TURN: &str = "turned from the surface's tangent, counter-clockwise";
 const UNDARKENED: &str = "the coat is layered, with light that goes to and fro below it; the base stays as bright as its colour (`darkening = false`)";
 const EDGE_TOO: &str = "the format scales what the edge reflects, too, which is all here";
 
+/// A shader as a surface, with what became of each input.
+pub(super) type Model = fn(Inputs<'_>) -> (Surface, Vec<Line>);
+
 /// The function of a shader; `None` where it is none that is read.
-pub(super) fn model(category: &str) -> Option<fn(Inputs<'_>) -> (Surface, Vec<Line>)> {
+pub(super) fn model(category: &str) -> Option<Model> {
     Some(match category {
         "standard_surface" => standard_surface,
         "open_pbr_surface" => open_pbr,
@@ -451,7 +454,7 @@ mod tests {
     fn edges_of_artistic_metals_are_fresnels() {
         // r = .5, g = .5: n = .5/3 + .5 (1 + sqrt .5)/(1 - sqrt .5), k^2 as Gulbrandsen 2014.
         let (n, r): (f64, f64) = (0.5 / 3.0 + 0.5 * (1.0 + 0.5_f64.sqrt()) / (1.0 - 0.5_f64.sqrt()), 0.5);
-        let k = ((r * (n + 1.0).powi(2) - (n - 1.0).powi(2)) / (1.0 - r)).sqrt();
+        let k = ((r * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - r)).sqrt();
         // At 82 degrees the angle of refraction of so high an index is nearly the normal: cos_t = sqrt(1 - sin^2/(n - ik)^2).
         let cos = 1.0 / 7.0_f64;
         let mul = |(a, b): (f64, f64), (c, d): (f64, f64)| (a * c - b * d, a * d + b * c);
@@ -468,7 +471,7 @@ mod tests {
         let power = |(a, b): (f64, f64)| a * a + b * b;
         let ratio = |a: (f64, f64), b: (f64, f64)| power(div((a.0 - b.0, a.1 - b.1), (a.0 + b.0, a.1 + b.1)));
         let [s, p] = [ratio((cos, 0.0), mul(index, inside)), ratio(mul(index, (cos, 0.0)), inside)];
-        let schlick = r + (1.0 - r) * (1.0 - cos).powi(5);
+        let schlick = r + (1.0 - r) * libm::pow(1.0 - cos, 5.0);
         near(artistic_edge(0.5, 0.5), 0.5 * (s + p) / schlick, 1e-9);
     }
 

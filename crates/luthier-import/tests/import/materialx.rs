@@ -144,7 +144,7 @@ fn pictures_are_computed_where_not() {
     close(alphas[0][0], 1.0);
     close(alphas[1][0], 0.04 / 0.64);
     // The colour of a coat multiplies that of the base: linear Rec.709 by the definition of sRGB.
-    let linear = |code: f64| if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) };
+    let linear = |code: f64| if code <= 0.04045 { code / 12.92 } else { libm::pow((code + 0.055) / 1.055, 2.4) };
     let colors = values(&import, "maps/base-color.png");
     has(&material.text, &["base_color = [0.5, ", "image = \"maps/base-color.png\""]);
     let over =
