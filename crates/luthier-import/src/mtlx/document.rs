@@ -27,7 +27,7 @@ pub(super) struct Element {
     pub(super) place: String,
     /// Folder of its file, relative to the document: empty, or with a slash at its end.
     pub(super) folder: Arc<str>,
-    /// What stands before file names, of the innermost element that says so.
+    /// Beginning of file names, of the innermost element that says so.
     pub(super) file_prefix: Arc<str>,
     /// Space of colours, of the innermost element that says so.
     pub(super) color_space: Arc<str>,
@@ -54,23 +54,23 @@ impl Element {
 }
 
 /// Reads a document with its includes into one root.
-pub(super) fn read(bytes: &[u8], files: Files<'_>) -> Result<Arc<Element>, ImportError> {
-    let mut reading = Reading { files, read: BTreeSet::new() };
-    let root = reading.file("", bytes)?;
-    let version = root.attribute("version").unwrap_or_default();
+pub(super) fn read(label: &str, bytes: &[u8], files: Files<'_>) -> Result<Arc<Element>, ImportError> {
+    let mut reading = Reading { files, read: BTreeSet::from([label.to_owned()]) };
+    Ok(Arc::new(reading.file("", bytes)?))
+}
+
+/// Refuses a root that is no MaterialX of version 1.38 or later.
+fn check(root: &Element) -> Result<(), ImportError> {
+    let fail = |reason: String| Err(ImportError::Xml { place: root.place.clone(), reason });
     if root.category != "materialx" {
-        return Err(ImportError::Xml {
-            place: root.place.clone(),
-            reason: format!("the root is `{}`: a MaterialX file has `materialx`", root.category),
-        });
+        return fail(format!("the root is `{}`: a MaterialX file has `materialx`", root.category));
     }
-    if ["1.36", "1.37"].iter().any(|old| version.starts_with(old)) {
-        return Err(ImportError::Xml {
-            place: root.place.clone(),
-            reason: format!("version {version} is older than 1.38: write the file anew with MaterialX"),
-        });
+    let version = root.attribute("version").unwrap_or_default();
+    let minor = version.strip_prefix("1.").and_then(|minor| minor.split('.').next()?.parse::<u32>().ok());
+    if minor.is_some_and(|minor| minor < 38) {
+        return fail(format!("version {version} is older than 1.38: write the file anew with MaterialX"));
     }
-    Ok(Arc::new(root))
+    Ok(())
 }
 
 struct Reading<'a> {
@@ -78,7 +78,7 @@ struct Reading<'a> {
     read: BTreeSet<String>,
 }
 
-/// What children have from their parents.
+/// Properties that children have from their parents.
 #[derive(Clone)]
 struct Inherited {
     folder: Arc<str>,
@@ -100,8 +100,11 @@ impl Reading<'_> {
             .map_err(|error| fail(error.pos().row, format!("no well-formed XML: {}", plain(&error))))?;
         let folder = path.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
         let inherited = Inherited { folder: folder.into(), file_prefix: "".into(), color_space: "lin_rec709".into() };
-        let line = |node: roxmltree::Node<'_, '_>| document.text_pos_at(node.range().start).row;
-        self.element(document.root_element(), &inherited, 1, &|node| place(line(node)))
+        let starts: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
+        let line = |node: roxmltree::Node<'_, '_>| starts.partition_point(|&at| at < node.range().start) as u32 + 1;
+        let root = self.element(document.root_element(), &inherited, 1, &|node| place(line(node)))?;
+        check(&root)?;
+        Ok(root)
     }
 
     fn element(
@@ -171,14 +174,15 @@ pub(super) fn joined(folder: &str, path: &str) -> String {
     let mut parts: Vec<&str> = Vec::new();
     for part in whole.split('/') {
         match part {
-            "." => {}
-            ".." if parts.last().is_some_and(|last| !["..", ""].contains(last)) => {
+            "." | "" => {}
+            ".." if parts.last().is_some_and(|last| *last != "..") => {
                 parts.pop();
             }
             _ => parts.push(part),
         }
     }
-    parts.join("/")
+    let root = if whole.starts_with('/') { "/" } else { "" };
+    format!("{root}{}", parts.join("/"))
 }
 
 #[cfg(test)]

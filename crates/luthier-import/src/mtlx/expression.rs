@@ -18,7 +18,8 @@ pub(super) enum Expression {
     Image(Arc<Image>),
     /// Texture coordinates. v grows upwards.
     Texcoord,
-    Apply(Op, Vec<Arc<Expression>>),
+    /// A function of others; the number is the length of the longest way to a value without inputs.
+    Apply(Op, Vec<Arc<Expression>>, usize),
 }
 
 /// A function of values.
@@ -50,7 +51,11 @@ impl Op {
             Self::Product => values.iter().copied().reduce(|a, b| a.zip(b, |a, b| a * b)).unwrap_or(Value::number(1.0)),
             Self::Channel(channel) => Value::number(values[0].channels[*channel]),
             Self::Normals => {
-                let [x, y, z] = values[0].three().map(|c| 2.0 * c - 1.0);
+                let texel = values[0].three();
+                if texel == [0.0; 3] {
+                    return Value::rgb([0.0, 0.0, 1.0]);
+                }
+                let [x, y, z] = texel.map(|c| 2.0 * c - 1.0);
                 let [x, y] = [x * values[1].first(), y * values[1].first()];
                 let length = (x * x + y * y + z * z).sqrt().max(f64::MIN_POSITIVE);
                 Value::rgb([x / length, y / length, z / length])
@@ -87,8 +92,12 @@ impl Expression {
     pub(super) fn apply(op: Op, inputs: Vec<Arc<Self>>) -> Arc<Self> {
         let constants: Option<Vec<Value>> = inputs.iter().map(|input| input.constant()).collect();
         Arc::new(match constants {
-            Some(values) => Self::Constant(op.apply(&values)),
-            None => Self::Apply(op, inputs),
+            // As in computed pictures, what is no number is 0.
+            Some(values) => Self::Constant(op.apply(&values).map(|v| if v.is_finite() { v } else { 0.0 })),
+            None => {
+                let height = 1 + inputs.iter().map(|input| input.height()).max().unwrap_or(0);
+                Self::Apply(op, inputs, height)
+            }
         })
     }
 
@@ -118,6 +127,11 @@ impl Expression {
         }
     }
 
+    /// Length of the longest way to a value without inputs.
+    pub(super) fn height(&self) -> usize {
+        if let Self::Apply(_, _, height) = self { *height } else { 0 }
+    }
+
     pub(super) fn constant(&self) -> Option<Value> {
         match self {
             Self::Constant(value) => Some(*value),
@@ -129,11 +143,11 @@ impl Expression {
     pub(super) fn scaled(&self) -> Option<(Value, &Arc<Image>, Option<usize>)> {
         match self {
             Self::Image(image) => Some((Value::number(1.0), image, None)),
-            Self::Apply(Op::Channel(channel), inputs) => {
+            Self::Apply(Op::Channel(channel), inputs, _) => {
                 let (factor, image, of) = inputs[0].scaled()?;
                 (of.is_none() && factor.count == 1).then_some((factor, image, Some(*channel)))
             }
-            Self::Apply(Op::Product, inputs) => {
+            Self::Apply(Op::Product, inputs, _) => {
                 let [a, b] = inputs.as_slice() else { return None };
                 let (value, other) = a.constant().map(|value| (value, b)).or(b.constant().map(|value| (value, a)))?;
                 let (factor, image, channel) = other.scaled()?;
@@ -185,7 +199,7 @@ impl Program {
                     self.images.len() - 1
                 }))
             }
-            Expression::Apply(op, inputs) => {
+            Expression::Apply(op, inputs, _) => {
                 let inputs = inputs.iter().map(|input| self.add(input, known)).collect::<Option<_>>()?;
                 Step::Apply(op.clone(), inputs)
             }
@@ -195,21 +209,41 @@ impl Program {
         (self.steps.len() <= STEPS_MAX).then_some(self.steps.len() - 1)
     }
 
-    /// The value at texture coordinates; `image` has the texels of pictures there.
-    pub(super) fn at(&self, uv: [f64; 2], image: impl Fn(usize) -> Value) -> Value {
-        let mut values: Vec<Value> = Vec::with_capacity(self.steps.len());
+    /// How many values are computed for each place.
+    pub(super) fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The value at texture coordinates; `image` has the texels of pictures there, `room` is for what lies between.
+    pub(super) fn at(&self, uv: [f64; 2], image: impl Fn(usize) -> Value, room: &mut [Vec<Value>; 2]) -> Value {
+        let [values, given] = room;
+        values.clear();
         for step in &self.steps {
-            values.push(match step {
+            let value = match step {
                 Step::Constant(value) => *value,
                 Step::Image(number) => image(*number),
                 Step::Texcoord => Value::new(&uv),
                 Step::Apply(op, inputs) => {
-                    let given: Vec<Value> = inputs.iter().map(|input| values[*input]).collect();
-                    op.apply(&given)
+                    given.clear();
+                    given.extend(inputs.iter().map(|input| values[*input]));
+                    op.apply(given)
                 }
-            });
+            };
+            values.push(value);
         }
         values.pop().unwrap_or(Value::number(0.0))
+    }
+}
+
+/// Whether two expressions are one: normal maps of one picture, or one computed value.
+pub(super) fn same(a: &Arc<Expression>, b: &Arc<Expression>) -> bool {
+    match (&**a, &**b) {
+        (Expression::Constant(a), Expression::Constant(b)) => a == b,
+        (Expression::Image(a), Expression::Image(b)) => a == b,
+        (Expression::Apply(Op::Normals, a, _), Expression::Apply(Op::Normals, b, _)) => {
+            a.iter().zip(b).all(|(a, b)| same(a, b))
+        }
+        _ => Arc::ptr_eq(a, b),
     }
 }
 
@@ -224,7 +258,7 @@ pub(super) fn placed(matrix: &Affine, [u, v]: [f64; 2]) -> [f64; 2] {
 pub(super) fn affine(expression: &Arc<Expression>) -> Option<Affine> {
     let program = Program::new(expression).filter(|program| program.images.is_empty())?;
     let at = |uv: [f64; 2]| {
-        let [u, v, ..] = program.at(uv, |_| Value::number(0.0)).fitted(2).channels;
+        let [u, v, ..] = program.at(uv, |_| Value::number(0.0), &mut Default::default()).fitted(2).channels;
         [u, v]
     };
     let [origin, right, up] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(at);

@@ -11,6 +11,13 @@ use super::value::{Space, Value, count, parse};
 /// Most nodes on a way from an input to its values.
 const DEPTH_MAX: usize = 200;
 
+/// Most nodes that are evaluated for an input of a shader, and longest way through them.
+const NODES_MAX: usize = 20_000;
+const HEIGHT_MAX: usize = 1000;
+
+/// Degrees of a radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
 /// Where the names of nodes count: a document or a node graph, and what calls the graph.
 #[derive(Debug, Clone)]
 pub(super) struct Scope {
@@ -27,8 +34,10 @@ type Found = Result<Arc<Expression>, String>;
 pub(super) struct Graph {
     root: Arc<Scope>,
     depth: usize,
+    /// Nodes that were evaluated for the input at hand.
+    evaluated: usize,
     /// Values of nodes that are known, by node, scope and output.
-    known: BTreeMap<(usize, usize, String), Found>,
+    known: BTreeMap<(usize, usize, String), Arc<Expression>>,
     /// Scopes of graphs by address, which live as long as their addresses are keys.
     scopes: BTreeMap<[usize; 3], Arc<Scope>>,
     /// Losses on the way to a value, which it survives.
@@ -38,7 +47,7 @@ pub(super) struct Graph {
 impl Graph {
     pub(super) fn new(root: &Arc<Element>) -> Self {
         let root = Arc::new(Scope { element: Arc::clone(root), caller: None, definition: None });
-        Self { root, depth: 0, known: BTreeMap::new(), scopes: BTreeMap::new(), notes: Vec::new() }
+        Self { root, depth: 0, evaluated: 0, known: BTreeMap::new(), scopes: BTreeMap::new(), notes: Vec::new() }
     }
 
     pub(super) fn root(&self) -> &Arc<Scope> {
@@ -66,15 +75,46 @@ impl Graph {
 
     /// The node that an input is connected to, such as the shader of a material.
     pub(super) fn connected(&mut self, input: &Element, scope: &Arc<Scope>) -> Option<(Arc<Element>, Arc<Scope>)> {
-        if let Some(name) = input.attribute("nodegraph") {
+        let (mut input, mut scope) = (Arc::new(input.clone()), Arc::clone(scope));
+        for _ in 0..DEPTH_MAX {
+            let Some(name) = input.attribute("nodegraph") else { break };
             let graph = Arc::clone(self.root.element.child(name)?);
-            let output = output_of(&graph, input.attribute("output"))?;
-            let scope = self.scope(&graph, None, None);
-            return self.connected(&output, &scope);
+            input = output_of(&graph, input.attribute("output"))?;
+            scope = self.scope(&graph, None, None);
         }
         let name = input.attribute("nodename")?;
         let found = scope.element.child(name).or_else(|| self.root.element.child(name))?;
-        Some((Arc::clone(found), Arc::clone(scope)))
+        Some((Arc::clone(found), scope))
+    }
+
+    /// The shader that a node stands for: one that is known, or what the document's own graph of the node has at its end.
+    pub(super) fn shader(
+        &mut self,
+        shader: Arc<Element>,
+        scope: Arc<Scope>,
+        is_known: impl Fn(&str) -> bool,
+    ) -> (Arc<Element>, Arc<Scope>) {
+        let (mut at, mut of) = (Arc::clone(&shader), Arc::clone(&scope));
+        for _ in 0..DEPTH_MAX {
+            if is_known(&at.category) {
+                return (at, of);
+            }
+            let inside = self.definition(&at).and_then(|(definition, graph)| {
+                let output = output_of(&graph, None)?;
+                let inside = self.scope(&graph, Some((&at, &of)), Some(&definition));
+                self.connected(&output, &inside)
+            });
+            let Some(inside) = inside else { break };
+            (at, of) = inside;
+        }
+        (shader, scope)
+    }
+
+    /// The value of an input of a shader.
+    pub(super) fn value(&mut self, input: &Element, scope: &Arc<Scope>) -> Found {
+        self.known.clear();
+        self.evaluated = 0;
+        self.input(input, scope)
     }
 
     /// The value of an input.
@@ -86,7 +126,10 @@ impl Graph {
             self.of_input(input, scope)
         };
         self.depth -= 1;
-        let found = found?;
+        let mut found = found?;
+        if input.attribute("unit") == Some("radian") {
+            found = Expression::of(&[&found], |v| v[0].map(|angle| angle * DEGREES));
+        }
         match input.attribute("channels") {
             Some(channels) => swizzled(&found, channels),
             None => Ok(found),
@@ -112,6 +155,10 @@ impl Graph {
             let output = scope.element.child(name).filter(|found| found.category == "output").cloned();
             let output = output.ok_or_else(|| format!("{}: there is no output `{name}`", input.place))?;
             return self.input(&output, scope);
+        }
+        let is_given = input.attribute("value").is_some_and(|value| !value.is_empty());
+        if !is_given && input.attribute("defaultgeomprop").is_some_and(is_texcoord) {
+            return Ok(Arc::new(Expression::Texcoord));
         }
         constant(input)
     }
@@ -146,12 +193,18 @@ impl Graph {
     fn node(&mut self, node: &Arc<Element>, scope: &Arc<Scope>, output: Option<&str>) -> Found {
         let key = (Arc::as_ptr(node) as usize, Arc::as_ptr(scope) as usize, output.unwrap_or_default().to_owned());
         if let Some(known) = self.known.get(&key) {
-            return known.clone();
+            return Ok(Arc::clone(known));
         }
-        let found = self.evaluate(node, scope, output);
-        // A circle ends by its depth, which differs by where it was entered.
-        self.known.insert(key, found.clone());
-        found
+        self.evaluated += 1;
+        if self.evaluated > NODES_MAX {
+            return Err(format!("{}: more than {NODES_MAX} nodes lead to the value", node.place));
+        }
+        let found = self.evaluate(node, scope, output)?;
+        if found.height() > HEIGHT_MAX {
+            return Err(format!("{}: more than {HEIGHT_MAX} nodes lead to the value", node.place));
+        }
+        self.known.insert(key, Arc::clone(&found));
+        Ok(found)
     }
 
     fn evaluate(&mut self, element: &Arc<Element>, scope: &Arc<Scope>, output: Option<&str>) -> Found {
@@ -162,12 +215,26 @@ impl Graph {
             | "UsdUVTexture" => {
                 return self.image(element, scope, output);
             }
-            "texcoord" | "UsdPrimvarReader" => return Ok(Arc::new(Expression::Texcoord)),
-            "geompropvalue" if of_type == Some("vector2") => return Ok(Arc::new(Expression::Texcoord)),
+            "texcoord" => {
+                let index = self.text(element, scope, "index").map(|(index, _)| index);
+                if index.is_some_and(|index| index.trim() != "0") {
+                    self.notes
+                        .push("its texture coordinates are another set: shaders take one set for all maps".to_owned());
+                }
+                return Ok(Arc::new(Expression::Texcoord));
+            }
+            "geompropvalue" | "UsdPrimvarReader" => {
+                let name = if element.category == "geompropvalue" { "geomprop" } else { "varname" };
+                let name = self.text(element, scope, name).map(|(name, _)| name).unwrap_or_default();
+                if of_type == Some("vector2") && is_texcoord(&name) {
+                    return Ok(Arc::new(Expression::Texcoord));
+                }
+                return Err(format!("{}: `{name}` of the mesh is not read", element.place));
+            }
             "multiply" => {
-                let [a, b] =
-                    [("in1", 0.0), ("in2", 1.0)].map(|(name, absent)| self.given(element, scope, name, absent));
-                return Ok(fitted(&a?.times(&b?), of_type));
+                let a = self.given(element, scope, "in1", 0.0)?;
+                let b = self.given(element, scope, "in2", 1.0)?;
+                return Ok(fitted(&a.times(&b), of_type));
             }
             "extract" => {
                 let channel = self.given(element, scope, "index", 0.0)?.constant().map_or(0.0, Value::first);
@@ -187,14 +254,29 @@ impl Graph {
                 return Ok(fitted(&swizzled(&value, channels)?, of_type));
             }
             "normalmap" => {
+                if self.text(element, scope, "space").is_some_and(|(space, _)| space == "object") {
+                    return Err(format!("{}: normals in the frame of the object are not read", element.place));
+                }
                 let value = self.given(element, scope, "in", 0.5)?;
                 let scale = self.given(element, scope, "scale", 1.0)?;
-                return Ok(normals(&value, &scale));
+                if scale.constant().is_none_or(|scale| scale.count == 1) {
+                    return Ok(normals(&value, &scale));
+                }
+                let slopes = Expression::of(&[&value, &scale], |v| {
+                    let ([x, y, z], [s, t, ..]) = (v[0].three(), v[1].fitted(2).channels);
+                    Value::rgb([0.5 + (x - 0.5) * s, 0.5 + (y - 0.5) * t, z])
+                });
+                return Ok(normals(&slopes, &Expression::number(1.0)));
             }
             _ => {}
         }
         if let Some((inputs, of)) = node(&element.category) {
-            let given = inputs.iter().map(|(name, absent)| self.given(element, scope, name, *absent));
+            // Before 1.39 the inputs of `atan2` had other names.
+            let is_old = element.category == "atan2" && element.input("in1").is_some();
+            let given = inputs.iter().enumerate().map(|(number, (name, absent))| {
+                let name = if is_old { ["in1", "in2"][number] } else { name };
+                self.given(element, scope, name, *absent)
+            });
             let given = given.collect::<Result<Vec<_>, _>>()?;
             return Ok(fitted(&Expression::apply(Op::Other(Arc::new(of)), given), of_type));
         }
@@ -203,21 +285,35 @@ impl Graph {
 
     /// The value of a node that the document itself defines by a graph.
     fn defined(&mut self, element: &Arc<Element>, scope: &Arc<Scope>, output: Option<&str>) -> Found {
-        let all = &Arc::clone(&self.root).element.children;
+        match self.definition(element) {
+            Some((definition, graph)) => self.output(&graph, output, Some((element, scope)), Some(&definition)),
+            None => Err(format!("{}: the node `{}` is not read", element.place, element.category)),
+        }
+    }
+
+    /// The definition of a node that the document has, and its graph.
+    fn definition(&self, element: &Element) -> Option<(Arc<Element>, Arc<Element>)> {
+        let all = &self.root.element.children;
         let is_given = |definition: &&Arc<Element>| {
+            let outputs: Vec<_> = definition.children.iter().filter(|child| child.category == "output").collect();
+            let has_type = match outputs.as_slice() {
+                [only] => only.attribute("type") == element.attribute("type") || element.attribute("type").is_none(),
+                _ => true,
+            };
             definition.category == "nodedef"
                 && definition.attribute("node") == Some(&element.category)
-                && element.attribute("nodedef").is_none_or(|name| definition.name() == name)
+                && element.attribute("nodedef").map_or(has_type, |name| definition.name() == name)
         };
         let graph = |name: &str| {
-            all.iter().find(|found| found.category == "nodegraph" && found.attribute("nodedef") == Some(name))
+            let own = |found: &&Arc<Element>| found.category == "nodegraph" && found.attribute("nodedef") == Some(name);
+            let link =
+                |found: &&Arc<Element>| found.category == "implementation" && found.attribute("nodedef") == Some(name);
+            let linked =
+                || all.iter().filter(link).find_map(|found| self.root.element.child(found.attribute("nodegraph")?));
+            all.iter().find(own).or_else(linked)
         };
-        if let Some((definition, graph)) =
-            all.iter().filter(is_given).find_map(|definition| Some((definition, graph(definition.name())?)))
-        {
-            return self.output(graph, output, Some((element, scope)), Some(definition));
-        }
-        Err(format!("{}: the node `{}` is not read", element.place, element.category))
+        let found = all.iter().filter(is_given).find_map(|definition| Some((definition, graph(definition.name())?)))?;
+        Some((Arc::clone(found.0), Arc::clone(found.1)))
     }
 
     /// An input of a node. Texture coordinates are those of the surface where none are given.
@@ -244,7 +340,8 @@ impl Graph {
                 return input.attribute("value").map(|value| (value.to_owned(), Arc::clone(&input)));
             };
             let called = scope.caller.as_ref().and_then(|(node, of)| Some((node.input(outside)?.clone(), of.clone())));
-            (input, scope) = called.or_else(|| Some((scope.element.input(outside)?.clone(), self.root.clone())))?;
+            let own = || scope.element.input(outside).or_else(|| scope.definition.as_ref()?.input(outside));
+            (input, scope) = called.or_else(|| Some((own()?.clone(), self.root.clone())))?;
         }
         None
     }
@@ -298,6 +395,9 @@ impl Graph {
             "gltf_normalmap" => normals(&image, &Expression::number(1.0)),
             "gltf_colorimage" => {
                 let factor = self.given(element, scope, "color", 1.0)?;
+                if element.input("geomcolor").is_some() {
+                    self.notes.push("colours of the mesh are not read".to_owned());
+                }
                 if output == Some("outa") {
                     channel_of(&image, 3).times(&channel_of(&factor, 3))
                 } else {
@@ -315,6 +415,7 @@ impl Graph {
                 };
                 match output {
                     Some("rgb") | None => fitted(&shifted, Some("color3")),
+                    Some("rgba") => shifted,
                     Some(name) => channel_of(&shifted, channel(name).unwrap_or(0)),
                 }
             }
@@ -429,25 +530,36 @@ fn fitted(value: &Arc<Expression>, of_type: Option<&str>) -> Arc<Expression> {
             Arc::new(Expression::Image(Arc::new(Image { count, ..(**image).clone() })))
         }
         Expression::Image(_) if count == 1 => channel_of(value, 0),
-        Expression::Apply(Op::Product, inputs) => {
+        Expression::Apply(Op::Product, inputs, _) if has_constant(inputs) => {
             let inputs: Vec<_> = inputs.iter().map(|input| fitted(input, of_type)).collect();
             Expression::apply(Op::Product, inputs)
         }
-        Expression::Apply(Op::Channel(_), _) if count == 1 => Arc::clone(value),
-        Expression::Apply(Op::Normals, _) if count == 3 => Arc::clone(value),
+        Expression::Apply(Op::Channel(_), ..) if count == 1 => Arc::clone(value),
+        Expression::Apply(Op::Normals, ..) if count == 3 => Arc::clone(value),
         _ => Expression::of(&[value], move |v| v[0].fitted(count)),
     }
+}
+
+/// Whether a factor of a product is a constant, so that one way leads through it.
+fn has_constant(inputs: &[Arc<Expression>]) -> bool {
+    inputs.iter().any(|input| input.constant().is_some())
+}
+
+/// Whether a property of a mesh is its texture coordinates, by its name.
+fn is_texcoord(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    ["uv", "st", "texcoord", "map1"].iter().any(|beginning| name.starts_with(beginning))
 }
 
 fn channel_of(value: &Arc<Expression>, channel: usize) -> Arc<Expression> {
     match &**value {
         // A picture of one number has it in red.
         Expression::Image(image) if image.count == 1 => Arc::clone(value),
-        Expression::Apply(Op::Product, inputs) => {
+        Expression::Apply(Op::Product, inputs, _) if has_constant(inputs) => {
             let inputs: Vec<_> = inputs.iter().map(|input| channel_of(input, channel)).collect();
             Expression::apply(Op::Product, inputs)
         }
-        Expression::Apply(Op::Channel(_), _) => Arc::clone(value),
+        Expression::Apply(Op::Channel(_), ..) => Arc::clone(value),
         _ => Expression::apply(Op::Channel(channel), vec![Arc::clone(value)]),
     }
 }

@@ -8,7 +8,7 @@ use super::graph::{Graph, Scope};
 use super::value::{Value, count};
 use crate::{Fate, Line};
 
-/// What a format's words become where nothing else is said: an input, its fate, and how.
+/// Fate of an input where nothing else is said, and how it came about.
 pub(super) type Note = (&'static str, Fate, &'static str);
 
 /// Inputs of a shader.
@@ -47,7 +47,7 @@ impl<'g> Inputs<'g> {
         self.read.push(name);
         let constant = || Arc::new(Expression::Constant(absent));
         let Some(input) = self.shader.input(name).filter(|input| is_given(input)).cloned() else { return constant() };
-        let found = self.graph.input(&input, &self.scope);
+        let found = self.graph.value(&input, &self.scope);
         for note in std::mem::take(&mut self.graph.notes) {
             self.say(name, Fate::Approximated, note);
         }
@@ -78,8 +78,28 @@ impl<'g> Inputs<'g> {
 
     /// Normals, where they are given.
     pub(super) fn normal(&mut self, name: &'static str) -> Option<Arc<Expression>> {
-        let found = self.has(name).then(|| self.value(name, Value::rgb([0.0, 0.0, 1.0])))?;
-        found.constant().is_none().then_some(found)
+        let flat = [0.0, 0.0, 1.0];
+        let found = self.has(name).then(|| self.value(name, Value::rgb(flat)))?;
+        match found.constant() {
+            Some(value) if value.three() != flat => {
+                self.say(name, Fate::Dropped, "one direction for all places is not read");
+                None
+            }
+            Some(_) => None,
+            None => Some(found),
+        }
+    }
+
+    /// An input that is not read, where it is given.
+    pub(super) fn unread(&mut self, name: &'static str, note: &str) {
+        if self.has(name) {
+            self.say(name, Fate::Dropped, note);
+        }
+    }
+
+    /// The version of the shader, where it is named.
+    pub(super) fn version(&self) -> Option<&str> {
+        self.shader.attribute("version")
     }
 
     /// A number that is the same everywhere. One that varies has its default.
@@ -135,7 +155,7 @@ impl<'g> Inputs<'g> {
 }
 
 /// Whether an input has a value or a connection.
-fn is_given(input: &Element) -> bool {
+pub(super) fn is_given(input: &Element) -> bool {
     let is_connected =
         ["nodename", "nodegraph", "interfacename", "output"].iter().any(|name| input.attribute(name).is_some());
     is_connected || input.attribute("value").is_some_and(|value| !value.trim().is_empty())

@@ -19,6 +19,7 @@ mod pictured;
 mod surface;
 mod value;
 
+use std::collections::BTreeMap;
 use std::io;
 
 use self::graph::Graph;
@@ -43,18 +44,27 @@ pub fn materialx(
     bytes: &[u8],
     files: &dyn Fn(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Import, ImportError> {
-    let root = document::read(bytes, files)?;
+    let root = document::read(label, bytes, files)?;
     let mut graph = Graph::new(&root);
     let mut pictured = Pictured::new(files);
     let mut names = Names::default();
     let mut import = Import::default();
     let mut found = Vec::new();
     let scope = graph.root().clone();
+    let mut others = BTreeMap::new();
     for material in root.children.iter().filter(|child| child.category == "surfacematerial") {
         let shader = material.input("surfaceshader").and_then(|input| graph.connected(input, &scope));
         match shader {
-            Some((shader, scope)) => found.push((material.name().to_owned(), shader, scope)),
-            None => import.lines.push(Line::new(material.name(), Fate::Dropped, "the material has no shader")),
+            Some((shader, scope)) => {
+                let given = |name: &&str| material.input(name).is_some_and(|input| inputs::is_given(input));
+                let lost: Vec<&str> = ["displacementshader", "backsurfaceshader"].into_iter().filter(given).collect();
+                others.insert(found.len(), lost);
+                found.push((material.name().to_owned(), shader, scope));
+            }
+            None => {
+                let note = format!("{}: the material has no shader", material.place);
+                import.lines.push(Line::new(material.name(), Fate::Dropped, note));
+            }
         }
     }
     if root.children.iter().all(|child| child.category != "surfacematerial") {
@@ -62,6 +72,7 @@ pub fn materialx(
         found.extend(shaders.map(|shader| (shader.name().to_owned(), shader.clone(), scope.clone())));
     }
     for (number, (source_name, shader, scope)) in found.into_iter().enumerate() {
+        let (shader, scope) = graph.shader(shader, scope, |category| model(category).is_some());
         let Some(model) = model(&shader.category) else {
             let note = format!("{}: the shader `{}` is not read", shader.place, shader.category);
             import.lines.push(Line::new(&plain(&source_name), Fate::Dropped, note));
@@ -69,6 +80,9 @@ pub fn materialx(
         };
         let name = names.unique(&source_name, &format!("material-{number}"));
         let (surface, mut lines) = model(Inputs::new(&mut graph, &shader, &scope));
+        for name in others.get(&number).into_iter().flatten() {
+            lines.push(Line::new(name, Fate::Dropped, "the form of the surface, and its other side, are not read"));
+        }
         let layers = Writer { pictured: &mut pictured, lines: &mut lines }.layers(&surface);
         let mut comments = vec![format!("Source: {label}, `{source_name}`, {}", shader.category)];
         comments.extend(crate::told(&lines));
@@ -83,7 +97,9 @@ pub fn materialx(
     Ok(import)
 }
 
-/// Whether a text is XML.
+/// Whether a text is XML, in UTF-8 or not.
 pub(crate) fn is_xml(bytes: &[u8]) -> bool {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start().starts_with(b"<")
+    let marks: [&[u8]; 2] = [b"\xff\xfe<", b"\xfe\xff\0<"];
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    text.starts_with(b"<") || marks.iter().any(|mark| bytes.starts_with(mark))
 }

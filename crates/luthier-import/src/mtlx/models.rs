@@ -21,6 +21,9 @@ const SENT: &str = "light that the surface sends out itself";
 const CUT: &str = "where the surface is cut out or blended";
 const F0: &str = "f0 = ((n - 1)/(n + 1))^2";
 const TURN: &str = "turned from the surface's tangent, counter-clockwise";
+const CLOCKWISE: &str = "turned from the surface's tangent, clockwise, as the graph of the format does";
+const DIRECTIONS: &str = "directions of the tangent are those of the mesh";
+const NO_EDGE: &str = "the edge tint of a metal is one for all places: with a picture there is none";
 const UNDARKENED: &str = "the coat is layered, with light that goes to and fro below it; the base stays as bright as its colour (`darkening = false`)";
 const EDGE_TOO: &str = "the format scales what the edge reflects, too, which is all here";
 
@@ -49,15 +52,23 @@ fn mix(a: &Input, b: &Input, share: &Input) -> Input {
     })
 }
 
+/// A share of what is no metal.
+fn not_metal(share: &Input, metallic: &Input) -> Input {
+    if share.constant().is_some_and(|share| share.first() <= 0.0) {
+        return Arc::clone(share);
+    }
+    Expression::of(&[share, metallic], |v| Value::number(v[0].first() * (1.0 - v[1].first().clamp(0.0, 1.0))))
+}
+
 /// Three numbers, the same to the end of the range of colours.
 fn rgb(number: &Input) -> Input {
     Expression::of(&[number], |v| Value::rgb(v[0].three()))
 }
 
-/// Reflectance along the normal of an index.
+/// Reflectance along the normal of an index; 1 of none.
 fn of_index(ior: f64) -> f64 {
     let root = (ior - 1.0) / (ior + 1.0);
-    root * root
+    if root.is_finite() { (root * root).min(1.0) } else { 1.0 }
 }
 
 fn white() -> Input {
@@ -103,18 +114,16 @@ fn artistic_edge(reflectivity: f64, edge: f64) -> f64 {
 }
 
 fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
-    // Releases of the format differ in the defaults of both, and not in their product.
-    let [base, base_color] = match [of.has("base"), of.has("base_color")] {
-        [true, false] => [of.number("base", 1.0), white()],
-        _ => [of.number("base", 1.0), of.color("base_color", [0.8; 3])],
-    };
+    // The first release of the shader has other defaults.
+    let [weight, grey] = if of.version() == Some("1.0.0") { [0.8, 1.0] } else { [1.0, 0.8] };
+    let [base, base_color] = [of.number("base", weight), of.color("base_color", [grey; 3])];
     let color = base_color.times(&base);
     let subsurface = of.number("subsurface", 0.0);
     let beneath = of.color("subsurface_color", [1.0; 3]);
     let metallic = of.number("metalness", 0.0);
     let [coat, coat_color] = [of.number("coat", 0.0), of.color("coat_color", [1.0; 3])];
     let coat_roughness = of.number("coat_roughness", 0.1);
-    let diffuse = mix(&color, &beneath, &subsurface);
+    let diffuse = mix(&color, &beneath, &not_metal(&subsurface, &metallic));
     let affect = of.number("coat_affect_color", 0.0);
     let diffuse = match affect.constant() {
         Some(value) if value.first() <= 0.0 => diffuse,
@@ -133,7 +142,12 @@ fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
             let (color, edge) = (color.three(), edge.three().map(|c| c * specular.first()));
             [0, 1, 2].map(|c: usize| artistic_edge(color[c], edge[c]))
         }
-        _ => [1.0; 3],
+        _ => {
+            if !metallic.constant().is_some_and(|value| value.first() <= 0.0) {
+                of.lines.push(Line::new("the edge of a metal", Approximated, NO_EDGE));
+            }
+            [1.0; 3]
+        }
     };
     let roughness = of.number("specular_roughness", 0.2);
     let affect = of.number("coat_affect_roughness", 0.0);
@@ -146,6 +160,7 @@ fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     };
     let [anisotropy, turn] = [of.number("specular_anisotropy", 0.0), of.number("specular_rotation", 0.0)];
     let [coat_anisotropy, coat_turn] = [of.number("coat_anisotropy", 0.0), of.number("coat_rotation", 0.0)];
+    let [turn, coat_turn] = [turn, coat_turn].map(|turn| Expression::of(&[&turn], |v| v[0].map(|t| -t)));
     let thickness_nm = of.number("thin_film_thickness", 0.0);
     let surface = Surface {
         color: diffuse.times(&tint),
@@ -167,6 +182,7 @@ fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     };
     of.lost("transmission", THROUGH);
     of.lost("sheen", CLOTH);
+    of.unread("tangent", DIRECTIONS);
     const NOTES: &[Note] = &[
         ("specular", Approximated, EDGE_TOO),
         (
@@ -176,7 +192,8 @@ fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
         ),
         ("specular_IOR", ClosedForm, F0),
         ("specular_anisotropy", ClosedForm, "alpha = roughness^2 over and times sqrt(1 - anisotropy)"),
-        ("specular_rotation", ClosedForm, TURN),
+        ("specular_rotation", ClosedForm, CLOCKWISE),
+        ("coat_rotation", ClosedForm, CLOCKWISE),
         ("coat", Approximated, UNDARKENED),
         ("coat_color", ClosedForm, "colour and F0 of the base times it, as the format means it"),
         ("subsurface", Approximated, BENEATH),
@@ -186,7 +203,7 @@ fn standard_surface(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
         ("opacity", Host, CUT),
         ("thin_walled", Host, "which sides are drawn"),
     ];
-    (surface, of.finish(NOTES, &["transmission_", "sheen_", "subsurface_", "caustics", "tangent"]))
+    (surface, of.finish(NOTES, &["transmission_", "sheen_", "subsurface_", "caustics"]))
 }
 
 /// The slope deviation of Oren and Nayar's diffuse light that is as far from Lambert's as Fujii's of a roughness: both have the same ratio of their terms.
@@ -208,7 +225,7 @@ fn open_pbr(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     let metallic = of.number("base_metalness", 0.0);
     let [beneath, share] = [of.color("subsurface_color", [0.8; 3]), of.number("subsurface_weight", 0.0)];
     let is_metal = metallic.constant().is_some_and(|value| value.first() >= 1.0);
-    let color = if is_metal { color } else { mix(&color, &beneath, &share) };
+    let color = mix(&color, &beneath, &not_metal(&share, &metallic));
     let specular_color = of.color("specular_color", [1.0; 3]);
     let specular_weight = of.number("specular_weight", 1.0);
     let coat_weight = of.number("coat_weight", 0.0);
@@ -220,13 +237,23 @@ fn open_pbr(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
         Value::number((v[1].first() * of_index(ior + (below - ior) * weight)).clamp(0.0, 1.0))
     });
     let edge = if is_metal || metallic.constant().is_none_or(|value| value.first() > 0.0) {
-        specular_color.constant().map_or([1.0; 3], Value::three)
+        specular_color.constant().map_or_else(
+            || {
+                of.lines.push(Line::new("the edge of a metal", Approximated, NO_EDGE));
+                [1.0; 3]
+            },
+            Value::three,
+        )
     } else {
         [1.0; 3]
     };
+    // A metal loses all of its light, a dielectric what its interface reflects.
     let color = match specular_weight.constant() {
-        Some(weight) if weight.first() >= 1.0 || !is_metal => color,
-        _ => color.times(&specular_weight),
+        Some(weight) if weight.first() == 1.0 => color,
+        _ => color.times(&Expression::of(&[&specular_weight, &metallic], |v| {
+            let metal = v[1].first().clamp(0.0, 1.0);
+            Value::number(1.0 - metal + metal * v[0].first())
+        })),
     };
     let [anisotropy, coat_anisotropy] =
         [of.number("specular_roughness_anisotropy", 0.0), of.number("coat_roughness_anisotropy", 0.0)];
@@ -258,6 +285,8 @@ fn open_pbr(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     };
     of.lost("transmission_weight", THROUGH);
     of.lost("fuzz_weight", CLOTH);
+    of.unread("geometry_tangent", DIRECTIONS);
+    of.unread("geometry_coat_tangent", DIRECTIONS);
     const NOTES: &[Note] = &[
         ("specular_weight", ClosedForm, "scales F0"),
         (
@@ -323,6 +352,7 @@ fn gltf(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
     };
     of.lost("transmission", THROUGH);
     of.lost("sheen_color", CLOTH);
+    of.unread("tangent", DIRECTIONS);
     const NOTES: &[Note] = &[
         ("ior", ClosedForm, F0),
         ("specular", Approximated, EDGE_TOO),
@@ -342,7 +372,7 @@ fn gltf(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
         ("alpha_mode", Host, CUT),
         ("alpha_cutoff", Host, CUT),
     ];
-    (surface, of.finish(NOTES, &["sheen_", "thickness", "attenuation_", "dispersion", "tangent"]))
+    (surface, of.finish(NOTES, &["sheen_", "thickness", "attenuation_", "dispersion"]))
 }
 
 fn usd(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
@@ -361,7 +391,7 @@ fn usd(mut of: Inputs<'_>) -> (Surface, Vec<Line>) {
         normal: of.normal("normal"),
         coat: Some(Coat {
             weight: of.number("clearcoat", 0.0),
-            ior: COAT_IOR,
+            ior,
             facets: Facets::new(coat_roughness, &none, none.clone(), gltf_alphas),
             color: white(),
             darkens: false,

@@ -11,6 +11,14 @@ type Node = (&'static [Given], fn(&[Value]) -> Value);
 /// The luminance of ACEScg, which is the default of the format.
 const LUMA: [f64; 3] = [0.2722287, 0.6740818, 0.0536895];
 
+/// Stands for coefficients that are not given.
+const NONE: f64 = -1.0;
+
+/// Coefficients of a luminance: those of the format where none are given.
+fn luma(given: Value) -> [f64; 3] {
+    if given.count == 1 && given.first() == NONE { LUMA } else { given.three() }
+}
+
 fn each(of: fn(f64) -> f64) -> impl Fn(&[Value]) -> Value {
     move |v| v[0].map(of)
 }
@@ -34,10 +42,13 @@ fn remapped(v: &[Value]) -> Value {
 
 fn smooth(v: &[Value]) -> Value {
     let share = v[0].zip(v[1], |a, b| a - b).zip(v[2].zip(v[1], |a, b| a - b), divided);
-    share.map(|t| {
+    let curved = share.map(|t| {
         let t = t.clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
-    })
+    });
+    // Where both ends are one, it is a step.
+    let is_beyond = v[0].zip(v[2], |value, high| f64::from(value >= high));
+    curved.zip(is_beyond, f64::max)
 }
 
 /// Fits values into a range with a gamma between.
@@ -139,7 +150,7 @@ fn placed(v: &[Value]) -> Value {
 fn checkered(v: &[Value]) -> Value {
     let [u, w, ..] = v[2].zip(v[3], |a, b| a * b).zip(v[4], |a, b| a - b).channels;
     let odd = (u.floor() + w.floor()).rem_euclid(2.0) >= 1.0;
-    if odd { v[1] } else { v[0] }
+    if odd { v[0] } else { v[1] }
 }
 
 /// The function of a node of a category with its inputs; `None` for nodes that are none.
@@ -206,11 +217,10 @@ pub(super) fn node(category: &str) -> Option<Node> {
             let length = dot(v[0], v[0]).sqrt();
             v[0].map(|c| divided(c, length))
         }),
-        "luminance" => (IN, |v| {
-            let grey = v[0].three().iter().zip(LUMA).map(|(c, l)| c * l).sum();
-            color(|_| [grey; 3], v[0])
-        }),
-        "saturate" => (&[("in", 0.0), ("amount", 1.0)], |v| saturated(v[0], v[1].first(), LUMA)),
+        "luminance" => (&[("in", 0.0), ("lumacoeffs", NONE)], |v| saturated(v[0], 0.0, luma(v[1]))),
+        "saturate" => {
+            (&[("in", 0.0), ("amount", 1.0), ("lumacoeffs", NONE)], |v| saturated(v[0], v[1].first(), luma(v[2])))
+        }
         "mincomponent" => (IN, |v| Value::number(v[0].all().iter().copied().fold(f64::INFINITY, f64::min))),
         "maxcomponent" => (IN, |v| Value::number(v[0].all().iter().copied().fold(f64::NEG_INFINITY, f64::max))),
         "rgbtohsv" => (IN, |v| color(hsv, v[0])),
@@ -239,16 +249,21 @@ pub(super) fn node(category: &str) -> Option<Node> {
             ],
             corrected,
         ),
-        "combine2" => (PAIR, |v| Value::new(&[v[0].first(), v[1].first()])),
+        "combine2" => (PAIR, |v| {
+            let all: Vec<f64> = v.iter().flat_map(|value| value.all().to_vec()).take(4).collect();
+            Value::new(&all)
+        }),
         "combine3" => {
             (&[("in1", 0.0), ("in2", 0.0), ("in3", 0.0)], |v| Value::new(&[v[0].first(), v[1].first(), v[2].first()]))
         }
-        "combine4" => (&[("in1", 0.0), ("in2", 0.0), ("in3", 0.0), ("in4", 1.0)], |v| {
+        "combine4" => (&[("in1", 0.0), ("in2", 0.0), ("in3", 0.0), ("in4", 0.0)], |v| {
             Value::new(&[v[0].first(), v[1].first(), v[2].first(), v[3].first()])
         }),
         "ifgreater" => (CHOICE, |v| compared(v, v[0].first() > v[1].first())),
         "ifgreatereq" => (CHOICE, |v| compared(v, v[0].first() >= v[1].first())),
-        "ifequal" => (CHOICE, |v| compared(v, v[0].first() == v[1].first())),
+        "ifequal" => (&[("value1", 0.0), ("value2", 0.0), ("in1", 0.0), ("in2", 0.0)], |v| {
+            compared(v, v[0].first() == v[1].first())
+        }),
         "and" => (PAIR, |v| Value::number(f64::from(v[0].first() > 0.5 && v[1].first() > 0.5))),
         "or" => (PAIR, |v| Value::number(f64::from(v[0].first() > 0.5 || v[1].first() > 0.5))),
         "not" => (IN, |v| Value::number(f64::from(v[0].first() <= 0.5))),
@@ -266,14 +281,14 @@ pub(super) fn node(category: &str) -> Option<Node> {
                 ("in9", 0.0),
                 ("in10", 0.0),
             ],
-            |v| v[1 + v[0].first().clamp(0.0, 9.0) as usize],
+            |v| if v[0].first() < 10.0 { v[1 + v[0].first().max(0.0) as usize] } else { Value::number(0.0) },
         ),
         "plus" => (BLEND, |v| mix(v[1], v[1].zip(v[0], |a, b| a + b), v[2])),
         "minus" => (BLEND, |v| mix(v[1], v[1].zip(v[0], |a, b| a - b), v[2])),
         "difference" => (BLEND, |v| mix(v[1], v[1].zip(v[0], |a, b| (a - b).abs()), v[2])),
         "screen" => (BLEND, |v| mix(v[1], v[1].zip(v[0], |a, b| 1.0 - (1.0 - a) * (1.0 - b)), v[2])),
         "overlay" => (BLEND, |v| {
-            let all = v[1].zip(v[0], |b, f| if f < 0.5 { 2.0 * f * b } else { 1.0 - 2.0 * (1.0 - f) * (1.0 - b) });
+            let all = v[1].zip(v[0], |b, f| if b < 0.5 { 2.0 * f * b } else { 1.0 - 2.0 * (1.0 - f) * (1.0 - b) });
             mix(v[1], all, v[2])
         }),
         "inside" => (&[("in", 0.0), ("mask", 1.0)], |v| v[0].zip(v[1], |a, b| a * b)),

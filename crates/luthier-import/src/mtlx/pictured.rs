@@ -14,6 +14,12 @@ use crate::pictures::{Pictures, Texels, quantised};
 /// Most texels on a side of a computed picture.
 const SIDE_MAX: u32 = 4096;
 
+/// Most steps of nodes for a computed picture, over all its texels.
+const WORK_MAX: u64 = 1 << 29;
+
+/// Most texels of the pictures of a graph together.
+const TEXELS_MAX: u64 = 1 << 28;
+
 /// Texels on a side of a picture that has none of its own.
 const SIDE: u32 = 512;
 
@@ -45,7 +51,7 @@ struct Grid {
     width: u32,
     height: u32,
     values: Vec<[f32; 3]>,
-    /// What places the picture, as TOML.
+    /// The placement of the picture, as TOML.
     transform: Option<String>,
     notes: BTreeSet<&'static str>,
 }
@@ -65,20 +71,26 @@ impl<'a> Pictured<'a> {
         Ok(format!("{{ image = \"{path}\" }}"))
     }
 
-    /// One or three numbers that may vary. A picture stays as it is where the file can say what is done to it; else it is computed in 16 bits, over its largest value.
+    /// One or three numbers that may vary, up to a limit. A picture stays as it is where the file can say what is done to it; else it is computed in 16 bits, over its largest value.
     pub(super) fn scaled(
         &mut self,
         name: &str,
         expression: &Arc<Expression>,
         channels: usize,
+        limit: f64,
     ) -> Result<Scaled, String> {
         if let Some(factor) = expression.constant() {
             return Ok(Scaled { factor: factor.fitted(channels), map: None, notes: Vec::new(), is_computed: false });
         }
-        if let Some(unchanged) = self.unchanged(expression, channels)? {
+        if let Some(unchanged) = self.unchanged(expression, channels, limit)? {
             return Ok(unchanged);
         }
-        let grid = self.grid(expression)?;
+        let mut grid = self.grid(expression)?;
+        let is_beyond = |v: &f32| f64::from(*v) > limit + 1e-3 || *v < -1e-3;
+        if grid.values.iter().any(|texel| texel[..channels].iter().any(is_beyond)) {
+            grid.notes.insert("texels beyond what is read are held to it");
+        }
+        grid.values.iter_mut().for_each(|texel| *texel = texel.map(|v| v.clamp(0.0, limit as f32)));
         let most = grid.values.iter().fold([0.0_f32; 3], |most, texel| [0, 1, 2].map(|c: usize| most[c].max(texel[c])));
         let factor = Value::rgb(most.map(f64::from)).fitted(channels);
         let over = |c: usize, v: f32| if most[c] > 0.0 { f64::from(v / most[c]) } else { 0.0 };
@@ -104,7 +116,7 @@ impl<'a> Pictured<'a> {
     /// A normal map and its factor on slopes.
     pub(super) fn normals(&mut self, expression: &Arc<Expression>) -> Result<Scaled, String> {
         use super::expression::Op;
-        if let Expression::Apply(Op::Normals, inputs) = &**expression
+        if let Expression::Apply(Op::Normals, inputs, _) = &**expression
             && let (Expression::Image(image), Some(scale)) = (&*inputs[0], inputs[1].constant())
             && image.space.is_linear()
             && let Some(transform) = transform(&image.placement)
@@ -133,10 +145,15 @@ impl<'a> Pictured<'a> {
         Ok(Scaled { factor: Value::number(1.0), map, notes, is_computed: true })
     }
 
-    fn unchanged(&mut self, expression: &Arc<Expression>, channels: usize) -> Result<Option<Scaled>, String> {
+    fn unchanged(
+        &mut self,
+        expression: &Arc<Expression>,
+        channels: usize,
+        limit: f64,
+    ) -> Result<Option<Scaled>, String> {
         let Some((factor, image, channel)) = expression.scaled() else { return Ok(None) };
         let is_known = image.space.is_linear() || image.space.is_srgb();
-        let is_held = factor.all().iter().all(|v| (0.0..=1.0).contains(v));
+        let is_held = factor.all().iter().all(|v| (0.0..=limit.min(1.0)).contains(v));
         let fits =
             if channels == 1 { image.count == 1 || channel.is_some() } else { image.count >= 3 && channel.is_none() };
         let Some(transform) = transform(&image.placement).filter(|_| is_known && is_held && fits) else {
@@ -171,7 +188,16 @@ impl<'a> Pictured<'a> {
     /// The values of an expression: over the picture where all pictures of it lie alike, else over one repeat of texture coordinates.
     fn grid(&mut self, expression: &Arc<Expression>) -> Result<Grid, String> {
         let program = Program::new(expression).ok_or("its graph has too many nodes")?;
-        let texels = program.images.iter().map(|image| self.texels(image)).collect::<Result<Vec<_>, _>>()?;
+        let mut texels = Vec::new();
+        let mut count = 0;
+        for image in &program.images {
+            let found = self.texels(image)?;
+            count += found.size().iter().map(|side| u64::from(*side)).product::<u64>();
+            if count > TEXELS_MAX && !texels.is_empty() {
+                return Err(format!("the pictures of its graph have more than {TEXELS_MAX} texels together"));
+            }
+            texels.push(found);
+        }
         let mut notes = BTreeSet::new();
         if program.images.iter().any(|image| !image.repeats) {
             notes.insert(ENDS);
@@ -194,8 +220,12 @@ impl<'a> Pictured<'a> {
             let ((width, is_wide), (height, is_high)) = (extent(0), extent(1));
             ([width, height], is_wide || is_high)
         };
+        let (mut width, mut height, mut is_reduced) = (width, height, is_reduced);
+        while u64::from(width) * u64::from(height) * program.len() as u64 > WORK_MAX && width.max(height) > 1 {
+            (width, height, is_reduced) = (width.div_ceil(2), height.div_ceil(2), true);
+        }
         if is_reduced {
-            notes.insert("the computed picture has at most 4096 texels a side");
+            notes.insert("the computed picture has fewer texels than its sources");
         }
         if shared.is_none() {
             let is_whole = |v: f64| (v - libm::round(v)).abs() < 1e-9;
@@ -203,11 +233,11 @@ impl<'a> Pictured<'a> {
                 .images
                 .iter()
                 .all(|image| image.placement.iter().all(|row| is_whole(row[0]) && is_whole(row[1])));
-            if !repeats {
+            if !repeats || program.has_texcoord {
                 notes.insert("it is computed for texture coordinates from 0 to 1, and repeats beyond them");
             }
         }
-        let value = |x: u32, y: u32| {
+        let value = |x: u32, y: u32, room: &mut [Vec<Value>; 2]| {
             let place = [(f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height)];
             // v grows upwards in the format, downwards in pictures.
             let uv = [place[0], 1.0 - place[1]];
@@ -222,11 +252,14 @@ impl<'a> Pictured<'a> {
                 let linear = image.space.linear(stored);
                 Value::new(&linear[..image.count])
             };
-            let [a, b, c] = program.at(uv, image).three();
+            let [a, b, c] = program.at(uv, image, room).three();
             [a, b, c].map(|v| if v.is_finite() { v as f32 } else { 0.0 })
         };
-        let values = (0..height).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| (x, y)));
-        let values = values.map(|(x, y)| value(x, y)).collect();
+        let values = (0..height).into_par_iter().flat_map_iter(|y| {
+            let mut room = Default::default();
+            (0..width).map(|x| value(x, y, &mut room)).collect::<Vec<_>>()
+        });
+        let values = values.collect();
         Ok(Grid { width, height, values, transform: shared.flatten(), notes })
     }
 

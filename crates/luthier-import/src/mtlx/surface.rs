@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::expression::Expression;
+use super::expression::{self, Expression};
 use super::pictured::{Pictured, Scaled};
 use super::value::Value;
 use crate::draft::{Layer, Value as Setting, number};
@@ -12,6 +12,9 @@ type Input = Arc<Expression>;
 
 /// Width of a repeat of a film's map, which no format states, um. Shaders do not show it.
 const EXTENT_UM: f64 = 100_000.0;
+
+/// Thickest film, nm.
+const THICKNESS_MAX_NM: f64 = 1e5;
 
 /// The largest F0 below which texels scale the light of a base.
 const MAPPED_F0_MAX: f64 = 0.9;
@@ -107,7 +110,10 @@ fn is_zero(input: &Input) -> bool {
 
 impl Writer<'_, '_> {
     fn say(&mut self, property: &str, fate: Fate, note: impl Into<String>) {
-        self.lines.push(Line::new(property, fate, note));
+        let line = Line::new(property, fate, note);
+        if !self.lines.contains(&line) {
+            self.lines.push(line);
+        }
     }
 
     /// The layers from the top down.
@@ -154,9 +160,11 @@ impl Writer<'_, '_> {
         channels: usize,
         [absent, most]: [f64; 2],
     ) {
-        let scaled = self.pictured.scaled(map, input, channels);
+        let scaled = self.pictured.scaled(map, input, channels, most);
         let Some(Scaled { factor, map: picture, notes, is_computed }) = self.told(map, scaled) else {
             layer.set(key, Setting::Number(absent));
+            let note = format!("{} is taken in its place", number(absent));
+            self.say(&format!("picture of {map}"), Fate::Approximated, note);
             return;
         };
         let held: Vec<f64> = factor.all().iter().map(|v| self.held(key, *v, [0.0, most])).collect();
@@ -330,12 +338,13 @@ impl Writer<'_, '_> {
         let mut film = Layer::new("thin-film");
         let ior = self.held("index of the film", given.ior, [1.0, 10.0]);
         film.set("ior", Setting::Number(ior));
+        let held = Expression::of(&[&given.thickness_nm], |v| v[0].map(|t| t.clamp(0.0, THICKNESS_MAX_NM)));
         let thickness = match given.thickness_nm.constant() {
-            Some(value) => Setting::Number(self.held("thickness of the film", value.first(), [0.0, 1e5])),
-            None => match self.pictured.spread("thickness", &given.thickness_nm) {
+            Some(value) => Setting::Number(self.held("thickness of the film", value.first(), [0.0, THICKNESS_MAX_NM])),
+            None => match self.pictured.spread("thickness", &held) {
                 Ok(([least, most], Scaled { map: Some(map), notes, .. })) if most > least => {
                     self.pictured_as("thickness", true, notes);
-                    let [least, most, extent] = [least.max(0.0), most, EXTENT_UM].map(number);
+                    let [least, most, extent] = [least, most, EXTENT_UM].map(number);
                     Setting::Table(format!("{{ min = {least}, max = {most}, extent_um = {extent}, map = {map} }}"))
                 }
                 Ok(([least, _], _)) if least > 0.0 => Setting::Number(least),
@@ -359,5 +368,5 @@ impl Writer<'_, '_> {
 
 /// Whether two normal maps are one.
 fn same(a: Option<&Input>, b: Option<&Input>) -> bool {
-    a.zip(b).is_some_and(|(a, b)| Arc::ptr_eq(a, b))
+    a.zip(b).is_some_and(|(a, b)| expression::same(a, b))
 }

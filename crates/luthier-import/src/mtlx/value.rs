@@ -38,12 +38,11 @@ impl Value {
         if self.count == 1 { [r; 3] } else { [r, g, b] }
     }
 
-    /// As many numbers as a type has: one stands for all, and the fourth is 1 where there is none.
+    /// As many numbers as a type has: one stands for all, and after three the fourth is 1.
     pub(super) fn fitted(self, count: usize) -> Self {
         let [r, g, b, a] = self.channels;
         match (self.count, count) {
             (_, 1) => Self::number(r),
-            (1, 4) => Self { channels: [r, r, r, 1.0], count },
             (1, _) => Self { channels: [r; 4], count },
             (2, _) => Self { channels: [r, g, 0.0, 1.0], count },
             (3, 4) => Self { channels: [r, g, b, 1.0], count },

@@ -306,7 +306,7 @@ fn placements_are_baked_together() {
 fn a_picture_that_is_missing_is_told() {
     let graph = r#"<image name="c" type="color3"><input name="file" type="filename" value="none.png"/></image>"#;
     let (material, import) = shader("gltf_pbr", &input("base_color", "color3", "nodename=\"c\""), graph);
-    assert_eq!(fates(&material, "picture of base_color"), [Fate::Dropped]);
+    assert_eq!(fates(&material, "picture of base_color"), [Fate::Dropped, Fate::Approximated]);
     assert!(import.pictures.is_empty());
     let tiles =
         r#"<image name="c" type="color3"><input name="file" type="filename" value="a.&lt;UDIM&gt;.png"/></image>"#;
@@ -340,6 +340,88 @@ fn broken_files_say_where() {
     // The format is told by its content.
     let body = format!("<gltf_pbr name=\"S\" type=\"surfaceshader\"/>{MATERIAL}");
     assert_eq!(import("x", document(&body).as_bytes(), &files).unwrap().materials.len(), 1);
+}
+
+/// A node with constant inputs as a base colour.
+fn node(category: &str, inputs: &str) -> String {
+    let beside = format!("<{category} name=\"n\" type=\"color3\">{inputs}</{category}>");
+    shader("gltf_pbr", &input("base_color", "color3", "nodename=\"n\""), &beside).0.text
+}
+
+/// Values by hand from the graphs of the format's library.
+#[test]
+fn nodes_are_those_of_the_library() {
+    let grey = |name: &str, number: &str| value(name, "color3", &format!("{number}, {number}, {number}"));
+    // The background decides: 1 - 2 (1 - .2)(1 - .8).
+    has(&node("overlay", &(grey("fg", "0.2") + &grey("bg", "0.8"))), &["base_color = 0.68"]);
+    has(&node("ifequal", &(grey("in1", "0.3") + &grey("in2", "0.6"))), &["base_color = 0.3"]);
+    has(&node("switch", &(value("which", "float", "10") + &grey("in10", "0.7"))), &["base_color = 0.0"]);
+    has(&node("smoothstep", &(grey("in", "0.5") + &grey("low", "0.4") + &grey("high", "0.4"))), &["base_color = 1.0"]);
+    let luma = value("in", "color3", "0.1, 0.2, 0.4") + &value("lumacoeffs", "color3", "0, 0, 1");
+    has(&node("luminance", &luma), &["base_color = 0.4"]);
+    // A number that is none, as (-.5)^.5, is 0.
+    has(&node("power", &(grey("in1", "-0.5") + &grey("in2", "0.5"))), &["base_color = 0.0"]);
+}
+
+/// The metal of a mix has the colour of the base, whatever lies below the surface of the rest.
+#[test]
+fn subsurface_leaves_metals_alone() {
+    let inputs = value("base_color", "color3", "0.9, 0.7, 0.3")
+        + &value("metalness", "float", "1")
+        + &value("subsurface", "float", "1")
+        + &value("subsurface_color", "color3", "0.8, 0.1, 0.1");
+    has(&shader("standard_surface", &inputs, "").0.text, &["base_color = [0.9, 0.7, 0.3]"]);
+    let inputs = value("base_metalness", "float", "0.5") + &value("specular_weight", "float", "0.5");
+    has(&shader("open_pbr_surface", &inputs, "").0.text, &["base_color = 0.6"]);
+}
+
+/// Texels beyond a key's range are held to it one by one: .2 and .8 times 2.
+#[test]
+fn texels_are_held() {
+    let twice = r#"<image name="r" type="float"><input name="file" type="filename" value="maps/rough.png"/></image>
+<multiply name="m" type="float"><input name="in1" type="float" nodename="r"/><input name="in2" type="float" value="2"/></multiply>"#;
+    let (material, import) = shader("gltf_pbr", &input("metallic", "float", "nodename=\"m\""), twice);
+    has(&material.text, &["metallic = 1.0"]);
+    let found = values(&import, "maps/metallic.png");
+    close(found[0][0], 0.4);
+    close(found[1][0], 1.0);
+    // A film from -100 nm to 500 nm begins at 0.
+    let film = r#"<image name="r" type="float"><input name="file" type="filename" value="maps/rough.png"/></image>
+<remap name="m" type="float"><input name="in" type="float" nodename="r"/><input name="inlow" type="float" value="0.2"/>
+<input name="inhigh" type="float" value="0.8"/><input name="outlow" type="float" value="-100"/><input name="outhigh" type="float" value="500"/></remap>"#;
+    let inputs = value("iridescence", "float", "1") + &input("iridescence_thickness", "float", "nodename=\"m\"");
+    has(&shader("gltf_pbr", &inputs, film).0.text, &["min = 0.0, max = 500.0"]);
+}
+
+/// Graphs that would take for ever, or all memory, are told and left.
+#[test]
+fn graphs_have_ends() {
+    let chain = |count: usize, of: &dyn Fn(usize) -> String| (0..count).map(of).collect::<String>();
+    let start =
+        "<image name=\"n0\" type=\"color3\"><input name=\"file\" type=\"filename\" value=\"maps/color.png\"/></image>";
+    let doubled = |i: usize| {
+        let input = |name: &str| input(name, "color3", &format!("nodename=\"n{i}\""));
+        format!("<multiply name=\"n{}\" type=\"color3\">{}{}</multiply>", i + 1, input("in1"), input("in2"))
+    };
+    shader("gltf_pbr", &input("base_color", "color3", "nodename=\"n40\""), &(start.to_owned() + &chain(40, &doubled)));
+    let defined = |i: usize| {
+        let node = |name: &str| format!("<d{} name=\"{name}\" type=\"color3\"/>", i + 1);
+        format!(
+            "<nodedef name=\"D{i}\" node=\"d{i}\"><output name=\"out\" type=\"color3\"/></nodedef><nodegraph name=\"G{i}\" nodedef=\"D{i}\">{}{}\
+             <multiply name=\"m\" type=\"color3\"><input name=\"in1\" type=\"color3\" nodename=\"a\"/><input name=\"in2\" type=\"color3\" nodename=\"b\"/></multiply>\
+             <output name=\"out\" type=\"color3\" nodename=\"m\"/></nodegraph>",
+            node("a"),
+            node("b")
+        )
+    };
+    let end = "<nodedef name=\"D30\" node=\"d30\"><output name=\"out\" type=\"color3\"/></nodedef><nodegraph name=\"G30\" nodedef=\"D30\">\
+               <constant name=\"c\" type=\"color3\"/><output name=\"out\" type=\"color3\" nodename=\"c\"/></nodegraph>";
+    let laughs = chain(30, &defined) + end + "<d0 name=\"top\" type=\"color3\"/>";
+    let (material, _) = shader("gltf_pbr", &input("base_color", "color3", "nodename=\"top\""), &laughs);
+    assert!(material.lines.iter().any(|line| line.note.contains("more than 20000 nodes")), "{:?}", material.lines);
+    let circle = r#"<nodegraph name="g"><output name="out" type="surfaceshader" nodegraph="g"/></nodegraph>
+<surfacematerial name="m" type="material"><input name="surfaceshader" type="surfaceshader" nodegraph="g"/></surfacematerial>"#;
+    assert!(materialx("x.mtlx", document(circle).as_bytes(), &files).is_err());
 }
 
 /// Inputs of the shaders that are read, with numbers and pictures.
