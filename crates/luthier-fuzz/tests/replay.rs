@@ -60,7 +60,7 @@ fn the_corpus_is_small() {
             .sum::<usize>()
     };
     let sum: usize = TARGETS.iter().map(own).sum();
-    assert!(sum < 300_000, "{sum} bytes");
+    assert!(sum < 310_000, "{sum} bytes");
 }
 
 /// A change of an input.
