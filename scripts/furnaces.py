@@ -8,9 +8,11 @@ Blender reads the same glTF file with its own importer, and Cycles renders squar
 material files of it, whose stacks `luthier eval --model layered-mc` simulates. Nothing of the two ways is shared. Fails where a material that means the
 same thing in both is more than .025 apart up to 60 degrees."""
 
+import base64
 import json
 import math
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -23,7 +25,7 @@ SIDE, SAMPLES = 16, 1024
 WHY = """
 Metals and plastics mean the same in both, and the other kinds do not:
 
-- **Edges of dielectrics.** glTF has Schlick's formula, and luthier takes it. Cycles takes Fresnel's equations of the index: .036 less at 85 degrees for an F0 of .04.
+- **Edges of dielectrics.** glTF has Schlick's formula, and luthier takes it. Cycles takes Fresnel's equations of the index: {2:.3f} less at 85 degrees for an F0 of .04.
 - **Rough dielectrics at grazing angles.** The interface of `metallic-roughness` bends no light. Light that a facet lets through therefore goes on as slantingly as it came, and the simulation lets it meet more
   facets, each of which reflects some. With a black base and a roughness of .8 it returns {0[3]:.3f} of the light at 75 degrees and {0[4]:.3f} at 85; a `dielectric` of the same F0 over black, which bends light, {1[3]:.3f} and {1[4]:.3f}. This is a weakness
   of that layer, to whose simulation `lobes` is fitted.
@@ -67,9 +69,6 @@ def materials():
 
 def document(all_of_them):
     """A square for each material, far from the others."""
-    import base64
-    import struct
-
     square = [(-1, -1, 0), (1, -1, 0), (-1, 1, 0), (1, 1, 0)]
     uv = [(0, 1), (1, 1), (0, 0), (1, 0)]
     data = b"".join(struct.pack("<3f", *corner) for corner in square) + b"".join(struct.pack("<2f", *corner) for corner in uv)
@@ -160,15 +159,26 @@ def edges(luthier, folder):
     return out
 
 
+def reflectance(n, angle):
+    """Fresnel's equations of a dielectric, for unpolarised light."""
+    cos = math.cos(angle)
+    inside = math.sqrt(1 - (math.sin(angle) / n) ** 2)
+    return 0.5 * (((cos - n * inside) / (cos + n * inside)) ** 2 + ((n * cos - inside) / (n * cos + inside)) ** 2)
+
+
+def text(rgb):
+    return " ".join(f"{c:.3f}" for c in rgb)
+
+
 def report(version, given, ours, theirs, black):
     """The page, and materials of one meaning that are apart."""
-    out = []
-    print = out.append
+    # Of an index of 1.5 at 85 degrees.
+    schlick, fresnel = 0.04 + 0.96 * (1 - math.cos(math.radians(85))) ** 5, reflectance(1.5, math.radians(85))
     rows = []
     for (kind, material), own, other in zip(given, ours, theirs):
         apart = [max(abs(a - b) for a, b in zip(x, y)) for x, y in zip(own, other)]
         rows.append((kind, material["name"], apart, own, other))
-    print(f"""# Imported materials beside Cycles
+    page = [f"""# Imported materials beside Cycles
 
 `scripts/furnaces.py` makes this page. It writes 30 materials of glTF into one file. Blender {version} reads it with its own importer, and Cycles renders white furnaces: squares under light of radiance 1 from
 everywhere, {SIDE * SIDE * SAMPLES:,} paths for each angle. `luthier import` makes material files of it, and `luthier eval --model layered-mc` simulates their stacks with {PATHS:,} paths. The two ways share no code.
@@ -177,19 +187,18 @@ Random numbers make differences of up to .003.
 ## The largest difference of a kind, of any channel
 
 | kind | materials | {" | ".join(f"{angle} degrees" for angle in ANGLES)} |
-|---|--:|{"--:|" * len(ANGLES)}""")
+|---|--:|{"--:|" * len(ANGLES)}"""]
     for kind in dict.fromkeys(row[0] for row in rows):
         of_kind = [row[2] for row in rows if row[0] == kind]
-        print(f"| {kind} | {len(of_kind)} | {' | '.join(f'{max(column):.3f}' for column in zip(*of_kind))} |")
-    print(WHY.format(*black))
-    print(f"| material | kind | {' | '.join(f'{angle}' for angle in ANGLES)} | luthier, 0 degrees | Cycles | luthier, 75 degrees | Cycles |\n|---|---|{'--:|' * len(ANGLES)}---|---|---|---|")
-    text = lambda rgb: " ".join(f"{c:.3f}" for c in rgb)
+        page.append(f"| {kind} | {len(of_kind)} | {' | '.join(f'{max(column):.3f}' for column in zip(*of_kind))} |")
+    page.append(WHY.format(*black, schlick - fresnel))
+    page.append(f"| material | kind | {' | '.join(f'{angle}' for angle in ANGLES)} | luthier, 0 degrees | Cycles | luthier, 75 degrees | Cycles |\n|---|---|{'--:|' * len(ANGLES)}---|---|---|---|")
     for kind, name, apart, own, other in rows:
         at = ANGLES.index(75)
         shares = " | ".join(f"{share:.3f}" for share in apart)
-        print(f"| {name} | {kind} | {shares} | {text(own[0])} | {text(other[0])} | {text(own[at])} | {text(other[at])} |")
+        page.append(f"| {name} | {kind} | {shares} | {text(own[0])} | {text(other[0])} | {text(own[at])} | {text(other[at])} |")
     far = [f"{name}: {max(apart[:3]):.3f}" for kind, name, apart, _, _ in rows if kind in SAME and max(apart[:3]) > APART]
-    return "\n".join(out) + "\n", far
+    return "\n".join(page) + "\n", far
 
 
 def main(luthier, output):

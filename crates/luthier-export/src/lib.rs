@@ -25,7 +25,7 @@ pub use hash::sha256;
 pub use origins::{label, origin, plain};
 pub use package::{Map, Package, Shader, Table};
 pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_beside, shared, wait};
-pub use replace::replace;
+pub use replace::{lay, replace};
 
 /// File name of the manifest.
 pub const MANIFEST: &str = "manifest.json";

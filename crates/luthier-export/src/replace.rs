@@ -33,3 +33,23 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         written
     })
 }
+
+/// Writes files into a folder by paths relative to it, and makes the folders that they need.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// luthier_export::lay(folder.path(), [("maps/a.txt".to_owned(), b"a".as_slice())])?;
+/// assert_eq!(std::fs::read(folder.path().join("maps/a.txt"))?, b"a");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
+/// # Errors
+/// Those of the system; files before the one that failed stay.
+pub fn lay<'a>(folder: &Path, files: impl IntoIterator<Item = (String, &'a [u8])>) -> io::Result<()> {
+    for (path, bytes) in files {
+        let path = folder.join(path);
+        fs::create_dir_all(path.parent().unwrap_or(folder))?;
+        fs::write(path, bytes)?;
+    }
+    Ok(())
+}

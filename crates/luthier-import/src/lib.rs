@@ -27,6 +27,7 @@
 //!
 //! - `error`, `fate`, `name`: refusals, what becomes of a property, names of materials and of pictures.
 //! - `draft`: a material file as layers with keys, and its text.
+//! - `rules`: numbers that formats share, and how a file says them.
 //! - `pictures`: pictures of a source, unchanged or computed.
 //! - `gltf`, `mtlx`, `physically_based`: materials of glTF, of MaterialX, and of a database.
 
@@ -38,6 +39,7 @@ mod mtlx;
 mod name;
 mod physically_based;
 mod pictures;
+mod rules;
 
 use std::collections::BTreeMap;
 use std::io;
@@ -57,6 +59,14 @@ pub struct Import {
     pub pictures: BTreeMap<String, Vec<u8>>,
     /// Properties of the file that belong to no material.
     pub lines: Vec<Line>,
+}
+
+impl Import {
+    /// All files by path, relative to one folder: those of the materials, and the pictures.
+    pub fn files(&self) -> impl Iterator<Item = (String, &[u8])> {
+        let materials = self.materials.iter().map(|of| (format!("{}.toml", of.name), of.text.as_bytes()));
+        materials.chain(self.pictures.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice())))
+    }
 }
 
 /// A material.

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::draft::{Draft, Layer, Value as Setting};
 use crate::name::Names;
+use crate::rules;
 use crate::{Fate, Import, ImportError, Imported, Line};
 
 /// The colours that luthier has: linear Rec.709.
@@ -134,8 +135,7 @@ fn surface(entry: &Entry) -> (Draft, Vec<Line>) {
         base.set("base_color", Setting::color(color));
         base.set("metallic", Setting::Number(metallic));
         if let Some(ior) = entry.ior {
-            let root = (ior - 1.0) / (ior + 1.0);
-            base.set("f0", Setting::Number((root * root).min(1.0)));
+            base.set("f0", Setting::Number(rules::f0(ior)));
             say("ior", Fate::ClosedForm, "f0 = ((n - 1)/(n + 1))^2");
         }
     }

@@ -5,22 +5,14 @@ use luthier_lut::srgb;
 use super::document::{Anisotropy, Clearcoat, Iridescence, Material, Metallic, Specular, Texture};
 use super::textures::{Textures, Use, is_odd, set};
 use crate::draft::{Draft, Layer, Value};
+use crate::rules::{self, F0, MAPPED_F0_MAX};
 use crate::{Fate, Line};
-
-/// Reflectance along the normal of the dielectric without extensions.
-const F0: f64 = 0.04;
 
 /// Index of coats (`KHR_materials_clearcoat`).
 const COAT_IOR: f64 = 1.5;
 
-/// Width of a repeat of a film's map, which glTF does not state, um. Shaders do not show it.
-const EXTENT_UM: f64 = 100_000.0;
-
 /// Shares, strengths and roughness.
 const UNIT: [f64; 2] = [0.0, 1.0];
-
-/// The largest F0 below which texels scale the light of a base.
-const MAPPED_F0_MAX: f64 = 0.9;
 
 /// Factors on the slope of normals.
 const NORMAL_SCALE: [f64; 2] = [0.0, 100.0];
@@ -229,7 +221,7 @@ impl Reading<'_, '_> {
         }
         let ior = extensions.ior.as_ref().map(|ior| self.held("KHR_materials_ior", ior.ior, [0.0, 1e6]));
         // An index of 0 is that of materials that were described by specular and glossiness: they reflect all of their specular colour.
-        let of_ior = ior.map_or(F0, |ior| ((ior - 1.0) / (ior + 1.0)) * ((ior - 1.0) / (ior + 1.0)));
+        let of_ior = ior.map_or(F0, rules::f0);
         if extensions.ior.is_some() {
             self.say("KHR_materials_ior", Fate::ClosedForm, "f0 = ((n - 1)/(n + 1))^2");
         }
@@ -331,12 +323,9 @@ impl Reading<'_, '_> {
             texture.and_then(|texture| textures.texels(texture).ok()).map_or(1.0, |texels| texels.most(channel))
         };
         let [most_rough, most_strong] = [most(rough, 1, self.textures), most(direction, 2, self.textures)];
-        let alphas = move |roughness: f64, strength: f64| {
-            let alpha = roughness * roughness;
-            [alpha + (1.0 - alpha) * strength * strength, alpha]
-        };
         // Both grow with roughness, and the first with the strength.
-        let [alpha_x, alpha_y] = alphas(roughness * most_rough, strength * most_strong).map(|alpha| alpha.max(1e-6));
+        let [alpha_x, alpha_y] =
+            rules::gltf_alphas(roughness * most_rough, strength * most_strong).map(|alpha| alpha.max(1e-6));
         base.set("alpha_x", Value::Number(alpha_x));
         base.set("alpha_y", Value::Number(alpha_y));
         let turn = libm::fmod(given.anisotropy_rotation, std::f64::consts::TAU);
@@ -348,7 +337,7 @@ impl Reading<'_, '_> {
         if rough.or(direction).is_some() {
             let key = format!("alpha-x {roughness} {strength} {most_rough} {most_strong}");
             let picture = self.textures.number("alpha-x", &key, [rough, direction], move |rough, direction| {
-                alphas(roughness * rough[1], strength * direction[2])[0] / alpha_x
+                rules::gltf_alphas(roughness * rough[1], strength * direction[2])[0] / alpha_x
             });
             self.computed(base, "alpha_x", "textures of roughness and strength", [rough, direction], picture, note);
         }
@@ -448,13 +437,7 @@ impl Reading<'_, '_> {
             Some(picture)
         });
         let thickness = match map {
-            Some(map) => {
-                let [thin, thick] = [least.min(most), least.max(most)].map(crate::draft::number);
-                Value::Table(format!(
-                    "{{ min = {thin}, max = {thick}, extent_um = {}, map = {map} }}",
-                    crate::draft::number(EXTENT_UM)
-                ))
-            }
+            Some(map) => Value::Table(rules::thickness([least.min(most), least.max(most)], &map)),
             None if most == 0.0 => return None,
             None => Value::Number(most),
         };

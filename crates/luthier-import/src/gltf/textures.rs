@@ -8,6 +8,7 @@ use luthier_mesh::Asset;
 use super::document::{Texture, Transform};
 use crate::draft::number;
 use crate::pictures::{Pictures, Texels};
+use crate::rules;
 
 /// The wrapping mode of samplers that repeats, and the default.
 const REPEAT: u64 = 10497;
@@ -44,12 +45,13 @@ impl<'a> Textures<'a> {
         let image = self.image(texture)?;
         let (asset, name) = (self.asset, self.name(image));
         let path = self.pictures.unchanged(image, &name, || bytes(asset, image))?;
-        let mut words = vec![format!("image = \"{path}\"")];
-        words.extend(used.channel.map(|channel| format!("channel = \"{channel}\"")));
-        words.extend(used.is_srgb.then(|| "srgb = true".to_owned()));
-        words.extend(used.scale.filter(|scale| *scale != 1.0).map(|scale| format!("scale = {}", number(scale))));
-        words.extend(transform(texture));
-        Ok(format!("{{ {} }}", words.join(", ")))
+        let words = [
+            used.channel.map(|channel| format!("channel = \"{channel}\"")),
+            used.is_srgb.then(|| "srgb = true".to_owned()),
+            used.scale.filter(|scale| *scale != 1.0).map(|scale| format!("scale = {}", number(scale))),
+            transform(texture),
+        ];
+        Ok(rules::picture(&path, words))
     }
 
     /// The texels of a texture.
@@ -88,7 +90,7 @@ impl<'a> Textures<'a> {
     /// One white texel, as TOML.
     pub(super) fn white(&mut self) -> Result<String, String> {
         let path = self.pictures.computed("white", "white", [None, None], |_, _| [1.0])?;
-        Ok(format!("{{ image = \"{path}\" }}"))
+        Ok(rules::picture(&path, []))
     }
 
     #[expect(clippy::type_complexity, reason = "a name, a key, and texels of up to two pictures")]
@@ -148,29 +150,16 @@ fn bytes(asset: &Asset<'_>, image: usize) -> Result<Vec<u8>, String> {
 }
 
 fn table(path: &str, sources: [Option<&Texture>; 2]) -> String {
-    let placed = sources.into_iter().flatten().next().and_then(transform);
-    let words: Vec<String> = std::iter::once(format!("image = \"{path}\"")).chain(placed).collect();
-    format!("{{ {} }}", words.join(", "))
+    rules::picture(path, [sources.into_iter().flatten().next().and_then(transform)])
 }
 
 /// The placement of a texture over texture coordinates, as TOML. glTF turns by the same angle the other way round: from v towards u.
 fn transform(texture: &Texture) -> Option<String> {
     let Transform { offset, rotation, scale, .. } = texture.extensions.transform.as_ref()?;
-    let pair = |[u, v]: [f64; 2]| format!("[{}, {}]", number(u), number(v));
-    let mut words = Vec::new();
     let [offset, scale] = [offset, scale].map(|pair| pair.map(|v| if v.abs() < PLACED_MAX { v } else { 0.0 }));
     let scale = scale.map(|v| if v.abs() * PLACED_MAX > 1.0 { v } else { 1.0 });
     let rotation = libm::fmod(*rotation, std::f64::consts::TAU);
-    if offset != [0.0; 2] {
-        words.push(format!("offset = {}", pair(offset)));
-    }
-    if rotation != 0.0 {
-        words.push(format!("rotation_deg = {}", number(-rotation.to_degrees())));
-    }
-    if scale != [1.0; 2] {
-        words.push(format!("scale = {}", pair(scale)));
-    }
-    (!words.is_empty()).then(|| format!("transform = {{ {} }}", words.join(", ")))
+    rules::placement(offset, -rotation.to_degrees(), scale)
 }
 
 /// Whether a placement has numbers that are left out: see [`PLACED_MAX`].

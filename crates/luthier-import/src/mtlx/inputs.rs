@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::document::Element;
 use super::expression::Expression;
 use super::graph::{Graph, Scope};
-use super::value::{Value, count};
+use super::value::Value;
 use crate::{Fate, Line};
 
 /// Fate of an input where nothing else is said, and how it came about.
@@ -104,29 +104,22 @@ impl<'g> Inputs<'g> {
 
     /// A number that is the same everywhere. One that varies has its default.
     pub(super) fn fixed(&mut self, name: &'static str, absent: f64) -> f64 {
-        self.fixed_color(name, [absent; 3])[0]
-    }
-
-    /// A colour that is the same everywhere.
-    pub(super) fn fixed_color(&mut self, name: &'static str, absent: [f64; 3]) -> [f64; 3] {
-        let found = self.color(name, absent).constant();
+        let found = self.number(name, absent).constant();
         found.map_or_else(
             || {
                 self.say(name, Fate::Dropped, "it varies here, where a file has one number: the default is taken");
                 absent
             },
-            Value::three,
+            Value::first,
         )
     }
 
-    /// A share that a surface does not show: whether there is any of it.
-    pub(super) fn lost(&mut self, name: &'static str, note: &str) -> bool {
+    /// A share that a surface does not show, where there is any of it.
+    pub(super) fn lost(&mut self, name: &'static str, note: &str) {
         let found = self.color(name, [0.0; 3]);
-        let is_there = found.constant().is_none_or(|value| value.three().iter().any(|v| *v > 0.0));
-        if is_there {
+        if found.constant().is_none_or(|value| value.three().iter().any(|v| *v > 0.0)) {
             self.say(name, Fate::Dropped, note);
         }
-        is_there
     }
 
     /// A line for each input that has none yet. `details` belong to what was dropped, or is not there.
@@ -146,8 +139,7 @@ impl<'g> Inputs<'g> {
             } else if details.iter().any(|known| name.starts_with(known)) {
                 self.say(name, Fate::Kept, "it says how something is that is dropped or not there");
             } else {
-                let number = input.attribute("type").and_then(count).is_some();
-                self.say(name, Fate::Dropped, if number { "the input is not known" } else { "the input is not read" });
+                self.say(name, Fate::Dropped, "the input is not read");
             }
         }
         self.lines

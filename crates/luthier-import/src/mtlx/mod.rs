@@ -19,7 +19,6 @@ mod pictured;
 mod surface;
 mod value;
 
-use std::collections::BTreeMap;
 use std::io;
 
 use self::graph::Graph;
@@ -51,15 +50,13 @@ pub fn materialx(
     let mut import = Import::default();
     let mut found = Vec::new();
     let scope = graph.root().clone();
-    let mut others = BTreeMap::new();
     for material in root.children.iter().filter(|child| child.category == "surfacematerial") {
         let shader = material.input("surfaceshader").and_then(|input| graph.connected(input, &scope));
         match shader {
             Some((shader, scope)) => {
                 let given = |name: &&str| material.input(name).is_some_and(|input| inputs::is_given(input));
                 let lost: Vec<&str> = ["displacementshader", "backsurfaceshader"].into_iter().filter(given).collect();
-                others.insert(found.len(), lost);
-                found.push((material.name().to_owned(), shader, scope));
+                found.push((material.name().to_owned(), shader, scope, lost));
             }
             None => {
                 let note = format!("{}: the material has no shader", material.place);
@@ -69,9 +66,9 @@ pub fn materialx(
     }
     if root.children.iter().all(|child| child.category != "surfacematerial") {
         let shaders = root.children.iter().filter(|child| model(&child.category).is_some());
-        found.extend(shaders.map(|shader| (shader.name().to_owned(), shader.clone(), scope.clone())));
+        found.extend(shaders.map(|shader| (shader.name().to_owned(), shader.clone(), scope.clone(), Vec::new())));
     }
-    for (number, (source_name, shader, scope)) in found.into_iter().enumerate() {
+    for (number, (source_name, shader, scope, lost)) in found.into_iter().enumerate() {
         let (shader, scope) = graph.shader(shader, scope, |category| model(category).is_some());
         let Some(model) = model(&shader.category) else {
             let note = format!("{}: the shader `{}` is not read", shader.place, shader.category);
@@ -80,7 +77,7 @@ pub fn materialx(
         };
         let name = names.unique(&source_name, &format!("material-{number}"));
         let (surface, mut lines) = model(Inputs::new(&mut graph, &shader, &scope));
-        for name in others.get(&number).into_iter().flatten() {
+        for name in lost {
             lines.push(Line::new(name, Fate::Dropped, "the form of the surface, and its other side, are not read"));
         }
         let layers = Writer { pictured: &mut pictured, lines: &mut lines }.layers(&surface);

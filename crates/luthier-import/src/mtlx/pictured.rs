@@ -6,10 +6,11 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::document::Files;
-use super::expression::{Affine, Expression, Image, Program, placed};
+use super::expression::{Affine, Expression, Image, Op, Program, placed};
 use super::value::Value;
 use crate::draft::number;
 use crate::pictures::{Pictures, Texels, quantised};
+use crate::rules;
 
 /// Most texels on a side of a computed picture.
 const SIDE_MAX: u32 = 4096;
@@ -33,9 +34,15 @@ pub(super) struct Scaled {
     /// The picture, as TOML.
     pub(super) map: Option<String>,
     /// Losses on the way.
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<&'static str>,
     /// Whether the picture is computed.
     pub(super) is_computed: bool,
+}
+
+impl Scaled {
+    fn constant(factor: Value) -> Self {
+        Self { factor, map: None, notes: Vec::new(), is_computed: false }
+    }
 }
 
 /// The pictures of an import.
@@ -68,7 +75,7 @@ impl<'a> Pictured<'a> {
     /// One white texel, as TOML.
     pub(super) fn white(&mut self) -> Result<String, String> {
         let path = self.pictures.computed("white", "white", [None, None], |_, _| [1.0])?;
-        Ok(format!("{{ image = \"{path}\" }}"))
+        Ok(rules::picture(&path, []))
     }
 
     /// One or three numbers that may vary, up to a limit. A picture stays as it is where the file can say what is done to it; else it is computed in 16 bits, over its largest value.
@@ -80,7 +87,7 @@ impl<'a> Pictured<'a> {
         limit: f64,
     ) -> Result<Scaled, String> {
         if let Some(factor) = expression.constant() {
-            return Ok(Scaled { factor: factor.fitted(channels), map: None, notes: Vec::new(), is_computed: false });
+            return Ok(Scaled::constant(factor.fitted(channels)));
         }
         if let Some(unchanged) = self.unchanged(expression, channels, limit)? {
             return Ok(unchanged);
@@ -94,28 +101,27 @@ impl<'a> Pictured<'a> {
         let most = grid.values.iter().fold([0.0_f32; 3], |most, texel| [0, 1, 2].map(|c: usize| most[c].max(texel[c])));
         let factor = Value::rgb(most.map(f64::from)).fitted(channels);
         let over = |c: usize, v: f32| if most[c] > 0.0 { f64::from(v / most[c]) } else { 0.0 };
-        let map = self.ship(name, &grid, channels, over)?;
-        let notes = grid.notes.iter().map(|note| (*note).to_owned()).collect();
-        Ok(Scaled { factor, map, notes, is_computed: true })
+        Ok(Scaled { factor, ..self.ship(name, &grid, channels, over)? })
     }
 
-    /// A value from its least to its greatest, and the picture that goes from 0 to 1 between them. The picture has no placement: one is told.
+    /// A value from its least to its greatest, and the picture that goes from 0 to 1 between them, where they differ. The picture has no placement: one is told.
     pub(super) fn spread(&mut self, name: &str, expression: &Arc<Expression>) -> Result<([f64; 2], Scaled), String> {
-        let grid = self.grid(expression)?;
+        let mut grid = self.grid(expression)?;
         let values = grid.values.iter().map(|texel| texel[0]);
         let [least, most] = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-        let over = |_: usize, v: f32| if most > least { f64::from((v - least) / (most - least)) } else { 0.0 };
-        let mut notes: Vec<String> = grid.notes.iter().map(|note| (*note).to_owned()).collect();
-        if grid.transform.is_some() {
-            notes.push("its placement is left out".to_owned());
+        let over = |_: usize, v: f32| f64::from((v - least) / (most - least));
+        let range = [least, most].map(f64::from);
+        if most <= least {
+            return Ok((range, Scaled::constant(Value::number(1.0))));
         }
-        let map = self.ship(name, &Grid { transform: None, ..grid }, 1, over)?;
-        Ok(([least, most].map(f64::from), Scaled { factor: Value::number(1.0), map, notes, is_computed: true }))
+        if grid.transform.take().is_some() {
+            grid.notes.insert("its placement is left out");
+        }
+        Ok((range, self.ship(name, &grid, 1, over)?))
     }
 
     /// A normal map and its factor on slopes.
     pub(super) fn normals(&mut self, expression: &Arc<Expression>) -> Result<Scaled, String> {
-        use super::expression::Op;
         if let Expression::Apply(Op::Normals, inputs, _) = &**expression
             && let (Expression::Image(image), Some(scale)) = (&*inputs[0], inputs[1].constant())
             && image.space.is_linear()
@@ -126,23 +132,19 @@ impl<'a> Pictured<'a> {
             let scale = (scale.first() != 1.0).then(|| format!("scale = {}", number(scale.first())));
             return Ok(Scaled {
                 factor: Value::number(1.0),
-                map: Some(table(&path, [scale, transform])),
+                map: Some(rules::picture(&path, [scale, transform])),
                 notes: ends(image),
                 is_computed: false,
             });
         }
         let grid = self.grid(expression)?;
-        let map = self.ship("normal", &grid, 3, |_, v| 0.5 + 0.5 * f64::from(v))?;
-        let notes = grid.notes.iter().map(|note| (*note).to_owned()).collect();
-        Ok(Scaled { factor: Value::number(1.0), map, notes, is_computed: true })
+        self.ship("normal", &grid, 3, |_, v| 0.5 + 0.5 * f64::from(v))
     }
 
     /// A picture of three numbers as they are, from 0 to 1.
     pub(super) fn plain(&mut self, name: &str, expression: &Arc<Expression>) -> Result<Scaled, String> {
         let grid = self.grid(expression)?;
-        let map = self.ship(name, &grid, 3, |_, v| f64::from(v))?;
-        let notes = grid.notes.iter().map(|note| (*note).to_owned()).collect();
-        Ok(Scaled { factor: Value::number(1.0), map, notes, is_computed: true })
+        self.ship(name, &grid, 3, |_, v| f64::from(v))
     }
 
     fn unchanged(
@@ -166,7 +168,7 @@ impl<'a> Pictured<'a> {
             (image.space.is_srgb() && channel != Some(3)).then(|| "srgb = true".to_owned()),
             transform,
         ];
-        let map = Some(table(&path, words));
+        let map = Some(rules::picture(&path, words));
         Ok(Some(Scaled { factor: factor.fitted(channels), map, notes: ends(image), is_computed: false }))
     }
 
@@ -216,11 +218,8 @@ impl<'a> Pictured<'a> {
             let most = if most < 1.0 { f64::from(SIDE) } else { libm::ceil(most) };
             (most.min(f64::from(SIDE_MAX)) as u32, most > f64::from(SIDE_MAX))
         };
-        let ([width, height], is_reduced) = {
-            let ((width, is_wide), (height, is_high)) = (extent(0), extent(1));
-            ([width, height], is_wide || is_high)
-        };
-        let (mut width, mut height, mut is_reduced) = (width, height, is_reduced);
+        let ((mut width, is_wide), (mut height, is_high)) = (extent(0), extent(1));
+        let mut is_reduced = is_wide || is_high;
         while u64::from(width) * u64::from(height) * program.len() as u64 > WORK_MAX && width.max(height) > 1 {
             (width, height, is_reduced) = (width.div_ceil(2), height.div_ceil(2), true);
         }
@@ -263,28 +262,30 @@ impl<'a> Pictured<'a> {
         Ok(Grid { width, height, values, transform: shared.flatten(), notes })
     }
 
+    /// The picture of texels, over nothing.
     fn ship(
         &mut self,
         name: &str,
         grid: &Grid,
         channels: usize,
         of: impl Fn(usize, f32) -> f64,
-    ) -> Result<Option<String>, String> {
+    ) -> Result<Scaled, String> {
         let samples = grid
             .values
             .iter()
             .flat_map(|texel| texel.iter().take(channels).enumerate().map(|(c, v)| quantised(of(c, *v))));
         let samples: Vec<u16> = samples.collect();
         let path = self.pictures.drawn(name, [grid.width, grid.height], channels as u32, samples)?;
-        Ok(Some(table(&path, [grid.transform.clone()])))
+        let map = Some(rules::picture(&path, [grid.transform.clone()]));
+        Ok(Scaled { factor: Value::number(1.0), map, notes: grid.notes.iter().copied().collect(), is_computed: true })
     }
 }
 
 /// The note on pictures that do not repeat.
 const ENDS: &str = "the picture ends or is mirrored at its edge: maps repeat";
 
-fn ends(image: &Image) -> Vec<String> {
-    if image.repeats { Vec::new() } else { vec![ENDS.to_owned()] }
+fn ends(image: &Image) -> Vec<&'static str> {
+    if image.repeats { Vec::new() } else { vec![ENDS] }
 }
 
 fn bytes(files: Files<'_>, path: &str) -> Result<Vec<u8>, String> {
@@ -295,12 +296,6 @@ fn bytes(files: Files<'_>, path: &str) -> Result<Vec<u8>, String> {
 fn stem(path: &str) -> &str {
     let name = path.rsplit_once('/').map_or(path, |(_, name)| name);
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
-}
-
-fn table(path: &str, words: impl IntoIterator<Item = Option<String>>) -> String {
-    let words: Vec<String> =
-        std::iter::once(format!("image = \"{path}\"")).chain(words.into_iter().flatten()).collect();
-    format!("{{ {} }}", words.join(", "))
 }
 
 /// A placement as TOML: texture coordinates are scaled, then turned, then moved, and v grows downwards. `Some(None)` moves nothing; `None` is a placement that no file can say.
@@ -316,18 +311,9 @@ fn transform(&[[a, b, c], [d, e, f]]: &Affine) -> Option<Option<String>> {
         let v = v - v.floor();
         if v > 1.0 - 1e-9 { 0.0 } else { v }
     });
-    let mut words = Vec::new();
-    let pair = |[u, v]: [f64; 2]| format!("[{}, {}]", number(u), number(v));
-    if offset.iter().any(|v| *v > 1e-9) {
-        words.push(format!("offset = {}", pair(offset)));
-    }
-    if turn.abs() > 1e-9 {
-        words.push(format!("rotation_deg = {}", number(turn.to_degrees())));
-    }
-    if scale.iter().any(|s| (s - 1.0).abs() > 1e-9) {
-        words.push(format!("scale = {}", pair(scale)));
-    }
-    Some((!words.is_empty()).then(|| format!("transform = {{ {} }}", words.join(", "))))
+    // Arithmetic leaves the last digits.
+    let near = |value: f64, wanted: f64| if (value - wanted).abs() < 1e-9 { wanted } else { value };
+    Some(rules::placement(offset.map(|v| near(v, 0.0)), near(turn, 0.0).to_degrees(), scale.map(|s| near(s, 1.0))))
 }
 
 #[cfg(test)]

@@ -6,24 +6,16 @@ use super::expression::{self, Expression};
 use super::pictured::{Pictured, Scaled};
 use super::value::Value;
 use crate::draft::{Layer, Value as Setting, number};
+use crate::rules::{self, F0, MAPPED_F0_MAX};
 use crate::{Fate, Line};
 
 type Input = Arc<Expression>;
 
-/// Width of a repeat of a film's map, which no format states, um. Shaders do not show it.
-const EXTENT_UM: f64 = 100_000.0;
-
 /// Thickest film, nm.
 const THICKNESS_MAX_NM: f64 = 1e5;
 
-/// The largest F0 below which texels scale the light of a base.
-const MAPPED_F0_MAX: f64 = 0.9;
-
 /// The largest slope deviation, radians.
 const SIGMA_MAX: f64 = 1.57;
-
-/// Reflectance along the normal of the dielectric that needs no word.
-const F0: f64 = 0.04;
 
 /// Least transmittance of a coat to and fro: black absorbs without end.
 const TRANSMITTANCE_MIN: f64 = 1e-4;
@@ -180,7 +172,7 @@ impl Writer<'_, '_> {
         found.map_err(|reason| self.say(&format!("picture of {map}"), Fate::Dropped, reason)).ok()
     }
 
-    fn pictured_as(&mut self, map: &str, is_computed: bool, notes: Vec<String>) {
+    fn pictured_as(&mut self, map: &str, is_computed: bool, notes: Vec<&str>) {
         let fate = if is_computed { Fate::ClosedForm } else { Fate::Kept };
         let note = if is_computed { "computed, in 16 bits" } else { "" };
         self.say(&format!("picture of {map}"), fate, note);
@@ -235,17 +227,17 @@ impl Writer<'_, '_> {
             && (coat.is_some() || varies(&facets.roughness) || facets.alphas.as_ref().is_some_and(|[x, _]| varies(x)));
         let wants_maps = has_weights || has_uneven_film;
         let has_maps = base.has_map("base_color") || base.has_map("metallic") || is_blend || varies(f0) || wants_maps;
+        // An F0 of .04 needs no word, and a metal has none.
+        let has_dielectric = share < 1.0 || varies(metallic);
+        let is_told = f0.constant().is_none_or(|value| value.three().iter().any(|f| (f - F0).abs() > 1e-9));
         if film.is_some() && has_maps {
-            if (share < 1.0 || varies(metallic)) && f0.constant().is_none_or(|value| value.three() != [F0; 3]) {
+            if has_dielectric && is_told {
                 let note = "a film on a surface with maps interferes by an F0 of .04 where the surface is no metal";
                 self.say("index and specular weight", Fate::Dropped, note);
             }
-        } else if share < 1.0 || varies(metallic) {
-            // An F0 of .04 needs no word, and a metal has none.
-            if f0.constant().is_none_or(|value| value.three().iter().any(|f| (f - F0).abs() > 1e-9)) {
-                let most = if varies(f0) { MAPPED_F0_MAX } else { 1.0 };
-                self.put(&mut base, ["f0", "f0"], f0, 3, [F0, most]);
-            }
+        } else if has_dielectric && is_told {
+            let most = if varies(f0) { MAPPED_F0_MAX } else { 1.0 };
+            self.put(&mut base, ["f0", "f0"], f0, 3, [F0, most]);
         }
         if *edge != [1.0; 3] && !is_zero(metallic) {
             if film.is_some() {
@@ -342,10 +334,9 @@ impl Writer<'_, '_> {
         let thickness = match given.thickness_nm.constant() {
             Some(value) => Setting::Number(self.held("thickness of the film", value.first(), [0.0, THICKNESS_MAX_NM])),
             None => match self.pictured.spread("thickness", &held) {
-                Ok(([least, most], Scaled { map: Some(map), notes, .. })) if most > least => {
+                Ok((range, Scaled { map: Some(map), notes, .. })) => {
                     self.pictured_as("thickness", true, notes);
-                    let [least, most, extent] = [least, most, EXTENT_UM].map(number);
-                    Setting::Table(format!("{{ min = {least}, max = {most}, extent_um = {extent}, map = {map} }}"))
+                    Setting::Table(rules::thickness(range, &map))
                 }
                 Ok(([least, _], _)) if least > 0.0 => Setting::Number(least),
                 Ok(_) => return None,

@@ -220,6 +220,43 @@ fn other_shaders_are_read() {
     );
 }
 
+/// What a coat of Standard Surface does to its base, OpenPBR's index below a coat, and the way round of directions: by hand from the graphs of the shaders.
+#[test]
+fn coats_act_on_their_bases() {
+    let inputs = value("base_color", "color3", "0.5, 0.5, 0.5")
+        + &value("coat", "float", "0.5")
+        + &value("coat_color", "color3", "0.2, 1, 1");
+    // The mix of 1 and .2 half way.
+    has(
+        &shader("standard_surface", &inputs, "").0.text,
+        &["weight = 0.5", "base_color = [0.3, 0.5, 0.5]", "f0 = [0.024, 0.04, 0.04]"],
+    );
+    let inputs = value("base_color", "color3", "0.5, 0.5, 0.5")
+        + &value("coat", "float", "1")
+        + &value("coat_roughness", "float", "0.4")
+        + &value("coat_affect_color", "float", "1")
+        + &value("coat_affect_roughness", "float", "0.5");
+    // .5^2, and .2 + .8 (.5 1 .4).
+    has(&shader("standard_surface", &inputs, "").0.text, &["base_color = 0.25", "roughness = 0.36"]);
+    // The index goes from 1.5 to 1.6/1.5 half way: 1.28333.
+    has(&shader("open_pbr_surface", &value("coat_weight", "float", "0.5"), "").0.text, &["f0 = 0.0153977"]);
+    let turned = value("specular_anisotropy", "float", "0.5") + &value("specular_rotation", "float", "0.1");
+    has(&shader("standard_surface", &turned, "").0.text, &["rotation_deg = -36.0"]);
+    let turned = value("anisotropy_strength", "float", "0.5") + &value("anisotropy_rotation", "float", "0.628318531");
+    has(&shader("gltf_pbr", &turned, "").0.text, &["rotation_deg = 36.0"]);
+}
+
+/// A film whose picture is the same everywhere has one thickness, and ships no picture.
+#[test]
+fn even_films_have_a_number() {
+    let even = r#"<image name="r" type="float"><input name="file" type="filename" value="maps/rough.png"/></image>
+<clamp name="m" type="float"><input name="in" type="float" nodename="r"/><input name="low" type="float" value="300"/><input name="high" type="float" value="300"/></clamp>"#;
+    let inputs = value("iridescence", "float", "1") + &input("iridescence_thickness", "float", "nodename=\"m\"");
+    let (material, import) = shader("gltf_pbr", &inputs, even);
+    has(&material.text, &["thickness_nm = 300.0"]);
+    assert!(import.pictures.is_empty(), "{:?}", import.pictures.keys());
+}
+
 #[test]
 fn colours_become_rec709() {
     // ACEScg (0.2, 0.5, 0.3): negative in red, by the matrix of the format's library.

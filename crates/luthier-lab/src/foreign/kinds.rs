@@ -101,13 +101,7 @@ fn material(path: &Path, folder: &Path) -> Outcome {
     let label = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let import = luthier_import::import(&label, &bytes, &|beside| input::beside(folder, own, beside)).map_err(words)?;
     let place = tempfile::tempdir().map_err(words)?;
-    let texts = import.materials.iter().map(|of| (format!("{}.toml", of.name), of.text.as_bytes()));
-    let pictures = import.pictures.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
-    for (path, bytes) in texts.chain(pictures) {
-        let path = place.path().join(path);
-        std::fs::create_dir_all(path.parent().unwrap_or(place.path())).map_err(words)?;
-        std::fs::write(path, bytes).map_err(words)?;
-    }
+    luthier_export::lay(place.path(), import.files()).map_err(words)?;
     let mut sources = Sources::read([place.path()]).map_err(words)?;
     sources.check(&Shading::default());
     if !sources.is_usable() {

@@ -33,26 +33,27 @@ pub(super) fn read(path: &Path, shading: &Shading) -> Outcome<(Package, Vec<Show
     let file = scene(&bytes, &beside).map_err(of_mesh)?;
     let mesh = Mesh::new(file.soup).map_err(of_mesh)?;
     let label = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let import = gltf(&label, &bytes, &beside).map_err(|error| unusable(anyhow::Error::new(error)))?;
+    let mut import = gltf(&label, &bytes, &beside).map_err(|error| unusable(anyhow::Error::new(error)))?;
     let place = tempfile::tempdir().map_err(files(path, "import"))?;
     let used: BTreeSet<usize> = mesh.triangles().iter().map(|triangle| triangle.material as usize).collect();
+    let mut without = "without-material".to_owned();
+    while import.materials.iter().any(|material| material.name == without) {
+        without.push_str("-2");
+    }
     let names: Vec<String> = (0..mesh.materials())
-        .map(|number| import.materials.get(number).map_or("without-material", |material| &material.name).to_owned())
+        .map(|number| import.materials.get(number).map_or(&without, |material| &material.name).to_owned())
         .collect();
-    let mut lost = 0;
-    for &number in &used {
-        let text = match import.materials.get(number) {
-            Some(material) => {
-                lost += material.lines.iter().filter(|line| line.fate == Fate::Dropped).count();
-                material.text.clone()
-            }
-            None => NONE.replace("NAME", &names[number]),
-        };
-        write(&place.path().join(format!("{}.toml", names[number])), text.as_bytes())?;
-    }
-    for (picture, bytes) in &import.pictures {
-        write(&place.path().join(picture), bytes)?;
-    }
+    let has_none = used.contains(&import.materials.len());
+    let mut number = 0;
+    import.materials.retain(|_| {
+        number += 1;
+        used.contains(&(number - 1))
+    });
+    let lines = import.materials.iter().flat_map(|material| &material.lines);
+    let lost = lines.filter(|line| line.fate == Fate::Dropped).count();
+    let none = NONE.replace("NAME", &without);
+    let none = has_none.then(|| (format!("{without}.toml"), none.as_bytes()));
+    luthier_export::lay(place.path(), import.files().chain(none)).map_err(files(path, "import"))?;
     let mut notes = file.left_out;
     if lost > 0 {
         notes.push(format!("{lost} properties of materials, which `luthier import` names"));
@@ -67,10 +68,4 @@ pub(super) fn read(path: &Path, shading: &Shading) -> Outcome<(Package, Vec<Show
     let number = |name: &String| package.manifest.material_index(name).unwrap_or(0);
     let shown = names.iter().map(|name| Shown::Material(number(name))).collect();
     Ok((package, shown, Arc::new(mesh)))
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Outcome {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
-    std::fs::write(path, bytes).map_err(files(path, "write"))
 }
